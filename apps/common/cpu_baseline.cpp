@@ -1,0 +1,70 @@
+// Compiled for any x86-64. No templates and no inline functions of the library in here: the linker keeps one copy of those, and
+// it may be one that was compiled for the baseline.
+#include "apps/common/cpu_baseline.h"
+
+#include <cpuid.h>
+#include <string.h>
+#include <unistd.h>
+
+namespace cistula {
+namespace {
+
+// __builtin_cpu_supports knows neither MOVBE nor, in every compiler, LZCNT and F16C.
+bool has_leaf1_ecx(unsigned bit) {
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    return __get_cpuid(1, &a, &b, &c, &d) && (c & bit);
+}
+
+bool has_lzcnt() {
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    return __get_cpuid(0x80000001u, &a, &b, &c, &d) && (c & bit_LZCNT);
+}
+
+void append(char* line, size_t capacity, const char* text) {
+    const size_t used = strlen(line);
+    strncat(line, text, capacity - used - 1);
+}
+
+}  // namespace
+
+void require_cpu_baseline() {
+    __builtin_cpu_init();
+    const struct {
+        const char* name;
+        bool there;
+    } parts[] = {
+        // The builtin also asks whether the kernel saves the wide registers.
+        {" AVX", __builtin_cpu_supports("avx") != 0},
+        {" AVX2", __builtin_cpu_supports("avx2") != 0},
+        {" FMA", __builtin_cpu_supports("fma") != 0},
+        {" BMI1", __builtin_cpu_supports("bmi") != 0},
+        {" BMI2", __builtin_cpu_supports("bmi2") != 0},
+        {" F16C", has_leaf1_ecx(bit_F16C)},
+        {" MOVBE", has_leaf1_ecx(bit_MOVBE)},
+        {" LZCNT", has_lzcnt()},
+    };
+    char line[256] = "cistula: this processor lacks";
+    bool lacks = false;
+    for (const auto& part : parts) {
+        if (!part.there) {
+            append(line, sizeof(line), part.name);
+            lacks = true;
+        }
+    }
+    if (!lacks) return;
+    append(line, sizeof(line), "; x86-64-v3 is needed (Intel Haswell of 2013, AMD Excavator or Zen, or later)\n");
+    // Neither iostream nor atexit handlers: nothing of the program has been set up yet.
+    const ssize_t written = write(STDERR_FILENO, line, strlen(line));
+    (void)written;
+    _exit(2);
+}
+
+namespace {
+
+// 101 is the first priority open to programs: before every static constructor that has none.
+__attribute__((constructor(101))) void require_cpu_baseline_at_start() {
+    require_cpu_baseline();
+}
+
+}  // namespace
+}  // namespace cistula

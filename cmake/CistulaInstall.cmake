@@ -1,0 +1,29 @@
+# make install: programs, libraries, headers, and a CMake package: find_package(cistula), cistula::cistula | scene | embree.
+include(CMakePackageConfigHelpers)
+
+install(DIRECTORY libcore/cistula libcore/scene DESTINATION "${CISTULA_INSTALL_HEADERS}" FILES_MATCHING PATTERN "*.h")
+install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+install(TARGETS cistula_contract cistula EXPORT cistulaCore)
+install(EXPORT cistulaCore NAMESPACE cistula:: DESTINATION "${CISTULA_INSTALL_CMAKE}")
+
+set(CISTULA_COMPONENTS cistula)
+foreach(_component scene embree)
+    if(TARGET cistula_${_component})
+        install(TARGETS cistula_${_component} EXPORT cistula_${_component}
+            ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+        install(EXPORT cistula_${_component} NAMESPACE cistula:: DESTINATION "${CISTULA_INSTALL_CMAKE}"
+            FILE cistula_${_component}.cmake)
+        list(APPEND CISTULA_COMPONENTS ${_component})
+    endif()
+endforeach()
+if(TARGET cistula_embree)
+    install(FILES backend_embree/embree_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_embree")
+endif()
+
+configure_package_config_file(cmake/cistulaConfig.cmake.in "${PROJECT_BINARY_DIR}/cistulaConfig.cmake"
+    INSTALL_DESTINATION "${CISTULA_INSTALL_CMAKE}" NO_SET_AND_CHECK_MACRO)
+# Before 1.0 every minor version may break.
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/cistulaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/cistulaConfig.cmake" "${PROJECT_BINARY_DIR}/cistulaConfigVersion.cmake"
+    cmake/FindOpenImageIO.cmake DESTINATION "${CISTULA_INSTALL_CMAKE}")

@@ -1,0 +1,7 @@
+# -DCISTULA_SANITIZE=address,undefined: for every host source of this build. A finding ends the program.
+set(CISTULA_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them")
+if(CISTULA_SANITIZE)
+    add_compile_options(
+        "$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${CISTULA_SANITIZE};-fno-sanitize-recover=all>")
+    add_link_options("-fsanitize=${CISTULA_SANITIZE}")
+endif()

@@ -1,0 +1,125 @@
+#!/usr/bin/env bash
+# The rules of the source tree that a compiler does not see: which layer includes which, and what must not be used.
+# usage: check_layering.sh ROOT | --self-test
+set -euo pipefail
+shopt -s nullglob
+self=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/$(basename "${BASH_SOURCE[0]}")
+
+fail() {  # fail RULE < matches
+    local line
+    while IFS= read -r line; do
+        printf '%s\n    %s\n' "$line" "$1"
+    done
+}
+
+# Lines FILE:NUMBER:TEXT of the given files, without // comments, that match a pattern.
+code() {
+    local pattern=$1
+    shift
+    [ $# -gt 0 ] || return 0
+    awk -v pattern="$pattern" '{ text = $0; sub(/\/\/.*/, "", text); if (text ~ pattern) print FILENAME ":" FNR ":" $0 }' "$@"
+}
+includes() { code '^[ \t]*#[ \t]*include' "$@"; }
+
+check() {
+    cd "$1"
+    local core=(libcore/cistula/*) scene=(libcore/scene/*) embree=(backend_embree/*.{h,cpp}) cuda=(backend_cuda/*.{h,cuh,cpp,cu})
+    local headers=({libcore/cistula,libcore/scene,backend_embree,backend_cuda,apps/*}/*.h)
+    if [ ${#core[@]} -eq 0 ] || [ ! -e libcore/cistula/portable.h ]; then
+        echo "no libcore/cistula/portable.h under $1" >&2
+        exit 2
+    fi
+
+    # Standard headers have neither a slash nor, but for C's, a suffix.
+    includes "${core[@]}" | { grep -vE '#[ \t]*include[ \t]*("cistula/[a-z0-9_]+\.h"|<glm/[a-z0-9_/]+\.hpp>|<[a-z_0-9]+>)' || true; } |
+        fail 'libcore/cistula includes "cistula/...", the standard library and GLM, nothing else'
+    includes "${scene[@]}" | { grep -E 'backend_|apps/|["<]cuda' || true; } |
+        fail 'libcore/scene knows neither backends nor programs'
+    includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|["<]cuda' || true; } |
+        fail 'backend_embree knows neither backend_cuda nor programs'
+    includes "${cuda[@]}" | { grep -E 'backend_embree|apps/|embree[34]/' || true; } |
+        fail 'backend_cuda knows neither backend_embree nor programs'
+
+    for header in "${headers[@]}"; do
+        if [ "$header" != libcore/cistula/portable.h ]; then
+            { grep -HnE '__CUDACC__|__CUDA_ARCH__|__NVCC__' "$header" || true; } |
+                fail 'portable.h is the only header that asks which compiler it is in'
+        fi
+        grep -q '^#pragma once' "$header" || echo "$header" | fail 'a header without #pragma once'
+    done
+
+    local functions='(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|pow|exp|exp2|expm1|log|log2|log10|log1p|cbrt|hypot)'
+    code "(std|glm)::${functions}f?[ \t]*[(]" "${core[@]}" "${scene[@]}" |
+        fail 'libm differs between systems: use cistula/elementary.h and cistula/trigonometry.h'
+    code 'glm::(refract|reflect|normalize|dot|cross|length|distance|mix|clamp|min|max|inversesqrt|mod|fract)[ \t]*[(]' "${core[@]}" |
+        fail "of GLM only types and exact operations: products that round are spelled out in cistula/vec.h"
+    code 'std::f?(min|max)[ \t]*[(<]' "${core[@]}" |
+        fail 'library forms of min and max differ on NaN: use least and greatest of cistula/real.h'
+
+    # Files that name the flags in order to refuse them do not count.
+    { grep -rnE --include='*' -e '-ffast-math|-Ofast|-funsafe-math|-fassociative-math|-freciprocal-math|-ffinite-math-only|-use_fast_math' \
+        $(for path in libcore backend_embree backend_cuda apps tests bench cmake CMakeLists.txt CMakePresets.json Makefile; do
+            [ -e "$path" ] && echo "$path"
+        done) || true; } |
+        { grep -vE '^(libcore/cistula/portable\.h|cmake/CistulaContract\.cmake|tests/check_layering\.sh):' || true; } |
+        fail 'fast-math flags break the floating-point contract'
+    { grep -rnE 'optimize *\( *"[^"]*(fast|unsafe)|#pragma +(GCC +optimize|STDC +FP_CONTRACT +ON|clang +fp)' \
+        libcore $(for path in backend_embree backend_cuda apps; do [ -e "$path" ] && echo "$path"; done) || true; } |
+        fail 'floating-point rules are set in cmake/CistulaContract.cmake alone'
+}
+
+# Every rule must see the tree that breaks it.
+self_test() {
+    local rule=0 failures=0
+    tree=$(mktemp -d)
+    trap 'rm -rf "$tree"' EXIT
+    fresh() {
+        rm -rf "${tree:?}/t"
+        mkdir -p "$tree"/t/{libcore/cistula,libcore/scene,backend_embree,backend_cuda,apps/render,cmake}
+        printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$tree/t/libcore/cistula/portable.h"
+        printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/portable.h"\n// not std::pow(x)\n' >"$tree/t/libcore/cistula/good.h"
+    }
+    breaks() {  # breaks FILE TEXT
+        fresh
+        printf '#pragma once\n%s\n' "$2" >"$tree/t/$1"
+        if "$self" "$tree/t" >/dev/null; then
+            echo "not detected in $1: $2"
+            failures=$((failures + 1))
+        fi
+        rule=$((rule + 1))
+    }
+    fresh
+    "$self" "$tree/t" || { echo "a good tree was refused"; failures=1; }
+    breaks libcore/cistula/a.h '#include <embree3/rtcore.h>'
+    breaks libcore/cistula/a.h '#include "scene/description.h"'
+    breaks libcore/cistula/a.h '#include <cuda_runtime.h>'
+    breaks libcore/cistula/a.h '#include <immintrin.h>'
+    breaks libcore/scene/a.cpp '#include "backend_embree/embree_renderer.h"'
+    breaks libcore/scene/a.h '#  include "apps/render/options.h"'
+    breaks backend_embree/a.cpp '#include "backend_cuda/cuda_renderer.h"'
+    breaks backend_embree/a.h '#include "apps/render/options.h"'
+    breaks backend_cuda/a.cu '#include "backend_embree/embree_renderer.h"'
+    breaks libcore/cistula/a.h '#ifdef __CUDA_ARCH__'
+    breaks apps/render/a.h '#ifdef __CUDACC__'
+    breaks libcore/cistula/a.h 'inline float f(float x) { return std::sin(x); }'
+    breaks libcore/scene/a.cpp 'double f(double x) { return std::pow(x, 2.4); }'
+    breaks libcore/cistula/a.h 'auto f = glm::refract(d, n, eta);'
+    breaks libcore/cistula/a.h 'float f(float x) { return std::max(x, 0.0f); }'
+    breaks cmake/a.cmake 'add_compile_options(-ffast-math)'
+    breaks backend_cuda/CMakeLists.txt 'target_compile_options(x PRIVATE --use_fast_math)'
+    breaks backend_embree/a.cpp '__attribute__((optimize("fast-math"))) void f();'
+    fresh
+    printf 'int x;\n' >"$tree/t/libcore/scene/a.h"
+    if "$self" "$tree/t" >/dev/null; then echo "not detected: no #pragma once"; failures=$((failures + 1)); fi
+    echo "$((rule + 1)) broken trees tried, $failures failures"
+    [ "$failures" -eq 0 ]
+}
+
+case ${1:-} in
+    --self-test) self_test ;;
+    "" | -*) echo "usage: $0 ROOT | --self-test" >&2; exit 2 ;;
+    *)
+        found=$(check "$1")
+        [ -z "$found" ] || { printf '%s\n' "$found"; exit 1; }
+        ;;
+esac

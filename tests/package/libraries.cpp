@@ -1,0 +1,38 @@
+// Compiles a scene and renders it: every library is linked, with all that it needs.
+#include <cstdio>
+#include <exception>
+#include <memory>
+
+#include "backend_embree/embree_renderer.h"
+#include "scene/camera_path.h"
+#include "scene/compiled_scene.h"
+
+int main() try {
+    cistula::SceneDescription description;
+    description.materials.emplace_back();
+    cistula::ObjectDescription cube;
+    cube.material = 0;
+    cube.shape = cistula::SolidObject{.solid = cistula::PlatonicSolid::cube};
+    description.objects.push_back(cube);
+    description.lights.push_back({.position = {3, -4, 5}});
+
+    const std::shared_ptr<const cistula::CompiledScene<float>> scene = cistula::compile_scene<float>(description);
+    const auto renderer = cistula::make_embree_renderer<float>(scene);
+    cistula::FrameSettings settings;
+    settings.full_width = 32;
+    settings.full_height = 24;
+    settings.crop = {0, 0, 32, 24};
+    cistula::Film film;
+    cistula::RenderProgress progress;
+    if (!renderer->render(cistula::camera_at(description.camera, 0), settings, film, progress)) return 1;
+
+    const cistula::PixelRecord& center = film.pixels.at(12 * 32 + 16);
+    const cistula::PixelRecord& corner = film.pixels.at(0);
+    if (center.id != 1 || corner.id != 0) {
+        std::fprintf(stderr, "id %d in the middle, %d in the corner\n", center.id, corner.id);
+        return 1;
+    }
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+}
