@@ -1,0 +1,74 @@
+// The one header that asks which compiler it is in: everything else is the same source for host and device.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#ifdef __CUDACC__
+#define CISTULA_HD __host__ __device__
+#else
+#define CISTULA_HD
+#endif
+
+#if defined(__FAST_MATH__)
+#error "Cistula's images are defined by IEEE arithmetic: build without -ffast-math."
+#endif
+
+// GCC inlines by size; the ray loops are worth more than its estimate.
+#if defined(__GNUC__)
+#define CISTULA_INLINE CISTULA_HD inline __attribute__((always_inline))
+#define CISTULA_NOINLINE CISTULA_HD __attribute__((noinline))
+#else
+#define CISTULA_INLINE CISTULA_HD inline
+#define CISTULA_NOINLINE CISTULA_HD
+#endif
+
+namespace cistula {
+
+/// a * b + c with one rounding, on both sides. Contraction is off everywhere, so this is the only way to get one.
+CISTULA_INLINE float fused(float a, float b, float c) {
+    return fmaf(a, b, c);
+}
+CISTULA_INLINE double fused(double a, double b, double c) {
+    return ::fma(a, b, c);
+}
+
+/// IEEE square root, correctly rounded on both sides.
+CISTULA_INLINE float square_root(float a) {
+    return sqrtf(a);
+}
+CISTULA_INLINE double square_root(double a) {
+    return ::sqrt(a);
+}
+
+CISTULA_INLINE float floor_of(float a) {
+    return floorf(a);
+}
+CISTULA_INLINE double floor_of(double a) {
+    return ::floor(a);
+}
+
+/// std::bit_cast, which device code cannot call everywhere.
+template <class To, class From>
+CISTULA_INLINE To bits_as(const From& from) {
+    static_assert(sizeof(To) == sizeof(From));
+    To to;
+    memcpy(&to, &from, sizeof(To));
+    return to;
+}
+
+/// A view of `size` elements that something else owns; std::span without its host-only members.
+template <class T>
+struct Span {
+    const T* data = nullptr;
+    uint32_t size = 0;
+
+    CISTULA_INLINE const T& operator[](uint32_t i) const { return data[i]; }
+    CISTULA_INLINE const T* begin() const { return data; }
+    CISTULA_INLINE const T* end() const { return data + size; }
+    CISTULA_INLINE bool empty() const { return size == 0; }
+};
+
+}  // namespace cistula
