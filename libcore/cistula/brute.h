@@ -1,0 +1,60 @@
+// The plain loop over all primitives: the oracle, and the fastest way where there are few.
+#pragma once
+
+#include "cistula/shadow.h"
+
+namespace cistula {
+
+/// The exact test of one primitive against one ray; trees and Embree only choose which ones to call it on.
+template <class Real>
+CISTULA_INLINE void closest_primitive(const SceneView<Real>& scene, uint32_t primitive, const Ray<Real>& ray,
+                                      const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
+    if (primitive < scene.convex.size)
+        closest_convex(scene, scene.convex[primitive], ray, best);
+    else
+        closest_cluster(scene, primitive - scene.convex.size, ray, triangle_ray, best);
+}
+
+template <class Real, class E>
+CISTULA_INLINE void shadow_primitive(const SceneView<Real>& scene, uint32_t primitive, const ShadowRay<Real>& shadow,
+                                     const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
+    if (primitive < scene.convex.size)
+        shadow_convex<Real, E>(scene, scene.convex[primitive], shadow, sum);
+    else
+        shadow_cluster<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, sum);
+}
+
+template <class Real>
+struct BruteIntersector {
+    const SceneView<Real>& scene;
+
+    /// The least (t, key) after ray.after that the primitive tests accept.
+    CISTULA_INLINE Hit<Real> closest(const Ray<Real>& ray) const {
+        Hit<Real> best;
+        if (!is_finite(ray)) return best;
+        for (uint32_t i = 0; i < scene.convex.size; ++i) closest_convex(scene, scene.convex[i], ray, best);
+        if (!scene.clusters.empty()) {
+            const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
+            for (uint32_t i = 0; i < scene.clusters.size; ++i) closest_cluster(scene, i, ray, triangle_ray, best);
+        }
+        return best;
+    }
+
+    /// The share of the light's intensity that reaches the ray's origin, per channel.
+    template <class E>
+    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
+        ShadowSum sum;
+        if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
+        shadow_start<Real, E>(scene, shadow, sum);
+        for (uint32_t i = 0; i < scene.convex.size && !sum.dark(); ++i)
+            shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
+        if (!scene.clusters.empty() && !sum.dark()) {
+            const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
+            for (uint32_t i = 0; i < scene.clusters.size && !sum.dark(); ++i)
+                shadow_cluster<Real, E>(scene, i, shadow, triangle_ray, sum);
+        }
+        return sum.template share<E, Real>();
+    }
+};
+
+}  // namespace cistula

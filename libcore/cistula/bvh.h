@@ -1,0 +1,127 @@
+// Walks a binary tree of padded boxes with a float ray that only finds candidates: the primitive tests decide, so that
+// no tree changes a bit (NUMERICS, 1). What the GPU runs; the host runs it in tests.
+#pragma once
+
+#include "cistula/brute.h"
+
+namespace cistula {
+
+/// The candidate ray: rounded to float, which the padding of the boxes covers.
+struct BoxRay {
+    float origin[3], inverse[3];
+    float near_limit, far_limit;
+
+    template <class Real>
+    CISTULA_INLINE static BoxRay of(const Vec3<Real>& origin, const Vec3<Real>& direction) {
+        BoxRay r;
+        for (int k = 0; k < 3; ++k) {
+            r.origin[k] = float(origin[k]);
+            r.inverse[k] = 1.0f / float(direction[k]);
+        }
+        return r;
+    }
+
+    /// Where the ray enters the box, or infinity. A zero direction component on a face gives NaN, which both selects
+    /// ignore.
+    CISTULA_INLINE float enter(const float low[3], const float high[3]) const {
+        float near_t = near_limit, far_t = far_limit;
+        for (int k = 0; k < 3; ++k) {
+            const float at_low = (low[k] - origin[k]) * inverse[k], at_high = (high[k] - origin[k]) * inverse[k];
+            const bool upward = inverse[k] >= 0.0f;
+            near_t = greatest(upward ? at_low : at_high, near_t);
+            far_t = least(upward ? at_high : at_low, far_t);
+        }
+        return near_t <= far_t ? near_t : RealTraits<float>::infinity;
+    }
+};
+
+/// Outward slack of the ends of a candidate ray: relative for the rounding of t, absolute for that of the boxes' sides.
+inline constexpr float tree_slack_relative = 0x1p-21f, tree_slack_absolute = 0x1p-16f;
+
+template <class Real>
+CISTULA_INLINE float tree_far(Real t) {
+    return t < Real(0x1p100) ? float(t) * (1.0f + tree_slack_relative) + tree_slack_absolute
+                             : RealTraits<float>::infinity;
+}
+template <class Real>
+CISTULA_INLINE float tree_near(Real t) {
+    return greatest(float(t) * (1.0f - tree_slack_relative) - tree_slack_absolute, 0.0f);
+}
+
+inline constexpr int tree_stack = 64;  // a tree of depth 64 is never built (scene/build_tree.cpp)
+
+/// Calls visit(item) for the candidates of box_ray, nearer boxes first; visit returns the new far limit.
+template <class Visit>
+CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>& items, BoxRay box_ray,
+                              const Visit& visit) {
+    if (nodes.empty()) return;
+    int32_t pending[tree_stack];
+    float pending_t[tree_stack];
+    int depth = 0;
+    int32_t node = 0;
+    for (;;) {
+        const TreeNode& n = nodes[uint32_t(node)];
+        const float t[2] = {box_ray.enter(n.low[0], n.high[0]), box_ray.enter(n.low[1], n.high[1])};
+        const int first = t[1] < t[0] ? 1 : 0;
+        int32_t next = -1, later = -1;
+        float later_t = 0.0f;
+        for (int i = 0; i < 2; ++i) {
+            const int side = i == 0 ? first : 1 - first;
+            if (!(t[side] <= box_ray.far_limit) || t[side] == RealTraits<float>::infinity) continue;
+            const int32_t child = n.child[side];
+            if (child >= 0) {
+                if (next < 0) next = child;
+                else later = child, later_t = t[side];
+                continue;
+            }
+            for (uint32_t k = 0; k < n.count[side]; ++k) box_ray.far_limit = visit(items[uint32_t(~child) + k]);
+        }
+        if (later >= 0) {
+            pending[depth] = later;
+            pending_t[depth++] = later_t;
+        }
+        while (next < 0 && depth > 0) {
+            --depth;
+            if (pending_t[depth] <= box_ray.far_limit) next = pending[depth];
+        }
+        if (next < 0) return;
+        node = next;
+    }
+}
+
+template <class Real>
+struct BvhIntersector {
+    const SceneView<Real>& scene;
+
+    CISTULA_INLINE Hit<Real> closest(const Ray<Real>& ray) const {
+        Hit<Real> best;
+        if (!is_finite(ray)) return best;
+        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
+        BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
+        box_ray.near_limit = tree_near(ray.after.t);
+        box_ray.far_limit = RealTraits<float>::infinity;
+        walk_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
+            closest_primitive(scene, primitive, ray, triangle_ray, best);
+            return tree_far(best.t);
+        });
+        return best;
+    }
+
+    template <class E>
+    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
+        ShadowSum sum;
+        if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
+        shadow_start<Real, E>(scene, shadow, sum);
+        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
+        BoxRay box_ray = BoxRay::of(shadow.ray.origin, shadow.ray.direction);
+        box_ray.near_limit = 0.0f;
+        box_ray.far_limit = tree_far(shadow.distance);
+        walk_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
+            shadow_primitive<Real, E>(scene, primitive, shadow, triangle_ray, sum);
+            return sum.dark() ? -1.0f : tree_far(shadow.distance);
+        });
+        return sum.template share<E, Real>();
+    }
+};
+
+}  // namespace cistula

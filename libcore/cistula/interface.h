@@ -1,0 +1,54 @@
+// Where a ray meets a face between two media: which shares go on, and which way.
+#pragma once
+
+#include "cistula/effects.h"
+#include "cistula/ray.h"
+#include "cistula/scene_view.h"
+#include "cistula/snell.h"
+
+namespace cistula {
+
+template <class Real>
+struct Shares {
+    Real reflection;         // of the mirrored ray
+    Vec3<Real> filter;       // of the ray that goes through
+    bool bends;              // whether that one takes `through`; otherwise it goes straight on
+    Vec3<Real> through;
+};
+
+/// Index of refraction of the medium around a point: that of the solid of highest priority, or 1.
+template <class Real>
+CISTULA_INLINE double index_of(const SceneView<Real>& scene, const MediaList& media) {
+    const uint32_t solid = media.medium();
+    return solid == no_solid ? 1.0 : scene.materials[scene.solids[solid].material].index;
+}
+
+/// Total internal reflection sends the transmitted share into the mirrored ray; `fresnel` splits kr + kt by the exact
+/// dielectric terms, of which nothing is reflected between equal indices.
+template <class Real, class E>
+CISTULA_INLINE Shares<Real> split_at(const SceneView<Real>& scene, const Material<Real>& m, const Vec3<Real>& direction,
+                                     const Vec3<Real>& normal, const MediaList& before, const MediaList& beyond) {
+    Shares<Real> shares{m.reflection, m.filter, false, direction};
+    if constexpr (E::has(effect_refraction)) {
+        const bool fresnel = E::has(effect_fresnel) && m.fresnel != 0;
+        const Real both = m.reflection + m.transmission;
+        const double from = index_of(scene, before), to = index_of(scene, beyond);
+        if (from == to) {
+            if (fresnel) shares.reflection = Real(0), shares.filter = m.tint * both;
+        } else if (m.transmission > Real(0) || fresnel) {
+            const Refraction<Real> refraction = refracted<Real>(direction, normal, from, to);
+            shares.bends = true;
+            shares.through = refraction.direction;
+            if (refraction.total) {
+                shares.reflection = both;
+                shares.filter = Vec3<Real>(Real(0));
+            } else if (fresnel) {
+                shares.reflection = both * refraction.reflectance;
+                shares.filter = m.tint * (both * (Real(1) - refraction.reflectance));
+            }
+        }
+    }
+    return shares;
+}
+
+}  // namespace cistula

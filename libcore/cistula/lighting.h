@@ -1,0 +1,52 @@
+// The local light of a surface: ambient, and each light by itself, so that lights may come in any order.
+#pragma once
+
+#include "cistula/phong.h"
+#include "cistula/pixel_sums.h"
+#include "cistula/shadow.h"
+#include "cistula/surface.h"
+
+namespace cistula {
+
+/// A new line from a face.
+template <class Real>
+CISTULA_INLINE Ray<Real> spawned(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
+                                 const MediaList& media) {
+    Ray<Real> ray;
+    ray.origin = origin;
+    ray.direction = direction;
+    ray.from_solid = key_solid(hit.key);
+    ray.from_face = key_face(hit.key);
+    ray.media = media;
+    return ray;
+}
+
+/// Adds `weight` times the local term (DESIGN, Light), seen along `ray`.
+template <class Real, class E, class Intersector>
+CISTULA_INLINE void add_local_light(const SceneView<Real>& scene, const Intersector& intersector,
+                                    const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s,
+                                    const Vec3<Real>& weight, PixelSums<Real>& sums, RayCounts& rays) {
+    const Material<Real>& m = *s.material;
+    sums.add(weight * (s.color * m.ambient));
+    if constexpr (E::has(effect_diffuse | effect_specular)) {
+        for (uint32_t i = 0; i < scene.lights.size; ++i) {
+            const Light<Real>& light = scene.lights[i];
+            Vec3<Real> to_light = light.position - s.viewer_side;
+            const Real distance = length(to_light);
+            to_light /= distance;
+            const Real n_l = dot(s.normal, to_light);
+            if (!(n_l > Real(0))) continue;
+            const Vec3<Real> lit = phong<Real, E>(m, s.color, light, s.normal, to_light, -ray.direction, n_l, distance);
+            if (lit == Vec3<Real>(Real(0))) continue;
+            Vec3<Real> arrives(Real(1));
+            if constexpr (E::has(effect_opaque_shadows | effect_transparent_shadows)) {
+                const ShadowRay<Real> shadow{spawned(s.viewer_side, to_light, hit, ray.media), distance, &light};
+                ++rays.shadow;
+                arrives = intersector.template transmittance<E>(shadow);
+            }
+            sums.add(weight * (arrives * lit));
+        }
+    }
+}
+
+}  // namespace cistula

@@ -1,0 +1,109 @@
+// One pixel: the body of both backends' loops.
+#pragma once
+
+#include "cistula/camera.h"
+#include "cistula/ray_tree.h"
+
+namespace cistula {
+
+/// What a frame asks of every pixel. The camera is in the scene's frame.
+struct FrameView {
+    Camera camera;
+    MediaList camera_media;  // the solids that contain the camera (camera_solids)
+    double unit_length = 1;  // scene units per unit of the frame
+    int width = 0, height = 0;
+    int supersample = 1;
+    TreeSettings tree;
+};
+
+/// The ray through a point of the picture, from where it enters the sphere of radius 2 M (NUMERICS, 1), in double for
+/// either Real. `start` is how far from the camera that is. False: it passes the scene by.
+template <class Real>
+CISTULA_HD inline bool primary_ray(const SceneView<Real>& scene, const FrameView& frame, double x, double y,
+                                   Ray<Real>& ray, Vec3<double>& direction, double& start) {
+    direction = camera_direction(frame.camera, x, y, frame.width, frame.height);
+    Vec3<double> origin = frame.camera.position;
+    const double radius = 2 * double(scene.extent), square = radius * radius;
+    start = 0;
+    if (dot(origin, origin) > square) {
+        // By the closest approach: a camera 1e9 away loses no more than its own rounding.
+        const double along_view = dot(origin, direction);
+        const Vec3<double> closest = along(origin, -along_view, direction);
+        const double rest = square - dot(closest, closest);
+        if (!(rest > 0) || along_view > 0) return false;
+        const double half = square_root(rest);
+        start = -along_view - half;
+        origin = along(closest, -half, direction);
+    }
+    ray.origin = Vec3<Real>(origin);
+    ray.direction = Vec3<Real>(direction);
+    ray.media = frame.camera_media;
+    return true;
+}
+
+/// The solids that contain a point: planes for convex ones, crossings of a straight ray from outside for meshes.
+template <class Real, class Intersector>
+CISTULA_HD inline bool camera_solids(const SceneView<Real>& scene, const Intersector& intersector,
+                                     const Vec3<double>& point, MediaList& media) {
+    media = MediaList();
+    if (dot(point, point) > 4 * double(scene.extent) * double(scene.extent)) return true;
+    bool fits = true;
+    bool meshes = false;
+    for (uint32_t i = 0; i < scene.solids.size; ++i) {
+        meshes |= scene.solids[i].kind == SolidKind::mesh;
+        if (scene.solids[i].kind == SolidKind::convex && inside_convex(scene, scene.solids[i], Vec3<Real>(point)))
+            fits &= media.add(i, 1);
+    }
+    if (!meshes) return fits;
+    // Through no axis, edge or symmetry that a scene is likely to have.
+    const Vec3<double> direction = normalized(Vec3<double>(0.36, 0.48, 0.8112));
+    const double distance = 4 * double(scene.extent);
+    Ray<Real> ray;
+    ray.origin = Vec3<Real>(along(point, -distance, direction));
+    ray.direction = Vec3<Real>(direction);
+    for (;;) {
+        const Hit<Real> hit = intersector.closest(ray);
+        if (!(double(hit.t) < distance)) return fits;
+        const uint32_t solid = key_solid(hit.key);
+        const CrossingKind kind = key_kind(hit.key);
+        if (kind != CrossingKind::sheet) ray.media.add(solid, kind == CrossingKind::enter ? 1 : -1);
+        if (scene.solids[solid].kind == SolidKind::mesh) fits &= media.add(solid, kind == CrossingKind::enter ? 1 : -1);
+        ray.after = {hit.t, hit.key};
+    }
+}
+
+/// All samples of pixel (px, py), the k x k grid of centers. Adds to `rays`; returns RenderFlag bits.
+template <class Real, class E, class Intersector>
+CISTULA_HD inline uint32_t render_pixel(const SceneView<Real>& scene, const FrameView& frame,
+                                        const Intersector& intersector, int px, int py, PixelRecord& record,
+                                        RayCounts& rays) {
+    record = PixelRecord();
+    record.z = RealTraits<float>::infinity;
+    uint32_t flags = 0;
+    RayCounts own;
+    const int k = frame.supersample, chosen = (k / 2) * k + k / 2;
+    for (int sample = 0; sample < k * k; ++sample) {
+        Ray<Real> ray;
+        Vec3<double> direction;
+        double start;
+        const double x = px + (sample % k + 0.5) / k, y = py + (sample / k + 0.5) / k;
+        PixelSums<Real> sums(frame.tree, scene.bound, record, flags);
+        ++own.primary;
+        if (!primary_ray(scene, frame, x, y, ray, direction, start)) {
+            sums.add(scene.background);
+            continue;
+        }
+        RayTree<Real, E, Intersector> tree(scene, intersector, frame.tree.depth, sums, own);
+        const FirstHit<Real> first = tree.trace(ray);
+        record.hits += first.anything ? 1 : 0;
+        if (sample != chosen || !first.hit.found()) continue;
+        record.id = int32_t(key_solid(first.hit.key)) + 1;
+        record.z = float((start + double(first.hit.t)) * dot(direction, frame.camera.forward) * frame.unit_length);
+        for (int c = 0; c < 3; ++c) record.normal[c] = float(first.normal[c]);
+    }
+    record.rays = uint32_t(own.total());
+    rays.add(own);
+    return flags;
+}
+
+}  // namespace cistula

@@ -1,0 +1,40 @@
+// What one pixel leaves behind: integer sums, so that the order of work never shows, and the first sample's data.
+#pragma once
+
+#include "cistula/portable.h"
+
+namespace cistula {
+
+/// Reasons to distrust a render; any bit set in a film fails it with a message.
+enum RenderFlag : uint32_t {
+    flag_not_finite = 1u << 0,      // a radiance was infinite or NaN
+    flag_media_overflow = 1u << 1,  // more solids inside one another than a ray can list
+    flag_stack_overflow = 1u << 2,  // a ray tree needed more pending branches than there is room for
+    flag_too_many_crossings = 1u << 3,  // a straight ray crossed more faces than the limit
+};
+
+struct RayCounts {
+    uint64_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
+
+    CISTULA_INLINE void add(const RayCounts& o) {
+        primary += o.primary;
+        reflected += o.reflected;
+        transmitted += o.transmitted;
+        shadow += o.shadow;
+    }
+    CISTULA_INLINE uint64_t total() const { return primary + reflected + transmitted + shadow; }
+};
+
+/// Sums over the pixel's samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
+struct PixelRecord {
+    int64_t radiance[3];
+    int64_t pruned[3];  // ledger: upper bound on what the cutoff took away
+    int64_t cut[3];     // ledger: upper bound on what the depth limit took away
+    uint32_t hits;      // samples whose primary ray hit anything (a seen light too)
+    uint32_t rays;      // rays of all kinds
+    int32_t id;         // 1 + solid under the sample nearest the pixel's center; 0: none
+    float z;            // that sample's distance along the view axis in scene units; infinity: none
+    float normal[3];    // that sample's unit normal, toward the viewer, in world axes; 0: none
+};
+
+}  // namespace cistula

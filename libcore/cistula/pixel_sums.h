@@ -1,0 +1,71 @@
+// A sample's way into its pixel: radiance and what truncation took away, in integers (NUMERICS, 7 and 8).
+#pragma once
+
+#include "cistula/fixed_sum.h"
+#include "cistula/pixel_record.h"
+#include "cistula/vec.h"
+
+namespace cistula {
+
+/// What a frame asks of every ray tree.
+struct TreeSettings {
+    int depth = 4;           // surfaces shaded along a path, the first included
+    double fixed_scale = 1;  // 2^s of the sums
+    int64_t budget = 0;      // truncation allowed per sample, in units of the sums
+};
+
+template <class Real>
+class PixelSums {
+  public:
+    /// For one sample. `bound` is the scene's radiance bound B per channel.
+    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Vec3<Real>& bound, PixelRecord& record, uint32_t& flags)
+        : settings_(settings), bound_(bound), record_(record), flags_(flags), left_(settings.budget) {}
+
+    CISTULA_INLINE void add(const Vec3<Real>& radiance) {
+        for (int c = 0; c < 3; ++c) {
+            int64_t fixed = 0;
+            if (!to_fixed(radiance[c], settings_.fixed_scale, fixed)) flags_ |= flag_not_finite;
+            record_.radiance[c] += fixed;
+        }
+    }
+
+    /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of the
+    /// budget that is left, and what could only add contributions that truncate to 0.
+    CISTULA_INLINE bool afford(const Vec3<Real>& weight) {
+        int64_t most[3];
+        const int64_t worst = most_of(weight, most);
+        if (worst > 1 && worst > left_ / 10) return true;
+        left_ = worst < left_ ? left_ - worst : 0;
+        for (int c = 0; c < 3; ++c) record_.pruned[c] += most[c];
+        return false;
+    }
+
+    /// A branch beyond the depth.
+    CISTULA_INLINE void cut(const Vec3<Real>& weight) {
+        int64_t most[3];
+        most_of(weight, most);
+        for (int c = 0; c < 3; ++c) record_.cut[c] += most[c];
+    }
+
+    CISTULA_INLINE void flag(uint32_t bits) { flags_ |= bits; }
+
+  private:
+    /// The most a branch can add, rounded up; B's slack of 2^-10 covers the rounding of all weights below it.
+    CISTULA_INLINE int64_t most_of(const Vec3<Real>& weight, int64_t most[3]) {
+        int64_t worst = 0;
+        for (int c = 0; c < 3; ++c) {
+            most[c] = 0;
+            if (!to_fixed_up(weight[c] * bound_[c], settings_.fixed_scale, most[c])) flags_ |= flag_not_finite;
+            worst = most[c] > worst ? most[c] : worst;
+        }
+        return worst;
+    }
+
+    const TreeSettings& settings_;
+    const Vec3<Real>& bound_;
+    PixelRecord& record_;
+    uint32_t& flags_;
+    int64_t left_;
+};
+
+}  // namespace cistula

@@ -1,0 +1,74 @@
+// A ray and what it knows about where it is: the solids around it, the face it left, the crossings it has behind it.
+#pragma once
+
+#include "cistula/hit.h"
+
+namespace cistula {
+
+inline constexpr uint32_t no_solid = 0xffffffu;
+
+/// The solids that contain a point, each with a signed count of entries less exits. Straight rays take every crossing of
+/// a mesh in the order of their t, which rounding may turn round at a grazed edge, so that -1 is legal.
+struct MediaList {
+    static constexpr int capacity = 8;  // solids inside one another; going over it fails the render (flag_media_overflow)
+
+    uint32_t entries[capacity];  // solid << 8 | (count + 128)
+    uint32_t size = 0;
+
+    CISTULA_INLINE static uint32_t solid_of(uint32_t entry) { return entry >> 8; }
+    CISTULA_INLINE static int count_of(uint32_t entry) { return int(entry & 0xffu) - 128; }
+
+    CISTULA_INLINE int count(uint32_t solid) const {
+        for (uint32_t i = 0; i < size; ++i)
+            if (solid_of(entries[i]) == solid) return count_of(entries[i]);
+        return 0;
+    }
+
+    CISTULA_INLINE bool contains(uint32_t solid) const { return size != 0 && count(solid) > 0; }
+
+    /// Adds +-1 to the solid's count. False if the list is full (it is then unchanged).
+    CISTULA_INLINE bool add(uint32_t solid, int change) {
+        for (uint32_t i = 0; i < size; ++i) {
+            if (solid_of(entries[i]) != solid) continue;
+            const int count = count_of(entries[i]) + change;
+            if (count < -128 || count > 127) return false;
+            if (count == 0)
+                entries[i] = entries[--size];
+            else
+                entries[i] = solid << 8 | uint32_t(count + 128);
+            return true;
+        }
+        if (size == capacity) return false;
+        entries[size++] = solid << 8 | uint32_t(change + 128);
+        return true;
+    }
+
+    /// The solid of highest priority that contains the point, or no_solid.
+    CISTULA_INLINE uint32_t medium() const {
+        uint32_t best = no_solid;
+        for (uint32_t i = 0; i < size; ++i)
+            if (count_of(entries[i]) > 0 && (best == no_solid || solid_of(entries[i]) > best)) best = solid_of(entries[i]);
+        return best;
+    }
+};
+
+/// A straight line of light. Where it passes a face without bending it keeps origin and direction, and `after` moves on.
+template <class Real>
+struct Ray {
+    Vec3<Real> origin;
+    Vec3<Real> direction;           // unit to within a few u
+    uint32_t from_solid = no_solid; // where the line starts on a face: its solid
+    uint32_t from_face = 0;         // ... and the face: 2 slab + side, or the scene-wide triangle number
+    Crossing<Real> after;           // crossings up to and including this one are behind
+    MediaList media;                // around the point `after`
+
+    CISTULA_INLINE bool fresh() const { return after.t < Real(0); }
+};
+
+/// A ray that is not finite meets nothing.
+template <class Real>
+CISTULA_INLINE bool is_finite(const Ray<Real>& ray) {
+    return is_finite(ray.origin) && is_finite(ray.direction);
+}
+
+}  // namespace cistula

@@ -1,0 +1,140 @@
+// A scene as the shading code sees it: flat arrays, nothing owned, the same layout on host and device.
+// Lengths are in the scene's frame (NUMERICS: centred, scaled by a power of two so that coordinates stay under 2);
+// radiances are scaled by a power of two so that the radiance bound is at most 1.
+#pragma once
+
+#include "cistula/vec.h"
+
+namespace cistula {
+
+enum class SolidKind : uint32_t {
+    convex,  // slabs; no edges, nothing to leak
+    mesh,    // a closed triangle mesh, counter-clockwise seen from outside
+    sheet,   // open triangles, seen from both sides, with no inside
+};
+
+/// The points with low <= normal.x <= high. A single plane has low = -infinity. Face 2 i is slab i's low side, 2 i + 1 its high one.
+template <class Real>
+struct Slab {
+    Vec3<Real> normal;  // unit
+    Real low, high;
+};
+
+/// Solids are numbered in file order, which is also the priority of their media: later wins.
+struct Solid {
+    SolidKind kind;
+    uint32_t material;
+    uint32_t first_slab, slab_count;  // convex: slabs, first those that are single planes last
+    uint32_t first_triangle;          // mesh, sheet: scene-wide number of its first triangle
+    uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
+    Vec3<float> center;               // convex: of a sphere around it,
+    float padded_square;              // ... and the square of its radius plus sphere_padding
+};
+
+/// So much that rounding never turns a ray that the slabs accept into one that passes the sphere by: the terms of the
+/// test are at most 64 for lengths within 4 M, and carry an error of a few u of float each.
+inline constexpr float sphere_padding = 0x1p-11f;
+
+inline constexpr int cluster_lanes = 8;
+
+/// Up to eight neighbouring triangles of one solid, corner by corner and axis by axis, so that eight are tested at once.
+template <class Real>
+struct alignas(32) Cluster {
+    Real corner[3][3][cluster_lanes];  // [corner][axis][lane]; unused lanes hold a zero-area triangle
+    Real height[2][cluster_lanes];     // apex height h, [0] on the side normals point away from (inside), [1] outside
+    uint32_t triangle[cluster_lanes];  // scene-wide triangle numbers
+    uint32_t solid;
+    uint32_t count;
+};
+
+/// What a face is made of. Shares: local 1 - kr - kt, reflected kr, transmitted kt * tint.
+template <class Real>
+struct Material {
+    Vec3<Real> color;
+    Vec3<Real> ambient;         // ka * A, the scene's ambient colour taken in
+    Vec3<Real> specular;        // ks * S
+    Real diffuse;               // kd
+    Real exponent;              // n; used where integer_exponent < 0
+    int32_t integer_exponent;   // n if it is an integer in [0, 1024], else -1
+    Real local;                 // max(0, 1 - kr - kt), rounded down
+    Real reflection;            // kr
+    Real transmission;          // kt
+    Vec3<Real> filter;          // kt * tint
+    Vec3<Real> tint;
+    Vec3<Real> absorption;      // per unit of scene-frame length
+    double index;               // index of refraction
+    uint64_t filter_loss[3];    // -log2(kt * tint), Q11.52; 0 for opaque channels
+    uint32_t opaque;            // bit c: channel c does not pass (kt * tint = 0)
+    int32_t texture;            // -1: none
+    uint32_t fresnel;           // 0 or 1
+    uint32_t clear;             // 1: kr = 0, kt = 1, white tint: nothing to shade where the medium does not change either
+};
+
+/// A point light that lights (its intensity is not zero).
+template <class Real>
+struct Light {
+    Vec3<Real> position;
+    Vec3<Real> intensity;
+    Real clamp_distance;      // 0: no falloff; else 1 / max(distance, clamp_distance)^2
+    uint32_t first_incident;  // faces that the light lies on, grouped by solid
+    uint32_t incident_count;
+};
+
+/// A face that a light lies on. face: of a convex solid 2 slab + side, of triangles the scene-wide triangle number.
+struct Incident {
+    uint32_t solid;
+    uint32_t face;
+};
+
+/// A light that is seen: a sphere of constant radiance. It casts no shadow.
+template <class Real>
+struct SeenLight {
+    Vec3<Real> center;
+    Real radius;
+    Vec3<Real> radiance;
+};
+
+enum class TextureFilter : uint32_t { nearest, bilinear };
+
+/// Linear RGB texels, row 0 at v = 0 (the top of the picture file), repeated without end.
+struct Texture {
+    uint32_t width, height;
+    uint32_t first_texel;
+    TextureFilter filter;
+    double repeat[2];  // uv are multiplied by these first
+};
+
+/// No tree is deeper, so traversal stacks of this size never run over.
+inline constexpr int max_tree_depth = 48;
+
+/// A node of a binary tree over primitives or seen lights: the boxes of both children, already padded.
+/// A child >= 0 is a node; a child < 0 is a leaf that holds items [~child, ~child + count).
+struct TreeNode {
+    float low[2][3], high[2][3];
+    int32_t child[2];
+    uint32_t count[2];
+};
+
+template <class Real>
+struct SceneView {
+    Span<Solid> solids;
+    Span<Slab<Real>> slabs;
+    Span<uint32_t> convex;              // the convex solids; primitive p < convex.size is convex[p]
+    Span<Cluster<Real>> clusters;       // primitive p >= convex.size is clusters[p - convex.size]
+    Span<Vec2<Real>> uvs;
+    Span<Material<Real>> materials;
+    Span<Light<Real>> lights;
+    Span<Incident> incidents;
+    Span<SeenLight<Real>> seen_lights;
+    Span<Texture> textures;
+    Span<Vec3<float>> texels;
+    Span<TreeNode> tree;                // over primitives; may be empty (then brute force or Embree finds hits)
+    Span<uint32_t> tree_items;
+    Span<TreeNode> seen_tree;           // over seen_lights; empty where there are few
+    Span<uint32_t> seen_items;
+    Vec3<Real> background;
+    Vec3<Real> bound;                   // B per channel, at most 1, slack included
+    Real extent;                        // M: the largest coordinate, in [1, 2)
+};
+
+}  // namespace cistula

@@ -1,0 +1,156 @@
+// Transmittance toward a light: sums of integers over the faces crossed, the same in any order (NUMERICS, 5 and 6).
+#pragma once
+
+#include "cistula/convex.h"
+#include "cistula/effects.h"
+#include "cistula/transmittance.h"
+#include "cistula/triangle.h"
+
+namespace cistula {
+
+/// A straight line to a light; refraction does not bend it. ray.after plays no part.
+template <class Real>
+struct ShadowRay {
+    Ray<Real> ray;
+    Real distance;
+    const Light<Real>* light;
+};
+
+/// What has been met so far on the way to a light.
+struct ShadowSum {
+    uint64_t loss[3] = {0, 0, 0};
+    PathSum path[3];      // absorption inside meshes
+    uint32_t opaque = 0;  // bit c: channel c is stopped
+
+    CISTULA_INLINE bool dark() const { return opaque == 7u; }
+
+    template <class E, class Real>
+    CISTULA_INLINE void cross(const Material<Real>& material) {
+        if constexpr (!E::has(effect_transparent_shadows)) {
+            opaque = 7u;
+        } else {
+            opaque |= material.opaque;
+            for (int c = 0; c < 3; ++c) loss[c] = saturating_add(loss[c], material.filter_loss[c]);
+        }
+    }
+
+    /// A stretch of length >= 0 inside a convex solid.
+    template <class Real>
+    CISTULA_INLINE void absorb(const Material<Real>& material, Real length) {
+        for (int c = 0; c < 3; ++c)
+            if (material.absorption[c] > Real(0))
+                loss[c] = saturating_add(loss[c], absorption_loss(double(material.absorption[c]) * double(length)));
+    }
+
+    /// A mesh whose inside begins (sign 1) or ends (sign -1) at `remaining` before the light: the signed sum over all
+    /// its crossings is the length inside.
+    template <class Real>
+    CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real remaining, int sign, Real extent) {
+        for (int c = 0; c < 3; ++c)
+            path[c].add(sign, double(material.absorption[c]), double(remaining), 4 * double(extent));
+    }
+
+    template <class E, class Real>
+    CISTULA_INLINE Vec3<Real> share() const {
+        Vec3<Real> result;
+        uint64_t known = 0;  // a loss and its share, as colorless scenes have one for all channels
+        Real known_share = 1;
+        for (int c = 0; c < 3; ++c) {
+            if constexpr (E::has(effect_transparent_shadows)) {
+                uint64_t total = loss[c];
+                if constexpr (E::has(effect_absorption)) total = saturating_add(total, path[c].loss());
+                if (total != known) known = total, known_share = share_of<Real>(total);
+            }
+            result[c] = opaque >> c & 1u ? Real(0) : known_share;
+        }
+        return result;
+    }
+};
+
+/// Whether the light lies on faces of a solid, and whether `point` is outside one of those planes.
+template <class Real>
+CISTULA_INLINE bool light_on_convex(const SceneView<Real>& scene, const Light<Real>& light, uint32_t index,
+                                    const Vec3<Real>& point, bool& outside) {
+    bool incident = false;
+    outside = false;
+    for (uint32_t i = 0; i < light.incident_count; ++i) {
+        const Incident& face = scene.incidents[light.first_incident + i];
+        if (face.solid != index) continue;
+        incident = true;
+        const Slab<Real>& slab = scene.slabs[scene.solids[index].first_slab + face.face / 2];
+        const Real n = dot(slab.normal, point);
+        outside |= face.face & 1u ? n > slab.high : n < slab.low;
+    }
+    return incident;
+}
+
+template <class Real, class E>
+CISTULA_INLINE void shadow_convex(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
+                                  ShadowSum& sum) {
+    const Ray<Real>& ray = shadow.ray;
+    const bool inside = ray.media.contains(index), own = ray.from_solid == index;
+    if (own && !inside) return;
+    const Solid& solid = scene.solids[index];
+    if (!inside && passes_by(solid, ray.origin, ray.direction)) return;
+    const Material<Real>& material = scene.materials[solid.material];
+    const ConvexInterval<Real> interval =
+        convex_interval(scene, solid, ray.origin, ray.direction, !inside, own ? ray.from_face : no_face);
+    const Real enter = inside ? Real(0) : greatest(interval.enter, Real(0));
+    const Real leave = least(greatest(interval.leave, Real(0)), shadow.distance);
+    bool outside = false;
+    if (shadow.light->incident_count != 0 && light_on_convex(scene, *shadow.light, index, ray.origin, outside)) {
+        // A light on the solid's own face: half-spaces decide, not a comparison of nearly equal distances.
+        if (outside && !inside) return;
+        if (!inside) sum.cross<E>(material);
+        if constexpr (E::has(effect_absorption))
+            sum.absorb(material, greatest(shadow.distance - enter, Real(0)));
+        return;
+    }
+    if (!inside) {
+        if (!interval.met() || !(enter < shadow.distance)) return;
+        sum.cross<E>(material);
+    }
+    if (greatest(interval.leave, Real(0)) < shadow.distance) sum.cross<E>(material);
+    if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(leave - enter, Real(0)));
+}
+
+template <class Real, class E>
+CISTULA_INLINE void shadow_cluster(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
+                                   const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
+    const Cluster<Real>& cluster = scene.clusters[index];
+    for (uint32_t mask = cluster_candidates(cluster, triangle_ray); mask != 0; mask &= mask - 1) {
+        uint32_t lane = 0;
+        while (!(mask >> lane & 1u)) ++lane;
+        TriangleCrossing<Real> c;
+        if (!cross_triangle(cluster, int(lane), triangle_ray, c)) continue;
+        if (!(c.t >= Real(0) && c.t < shadow.distance)) continue;
+        const uint32_t triangle = cluster.triangle[lane];
+        if (shadow.ray.from_solid == cluster.solid && shadow.ray.from_face == triangle) continue;
+        bool holds_light = false;
+        for (uint32_t i = 0; i < shadow.light->incident_count; ++i) {
+            const Incident& face = scene.incidents[shadow.light->first_incident + i];
+            holds_light |= face.solid == cluster.solid && face.face == triangle;
+        }
+        if (holds_light) continue;
+        const Solid& solid = scene.solids[cluster.solid];
+        const Material<Real>& material = scene.materials[solid.material];
+        sum.cross<E>(material);
+        if constexpr (E::has(effect_absorption))
+            if (solid.kind == SolidKind::mesh) sum.absorb_rest(material, shadow.distance - c.t, c.enters ? 1 : -1, scene.extent);
+    }
+}
+
+/// What meshes that contain the start of the ray add.
+template <class Real, class E>
+CISTULA_INLINE void shadow_start(const SceneView<Real>& scene, const ShadowRay<Real>& shadow, ShadowSum& sum) {
+    if constexpr (E::has(effect_absorption)) {
+        const MediaList& media = shadow.ray.media;
+        for (uint32_t i = 0; i < media.size; ++i) {
+            const Solid& solid = scene.solids[MediaList::solid_of(media.entries[i])];
+            if (solid.kind == SolidKind::mesh && MediaList::count_of(media.entries[i]) > 0)
+                sum.absorb_rest(scene.materials[solid.material], shadow.distance, 1, scene.extent);
+        }
+    }
+}
+
+}  // namespace cistula

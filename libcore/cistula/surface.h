@@ -1,0 +1,68 @@
+// What is at a hit: computed from its ids, not from the ray's rounding where that can be helped.
+#pragma once
+
+#include "cistula/effects.h"
+#include "cistula/ray.h"
+#include "cistula/texture.h"
+
+namespace cistula {
+
+template <class Real>
+struct Surface {
+    Vec3<Real> point;
+    Vec3<Real> normal;             // geometric, unit, toward the viewer
+    Vec3<Real> viewer_side;        // where rays that stay on the viewer's side start
+    Vec3<Real> far_side;           // where rays that bend into the other side start
+    Vec3<Real> color;              // the material's, times its texture
+    const Material<Real>* material;
+};
+
+/// From a point on a triangle toward the apex over its centroid, by about 8 u M: the segment crosses no other triangle
+/// (NUMERICS, 2), so that the new origin is on the right side of all of them.
+template <class Real>
+CISTULA_INLINE Vec3<Real> toward_apex(const Vec3<Real>& point, const Vec3<Real>& centroid, const Vec3<Real>& normal,
+                                      Real height, Real extent) {
+    const Real step = Real(8) * RealTraits<Real>::unit * extent;
+    const Real k = step < height * Real(0.125) ? step / height : Real(0.125);
+    const Vec3<Real> apex = along(centroid, height, normal);
+    return along(point, k, apex - point);
+}
+
+template <class Real, class E>
+CISTULA_INLINE Surface<Real> surface_at(const SceneView<Real>& scene, const Ray<Real>& ray, const Hit<Real>& hit) {
+    const Solid& solid = scene.solids[key_solid(hit.key)];
+    const uint32_t face = key_face(hit.key);
+    Surface<Real> s;
+    s.material = &scene.materials[solid.material];
+    s.color = s.material->color;
+    if (solid.kind == SolidKind::convex) {
+        const Vec3<Real>& normal = scene.slabs[solid.first_slab + face / 2].normal;
+        const bool outward = (face & 1u) != 0;  // the high side's outward normal is the slab's
+        s.normal = outward == hit.enters ? normal : -normal;
+        s.point = along(ray.origin, hit.t, ray.direction);
+        s.viewer_side = s.far_side = s.point;
+        return s;
+    }
+    const Cluster<Real>& cluster = scene.clusters[hit.slot / cluster_lanes];
+    const uint32_t lane = hit.slot % cluster_lanes;
+    Vec3<Real> corner[3];
+    for (int c = 0; c < 3; ++c)
+        corner[c] = {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
+    const Vec3<Real> ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+    const Vec3<Real> normal = normalized(cross(ab, ac));
+    s.point = along(along(corner[0], hit.u, ab), hit.v, ac);
+    s.normal = hit.enters ? normal : -normal;
+    const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);
+    s.viewer_side = toward_apex(s.point, centroid, s.normal, cluster.height[hit.enters][lane], scene.extent);
+    s.far_side = toward_apex(s.point, centroid, -s.normal, cluster.height[!hit.enters][lane], scene.extent);
+    if constexpr (E::has(effect_texture)) {
+        if (s.material->texture >= 0) {
+            const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (face - solid.first_triangle);
+            const Vec2<Real> at = uv[0] * (Real(1) - hit.u - hit.v) + uv[1] * hit.u + uv[2] * hit.v;
+            s.color *= texture_at(scene, scene.textures[uint32_t(s.material->texture)], at);
+        }
+    }
+    return s;
+}
+
+}  // namespace cistula
