@@ -1,0 +1,28 @@
+// What a backend fills and the programs write: sums in integers, from which every channel of a file is made.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cistula/pixel_record.h"
+
+namespace cistula {
+
+/// A rectangle of pixels; (0, 0) is the top left of the full frame.
+struct PixelRect {
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// One rendered frame (or its crop). pixels is row-major over rect.
+struct Film {
+    int full_width = 0, full_height = 0;
+    PixelRect rect;
+    int radiance_exponent = 0;  // radiances were divided by 2^radiance_exponent
+    int samples = 1;            // per pixel
+    int fixed_shift = 0;        // s of the fixed sums
+    std::vector<PixelRecord> pixels;
+    RayCounts rays;
+    uint32_t flags = 0;         // RenderFlag bits of all pixels
+};
+
+}  // namespace cistula

@@ -1,0 +1,134 @@
+#include "scene/film_picture.h"
+
+#include <Imath/half.h>
+
+#include <bit>
+#include <functional>
+#include <stdexcept>
+
+#include "cistula/elementary.h"
+#include "cistula/fixed_sum.h"
+
+namespace cistula {
+namespace {
+
+void check(const Film& film) {
+    if (film.samples < 1 || film.rect.width < 1 || film.rect.height < 1 ||
+        film.pixels.size() != static_cast<size_t>(film.rect.width) * static_cast<size_t>(film.rect.height))
+        throw std::invalid_argument("a film has samples, and as many pixels as its rectangle");
+}
+
+float radiance(const Film& film, const PixelRecord& pixel, int c) {
+    return resolve<float>(pixel.radiance[c], film.fixed_shift, static_cast<uint32_t>(film.samples),
+                          film.radiance_exponent);
+}
+
+/// The ledger's mean, rounded up to a unit of the fixed sums and then to a float.
+float ledger_bound(const Film& film, const PixelRecord& pixel, int c) {
+    const uint64_t total = static_cast<uint64_t>(pixel.pruned[c]) + static_cast<uint64_t>(pixel.cut[c]);
+    const uint64_t samples = static_cast<uint64_t>(film.samples);
+    const uint64_t mean = total / samples + (total % samples != 0);
+    const int width = static_cast<int>(std::bit_width(mean));
+    const int dropped = width > 24 ? width - 24 : 0;
+    const uint64_t kept = (mean >> dropped) + ((mean & ((uint64_t(1) << dropped) - 1)) != 0);
+    const double exact =
+        elementary::scaled(static_cast<double>(kept), dropped - film.fixed_shift + film.radiance_exponent);
+    const float nearest = static_cast<float>(exact);
+    return static_cast<double>(nearest) >= exact ? nearest : bits_as<float>(bits_as<uint32_t>(nearest) + 1);
+}
+
+/// The least half that is not below a value >= 0.
+float rounded_up_to_half(float value) {
+    half nearest(value);
+    if (static_cast<float>(nearest) < value) nearest.setBits(static_cast<uint16_t>(nearest.bits() + 1));
+    return static_cast<float>(nearest);
+}
+
+class Hash {
+  public:
+    template <class T>
+    void add(T value) {
+        const auto bits = static_cast<uint64_t>(value);
+        for (size_t i = 0; i < sizeof(T); ++i) state_ = (state_ ^ (bits >> (8 * i) & 255u)) * prime;
+    }
+    void add(float value) { add(bits_as<uint32_t>(value)); }
+
+    std::string hexadecimal() const {
+        std::string text;
+        for (int shift = 124; shift >= 0; shift -= 4)
+            text += "0123456789abcdef"[static_cast<int>(state_ >> shift) & 15];
+        return text;
+    }
+
+  private:
+    __extension__ typedef unsigned __int128 Wide;
+    static constexpr Wide prime = (static_cast<Wide>(1) << 88) + 0x13b;
+    Wide state_ = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) + 0x62b821756295c58du;
+};
+
+}  // namespace
+
+LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
+    check(film);
+    LayeredPicture picture;
+    picture.width = film.rect.width;
+    picture.height = film.rect.height;
+    picture.x = film.rect.x;
+    picture.y = film.rect.y;
+    picture.display_width = film.full_width;
+    picture.display_height = film.full_height;
+    const auto add = [&](const char* name, bool half, const std::function<float(const PixelRecord&)>& value) {
+        LayeredPicture::Channel channel{name, half, {}};
+        channel.values.reserve(film.pixels.size());
+        for (const PixelRecord& pixel : film.pixels) channel.values.push_back(value(pixel));
+        picture.channels.push_back(std::move(channel));
+    };
+    const char* const colors[] = {"R", "G", "B"};
+    const char* const errors[] = {"error.R", "error.G", "error.B"};
+    const char* const normals[] = {"N.X", "N.Y", "N.Z"};
+    const bool half = channels.half;
+    for (int c = 0; c < 3; ++c)
+        add(colors[c], half, [&film, c](const PixelRecord& pixel) { return radiance(film, pixel, c); });
+    add("A", half,
+        [&](const PixelRecord& pixel) { return static_cast<float>(static_cast<double>(pixel.hits) / film.samples); });
+    for (int c = 0; c < 3 && channels.error; ++c)
+        add(errors[c], half, [&film, c, half](const PixelRecord& pixel) {
+            const float bound = ledger_bound(film, pixel, c);
+            return half ? rounded_up_to_half(bound) : bound;
+        });
+    if (channels.id) add("id", false, [](const PixelRecord& pixel) { return static_cast<float>(pixel.id); });
+    if (channels.samples) add("samples", false, [&](const PixelRecord&) { return static_cast<float>(film.samples); });
+    if (channels.cost) add("cost", false, [](const PixelRecord& pixel) { return static_cast<float>(pixel.rays); });
+    if (channels.z) add("Z", false, [](const PixelRecord& pixel) { return pixel.z; });
+    for (int c = 0; c < 3 && channels.normal; ++c)
+        add(normals[c], half, [c](const PixelRecord& pixel) { return pixel.normal[c]; });
+    return picture;
+}
+
+ColorPicture to_color(const Film& film) {
+    check(film);
+    ColorPicture picture;
+    picture.width = static_cast<uint32_t>(film.rect.width);
+    picture.height = static_cast<uint32_t>(film.rect.height);
+    picture.texels.reserve(film.pixels.size());
+    for (const PixelRecord& pixel : film.pixels)
+        picture.texels.emplace_back(radiance(film, pixel, 0), radiance(film, pixel, 1), radiance(film, pixel, 2));
+    return picture;
+}
+
+std::string film_hash(const Film& film) {
+    Hash hash;
+    for (const PixelRecord& pixel : film.pixels) {
+        for (const int64_t value : pixel.radiance) hash.add(value);
+        for (const int64_t value : pixel.pruned) hash.add(value);
+        for (const int64_t value : pixel.cut) hash.add(value);
+        hash.add(pixel.hits);
+        hash.add(pixel.rays);
+        hash.add(pixel.id);
+        hash.add(pixel.z);
+        for (const float value : pixel.normal) hash.add(value);
+    }
+    return hash.hexadecimal();
+}
+
+}  // namespace cistula

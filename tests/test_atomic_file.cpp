@@ -1,0 +1,177 @@
+// Files are whole or untouched, whatever goes wrong while they are written, and errors say what to do.
+#include "scene/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "expect_error.h"
+#include "file_size_limit.h"
+#include "scratch_directory.h"
+
+namespace cistula {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+TEST(AtomicFile, WritesAndReplaces) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.bin");
+    write_file_atomically(path, "first");
+    EXPECT_EQ(bytes_of(path), "first");
+    const std::string binary("\0\xff\n\r", 4);
+    write_file_atomically(path, binary);
+    EXPECT_EQ(bytes_of(path), binary);
+    write_file_atomically(path, "");
+    EXPECT_EQ(bytes_of(path), "");
+    EXPECT_EQ(scratch.names(), Names{"a.bin"});
+}
+
+TEST(AtomicFile, TemporaryIsHiddenRecognizableAndUnique) {
+    const ScratchDirectory scratch;
+    const AtomicFile one(scratch.file("frame.exr")), two(scratch.file("frame.exr"));
+    EXPECT_NE(one.temporary(), two.temporary());
+    for (const AtomicFile* file : {&one, &two}) {
+        const fs::path temporary(file->temporary());
+        const std::string name = temporary.filename().string();
+        ASSERT_EQ(name.size(), std::string(".frame.exr.123456.part").size());
+        EXPECT_EQ(name.substr(0, 11), ".frame.exr.");
+        EXPECT_EQ(name.substr(11, 6).find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789"), std::string::npos);
+        EXPECT_EQ(name.substr(17), ".part");
+        EXPECT_EQ(temporary.parent_path(), fs::path(scratch.file("frame.exr")).parent_path());
+        EXPECT_TRUE(fs::exists(temporary));
+    }
+}
+
+TEST(AtomicFile, OldFileStaysWithoutCommit) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.txt");
+    put_bytes(path, "old");
+    try {
+        AtomicFile file(path);
+        file.write("new");
+        EXPECT_EQ(scratch.names().size(), 2u);
+        throw std::runtime_error("something else failed");
+    } catch (const std::runtime_error&) {
+    }
+    EXPECT_EQ(bytes_of(path), "old");
+    EXPECT_EQ(scratch.names(), Names{"a.txt"});
+}
+
+TEST(AtomicFile, OthersMayWriteTheTemporary) {
+    const ScratchDirectory scratch;
+    AtomicFile file(scratch.file("a.txt"));
+    put_bytes(file.temporary(), "by a library");
+    EXPECT_FALSE(fs::exists(scratch.file("a.txt")));
+    file.commit();
+    EXPECT_EQ(bytes_of(scratch.file("a.txt")), "by a library");
+    EXPECT_EQ(scratch.names(), Names{"a.txt"});
+}
+
+TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.txt"), link = scratch.file("link.txt");
+    put_bytes(path, "old");
+    ASSERT_EQ(chmod(path.c_str(), 0604), 0);
+    fs::create_symlink("a.txt", link);
+    write_file_atomically(link, "new");
+    EXPECT_TRUE(fs::is_symlink(link));
+    EXPECT_EQ(bytes_of(path), "new");
+    EXPECT_EQ(static_cast<unsigned>(fs::status(path).permissions()), 0604u);
+}
+
+TEST(AtomicFile, NewFilesObeyTheUmask) {
+    const ScratchDirectory scratch;
+    const mode_t old = umask(027);
+    write_file_atomically(scratch.file("a.txt"), "x");
+    umask(old);
+    EXPECT_EQ(static_cast<unsigned>(fs::status(scratch.file("a.txt")).permissions()), 0640u);
+}
+
+TEST(AtomicFile, LongNames) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file(std::string(255, 'n'));
+    write_file_atomically(path, "x");
+    EXPECT_EQ(bytes_of(path), "x");
+}
+
+TEST(AtomicFile, Errors) {
+    const ScratchDirectory scratch;
+    const std::string missing = scratch.file("no/x.exr");
+    EXPECT_ERROR(write_file_atomically(missing, "x"), ExitCode::file,
+                 missing + ": cannot write: No such file or directory; create the directory " + scratch.file("no") +
+                     " first, or give another");
+    const std::string directory = scratch.file("directory");
+    fs::create_directory(directory);
+    EXPECT_ERROR(write_file_atomically(directory, "x"), ExitCode::file,
+                 directory + ": cannot write: Is a directory; give the name of a file in it");
+    EXPECT_ERROR(write_file_atomically(directory + "/", "x"), ExitCode::file,
+                 directory + "/: cannot write: Is a directory; give the name of a file in it");
+    put_bytes(scratch.file("file"), "x");
+    EXPECT_ERROR(write_file_atomically(scratch.file("file/x"), "x"), ExitCode::file,
+                 scratch.file("file/x") + ": cannot write: Not a directory; " + scratch.file("file") +
+                     " is not a directory, give another");
+    EXPECT_ERROR(write_file_atomically("", "x"), ExitCode::file,
+                 ": cannot write: No such file or directory; give a file name");
+    EXPECT_ERROR(write_file_atomically(scratch.file(std::string(256, 'n')), "x"), ExitCode::file,
+                 scratch.file(std::string(256, 'n')) + ": cannot write: File name too long; give a shorter name");
+}
+
+TEST(AtomicFile, DevicesAreNotReplaced) {
+    EXPECT_ERROR(write_file_atomically("/dev/null", "x"), ExitCode::file,
+                 "/dev/null: cannot write: it is a device or a pipe; give the name of a regular file");
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, FailedRenameLeavesNothing) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a");
+    {
+        AtomicFile file(path);
+        fs::create_directory(path);
+        EXPECT_ERROR(file.commit(), ExitCode::file,
+                     path + ": cannot write: Is a directory; give the name of a file in it");
+    }
+    EXPECT_EQ(scratch.names(), Names{"a"});
+}
+
+TEST(AtomicFile, FullDiskLeavesTheOldFile) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.txt");
+    put_bytes(path, "old");
+    {
+        const FileSizeLimit limit(1000);
+        EXPECT_ERROR(write_file_atomically(path, std::string(5000, 'x')), ExitCode::file,
+                     path +
+                         ": cannot write: File too large; raise the limit on file sizes (ulimit -f), or give a place "
+                         "on another disk");
+    }
+    EXPECT_EQ(bytes_of(path), "old");
+    EXPECT_EQ(scratch.names(), Names{"a.txt"});
+}
+
+TEST(FileBytes, ReadsWholeFilesAndStarts) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a");
+    std::string bytes;
+    for (int i = 0; i < 1000003; ++i) bytes += static_cast<char>(i * 7 % 251);
+    put_bytes(path, bytes);
+    EXPECT_EQ(read_file(path), bytes);
+    EXPECT_EQ(read_file_start(path, 5), bytes.substr(0, 5));
+    put_bytes(path, "");
+    EXPECT_EQ(read_file(path), "");
+    EXPECT_ERROR(read_file(scratch.file("b")), ExitCode::file,
+                 scratch.file("b") + ": cannot read: No such file or directory; check the spelling");
+    EXPECT_ERROR(read_file(scratch.file("")), ExitCode::file,
+                 scratch.file("") + ": cannot read: Is a directory; give the name of a file in it");
+}
+
+TEST(FileBytes, Extensions) {
+    EXPECT_EQ(lower_extension("a.b/c.EXR"), ".exr");
+    EXPECT_EQ(lower_extension("a.b/c"), "");
+    EXPECT_EQ(file_error("p", "read", std::string("  two\n  lines. \n")).what(),
+              std::string("p: cannot read: two lines"));
+}
+
+}  // namespace
+}  // namespace cistula

@@ -1,0 +1,199 @@
+// The integers of a film as channels: exact values, a ledger that stays a bound, a hash that sees every field.
+#include "scene/film_picture.h"
+
+#include <Imath/half.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include "cistula/fixed_sum.h"
+
+namespace cistula {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+Film film_of(int samples, int exponent, const std::vector<PixelRecord>& pixels) {
+    Film film;
+    film.full_width = 64;
+    film.full_height = 48;
+    film.rect = {7, 5, static_cast<int>(pixels.size()), 1};
+    film.samples = samples;
+    film.fixed_shift = fixed_shift(static_cast<uint32_t>(samples));
+    film.radiance_exponent = exponent;
+    film.pixels = pixels;
+    return film;
+}
+
+PixelRecord some_pixel() {
+    return {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10, 11, 12, 13.5f, {0.5f, -0.5f, 0.25f}};
+}
+
+const LayeredPicture::Channel& channel(const LayeredPicture& picture, const std::string& name) {
+    for (const auto& each : picture.channels)
+        if (each.name == name) return each;
+    throw std::runtime_error("no channel " + name);
+}
+
+constexpr OutputChannels everything{false, true, true, true, true, true, true};
+constexpr OutputChannels everything_half{true, true, true, true, true, true, true};
+
+TEST(FilmPicture, ChannelsAndWindows) {
+    const Film film = film_of(1, 0, {some_pixel(), some_pixel()});
+    const auto names = [](const LayeredPicture& picture) {
+        std::string all;
+        for (const auto& each : picture.channels) all += each.name + (each.half ? "h " : " ");
+        return all;
+    };
+    EXPECT_EQ(names(to_layers(film, {})), "R G B A ");
+    EXPECT_EQ(names(to_layers(film, everything)), "R G B A error.R error.G error.B id samples cost Z N.X N.Y N.Z ");
+    EXPECT_EQ(names(to_layers(film, everything_half)),
+              "Rh Gh Bh Ah error.Rh error.Gh error.Bh id samples cost Z N.Xh N.Yh N.Zh ");
+    OutputChannels z_only;
+    z_only.z = true;
+    EXPECT_EQ(names(to_layers(film, z_only)), "R G B A Z ");
+    const LayeredPicture picture = to_layers(film, everything);
+    EXPECT_EQ(picture.x, 7);
+    EXPECT_EQ(picture.y, 5);
+    EXPECT_EQ(picture.width, 2);
+    EXPECT_EQ(picture.height, 1);
+    EXPECT_EQ(picture.display_width, 64);
+    EXPECT_EQ(picture.display_height, 48);
+}
+
+TEST(FilmPicture, Values) {
+    const int64_t one = int64_t(1) << 60;  // four samples
+    PixelRecord lit = {{4 * one, 2 * one, one}, {one, 0, 0}, {one, 3 * one, 0}, 3, 77, 5, 2.5f, {0, 0.6f, -0.8f}};
+    PixelRecord empty = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, 4, 0, infinity, {0, 0, 0}};
+    const Film film = film_of(4, 3, {lit, empty});
+    const LayeredPicture picture = to_layers(film, everything);
+    const auto expect = [&](const char* name, float first, float second) {
+        EXPECT_EQ(channel(picture, name).values, (std::vector<float>{first, second})) << name;
+    };
+    expect("R", 8, 0);
+    expect("G", 4, 0);
+    expect("B", 2, 0);
+    expect("A", 0.75f, 0);
+    expect("error.R", 4, 0);
+    expect("error.G", 6, 0);
+    expect("error.B", 0, 0);
+    expect("id", 5, 0);
+    expect("samples", 4, 4);
+    expect("cost", 77, 4);
+    expect("Z", 2.5f, infinity);
+    expect("N.X", 0, 0);
+    expect("N.Y", 0.6f, 0);
+    expect("N.Z", -0.8f, 0);
+    const ColorPicture color = to_color(film);
+    EXPECT_EQ(color.width, 2u);
+    EXPECT_EQ(color.height, 1u);
+    EXPECT_EQ(color.texels, (std::vector<glm::vec3>{{8, 4, 2}, {0, 0, 0}}));
+}
+
+TEST(FilmPicture, LedgerRoundsUpByTheLeastStep) {
+    std::mt19937_64 random(1);
+    const long double unit = std::ldexp(1.0L, -62);
+    for (const int exponent : {0, -40, 90}) {
+        for (int i = 0; i < 20000; ++i) {
+            const int bits = static_cast<int>(random() % 62);
+            const auto value = static_cast<int64_t>(random() % (uint64_t(1) << bits | 1));
+            PixelRecord pixel = some_pixel();
+            pixel.pruned[0] = value / 3;
+            pixel.cut[0] = value - value / 3;
+            const Film film = film_of(1, exponent, {pixel});
+            const long double exact = std::ldexp(static_cast<long double>(value) * unit, exponent);
+            const float bound = channel(to_layers(film, everything), "error.R").values[0];
+            ASSERT_GE(static_cast<long double>(bound), exact) << value;
+            if (bound > 0) {
+                ASSERT_LT(static_cast<long double>(std::nextafter(bound, 0.0f)), exact) << value;
+            }
+            const float half_bound = channel(to_layers(film, everything_half), "error.R").values[0];
+            ASSERT_GE(half_bound, bound);
+            if (half_bound > 0) {
+                half below(half_bound);
+                ASSERT_EQ(static_cast<float>(below), half_bound) << "not a half";
+                below.setBits(static_cast<uint16_t>(below.bits() - 1));
+                ASSERT_LT(static_cast<float>(below), bound);
+            }
+        }
+    }
+}
+
+TEST(FilmPicture, LedgerRoundsUpOverSamples) {
+    PixelRecord pixel = some_pixel();
+    pixel.pruned[0] = 1;  // a ninth of the smallest unit is not nothing
+    pixel.cut[0] = 0;
+    pixel.pruned[1] = pixel.cut[1] = std::numeric_limits<int64_t>::max();
+    const Film film = film_of(9, 0, {pixel});
+    ASSERT_EQ(film.fixed_shift, 58);
+    const LayeredPicture picture = to_layers(film, everything);
+    EXPECT_EQ(channel(picture, "error.R").values[0], 0x1p-58f);
+    const float bound = channel(picture, "error.G").values[0];  // of 64 / 9, less a unit
+    EXPECT_GE(9.0 * bound, 64);
+    EXPECT_LT(9.0 * std::nextafter(bound, 0.0f), 64);
+    const Film bright = film_of(1, 20, {pixel});
+    EXPECT_EQ(channel(to_layers(bright, everything_half), "error.G").values[0], infinity);
+}
+
+TEST(FilmPicture, HashIsFnv1a) {
+    // An empty film gives the offset basis of the published 128-bit FNV-1a.
+    EXPECT_EQ(film_hash(Film()), "6c62272e07bb014262b821756295c58d");
+    // Over zero bytes FNV-1a multiplies by the prime 2^88 + 0x13b; 100 bytes a pixel.
+    Film film = film_of(1, 0, {PixelRecord{}});
+    __extension__ typedef unsigned __int128 Wide;
+    Wide state = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) + 0x62b821756295c58du;
+    for (int i = 0; i < 9 * 8 + 7 * 4; ++i) state *= (static_cast<Wide>(1) << 88) + 0x13b;
+    char text[33];
+    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(state >> 64),
+                  static_cast<unsigned long long>(state));
+    EXPECT_EQ(film_hash(film), text);
+}
+
+TEST(FilmPicture, HashSeesEveryFieldAndNothingElse) {
+    const Film film = film_of(1, 0, {some_pixel(), some_pixel()});
+    std::set<std::string> hashes = {film_hash(film)};
+    size_t changes = 1;
+    const auto changed = [&](auto change) {
+        Film other = film;
+        change(other.pixels[1]);
+        hashes.insert(film_hash(other));
+        ++changes;
+    };
+    for (int c = 0; c < 3; ++c) {
+        changed([c](PixelRecord& p) { p.radiance[c] ^= int64_t(1) << 61; });
+        changed([c](PixelRecord& p) { p.pruned[c] ^= 1; });
+        changed([c](PixelRecord& p) { p.cut[c] ^= 1; });
+        changed([c](PixelRecord& p) { p.normal[c] = -p.normal[c]; });
+    }
+    changed([](PixelRecord& p) { ++p.hits; });
+    changed([](PixelRecord& p) { ++p.rays; });
+    changed([](PixelRecord& p) { p.id = -p.id; });
+    changed([](PixelRecord& p) { p.z = std::nextafter(p.z, 0.0f); });
+    changed([](PixelRecord& p) { std::swap(p.radiance[0], p.radiance[1]); });
+    EXPECT_EQ(hashes.size(), changes);
+
+    Film same = film;
+    same.full_width = 1000;
+    same.rect = {1, 2, 1, 2};
+    same.radiance_exponent = 3;
+    same.samples = 16;
+    same.fixed_shift = 58;
+    same.rays.primary = 5;
+    same.flags = 1;
+    EXPECT_EQ(film_hash(same), film_hash(film));
+}
+
+TEST(FilmPicture, RefusesInconsistentFilms) {
+    Film film = film_of(1, 0, {some_pixel()});
+    film.rect.width = 2;
+    EXPECT_THROW(to_layers(film, {}), std::invalid_argument);
+    EXPECT_THROW(to_color(film), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cistula

@@ -1,0 +1,206 @@
+// Textures of every kind become the same linear values; previews are exact 8-bit sRGB.
+#include "scene/picture_io.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "expect_error.h"
+#include "scene/exr.h"
+#include "scene/picture_oiio.h"
+#include "scene/seed_data.h"
+#include "scene/srgb_codes.h"
+#include "scratch_directory.h"
+
+namespace cistula {
+namespace {
+
+template <class T>
+void write_image(const std::string& path, int width, int channels, OIIO::TypeDesc type, const std::vector<T>& samples) {
+    const int height = static_cast<int>(samples.size()) / width / channels;
+    OIIO::ImageSpec spec(width, height, channels, type);
+    spec["oiio:UnassociatedAlpha"] = 1;
+    const auto output = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(output) << OIIO::geterror();
+    ASSERT_TRUE(output->open(path, spec)) << output->geterror();
+    ASSERT_TRUE(output->write_image(OIIO::BaseTypeFromC<T>::value, samples.data())) << output->geterror();
+    ASSERT_TRUE(output->close());
+}
+
+glm::vec3 decoded(int r, int g, int b) {
+    const auto channel = [](int code) { return linear_from_srgb8(static_cast<uint8_t>(code)); };
+    return {channel(r), channel(g), channel(b)};
+}
+
+TEST(Textures, EightBitsAreDecoded) {
+    const ScratchDirectory scratch;
+    const std::vector<uint8_t> samples = {0, 10, 11, 128, 188, 255, 1, 2, 3, 200, 100, 50};
+    for (const char* name : {"a.png", "a.tif", "a.bmp", "a.tga"}) {
+        write_image(scratch.file(name), 2, 3, OIIO::TypeDesc::UINT8, samples);
+        const ColorPicture picture = read_texture(scratch.file(name));
+        EXPECT_EQ(picture.width, 2u);
+        EXPECT_EQ(picture.height, 2u);
+        EXPECT_EQ(picture.texels, (std::vector<glm::vec3>{decoded(0, 10, 11), decoded(128, 188, 255), decoded(1, 2, 3),
+                                                          decoded(200, 100, 50)}))
+            << name;
+    }
+}
+
+TEST(Textures, AlphaChangesNoColor) {
+    const ScratchDirectory scratch;
+    for (const char* name : {"a.png", "a.tif", "a.tga"}) {
+        write_image<uint8_t>(scratch.file(name), 2, 4, OIIO::TypeDesc::UINT8, {200, 100, 50, 128, 10, 20, 30, 0});
+        EXPECT_EQ(read_texture(scratch.file(name)).texels,
+                  (std::vector<glm::vec3>{decoded(200, 100, 50), decoded(10, 20, 30)}))
+            << name;
+    }
+}
+
+TEST(Textures, GrayWithAndWithoutAlpha) {
+    const ScratchDirectory scratch;
+    const std::vector<glm::vec3> expected = {decoded(7, 7, 7), decoded(250, 250, 250)};
+    write_image<uint8_t>(scratch.file("a.png"), 2, 1, OIIO::TypeDesc::UINT8, {7, 250});
+    EXPECT_EQ(read_texture(scratch.file("a.png")).texels, expected);
+    write_image<uint8_t>(scratch.file("b.png"), 2, 2, OIIO::TypeDesc::UINT8, {7, 255, 250, 3});
+    EXPECT_EQ(read_texture(scratch.file("b.png")).texels, expected);
+}
+
+TEST(Textures, SixteenBitsAreDecodedAndFloatsAreLinear) {
+    const ScratchDirectory scratch;
+    const std::vector<uint16_t> samples = {0, 1, 300, 40000, 65534, 65535};
+    std::vector<glm::vec3> expected;
+    for (size_t i = 0; i < 6; i += 3)
+        expected.emplace_back(linear_from_srgb16(samples[i]), linear_from_srgb16(samples[i + 1]),
+                              linear_from_srgb16(samples[i + 2]));
+    for (const char* name : {"a.png", "a.tif"}) {
+        write_image(scratch.file(name), 2, 3, OIIO::TypeDesc::UINT16, samples);
+        EXPECT_EQ(read_texture(scratch.file(name)).texels, expected) << name;
+    }
+    write_image<float>(scratch.file("f.tif"), 1, 3, OIIO::TypeDesc::FLOAT, {0.1f, 1e-42f, 3e38f});
+    EXPECT_EQ(read_texture(scratch.file("f.tif")).texels, (std::vector<glm::vec3>{{0.1f, 1e-42f, 3e38f}}));
+    write_image<float>(scratch.file("a.hdr"), 1, 3, OIIO::TypeDesc::FLOAT, {64, 0.5f, 33});
+    EXPECT_EQ(read_texture(scratch.file("a.hdr")).texels, (std::vector<glm::vec3>{{64, 0.5f, 33}}));
+}
+
+TEST(Textures, ExrByExtensionOrContentAndData) {
+    const ScratchDirectory scratch;
+    LayeredPicture layers;
+    layers.width = layers.height = layers.display_width = layers.display_height = 1;
+    layers.channels = {{"R", false, {0.1f}}, {"G", false, {123456.7f}}, {"B", false, {1e-30f}}, {"A", false, {0}}};
+    const std::vector<glm::vec3> expected = {{0.1f, 123456.7f, 1e-30f}};
+    for (const char* name : {"a.exr", "b.EXR", "renamed.png", "none"}) {
+        write_exr(scratch.file(name), layers);
+        EXPECT_EQ(read_texture(scratch.file(name)).texels, expected) << name;
+    }
+    for (const char* name : {"a.data", "a.out"}) {
+        write_seed_frame(scratch.file(name), ColorPicture{1, 1, {decoded(9, 99, 199)}});
+        EXPECT_EQ(read_texture(scratch.file(name)).texels, std::vector<glm::vec3>{decoded(9, 99, 199)}) << name;
+    }
+}
+
+TEST(Textures, Errors) {
+    const ScratchDirectory scratch;
+    EXPECT_ERROR(read_texture(scratch.file("no.png")), ExitCode::file,
+                 scratch.file("no.png") + ": cannot read: No such file or directory; check the spelling");
+    put_bytes(scratch.file("empty.png"), "");
+    EXPECT_ERROR(read_texture(scratch.file("empty.png")), ExitCode::file,
+                 scratch.file("empty.png") + ": cannot read: it is empty; give a picture");
+    put_bytes(scratch.file("a.data"), "1234567");
+    EXPECT_ERROR(read_texture(scratch.file("a.data")), ExitCode::file,
+                 scratch.file("a.data") +
+                     ": cannot read: it has 7 bytes; a .data file begins with 8, its width and height as two 32-bit "
+                     "integers");
+
+    // Not a PNG: what libpng leaves by longjmp, OpenImageIO does not free, and leak checkers say so.
+    write_image<uint8_t>(scratch.file("a.bmp"), 64, 3, OIIO::TypeDesc::UINT8, std::vector<uint8_t>(64 * 64 * 3, 77));
+    const std::string bytes = bytes_of(scratch.file("a.bmp"));
+    for (const std::string& bad : {bytes.substr(0, bytes.size() / 2), std::string("no picture")}) {
+        put_bytes(scratch.file("bad.bmp"), bad);
+        try {
+            read_texture(scratch.file("bad.bmp"));
+            ADD_FAILURE() << "no error for " << bad.size() << " bytes";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::file);
+            EXPECT_EQ(std::string(error.what()).rfind(scratch.file("bad.bmp") + ": cannot read: ", 0), 0u);
+            EXPECT_GT(std::string(error.what()).size(), scratch.file("bad.bmp").size() + 20) << error.what();
+        }
+    }
+    write_image<uint32_t>(scratch.file("w.tif"), 1, 3, OIIO::TypeDesc::UINT32, {1, 2, 3});
+    EXPECT_ERROR(read_texture(scratch.file("w.tif")), ExitCode::file,
+                 scratch.file("w.tif") +
+                     ": cannot read: its samples are of type uint; a texture has 8 or 16 bits, half or float");
+}
+
+TEST(Textures, TexelsAreFiniteAndNotNegative) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.exr");
+    LayeredPicture layers;
+    layers.width = layers.display_width = 2;
+    layers.height = layers.display_height = 2;
+    for (const char* name : {"R", "G", "B"}) layers.channels.push_back({name, false, {0, -0.0f, 1, 2}});
+    write_exr(path, layers);
+    EXPECT_EQ(read_texture(path).texels.size(), 4u);
+    layers.channels[1].values[3] = -0.5f;
+    write_exr(path, layers);
+    EXPECT_ERROR(read_texture(path), ExitCode::file,
+                 path + ": texel (1, 1) has G = -0.500000; texels are finite and not negative");
+    layers.channels[2].values[2] = std::numeric_limits<float>::infinity();
+    write_exr(path, layers);
+    EXPECT_ERROR(read_texture(path), ExitCode::file,
+                 path + ": texel (0, 1) has B = inf; texels are finite and not negative");
+    layers.channels[0].values[1] = std::numeric_limits<float>::quiet_NaN();
+    write_exr(path, layers);
+    EXPECT_ERROR(read_texture(path), ExitCode::file,
+                 path + ": texel (1, 0) has R = nan; texels are finite and not negative");
+}
+
+TEST(Preview, ExactBytesAndOneFile) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.png");
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    ColorPicture picture{3, 1, {{0, 0.5f, 1}, {-1, 100, nan}, {0.2158605f, 0.001f, 0.9f}}};
+    write_preview(path, picture);
+    const auto input = OIIO::ImageInput::open(path);
+    ASSERT_TRUE(input);
+    EXPECT_EQ(std::string(input->format_name()), "png");
+    EXPECT_EQ(input->spec().width, 3);
+    EXPECT_EQ(input->spec().height, 1);
+    EXPECT_EQ(input->spec().nchannels, 3);
+    EXPECT_EQ(input->spec().format, OIIO::TypeDesc::UINT8);
+    EXPECT_EQ(input->spec().get_string_attribute("oiio:ColorSpace"), "sRGB");
+    std::vector<uint8_t> bytes(9);
+    ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, bytes.data()));
+    EXPECT_EQ(bytes, (std::vector<uint8_t>{0, 188, 255, 0, 255, 0, 128, 3, 243}));
+    EXPECT_EQ(scratch.names(), std::vector<std::string>{"a.png"});
+
+    // It replaces, and equal pictures are equal files.
+    write_preview(scratch.file("b.png"), picture);
+    EXPECT_EQ(bytes_of(path), bytes_of(scratch.file("b.png")));
+    picture.texels[0].x = 1;
+    write_preview(path, picture);
+    EXPECT_NE(bytes_of(path), bytes_of(scratch.file("b.png")));
+}
+
+TEST(Preview, EveryCodeComesBackThroughATexture) {
+    const ScratchDirectory scratch;
+    ColorPicture picture{256, 1, {}};
+    for (int i = 0; i < 256; ++i) picture.texels.push_back(decoded(i, 255 - i, i));
+    write_preview(scratch.file("a.png"), picture);
+    EXPECT_EQ(read_texture(scratch.file("a.png")).texels, picture.texels);
+}
+
+TEST(Preview, Errors) {
+    const ScratchDirectory scratch;
+    const ColorPicture picture{1, 1, {{1, 1, 1}}};
+    EXPECT_ERROR(write_preview(scratch.file("a.jpg"), picture), ExitCode::file,
+                 scratch.file("a.jpg") + ": cannot write: a preview is a PNG; give a name that ends in .png");
+    EXPECT_ERROR(write_preview(scratch.file("no/a.png"), picture), ExitCode::file,
+                 scratch.file("no/a.png") + ": cannot write: No such file or directory; create the directory " +
+                     scratch.file("no") + " first, or give another");
+    EXPECT_THROW(write_preview(scratch.file("a.png"), ColorPicture{2, 1, {{1, 1, 1}}}), std::invalid_argument);
+    EXPECT_TRUE(scratch.names().empty());
+}
+
+}  // namespace
+}  // namespace cistula

@@ -1,0 +1,33 @@
+// What a build without OpenImageIO (CISTULA_WITH_OIIO=OFF) still reads, and what it says about the rest.
+#include <gtest/gtest.h>
+
+#include "expect_error.h"
+#include "scene/picture_io.h"
+#include "scene/seed_data.h"
+#include "scratch_directory.h"
+
+// Compiled into this test, it stands in for the library's own variant, whichever that is.
+#include "scene/picture_oiio_none.cpp"
+
+namespace cistula {
+namespace {
+
+TEST(WithoutOpenImageIO, OtherFormatsAreAClearError) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("x.png");
+    const std::string message =
+        path + ": this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF); EXR and .data are read by every build";
+    EXPECT_ERROR(write_preview(path, ColorPicture{1, 1, {{1, 1, 1}}}), ExitCode::file, message);
+    put_bytes(path, "anything");
+    EXPECT_ERROR(read_texture(path), ExitCode::file, message);
+    EXPECT_EQ(bytes_of(path), "anything");
+}
+
+TEST(WithoutOpenImageIO, DataIsRead) {
+    const ScratchDirectory scratch;
+    write_seed_frame(scratch.file("a.data"), ColorPicture{1, 1, {{1, 0, 1}}});
+    EXPECT_EQ(read_texture(scratch.file("a.data")).texels, (std::vector<glm::vec3>{{1, 0, 1}}));
+}
+
+}  // namespace
+}  // namespace cistula
