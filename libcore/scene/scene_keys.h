@@ -1,0 +1,72 @@
+// Every key of a JSON scene, once: the reader takes names, ranges and choices from these tables, and a test holds
+// docs/scene.schema.json and docs/scene.md to them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cistula {
+
+struct Range {
+    double low = 0, high = 0;
+    bool above = false;  // low itself is out of range
+    bool below = false;  // high itself is out of range
+
+    /// False for NaN.
+    bool contains(double value) const {
+        return (above ? value > low : value >= low) && (below ? value < high : value <= high);
+    }
+};
+
+enum class KeyType {
+    whole,   // an integer
+    number,  // a double
+    boolean,
+    text,    // a string, not empty
+    choice,  // one of a few strings
+    color,   // a number (gray) or three of them
+    point,   // three numbers
+    pair,    // two numbers
+    other,   // an object or array with a table or a reader of its own
+};
+
+struct Key {
+    std::string_view name;
+    KeyType type = KeyType::other;
+    Range range;                // of every number in it
+    std::string_view fallback;  // the default as JSON text; empty: none
+    bool required = false;
+    std::span<const std::string_view> choices;
+};
+
+struct KeyTable {
+    std::string_view name;  // in "$defs" of the schema
+    std::span<const Key> keys;
+
+    /// nullptr: no such key.
+    const Key* find(std::string_view key) const;
+    std::vector<std::string_view> names() const;
+};
+
+extern const KeyTable scene_keys, film_keys, camera_keys, path_keys, cylindrical_keys, texture_file_keys,
+    texture_checker_keys, material_keys, solid_keys, edge_lights_keys, quad_keys, triangles_keys, triangle_list_keys,
+    mesh_keys, light_keys, frame_keys;
+
+/// All of the tables above.
+std::span<const KeyTable* const> all_key_tables();
+
+/// In the order of the enumeration PlatonicSolid.
+extern const std::span<const std::string_view> platonic_names;
+
+/// Shortest decimal text, "1e30" rather than "1e+30".
+std::string number_text(double value);
+
+/// "1 to 65536", "above 0, under 180".
+std::string range_text(const Range& range);
+
+/// What a message says would be right: "a whole number from 1 to 65536".
+std::string expected_text(const Key& key);
+
+}  // namespace cistula

@@ -1,0 +1,122 @@
+// Texts that are no proper scene files: syntax, duplicate keys, mangled ones; and the suggestions in messages.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "expect_error.h"
+#include "scene/read_scene.h"
+#include "scene/suggest.h"
+#include "scene_dump.h"
+#include "scratch_directory.h"
+
+namespace cistula {
+namespace {
+
+SceneDescription read(const std::string& text) {
+    return read_scene_text(text, "a.json", "");
+}
+
+/// A scene with these keys beside the one that it must have.
+SceneDescription with(const std::string& keys) {
+    return read("{\"objects\": [], " + keys + "}");
+}
+
+#define EXPECT_WRONG(statement, message) EXPECT_ERROR(statement, ExitCode::usage, message)
+
+TEST(SceneSyntax, ErrorsHaveLineAndColumn) {
+    EXPECT_WRONG(read("{\n  \"depth\": 4,\n  depth: 4\n}"),
+                 "a.json:3:3: syntax error while parsing object key - invalid literal; last read: '4,<U+000A>  d'; "
+                 "expected string literal");
+    EXPECT_WRONG(read("{\"objects\": [],}"),
+                 "a.json:1:16: syntax error while parsing object key - unexpected '}'; expected string literal");
+    EXPECT_WRONG(read("{\"objects\": []\n"),
+                 "a.json:2:1: syntax error while parsing object - unexpected end of input; expected '}'");
+    EXPECT_WRONG(read("{\"objects\": []} x"),
+                 "a.json:1:17: syntax error while parsing value - invalid literal; last read: '\"objects\": []} x'; "
+                 "expected end of input");
+    EXPECT_WRONG(read("{\"objects\": [\n1e999]}"), "a.json:2:5: number overflow parsing '1e999'");
+    EXPECT_WRONG(with("\"depth\": NaN"),
+                 "a.json:1:26: syntax error while parsing value - invalid literal; last read: '\"depth\": N'");
+}
+
+TEST(SceneSyntax, LongTokensAreCut) {
+    try {
+        read("{\"" + std::string(100000, 'x'));
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_LT(std::string(error.what()).size(), 200u);
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+}
+
+TEST(SceneSyntax, DuplicateKeysAreErrors) {
+    EXPECT_WRONG(with("\"depth\": 1, \"depth\": 2"), "a.json: /depth: duplicate key; give it once");
+    EXPECT_WRONG(with("\"film\": {\"width\": 1, \"height\": 1, \"width\": 1}"),
+                 "a.json: /film/width: duplicate key; give it once");
+    EXPECT_WRONG(read("{\"objects\": [{}, {\"a\": 1, \"a\": 1}]}"),
+                 "a.json: /objects/1/a: duplicate key; give it once");
+}
+
+TEST(SceneSyntax, CommentsAreAllowed) {
+    EXPECT_EQ(read("{ // one\n /* two\n */ \"objects\": [] /* three */ } // four").depth, 4);
+}
+
+TEST(SceneSyntax, DeepNestingIsNoProblem) {
+    const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+    EXPECT_WRONG(with("\"depth\": " + deep),
+                 "a.json: /depth: expected a whole number from 1 to 1024, found an array of 1");
+}
+
+TEST(SceneSyntax, MangledTextsAreReadOrRefusedOnOneLine) {
+    std::mt19937_64 random(1);
+    const auto below = [&](size_t n) { return static_cast<size_t>(random() % n); };
+    const std::string alphabet = "{}[],:\"/*\\\n 0123456789.eE+-abcxyz\x01\x80\xff";
+    for (const std::string& whole : {bytes_of((source_root() / "scenes/benchmark.json").string()), seed_template()}) {
+        int refused = 0;
+        constexpr int rounds = 3000;
+        for (int round = 0; round < rounds; ++round) {
+            std::string text = whole;
+            for (size_t i = 1 + below(3); i > 0; --i) {
+                const size_t at = below(text.size());
+                const size_t length = std::min(below(8), text.size() - at);
+                if (below(2) == 0)
+                    text.erase(at, length);
+                else if (below(2) == 0)
+                    text.insert(at, text.substr(below(text.size()), length));
+                else
+                    text[at] = alphabet[below(alphabet.size())];
+            }
+            try {
+                read(text);
+            } catch (const Error& error) {
+                const std::string message = error.what();
+                EXPECT_EQ(error.code(), ExitCode::usage);
+                EXPECT_TRUE(message.starts_with("a.json:")) << message;
+                EXPECT_LT(message.size(), 1000u) << message;
+                for (const char c : message) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << message;
+                ++refused;
+            }
+        }
+        EXPECT_GT(refused, rounds / 4);
+    }
+}
+
+TEST(Suggest, EditDistance) {
+    EXPECT_EQ(edit_distance("", ""), 0u);
+    EXPECT_EQ(edit_distance("", "abc"), 3u);
+    EXPECT_EQ(edit_distance("color", "colour"), 1u);
+    EXPECT_EQ(edit_distance("widht", "width"), 1u);
+    EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+}
+
+TEST(Suggest, HugeNamesAndManyNamesStayShort) {
+    std::vector<std::string> names;
+    for (int i = 0; i < 100; ++i) names.push_back("material_number_" + std::to_string(i));
+    const std::string text = suggestion(std::string(1000000, 'x'), {names.begin(), names.end()}, "materials");
+    EXPECT_LT(text.size(), 400u);
+    EXPECT_TRUE(text.ends_with(", ..."));
+    EXPECT_EQ(one_line("a\nb\tc\x01"), "a\\nb\\tc\\x01");
+}
+
+}  // namespace
+}  // namespace cistula

@@ -1,0 +1,219 @@
+// The seed's text input.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "expect_error.h"
+#include "scene/read_scene.h"
+#include "scene_dump.h"
+
+namespace cistula {
+namespace {
+
+SceneDescription read(const std::string& text) {
+    return read_scene_text(text, "input.txt", "");
+}
+
+/// The template with the first occurrence of `from` replaced.
+std::string changed(const std::string& from, const std::string& to) {
+    std::string text = seed_template();
+    const size_t at = text.find(from);
+    if (at == std::string::npos) throw std::logic_error("the template has no " + from);
+    return text.replace(at, from.size(), to);
+}
+
+#define EXPECT_WRONG(text, message) EXPECT_ERROR(read(text), ExitCode::usage, std::string("input.txt:") + message)
+
+TEST(SeedInput, TemplateIsReadWhole) {
+    const SceneDescription scene = read(seed_template());
+    EXPECT_TRUE(scene.seed_format);
+    EXPECT_EQ(scene.source, "input.txt");
+    EXPECT_EQ(scene.film.frames, 300);
+    EXPECT_EQ(scene.film.width, 1280);
+    EXPECT_EQ(scene.film.height, 720);
+    EXPECT_EQ(scene.film.supersample, 3);
+    EXPECT_EQ(scene.film.output, "frames/frame%d.out");
+    EXPECT_EQ(scene.depth, 4);
+    EXPECT_EQ(scene.cutoff, 0);
+    EXPECT_EQ(scene.ambient, glm::dvec3(0.5));
+    EXPECT_EQ(scene.background, glm::dvec3(0));
+    EXPECT_EQ(scene.camera.field_of_view, 120);
+    EXPECT_EQ(scene.camera.time_step, 1);
+    EXPECT_EQ(scene.camera.up, glm::dvec3(0, 0, 1));
+    const auto numbers = [](const CylindricalPath& p) {
+        return std::vector{p.r0, p.z0, p.phi0, p.Ar, p.Az, p.wr, p.wz, p.wphi, p.pr, p.pz};
+    };
+    EXPECT_EQ(numbers(scene.camera.position_path.value()),
+              (std::vector{6.0, 5.0, 0.0, 2.0, 1.0, 0.05, 0.1, 0.05, 0.0, 0.0}));
+    EXPECT_EQ(numbers(scene.camera.target_path.value()),
+              (std::vector{3.0, 0.0, 3.1415926, 1.5, 0.5, 0.03, 0.07, 0.02, 0.0, 0.0}));
+    ASSERT_EQ(scene.textures.size(), 1u);
+    EXPECT_EQ(scene.textures[0].file, "floor.data");
+    EXPECT_FALSE(scene.frame);
+}
+
+TEST(SeedInput, SolidsFloorAndLights) {
+    const SceneDescription scene = read(seed_template());
+    ASSERT_EQ(scene.objects.size(), 4u);
+    const auto& dodecahedron = std::get<SolidObject>(scene.objects[1].shape);
+    EXPECT_EQ(dodecahedron.solid, PlatonicSolid::dodecahedron);
+    EXPECT_EQ(dodecahedron.center, glm::dvec3(2.5, 2.5, 2));
+    EXPECT_EQ(dodecahedron.radius, 1.732);
+    EXPECT_EQ(dodecahedron.edge_lights.count, 0);
+    EXPECT_EQ(scene.objects[1].place, "line 8");
+    const MaterialDescription& glass = scene.materials.at(static_cast<size_t>(scene.objects[1].material));
+    EXPECT_EQ(glass.color, glm::dvec3(0.49, 0.3216, 0.0078));
+    EXPECT_EQ(glass.specular_color, glass.color);
+    EXPECT_EQ(glass.tint, glm::dvec3(1));
+    EXPECT_EQ((std::vector{glass.ambient, glass.diffuse, glass.specular, glass.exponent, glass.index, glass.reflection,
+                           glass.transmission}),
+              (std::vector{1.0, 1.0, 1.0, 110.0, 1.5, 0.1, 0.6}));
+    const MaterialDescription& floor = scene.materials.at(static_cast<size_t>(scene.objects[3].material));
+    EXPECT_EQ(floor.texture, 0);
+    EXPECT_EQ(floor.color, glm::dvec3(1));
+    EXPECT_EQ(floor.specular_color, glm::dvec3(1));
+    EXPECT_EQ(floor.reflection, 0.5);
+    EXPECT_EQ(floor.transmission, 0);
+    const auto& quad = std::get<TrianglesObject>(scene.objects[3].shape);
+    EXPECT_EQ(quad.vertices[1], glm::dvec3(5, -5, 0));
+    EXPECT_EQ(quad.uvs[1], glm::dvec2(1, 0));
+    ASSERT_EQ(scene.lights.size(), 2u);
+    EXPECT_EQ(scene.lights[1].position, glm::dvec3(5, 0, 4));
+    const LightDescription red = read(changed("-4 4 3 1 1 1", "-4 4 3 1 0 0")).lights.at(0);
+    EXPECT_EQ(red.color, glm::dvec3(1, 0, 0));
+    EXPECT_EQ(red.glow, glm::dvec3(1));
+    EXPECT_EQ(red.radius, 0.1);
+    EXPECT_FALSE(red.falloff);
+}
+
+TEST(SeedInput, EqualsTheJsonScene) {
+    SceneDescription json = read_scene((source_root() / "scenes/seed.json").string());
+    EXPECT_EQ(std::filesystem::path(json.textures.at(0).file), source_root() / "scenes/floor.data");
+    json.textures[0].file = "floor.data";
+    EXPECT_EQ(SceneDump::of(read(seed_template())), SceneDump::of(json));
+}
+
+TEST(SeedInput, TenthNumberIsTheLightsOnEachEdge) {
+    const std::string line = "1.732 0.1 0.6";
+    const auto lights = [&](const std::string& more, size_t object = 1) {
+        return std::get<SolidObject>(read(changed(line, line + more)).objects.at(object).shape).edge_lights;
+    };
+    EXPECT_EQ(lights("").count, 0);
+    EXPECT_EQ(lights(" 6").count, 6);
+    EXPECT_EQ(lights("\t6 \r").count, 6);
+    EXPECT_EQ(lights(" 0").count, 0);
+    EXPECT_EQ(lights(" 6", 0).count, 0);
+    EXPECT_EQ(lights(" 6", 2).count, 0);
+    EXPECT_EQ(lights(" 6").color, glm::dvec3(1));
+    EXPECT_FALSE(lights(" 6").falloff);
+    // An edge of a dodecahedron is 0.7136... of its radius.
+    EXPECT_NEAR(lights(" 6").radius, 1.732 * 0.71364417954617986 / 7 / 4, 1e-15);
+    EXPECT_EQ(lights(" 1").radius, 0.1);
+
+    std::string all = std::regex_replace(seed_template(), std::regex("0\\.6\n"), "0.6 2\n");
+    EXPECT_EQ(std::get<SolidObject>(read(all).objects.at(2).shape).edge_lights.count, 2);
+    EXPECT_EQ(read(all).lights.size(), 2u);
+}
+
+TEST(SeedInput, AnyWhiteSpaceSeparates) {
+    const std::string expected = SceneDump::of(read(seed_template()));
+    for (const char* white : {" ", "\t", "\r\n", "\n\n", "\n  "}) {
+        const std::string text = std::regex_replace(seed_template(), std::regex("\n"), white);
+        EXPECT_EQ(SceneDump::of(read(text)), expected);
+        const std::string every = std::regex_replace(seed_template(), std::regex("[ \n]"), white);
+        EXPECT_EQ(SceneDump::of(read(every)), expected);
+    }
+}
+
+TEST(SeedInput, NumbersAsPeopleWriteThem) {
+    EXPECT_EQ(read(changed("1280 720 120", "+1280 720. 1.2e2")).film.height, 720);
+    for (const char* wrong : {"nan", "inf", "0x10", "1e999", "1,5", "--1", "+-1", "12a", "1e", "."})
+        EXPECT_WRONG(changed("6.0", wrong),
+                     "5: expected camera r0, a number from -1e30 to 1e30, found '" + std::string(wrong) + "'");
+}
+
+TEST(SeedInput, WrongValuesNameWhatIsExpected) {
+    EXPECT_WRONG(changed("300", "many"),
+                 "1: expected number of frames, a whole number from 1 to 1000000, found 'many'");
+    EXPECT_WRONG(changed("300", "0"), "1: expected number of frames, a whole number from 1 to 1000000, found '0'");
+    EXPECT_WRONG(changed("300", "2.5"), "1: expected number of frames, a whole number from 1 to 1000000, found '2.5'");
+    EXPECT_WRONG(changed("frame%d.out", "frame.out"),
+                 "3: expected an output pattern with one %d, found 'frames/frame.out'");
+    for (const char* pattern : {"%d%d", "%s%d", "%n", "%", "%4d", "%%d", "%00d", "%0d"})
+        EXPECT_WRONG(changed("frames/frame%d.out", pattern),
+                     "3: expected an output pattern with one %d, found '" + std::string(pattern) + "'");
+    EXPECT_EQ(read(changed("%d", "%04d")).film.output, "frames/frame%04d.out");
+    EXPECT_WRONG(changed("1280", "0"), "4: expected picture width, a whole number from 1 to 65536, found '0'");
+    EXPECT_WRONG(changed("720", "x"), "4: expected picture height, a whole number from 1 to 65536, found 'x'");
+    EXPECT_WRONG(changed("720 120", "720 180"),
+                 "4: expected horizontal field of view, a number above 0, under 180, found '180'");
+    EXPECT_WRONG(changed("3.1415926", "pi"), "6: expected target phi0, a number from -1000000 to 1000000, found 'pi'");
+    EXPECT_WRONG(changed("-2.5 2.5 2 ", "-2.5 2.5 high "),
+                 "7: expected octahedron center z, a number from -1e30 to 1e30, found 'high'");
+    EXPECT_WRONG(changed("0.3216", "-0.3216"),
+                 "8: expected dodecahedron color green, a number from 0 to 1e30, found '-0.3216'");
+    EXPECT_WRONG(changed("2.118", "0"), "9: expected icosahedron radius, a number from 1e-30 to 1e30, found '0'");
+    EXPECT_WRONG(changed("2.118 0.1", "2.118 1.1"),
+                 "9: expected icosahedron reflection, a number from 0 to 1, found '1.1'");
+    EXPECT_WRONG(changed("2.118 0.1 0.6", "2.118 0.1 60%"),
+                 "9: expected icosahedron transmission, a number from 0 to 1, found '60%'");
+    EXPECT_WRONG(changed("2.25 0.1 0.6", "2.25 0.5 0.6"),
+                 "7: octahedron reflection + transmission is 1.1; expected at most 1");
+    EXPECT_WRONG(changed("2.25 0.1 0.6", "2.25 0.1 0.6 -1"),
+                 "7: expected octahedron lights on each edge, a whole number from 0 to 1000, found '-1'");
+    EXPECT_WRONG(changed("2.25 0.1 0.6", "2.25 0.1 0.6 6 6"),
+                 "7: expected 9 or 10 numbers for the octahedron, found 11");
+    EXPECT_WRONG(changed("5 -5 0\n", "5 y 0\n"),
+                 "10: expected floor corner 1 y, a number from -1e30 to 1e30, found 'y'");
+    EXPECT_WRONG(
+        changed("\n5 5 0", "\n5 5 1"),
+        "13: floor: the quad is not planar: its diagonals pass at 0.035 of their length, at most 1e-06 is allowed");
+    EXPECT_WRONG(changed("\n2\n", "\n-2\n"),
+                 "14: expected number of lights, a whole number from 0 to 100000, found '-2'");
+    EXPECT_WRONG(changed("-4 4 3 1", "-4 4 3 red"),
+                 "15: expected light 1 color red, a number from 0 to 1e30, found 'red'");
+    EXPECT_WRONG(changed("5 0 4 1", "5 - 4 1"),
+                 "16: expected light 2 position y, a number from -1e30 to 1e30, found '-'");
+    EXPECT_WRONG(changed("\n4 3", "\n0 3"), "17: expected depth, a whole number from 1 to 1024, found '0'");
+    EXPECT_WRONG(changed("\n4 3", "\n4 65"), "17: expected supersampling k, a whole number from 1 to 64, found '65'");
+}
+
+TEST(SeedInput, TrailingTextIsAnError) {
+    EXPECT_WRONG(seed_template() + "\n1", "19: expected the end of the input, found '1'");
+    EXPECT_WRONG(seed_template() + std::string(100, 'x'),
+                 "18: expected the end of the input, found '" + std::string(40, 'x') + "...'");
+}
+
+TEST(SeedInput, EveryShorterInputSaysWhatIsMissing) {
+    const std::string text = seed_template();
+    size_t words = 0;
+    std::string last;
+    for (size_t end = text.find_last_not_of('\n'); end != std::string::npos && end > 0;) {
+        const size_t start = text.find_last_of(" \n", end) + 1;  // npos + 1 is 0
+        if (start == 0) break;
+        try {
+            read(text.substr(0, start));
+            ADD_FAILURE() << "read without its last " << words + 1 << " words";
+        } catch (const Error& error) {
+            const std::string message = error.what();
+            EXPECT_EQ(error.code(), ExitCode::usage);
+            EXPECT_TRUE(message.ends_with("found the end of the input")) << message;
+            EXPECT_NE(message, last);
+            last = message;
+        }
+        ++words;
+        end = text.find_last_not_of(" \n", start - 1);
+    }
+    EXPECT_EQ(words, 79u);  // all but the first
+    EXPECT_WRONG("300 ", "1: expected the floor's texture file, found the end of the input");
+    EXPECT_WRONG(text.substr(0, text.find("\n4 3") + 3),
+                 "17: expected supersampling k, a whole number from 1 to 64, found the end of the input");
+}
+
+TEST(SeedInput, MessagesAreOneLine) {
+    EXPECT_WRONG("300 a \x01%", "1: expected an output pattern with one %d, found '\\x01%'");
+}
+
+}  // namespace
+}  // namespace cistula
