@@ -31,7 +31,8 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const SceneView<Real>& scene
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         const Slab<Real>& slab = slabs[i];
         const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin);
-        if (nd == Real(0)) {
+        // Subnormal counts as parallel: its inverse overflows, and where the origin lies in the plane 0 * inf is NaN.
+        if (magnitude(nd) < RealTraits<Real>::least_normal) {
             interval.beside |= no >= slab.high || no <= slab.low;
             continue;
         }

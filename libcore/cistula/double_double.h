@@ -9,9 +9,9 @@ namespace cistula {
 struct DoubleDouble {
     double high = 0, low = 0;
 
-    CISTULA_INLINE DoubleDouble() {}
-    CISTULA_INLINE explicit DoubleDouble(double a) : high(a) {}
-    CISTULA_INLINE DoubleDouble(double a, double b) : high(a), low(b) {}
+    constexpr DoubleDouble() = default;
+    CISTULA_INLINE constexpr explicit DoubleDouble(double a) : high(a) {}
+    CISTULA_INLINE constexpr DoubleDouble(double a, double b) : high(a), low(b) {}
     CISTULA_INLINE explicit operator double() const { return high + low; }
 };
 

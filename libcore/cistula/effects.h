@@ -31,7 +31,7 @@ inline constexpr const char* effect_names[effect_count] = {
 template <uint32_t Mask>
 struct Effects {
     static constexpr uint32_t mask = Mask;
-    static constexpr bool has(uint32_t effects) { return (Mask & effects) != 0; }
+    CISTULA_HD static constexpr bool has(uint32_t effects) { return (Mask & effects) != 0; }
 };
 
 /// The masks that are instantiated, each a superset of what some common kind of scene needs, ordered by size.

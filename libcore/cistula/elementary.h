@@ -4,7 +4,7 @@
 // arithmetic.
 #pragma once
 
-#include "cistula/real.h"
+#include "cistula/double_double.h"
 
 namespace cistula::elementary {
 
@@ -15,23 +15,6 @@ inline constexpr double pow_worst_ulp = 0.70;
 
 inline constexpr double infinity = RealTraits<double>::infinity;
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-/// An unevaluated sum: |lo| is at most about an ulp of hi.
-struct Pair {
-    double hi, lo;
-};
-
-/// a + b exactly, where |a| >= |b| or a = 0.
-CISTULA_INLINE Pair fast_two_sum(double a, double b) {
-    const double sum = a + b;
-    return {sum, (a - sum) + b};
-}
-
-/// a * b exactly (barring underflow).
-CISTULA_INLINE Pair two_product(double a, double b) {
-    const double product = a * b;
-    return {product, fused(a, b, -product)};
-}
 
 template <int n>
 CISTULA_INLINE double polynomial(double x, const double (&coefficients)[n]) {
@@ -58,10 +41,10 @@ CISTULA_HD inline double exp2_reduced(double r, double tail) {
                                     0x1.5d87fe78a5276p-10, 0x1.430912f86bf52p-13, 0x1.ffcbfc670dcd4p-17,
                                     0x1.62c022401b97dp-20, 0x1.b524fae627834p-24, 0x1.e4cf1cd08d4b8p-28,
                                     0x1.e9d3fe3952179p-32, 0x1.c48f769ad2c46p-36};
-    const Pair linear = two_product(r, ln2_hi);
-    const Pair sum = fast_two_sum(1, linear.hi);
-    const double small = fused(r, ln2_lo, linear.lo) + ln2_hi * tail * sum.hi;
-    return sum.hi + (sum.lo + fused(r * r, polynomial(r, quadratic), small));
+    const DoubleDouble linear = two_product(r, ln2_hi);
+    const DoubleDouble sum = fast_two_sum(1, linear.high);
+    const double small = fused(r, ln2_lo, linear.low) + ln2_hi * tail * sum.high;
+    return sum.high + (sum.low + fused(r * r, polynomial(r, quadratic), small));
 }
 
 /// 2^x. Exact at integers, subnormal ones too; above the range infinity, below it 0; NaN gives NaN.
@@ -72,18 +55,18 @@ CISTULA_HD inline double exp2(double x) {
     return scaled(exp2_reduced(x - k, 0), static_cast<int>(k));
 }
 
-/// c + z p, to about 2^-104, for |z.hi p.hi| <= |c.hi|.
-CISTULA_INLINE Pair multiply_add(Pair c, Pair z, Pair p) {
-    const Pair product = two_product(z.hi, p.hi);
-    const Pair sum = fast_two_sum(c.hi, product.hi);
-    return {sum.hi, sum.lo + ((product.lo + fused(z.hi, p.lo, z.lo * p.hi)) + c.lo)};
+/// c + z p, to about 2^-104, for |z.high p.high| <= |c.high|.
+CISTULA_INLINE DoubleDouble multiply_add(DoubleDouble c, DoubleDouble z, DoubleDouble p) {
+    const DoubleDouble product = two_product(z.high, p.high);
+    const DoubleDouble sum = fast_two_sum(c.high, product.high);
+    return {sum.high, sum.low + ((product.low + fused(z.high, p.low, z.low * p.high)) + c.low)};
 }
 
 /// log2(x) to 2^-67 relative, for x finite and above 0 (subnormal too). Exact, with lo = 0, at powers of two.
-CISTULA_HD inline Pair log2_pair(double x) {
-    constexpr Pair c0 = {0x1.71547652b82fep+1, 0x1.777d0ffda0d24p-55};  // 2 / ln 2
-    constexpr Pair c1 = {0x1.ec709dc3a03fdp-1, 0x1.d27f05548af0cp-55};  // 2 / (3 ln 2)
-    constexpr Pair c2 = {0x1.2776c50ef9bfep-1, 0x1.e4b29ccc535d4p-55};  // 2 / (5 ln 2)
+CISTULA_HD inline DoubleDouble log2_pair(double x) {
+    constexpr DoubleDouble c0 = {0x1.71547652b82fep+1, 0x1.777d0ffda0d24p-55};  // 2 / ln 2
+    constexpr DoubleDouble c1 = {0x1.ec709dc3a03fdp-1, 0x1.d27f05548af0cp-55};  // 2 / (3 ln 2)
+    constexpr DoubleDouble c2 = {0x1.2776c50ef9bfep-1, 0x1.e4b29ccc535d4p-55};  // 2 / (5 ln 2)
     constexpr double rest[] = {0x1.a61762a7aded9p-2, 0x1.484b13d7c0366p-2, 0x1.0c9a84991f4cbp-2, 0x1.c68f56d2c1d44p-3,
                                0x1.89f38d470bc21p-3, 0x1.5ba4f4f402905p-3, 0x1.356fb1477262cp-3, 0x1.39b2c60cccb37p-3};
     const bool subnormal = x < 0x1p-1022;
@@ -96,23 +79,23 @@ CISTULA_HD inline Pair log2_pair(double x) {
     }
     // log2(m) = s (c0 + c1 s^2 + c2 s^4 + ...), s = (m - 1) / (m + 1).
     const double f = m - 1;
-    const Pair d = fast_two_sum(2, f);
-    const double reciprocal = 1 / d.hi;
+    const DoubleDouble d = fast_two_sum(2, f);
+    const double reciprocal = 1 / d.high;
     const double s = f * reciprocal;
-    const double s_lo = (fused(-s, d.hi, f) - s * d.lo) * reciprocal;
-    Pair square = two_product(s, s);
-    square.lo = fused(2 * s, s_lo, square.lo);
-    const Pair series =
-        multiply_add(c0, square, multiply_add(c1, square, multiply_add(c2, square, {polynomial(square.hi, rest), 0})));
-    const Pair y = two_product(s, series.hi);
-    const Pair sum = fast_two_sum(exponent, y.hi);
-    return fast_two_sum(sum.hi, sum.lo + (y.lo + fused(s, series.lo, s_lo * series.hi)));
+    const double s_lo = (fused(-s, d.high, f) - s * d.low) * reciprocal;
+    DoubleDouble square = two_product(s, s);
+    square.low = fused(2 * s, s_lo, square.low);
+    const DoubleDouble series =
+        multiply_add(c0, square, multiply_add(c1, square, multiply_add(c2, square, {polynomial(square.high, rest), 0})));
+    const DoubleDouble y = two_product(s, series.high);
+    const DoubleDouble sum = fast_two_sum(exponent, y.high);
+    return fast_two_sum(sum.high, sum.low + (y.low + fused(s, series.low, s_lo * series.high)));
 }
 
 /// log2(x). Exact at powers of two; +-0 gives -infinity, below 0 and NaN give NaN, infinity gives infinity.
 CISTULA_HD inline double log2(double x) {
     if (!(x > 0 && x < infinity)) return x == 0 ? -infinity : (x > 0 ? x : not_a_number);
-    return log2_pair(x).hi;
+    return log2_pair(x).high;
 }
 
 /// x^y for x >= 0 (-0 counts as 0; below 0 gives NaN, for integers y too). pow(x, 0) = pow(1, y) = 1 even for NaN, as
@@ -121,13 +104,13 @@ CISTULA_HD inline double pow(double x, double y) {
     if (y == 0 || x == 1) return 1;
     if (!(x >= 0) || !(y == y)) return not_a_number;
     if (x == 0 || x == infinity) return (x == 0) == (y > 0) ? 0 : infinity;
-    const Pair log = log2_pair(x);
-    const double product = y * log.hi;
+    const DoubleDouble log = log2_pair(x);
+    const double product = y * log.high;
     if (product >= 1025) return infinity;
     if (product <= -1080) return 0;
     const double k = floor_of(product + 0.5);
-    const Pair r = fast_two_sum(product - k, fused(y, log.lo, fused(y, log.hi, -product)));
-    return scaled(exp2_reduced(r.hi, r.lo), static_cast<int>(k));
+    const DoubleDouble r = fast_two_sum(product - k, fused(y, log.low, fused(y, log.high, -product)));
+    return scaled(exp2_reduced(r.high, r.low), static_cast<int>(k));
 }
 
 /// x^n for n in [0, 1024] by squaring, least bit first, so that every side multiplies in the same order; x^0 = 1.

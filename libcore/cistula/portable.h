@@ -12,6 +12,13 @@
 #define CISTULA_HD
 #endif
 
+// Code for the device, as against code that nvcc compiles for the host.
+#ifdef __CUDA_ARCH__
+#define CISTULA_ON_DEVICE 1
+#else
+#define CISTULA_ON_DEVICE 0
+#endif
+
 #if defined(__FAST_MATH__)
 #error "Cistula's images are defined by IEEE arithmetic: build without -ffast-math."
 #endif

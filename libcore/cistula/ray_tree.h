@@ -2,6 +2,7 @@
 // few entries hold any tree. Whatever is not followed goes into the ledger.
 #pragma once
 
+#include "cistula/absorption.h"
 #include "cistula/interface.h"
 #include "cistula/lighting.h"
 #include "cistula/seen_light.h"
@@ -87,21 +88,6 @@ class RayTree {
         ray.after = {hit.t, hit.key};
     }
 
-    /// The way that a ray has come since its last crossing dims it by what the solids around it absorb.
-    CISTULA_INLINE void absorb(Branch<Real>& branch, Real t) {
-        if constexpr (E::has(effect_absorption)) {
-            const MediaList& media = branch.ray.media;
-            Vec3<Real> sigma(Real(0));
-            for (uint32_t i = 0; i < media.size; ++i)
-                if (MediaList::count_of(media.entries[i]) > 0)
-                    sigma += scene_.materials[scene_.solids[MediaList::solid_of(media.entries[i])].material].absorption;
-            const Real start = branch.ray.fresh() ? Real(0) : branch.ray.after.t;
-            for (int c = 0; c < 3; ++c)
-                if (sigma[c] > Real(0))
-                    branch.weight[c] *= share_of<Real>(absorption_loss(double(sigma[c]) * double(t - start)));
-        }
-    }
-
     /// A crossing with nothing to shade: inside a medium of higher priority, or of a clear face between equal media.
     CISTULA_INLINE bool invisible(const Ray<Real>& ray, const Hit<Real>& hit) {
         const uint32_t solid = key_solid(hit.key), medium = ray.media.medium();
@@ -117,13 +103,15 @@ class RayTree {
 
     /// Goes on to the next face that has anything to shade. Otherwise adds the light or background that the ray ends on.
     CISTULA_INLINE bool next_surface(Branch<Real>& branch, Hit<Real>& hit, bool& light) {
+        Absorption<E::has(effect_absorption)> absorption;
+        absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
         for (int crossings = 0;; ++crossings) {
             hit = intersector_.closest(branch.ray);
             if constexpr (E::has(effect_visible_lights)) {
                 const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, hit.t);
                 if (seen.light != no_light) {
                     light = true;
-                    absorb(branch, seen.t);
+                    absorption.dim(scene_, branch.ray.media, seen.t, branch.weight);
                     sums_.add(branch.weight * scene_.seen_lights[seen.light].radiance);
                     return false;
                 }
@@ -132,8 +120,11 @@ class RayTree {
                 sums_.add(branch.weight * scene_.background);
                 return false;
             }
-            absorb(branch, hit.t);
-            if (!invisible(branch.ray, hit)) return true;
+            if (!invisible(branch.ray, hit)) {
+                absorption.dim(scene_, branch.ray.media, hit.t, branch.weight);
+                return true;
+            }
+            absorption.cross(scene_, hit.key, hit.t);
             pass(branch.ray, hit);
             if (crossings == largest_crossings) {
                 sums_.flag(flag_too_many_crossings);

@@ -14,6 +14,7 @@ template <>
 struct RealTraits<float> {
     using Up = double;                    // one precision up, for decisions (Snell)
     static constexpr float unit = 0x1p-24f;  // u, half an ulp of 1
+    static constexpr float least_normal = 0x1p-126f;
     static constexpr float largest = 0x1.fffffep127f;
     static constexpr float infinity = std::numeric_limits<float>::infinity();
     static constexpr const char* name = "float";
@@ -23,6 +24,7 @@ template <>
 struct RealTraits<double> {
     using Up = DoubleDouble;  // double_double.h
     static constexpr double unit = 0x1p-53;
+    static constexpr double least_normal = 0x1p-1022;
     static constexpr double largest = 0x1.fffffffffffffp1023;
     static constexpr double infinity = std::numeric_limits<double>::infinity();
     static constexpr const char* name = "double";

@@ -147,8 +147,9 @@ CISTULA_INLINE void shadow_start(const SceneView<Real>& scene, const ShadowRay<R
         const MediaList& media = shadow.ray.media;
         for (uint32_t i = 0; i < media.size; ++i) {
             const Solid& solid = scene.solids[MediaList::solid_of(media.entries[i])];
-            if (solid.kind == SolidKind::mesh && MediaList::count_of(media.entries[i]) > 0)
-                sum.absorb_rest(scene.materials[solid.material], shadow.distance, 1, scene.extent);
+            const int count = MediaList::count_of(media.entries[i]);
+            for (int n = 0; solid.kind == SolidKind::mesh && n != count; n += count > 0 ? 1 : -1)
+                sum.absorb_rest(scene.materials[solid.material], shadow.distance, count > 0 ? 1 : -1, scene.extent);
         }
     }
 }

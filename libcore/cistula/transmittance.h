@@ -17,18 +17,18 @@ CISTULA_INLINE uint64_t saturating_add(uint64_t a, uint64_t b) {
 }
 
 /// A pair >= 0 in Q11.52, to nearest (of its own 106 bits or so, halves up); 4096 and more, and NaN, saturate.
-CISTULA_HD inline uint64_t loss_of_logarithm(elementary::Pair logarithm) {
-    if (!(logarithm.hi < 4096)) return largest_loss;
-    const double high = logarithm.hi * 0x1p52;
+CISTULA_HD inline uint64_t loss_of_logarithm(DoubleDouble logarithm) {
+    if (!(logarithm.high < 4096)) return largest_loss;
+    const double high = logarithm.high * 0x1p52;
     const double whole = floor_of(high);
-    const double rest = floor_of((high - whole) + (logarithm.lo * 0x1p52 + 0.5));  // within 2^10, so nothing wraps
+    const double rest = floor_of((high - whole) + (logarithm.low * 0x1p52 + 0.5));  // within 2^10, so nothing wraps
     return static_cast<uint64_t>(whole) + static_cast<uint64_t>(static_cast<int64_t>(rest));
 }
 
 /// -log2(share) for a share in (0, 1], subnormal too: exact at powers of two, 0 at 1, to nearest elsewhere.
 CISTULA_HD inline uint64_t loss_of(double share) {
-    const elementary::Pair log = elementary::log2_pair(share);
-    return loss_of_logarithm({-log.hi, -log.lo});
+    const DoubleDouble log = elementary::log2_pair(share);
+    return loss_of_logarithm({-log.high, -log.low});
 }
 
 /// 2^-loss. Exact at whole losses; 0 where that is below the smallest normal Real. Never grows with the loss:
@@ -47,8 +47,8 @@ CISTULA_HD inline Real share_of(uint64_t loss) {
 CISTULA_HD inline uint64_t absorption_loss(double sigma_length) {
     constexpr double log2_e_hi = 0x1.71547652b82fep+0, log2_e_lo = 0x1.777d0ffda0d24p-56;
     if (sigma_length <= 0) return 0;
-    const elementary::Pair product = elementary::two_product(sigma_length, log2_e_hi);
-    return loss_of_logarithm(elementary::fast_two_sum(product.hi, fused(sigma_length, log2_e_lo, product.lo)));
+    const DoubleDouble product = two_product(sigma_length, log2_e_hi);
+    return loss_of_logarithm(fast_two_sum(product.high, fused(sigma_length, log2_e_lo, product.low)));
 }
 
 /// sigma t to the nearest 2^-32 (halves up) in Q31.32; clamped to +-2^30, NaN to -2^30.

@@ -82,7 +82,7 @@ struct ShearedTriangle {
 template <class Real>
 CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const TriangleRay<Real>& ray) {
     uint32_t mask = 0;
-#ifdef __CUDA_ARCH__
+#if CISTULA_ON_DEVICE
     for (uint32_t lane = 0; lane < cluster.count; ++lane)
         mask |= uint32_t(ShearedTriangle<Real>::of(cluster, int(lane), ray).within()) << lane;
 #else

@@ -11,7 +11,7 @@ inline constexpr double tan_worst_ulp = 0.90;
 
 /// An angle less `quadrant` quarter turns: hi + lo in [-pi / 4, pi / 4], give or take a few ulps. Quadrant is in 0..3.
 struct ReducedAngle {
-    double hi, lo;
+    double high, low;
     int quadrant;
 };
 
@@ -52,10 +52,10 @@ CISTULA_HD inline ReducedAngle reduce_large_angle(double x) {
         tail += (sum - (total - part)) + (value - part);
         sum = total;
     }
-    const Pair turns = fast_two_sum(sum, tail);
-    const Pair angle = two_product(turns.hi, pi_half_hi);
-    const Pair r = fast_two_sum(angle.hi, angle.lo + fused(turns.hi, pi_half_lo, turns.lo * pi_half_hi));
-    return {r.hi, r.lo, quadrant & 3};
+    const DoubleDouble turns = fast_two_sum(sum, tail);
+    const DoubleDouble angle = two_product(turns.high, pi_half_hi);
+    const DoubleDouble r = fast_two_sum(angle.high, angle.low + fused(turns.high, pi_half_lo, turns.low * pi_half_hi));
+    return {r.high, r.low, quadrant & 3};
 }
 
 /// Cody and Waite's reduction with pi / 2 in three doubles, the first step of which is exact. For x in [0, 2^30).
@@ -64,22 +64,22 @@ CISTULA_HD inline ReducedAngle reduce_small_angle(double x) {
     constexpr double part0 = 0x1.921fb54442d18p+0, part1 = 0x1.1a62633145c07p-54, part2 = -0x1.f1976b7ed8fbcp-110;
     const double n = floor_of(fused(x, two_over_pi, 0.5));
     const double first = fused(-n, part0, x);
-    const Pair second = two_product(n, part1);
-    const double hi = first - second.hi, back = hi - first;
-    const double error = (first - (hi - back)) - (second.hi + back);
-    const Pair r = fast_two_sum(hi, error - fused(n, part2, second.lo));
-    return {r.hi, r.lo, static_cast<int>(n) & 3};
+    const DoubleDouble second = two_product(n, part1);
+    const double hi = first - second.high, back = hi - first;
+    const double error = (first - (hi - back)) - (second.high + back);
+    const DoubleDouble r = fast_two_sum(hi, error - fused(n, part2, second.low));
+    return {r.high, r.low, static_cast<int>(n) & 3};
 }
 
 /// For finite x. Of -x it is that of x, negated: sin, cos and tan are odd and even to the bit.
 CISTULA_HD inline ReducedAngle reduced_angle(double x) {
     const double size = magnitude(x);
     const ReducedAngle r = size < 0x1p30 ? reduce_small_angle(size) : reduce_large_angle(size);
-    return x < 0 ? ReducedAngle{-r.hi, -r.lo, -r.quadrant & 3} : r;
+    return x < 0 ? ReducedAngle{-r.high, -r.low, -r.quadrant & 3} : r;
 }
 
 /// sin(hi + lo) for a reduced angle.
-CISTULA_HD inline Pair sin_reduced(double hi, double lo) {
+CISTULA_HD inline DoubleDouble sin_reduced(double hi, double lo) {
     constexpr double series[] = {-0x1.5555555555555p-3, 0x1.1111111111110p-7,   -0x1.a01a01a019937p-13,
                                  0x1.71de3a54607a5p-19, -0x1.ae64541295cdfp-26, 0x1.61217ee5cca1bp-33,
                                  -0x1.ab17bdcbd3414p-41};
@@ -88,14 +88,14 @@ CISTULA_HD inline Pair sin_reduced(double hi, double lo) {
 }
 
 /// cos(hi + lo) for a reduced angle.
-CISTULA_HD inline Pair cos_reduced(double hi, double lo) {
+CISTULA_HD inline DoubleDouble cos_reduced(double hi, double lo) {
     constexpr double series[] = {0x1.5555555555555p-5,   -0x1.6c16c16c16c16p-10, 0x1.a01a01a019d0ap-16,
                                  -0x1.27e4fb7712ca2p-22, 0x1.1eed8deb82809p-29,  -0x1.9394b9eb4d56dp-37,
                                  0x1.ab78473be59d7p-45};
-    const Pair square = two_product(hi, hi);
-    const Pair start = fast_two_sum(1, -0.5 * square.hi);
-    const double small = fused(-hi, lo, -0.5 * square.lo);
-    return fast_two_sum(start.hi, start.lo + fused(square.hi * square.hi, polynomial(square.hi, series), small));
+    const DoubleDouble square = two_product(hi, hi);
+    const DoubleDouble start = fast_two_sum(1, -0.5 * square.high);
+    const double small = fused(-hi, lo, -0.5 * square.low);
+    return fast_two_sum(start.high, start.low + fused(square.high * square.high, polynomial(square.high, series), small));
 }
 
 /// Of an angle in radians. Infinite and NaN arguments give NaN; sin(-0) = -0.
@@ -103,23 +103,23 @@ CISTULA_HD inline double sin(double x) {
     if (!is_finite(x)) return not_a_number;
     if (magnitude(x) < 0x1p-27) return x;
     const ReducedAngle r = reduced_angle(x);
-    const Pair value = r.quadrant & 1 ? cos_reduced(r.hi, r.lo) : sin_reduced(r.hi, r.lo);
-    return r.quadrant & 2 ? -value.hi : value.hi;
+    const DoubleDouble value = r.quadrant & 1 ? cos_reduced(r.high, r.low) : sin_reduced(r.high, r.low);
+    return r.quadrant & 2 ? -value.high : value.high;
 }
 CISTULA_HD inline double cos(double x) {
     if (!is_finite(x)) return not_a_number;
     const ReducedAngle r = reduced_angle(x);
-    const Pair value = r.quadrant & 1 ? sin_reduced(r.hi, r.lo) : cos_reduced(r.hi, r.lo);
-    return (r.quadrant + 1) & 2 ? -value.hi : value.hi;
+    const DoubleDouble value = r.quadrant & 1 ? sin_reduced(r.high, r.low) : cos_reduced(r.high, r.low);
+    return (r.quadrant + 1) & 2 ? -value.high : value.high;
 }
 CISTULA_HD inline double tan(double x) {
     if (!is_finite(x)) return not_a_number;
     if (magnitude(x) < 0x1p-27) return x;
     const ReducedAngle r = reduced_angle(x);
-    const Pair s = sin_reduced(r.hi, r.lo), c = cos_reduced(r.hi, r.lo);
-    const Pair above = r.quadrant & 1 ? c : s, below = r.quadrant & 1 ? Pair{-s.hi, -s.lo} : c;
-    const double quotient = above.hi / below.hi;
-    return quotient + (fused(-quotient, below.hi, above.hi) + (above.lo - quotient * below.lo)) / below.hi;
+    const DoubleDouble s = sin_reduced(r.high, r.low), c = cos_reduced(r.high, r.low);
+    const DoubleDouble above = r.quadrant & 1 ? c : s, below = r.quadrant & 1 ? DoubleDouble{-s.high, -s.low} : c;
+    const double quotient = above.high / below.high;
+    return quotient + (fused(-quotient, below.high, above.high) + (above.low - quotient * below.low)) / below.high;
 }
 
 }  // namespace cistula::elementary

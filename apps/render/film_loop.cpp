@@ -1,0 +1,133 @@
+#include "film_loop.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "frame_list.h"
+#include "frame_writer.h"
+#include "progress.h"
+#include "scene/error.h"
+#include "scene/exr.h"
+
+namespace cistula {
+namespace {
+
+/// A picture without values that a frame's file would look like: its windows, channels and attributes.
+LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
+    Film one;
+    one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
+    one.pixels.resize(1);
+    LayeredPicture picture = to_layers(one, job.options.channels);
+    const PixelRect& crop = job.settings.crop;
+    picture.width = crop.width;
+    picture.height = crop.height;
+    picture.x = crop.x;
+    picture.y = crop.y;
+    picture.display_width = job.settings.full_width;
+    picture.display_height = job.settings.full_height;
+    picture.attributes = header_attributes(job.scene_hash, job.settings, job.options.precision, camera);
+    return picture;
+}
+
+bool is_finished(const FilmJob& job, const CameraFrame& camera) {
+    const std::string path = job.output.for_frame(camera.frame);
+    const std::string preview = job.preview.for_frame(camera.frame);
+    std::error_code error;
+    if (!std::filesystem::exists(path, error) || !exr_is_complete(path)) return false;
+    if (!preview.empty() && !std::filesystem::exists(preview, error)) return false;
+    try {
+        return is_same_image(read_exr(path), expected_picture(job, camera));
+    } catch (const Error&) {
+        return false;  // someone else's EXR: rendered again
+    }
+}
+
+[[noreturn]] void fail_interrupted(const FilmJob& job, const std::vector<FrameStats>& written) {
+    std::vector<int> left;
+    for (const int frame : job.frames) {
+        bool done = false;
+        for (const FrameStats& one : written) done = done || one.frame == frame;
+        if (!done) left.push_back(frame);
+    }
+    const bool raw = file_kind(job.output.text()) == FileKind::raw;
+    throw Error(ExitCode::interrupted,
+                fmt::format("interrupted; {} of {} frames written; the same command with {} goes on from here",
+                            job.frames.size() - left.size(), job.frames.size(),
+                            raw ? "--frames " + format_frames(left) : std::string("--resume")));
+}
+
+FrameStats stats_of(const Film& film, int frame, const std::string& path, double seconds) {
+    FrameStats stats;
+    stats.frame = frame;
+    stats.file = path;
+    stats.width = film.rect.width;
+    stats.height = film.rect.height;
+    stats.render_seconds = seconds;
+    stats.rays = film.rays;
+    return stats;
+}
+
+}  // namespace
+
+std::string describe_flags(uint32_t flags) {
+    std::vector<std::string> parts;
+    if (flags & flag_not_finite) parts.push_back("a radiance was infinite or not a number");
+    if (flags & flag_media_overflow) parts.push_back("a ray was inside more solids at once than it can list");
+    if (flags & flag_stack_overflow) parts.push_back("a ray's tree had more branches waiting than there is room for");
+    if (flags & flag_too_many_crossings) parts.push_back("a straight ray crossed more faces than the limit");
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
+    const RenderOptions& options = job.options;
+    std::vector<CameraFrame> cameras;
+    for (const int frame : job.frames) {
+        CameraFrame camera = camera_at(job.scene.camera, frame);
+        if (options.resume && is_finished(job, camera))
+            stats.resumed.push_back(frame);
+        else
+            cameras.push_back(std::move(camera));
+    }
+    if (!options.quiet && !stats.resumed.empty())
+        fmt::print(stderr, "render: {} of {} frames are complete and stay as they are\n", stats.resumed.size(),
+                   job.frames.size());
+
+    FrameWriter writer(options.channels, !options.stats.empty() || options.verbose, progress.stop, stats.frames);
+    {
+        ProgressReport report(options.quiet ? ProgressStyle::none : options.progress, cameras.size(), progress);
+        for (size_t i = 0; i < cameras.size() && !progress.stop; ++i) {
+            const int frame = cameras[i].frame;
+            progress.pixels_done = 0;
+            progress.rays = 0;
+            const PixelRect& crop = job.settings.crop;
+            report.begin_frame(frame, i, static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height));
+            FinishedFrame finished;
+            bool whole = false;
+            const double seconds =
+                seconds_of([&] { whole = renderer.render(cameras[i], job.settings, finished.film, progress); });
+            if (!whole) break;
+            report.end_frame();
+            if (finished.film.flags != 0) {
+                writer.finish();
+                throw Error(ExitCode::failed,
+                            fmt::format("{}: frame {} cannot be trusted and is not written: {}", job.scene.source,
+                                        frame, describe_flags(finished.film.flags)));
+            }
+            finished.path = job.output.for_frame(frame);
+            finished.preview = job.preview.for_frame(frame);
+            finished.attributes = header_attributes(job.scene_hash, job.settings, options.precision, cameras[i]);
+            finished.stats = stats_of(finished.film, frame, finished.path, seconds);
+            if (options.verbose)
+                report.say(fmt::format("render: frame {}: {:.3f} s, {} rays, {}", frame, seconds,
+                                       finished.film.rays.total(),
+                                       format_rate(static_cast<double>(finished.film.rays.total()) / seconds)));
+            writer.put(std::move(finished));
+        }
+    }
+    writer.finish();
+    if (stats.frames.size() == cameras.size()) return;  // an interruption after the last frame changes nothing
+    fail_interrupted(job, stats.frames);
+}
+
+}  // namespace cistula

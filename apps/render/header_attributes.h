@@ -1,0 +1,34 @@
+// What an EXR header says about the image: all that the pixels depend on and nothing else, so that equal images are
+// equal files whatever made them.
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene/camera_path.h"
+#include "scene/picture.h"
+#include "scene/renderer.h"
+
+namespace cistula {
+
+using Attributes = decltype(LayeredPicture::attributes);
+
+/// Scene hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera, worldToNDC, chromaticities
+/// (Rec. 709, D65). docs/programs.md says what each holds.
+Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
+                             const CameraFrame& camera);
+
+/// World to camera space (x right, y up, looking along -z), 16 numbers for row vectors: p' = p M.
+std::vector<float> world_to_camera(const Camera& camera);
+
+/// World to normalized device coordinates, for row vectors: after the division by w, which is the distance along the
+/// view axis, x is -1 to 1 from left to right, y -1 to 1 from bottom to top of the full frame, z = 1 - 1 / distance.
+std::vector<float> world_to_ndc(const Camera& camera, int width, int height);
+
+/// True where `picture` holds the image that these attributes, windows and channels describe. The values of
+/// `expected` are not looked at.
+bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected);
+
+}  // namespace cistula

@@ -1,0 +1,56 @@
+#include "interrupt.h"
+
+#include <unistd.h>
+#include <csignal>
+
+#include "scene/error.h"
+
+namespace cistula {
+namespace {
+
+// What a signal handler may touch: lock-free atomics, _exit, write and sigaction.
+std::atomic<std::atomic<bool>*> watched{nullptr};
+static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+constexpr int signals[] = {SIGINT, SIGTERM};
+struct sigaction previous[2];
+
+void restore() {
+    for (int i = 0; i < 2; ++i) sigaction(signals[i], &previous[i], nullptr);
+}
+
+void on_signal(int) {
+    std::atomic<bool>* stop = watched;
+    if (stop == nullptr) {
+        static constexpr char message[] = "render: interrupted; nothing was written\n";
+        (void)!write(STDERR_FILENO, message, sizeof message - 1);
+        _exit(static_cast<int>(ExitCode::interrupted));
+    }
+    *stop = true;
+    restore();  // the second one kills
+}
+
+}  // namespace
+
+InterruptGuard::InterruptGuard() {
+    struct sigaction action = {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    for (int i = 0; i < 2; ++i) {
+        sigaction(signals[i], nullptr, &previous[i]);
+        // Ignored by whoever started us (nohup, a shell's background job): leave it so.
+        if (previous[i].sa_handler != SIG_IGN) sigaction(signals[i], &action, nullptr);
+    }
+}
+
+InterruptGuard::~InterruptGuard() {
+    restore();
+    watched = nullptr;
+}
+
+void InterruptGuard::watch(std::atomic<bool>& stop) {
+    watched = &stop;
+}
+
+}  // namespace cistula

@@ -1,0 +1,178 @@
+// render: a scene to images.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+
+#include "backend_embree/embree_renderer.h"
+#include "explain.h"
+#include "film_loop.h"
+#include "interrupt.h"
+#include "progress.h"
+#include "scene/atomic_file.h"
+#include "scene/compiled_scene.h"
+#include "scene/error.h"
+#include "scene/read_scene.h"
+#include "scene/suggest.h"
+
+namespace cistula {
+namespace {
+
+void print(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        throw Error(ExitCode::file, "standard output: cannot be written");
+}
+
+template <class Real>
+std::unique_ptr<Renderer> prepare(const SceneDescription& scene, bool quiet, RunStats& stats) {
+    std::shared_ptr<const CompiledScene<Real>> compiled;
+    stats.compile_seconds = seconds_of([&] { compiled = compile_scene<Real>(scene); });
+    stats.scene_hash = compiled->hash;
+    stats.required_effects = compiled->effects;
+    if (!quiet)
+        for (const std::string& warning : compiled->warnings)
+            fmt::print(stderr, "render: warning: {}\n", one_line(warning));
+    std::unique_ptr<Renderer> renderer;
+    stats.tree_seconds = seconds_of([&] { renderer = make_embree_renderer<Real>(compiled); });
+    return renderer;
+}
+
+/// The names of the files, checked against one another and against what is there.
+struct Outputs {
+    OutputName image, preview;
+    std::vector<int> frames;
+};
+
+Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene) {
+    Outputs outputs;
+    const std::string name = options.output.empty() ? default_output(scene, options.frames.size()) : options.output;
+    outputs.image = OutputName(name, "-o");
+    outputs.frames = frames_to_render(outputs.image, options.frames, scene.film.frames);
+    if (file_kind(name) == FileKind::raw) {
+        const auto refuse = [&](const char* option, const char* why) {
+            throw Error(ExitCode::usage, fmt::format("-o {}: {} needs an .exr; {}", name, option, why));
+        };
+        if (options.channels.half) refuse("--bits half", "raw frames have 8 bits a channel");
+        const OutputChannels& c = options.channels;
+        if (c.error || c.id || c.samples || c.cost || c.z || c.normal) refuse("--aov", "raw frames have no layers");
+        if (options.resume) refuse("--resume", "raw frames do not say what they show");
+    }
+    require_directory(outputs.image.for_frame(outputs.frames.front()));
+    if (!options.preview.empty()) {
+        outputs.preview = OutputName(options.preview, "--preview");
+        if (std::filesystem::path(options.preview).extension() != ".png")
+            throw Error(ExitCode::usage,
+                        fmt::format("--preview {}: a preview is a PNG; name it *.png", options.preview));
+        if (outputs.frames.size() > 1 && !outputs.preview.has_pattern())
+            throw Error(ExitCode::usage, fmt::format("--preview {}: holds one frame of {}; put #### into the name",
+                                                     options.preview, outputs.frames.size()));
+        require_directory(outputs.preview.for_frame(outputs.frames.front()));
+    }
+    if (!options.stats.empty()) require_directory(options.stats);
+    return outputs;
+}
+
+void print_summary(const RunStats& stats, const OutputName& image, double seconds) {
+    uint64_t rays = 0;
+    double render_seconds = 0;
+    for (const FrameStats& frame : stats.frames) {
+        rays += frame.rays.total();
+        render_seconds += frame.render_seconds;
+    }
+    if (stats.frames.empty()) return;
+    const std::string what = stats.frames.size() == 1 ? stats.frames[0].file
+                                                      : fmt::format("{}: {} frames", image.text(), stats.frames.size());
+    fmt::print(stderr, "render: {}: {:.2f} s, {} rays, {}\n", what, seconds, rays,
+               format_rate(render_seconds > 0 ? static_cast<double>(rays) / render_seconds : 0));
+}
+
+void render_scene(const RenderOptions& options) {
+    if (options.backend == Backend::cuda)
+        throw Error(ExitCode::device,
+                    "--backend cuda: this build has no CUDA backend; --backend embree renders on the CPU");
+    RunStats stats;
+    SceneDescription scene;
+    stats.read_seconds = seconds_of([&] { scene = read_scene(options.scene); });
+    if (options.action == Action::explain) return print(explain_table(scene.source, explain_effects(scene)));
+
+    const FrameSettings settings = frame_settings(options, scene);
+    const Outputs outputs = plan_outputs(options, scene);
+    RenderProgress progress;  // outlives the guard
+    InterruptGuard guard;
+
+    const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+        stats.scene = options.scene;
+        stats.threads = threads;
+        const std::unique_ptr<Renderer> renderer = options.precision == Precision::double_
+                                                       ? prepare<double>(scene, options.quiet, stats)
+                                                       : prepare<float>(scene, options.quiet, stats);
+        const auto write_stats = [&] {
+            stats.intersector = renderer->intersector();
+            stats.effects = renderer->effects();
+            stats.scene_bytes = renderer->memory();
+            if (!options.stats.empty()) write_file_atomically(options.stats, stats_json(stats, settings, options));
+        };
+        if (options.verbose)
+            fmt::print(stderr, "render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}\n",
+                       stats.read_seconds, stats.compile_seconds, stats.tree_seconds, renderer->memory(),
+                       stats.scene_hash);
+        guard.watch(progress.stop);
+        const FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
+        double seconds = 0;
+        try {
+            seconds = seconds_of([&] { render_film(job, *renderer, progress, stats); });
+        } catch (const Error&) {
+            try {
+                write_stats();        // of the frames that were finished
+            } catch (const Error&) {  // the first error is the one to report
+            }
+            throw;
+        }
+        write_stats();
+        if (!options.quiet) print_summary(stats, outputs.image, seconds);
+    });
+}
+
+void run(const RenderOptions& options) {
+    switch (options.action) {
+        case Action::print_help:
+            return print(help_text());
+        case Action::print_version:
+            return print("render (Cistula) " CISTULA_VERSION "\n");
+        case Action::print_template:
+            return print(seed_template());
+        case Action::explain:
+        case Action::render:
+            return render_scene(options);
+    }
+}
+
+int fail(const std::string& message, ExitCode code) {
+    fmt::print(stderr, "render: {}\n", one_line(message));
+    return static_cast<int>(code);
+}
+
+}  // namespace
+}  // namespace cistula
+
+int main(int argc, char** argv) {
+    using namespace cistula;
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is then an error of its write
+    try {
+        run(parse_options(argc, argv));
+        return static_cast<int>(ExitCode::done);
+    } catch (const Error& error) {
+        return fail(error.what(), error.code());
+    } catch (const std::bad_alloc&) {
+        return fail("out of memory; a smaller --res or --crop needs less", ExitCode::failed);
+    } catch (const std::exception& error) {
+        return fail(error.what(), ExitCode::failed);
+    }
+}

@@ -1,0 +1,262 @@
+#include "options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cmath>
+
+#include "frame_list.h"
+#include "scene/error.h"
+#include "scene/suggest.h"
+
+namespace cistula {
+namespace {
+
+[[noreturn]] void fail(const std::string& message) {
+    throw Error(ExitCode::usage, message);
+}
+
+/// The whole of `text` as a number of type T; nothing where it is none.
+template <class T>
+std::optional<T> whole_number(std::string_view text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+int integer_option(const char* option, const std::string& text, int low, int high) {
+    const std::optional<int> value = whole_number<int>(text);
+    if (!value || *value < low || *value > high)
+        fail(fmt::format("{} {}: must be a whole number from {} to {}", option, text, low, high));
+    return *value;
+}
+
+template <class T>
+T chosen(const char* option, const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, value] : choices) {
+        if (name == text) return value;
+        names.push_back(name);
+    }
+    fail(fmt::format("{} {}: must be {}; {}", option, one_line(text), fmt::join(names, " or "),
+                     suggestion(text, names, "names")));
+}
+
+/// The options' texts as CLI11 leaves them.
+struct Texts {
+    std::string scene, output, preview, stats, frames, backend = "embree", resolution, crop, supersample, depth, cutoff,
+                                                       precision = "float", threads, bits = "float", layers,
+                                                       progress = "auto";
+    bool explain = false, resume = false, quiet = false, verbose = false, version = false, print_template = false;
+};
+
+void declare(CLI::App& app, Texts& texts) {
+    app.add_option("SCENE", texts.scene, "scene file: JSON or the seed's text; - reads standard input")->type_name("");
+    app.add_option("-o,--output", texts.output,
+                   "image: .exr, or .out/.data for the seed's raw frames; #### or %04d is the frame number")
+        ->type_name("FILE");
+    app.add_option("-f,--frames", texts.frames, "frames to render, e.g. 0-299x5,7")->type_name("LIST");
+    app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU)")->type_name("NAME");
+    app.add_option("--res", texts.resolution, "full frame in pixels")->type_name("WxH");
+    app.add_option("--crop", texts.crop, "render these pixels only; the file's data window")->type_name("WxH+X+Y");
+    app.add_option("--supersample", texts.supersample, "k: a k x k grid of samples per pixel")->type_name("K");
+    app.add_option("--depth", texts.depth, "surfaces shaded along a path, 1 to 1024")->type_name("N");
+    app.add_option("--cutoff", texts.cutoff, "radiance that dropping faint branches may cost a pixel; 0: none")
+        ->type_name("E");
+    app.add_option("--precision", texts.precision, "float or double")->type_name("NAME");
+    app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
+    app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
+    app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
+    app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
+    app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
+    app.add_flag("--explain", texts.explain, "print the effects the scene calls for and why; renders nothing");
+    app.add_flag("--resume", texts.resume, "skip frames whose file is complete and of the same scene and settings");
+    app.add_option("--progress", texts.progress, "auto, plain or none")->type_name("STYLE");
+    app.add_flag("-q,--quiet", texts.quiet, "errors only");
+    app.add_flag("-v,--verbose", texts.verbose, "also times, hashes and effects");
+    app.add_flag("--print-template", texts.print_template, "print the seed's text input and exit");
+    app.add_flag("--version", texts.version, "print the version and exit");
+    app.set_help_flag("-h,--help", "print this and exit");
+}
+
+std::vector<std::string> long_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+[[noreturn]] void fail_unexpected(const CLI::App& app, const Texts& texts) {
+    for (const std::string& extra : app.remaining()) {
+        if (extra.size() < 2 || extra[0] != '-')
+            fail(fmt::format("{}: one scene at a time, and {} is it already", extra, texts.scene));
+        const std::vector<std::string> names = long_names(app);
+        fail(fmt::format("{}: no such option; {}; --help lists them", one_line(extra),
+                         suggestion(extra.substr(0, extra.find('=')), {names.begin(), names.end()}, "options")));
+    }
+    fail("the command line cannot be read; --help shows its form");
+}
+
+RenderOptions checked(const Texts& texts) {
+    RenderOptions options;
+    if (texts.version) options.action = Action::print_version;
+    if (texts.print_template) options.action = Action::print_template;
+    if (options.action != Action::render) return options;
+    if (texts.explain) options.action = Action::explain;
+
+    options.scene = texts.scene;
+    options.output = texts.output;
+    options.preview = texts.preview;
+    options.stats = texts.stats;
+    options.resume = texts.resume;
+    options.quiet = texts.quiet;
+    options.verbose = texts.verbose;
+    options.backend =
+        chosen<Backend>("--backend", texts.backend, {{"embree", Backend::embree}, {"cuda", Backend::cuda}});
+    options.precision = chosen<Precision>("--precision", texts.precision,
+                                          {{"float", Precision::single_}, {"double", Precision::double_}});
+    options.progress = chosen<ProgressStyle>(
+        "--progress", texts.progress,
+        {{"auto", ProgressStyle::automatic}, {"plain", ProgressStyle::plain}, {"none", ProgressStyle::none}});
+    if (!texts.frames.empty()) options.frames = parse_frames(texts.frames);
+    if (!texts.resolution.empty()) options.resolution = parse_size(texts.resolution);
+    if (!texts.crop.empty()) options.crop = parse_crop(texts.crop);
+    if (!texts.layers.empty()) options.channels = parse_layers(texts.layers);
+    options.channels.half = chosen<bool>("--bits", texts.bits, {{"float", false}, {"half", true}});
+    if (!texts.supersample.empty())
+        options.supersample = integer_option("--supersample", texts.supersample, 1, largest_supersample);
+    if (!texts.depth.empty()) options.depth = integer_option("--depth", texts.depth, 1, largest_depth);
+    if (!texts.threads.empty()) options.threads = integer_option("--threads", texts.threads, 1, 1024);
+    if (!texts.cutoff.empty()) {
+        options.cutoff = whole_number<double>(texts.cutoff);
+        if (!options.cutoff || !std::isfinite(*options.cutoff) || *options.cutoff < 0)
+            fail(fmt::format("--cutoff {}: must be a number, 0 or above, in the scene's units of radiance",
+                             texts.cutoff));
+    }
+    if (options.scene.empty())
+        fail("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
+    if (options.quiet && options.verbose) fail("-q and -v exclude each other; give one");
+    return options;
+}
+
+/// Two numbers around an x at the front of `text`, which it takes away.
+std::optional<PictureSize> take_size(std::string_view& text) {
+    const size_t x = text.find('x');
+    if (x == text.npos) return std::nullopt;
+    const size_t end = std::min(text.find('+', x), text.size());
+    const auto width = whole_number<int>(text.substr(0, x)),
+               height = whole_number<int>(text.substr(x + 1, end - x - 1));
+    if (!width || !height || *width < 1 || *height < 1 || *width > largest_side || *height > largest_side)
+        return std::nullopt;
+    text.remove_prefix(end);
+    return PictureSize{*width, *height};
+}
+
+}  // namespace
+
+RenderOptions parse_options(int argc, const char* const* argv) {
+    CLI::App app;
+    Texts texts;
+    declare(app, texts);
+    app.allow_extras();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        RenderOptions options;
+        options.action = Action::print_help;
+        return options;
+    } catch (const CLI::ParseError& error) {
+        fail(fmt::format("{}; --help shows the options", error.what()));
+    }
+    if (!app.remaining().empty()) fail_unexpected(app, texts);
+    for (const CLI::Option* option : app.get_options())
+        if (option->count() > 0 && option->get_type_size() > 0 && option->results().front().empty())
+            fail(fmt::format("{}: the value is empty; --help shows what it takes", option->get_name()));
+    return checked(texts);
+}
+
+std::string help_text() {
+    CLI::App app("Renders a scene to OpenEXR: the same bits on every machine and with any number of threads.",
+                 "render");
+    Texts texts;
+    declare(app, texts);
+    app.footer(R"(
+Examples:
+  render scenes/platonic.json -o platonic.exr --preview platonic.png
+  render scenes/seed.json -o out/beauty.####.exr                   all frames of the film
+  render scenes/seed.json -o out/beauty.####.exr --resume          those still missing
+  render scenes/seed.json -o out/f%04d.exr -f 0-299x30,7 --res 320x180
+  render scenes/glass.json -o g.exr --precision double --supersample 4 --aov error,id,Z,N
+  render scenes/infinity.json -o corner.exr --crop 64x64+128+96 --cutoff 0.001 --stats corner.json
+  render - -o frame%d.out < input.txt                              the seed's input and frames
+  render --print-template > input.txt
+
+Without -o a scene is written to SCENE.exr in the working directory (SCENE.####.exr where -f names several frames), the
+seed's text input to the pattern on its third line. A name without a pattern holds one frame, -f's or the first.
+
+Exit codes: 0 done, 1 the image cannot be trusted, 2 command line or scene, 3 file, 4 device, 130 interrupted.)");
+    return app.help();
+}
+
+PictureSize parse_size(std::string_view text) {
+    std::string_view rest = text;
+    const std::optional<PictureSize> size = take_size(rest);
+    if (!size || !rest.empty())
+        fail(fmt::format("--res {}: must be WIDTHxHEIGHT, each from 1 to {}, as in 1280x720", text, largest_side));
+    return *size;
+}
+
+PixelRect parse_crop(std::string_view text) {
+    std::string_view rest = text;
+    const std::optional<PictureSize> size = take_size(rest);
+    if (size && !rest.empty()) {
+        rest.remove_prefix(1);
+        const size_t plus = rest.find('+');
+        if (plus != rest.npos) {
+            const auto x = whole_number<int>(rest.substr(0, plus)), y = whole_number<int>(rest.substr(plus + 1));
+            if (x && y && *x >= 0 && *y >= 0) return {*x, *y, size->width, size->height};
+        }
+    }
+    fail(fmt::format("--crop {}: must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96", text));
+}
+
+OutputChannels parse_layers(std::string_view text) {
+    OutputChannels layers;
+    const std::vector<std::pair<std::string_view, bool OutputChannels::*>> known = {
+        {"error", &OutputChannels::error}, {"id", &OutputChannels::id}, {"samples", &OutputChannels::samples},
+        {"cost", &OutputChannels::cost},   {"Z", &OutputChannels::z},   {"N", &OutputChannels::normal}};
+    std::vector<std::string_view> names;
+    for (const auto& entry : known) names.push_back(entry.first);
+    for (size_t begin = 0; begin <= text.size();) {
+        const size_t comma = std::min(text.find(',', begin), text.size());
+        const std::string_view name = text.substr(begin, comma - begin);
+        bool found = false;
+        for (const auto& [known_name, member] : known)
+            if (known_name == name) layers.*member = found = true;
+        if (!found)
+            fail(fmt::format("--aov {}: there is no layer '{}'; {}", one_line(text), one_line(name),
+                             suggestion(name, names, "layers")));
+        begin = comma + 1;
+    }
+    return layers;
+}
+
+FrameSettings frame_settings(const RenderOptions& options, const SceneDescription& scene) {
+    FrameSettings settings;
+    settings.full_width = options.resolution ? options.resolution->width : scene.film.width;
+    settings.full_height = options.resolution ? options.resolution->height : scene.film.height;
+    settings.supersample = options.supersample.value_or(scene.film.supersample);
+    settings.depth = options.depth.value_or(scene.depth);
+    settings.cutoff = options.cutoff.value_or(scene.cutoff);
+    settings.crop = options.crop.value_or(PixelRect{0, 0, settings.full_width, settings.full_height});
+    const PixelRect& crop = settings.crop;
+    if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)
+        fail(fmt::format("--crop {}x{}+{}+{}: leaves the frame, which is {}x{}", crop.width, crop.height, crop.x,
+                         crop.y, settings.full_width, settings.full_height));
+    return settings;
+}
+
+}  // namespace cistula

@@ -1,0 +1,64 @@
+// The command line of `render`, read and checked as far as it can be without the scene.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "output_name.h"
+#include "scene/film_picture.h"
+#include "scene/renderer.h"
+
+namespace cistula {
+
+struct PictureSize {
+    int width = 0, height = 0;
+};
+
+enum class ProgressStyle { automatic, plain, none };
+enum class Backend { embree, cuda };
+enum class Action { render, explain, print_help, print_version, print_template };
+
+struct RenderOptions {
+    Action action = Action::render;
+    std::string scene;           // "-": standard input
+    std::string output;          // as given; empty: see default_output
+    std::string preview, stats;  // as given; empty: none
+    std::vector<int> frames;     // empty: none given
+    Backend backend = Backend::embree;
+    std::optional<PictureSize> resolution;
+    std::optional<PixelRect> crop;
+    std::optional<int> supersample, depth;
+    std::optional<double> cutoff;
+    Precision precision = Precision::single_;
+    int threads = 0;          // 0: all
+    OutputChannels channels;  // of --bits and --aov
+    bool resume = false, quiet = false, verbose = false;
+    ProgressStyle progress = ProgressStyle::automatic;
+};
+
+inline constexpr int largest_side = 65536;      // pixels
+inline constexpr int largest_supersample = 64;  // k
+inline constexpr int largest_depth = 1024;
+
+/// Throws Error (usage); the message names the option, what is wrong and what would be right.
+RenderOptions parse_options(int argc, const char* const* argv);
+
+/// What --help prints: the options, examples, exit codes.
+std::string help_text();
+
+/// "640x480". Throws Error (usage).
+PictureSize parse_size(std::string_view text);
+
+/// "WxH+X+Y", X and Y from the top left of the full frame. Throws Error (usage).
+PixelRect parse_crop(std::string_view text);
+
+/// "error,id,samples,cost,Z,N", any of them. Throws Error (usage) with the nearest name for an unknown one.
+OutputChannels parse_layers(std::string_view text);
+
+/// The settings of every frame: the scene's film, depth and cutoff where no option overrides them. Throws Error
+/// (usage) where the crop leaves the frame.
+FrameSettings frame_settings(const RenderOptions& options, const SceneDescription& scene);
+
+}  // namespace cistula

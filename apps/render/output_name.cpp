@@ -1,0 +1,111 @@
+#include "output_name.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <numeric>
+
+#include "scene/error.h"
+
+namespace cistula {
+namespace {
+
+constexpr int most_digits = 32;
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+}  // namespace
+
+OutputName::OutputName(std::string_view text, std::string_view option) : text_(text) {
+    const auto fail = [&](const std::string& what) {
+        throw Error(ExitCode::usage, fmt::format("{} {}: {}", option, text, what));
+    };
+    if (text.empty()) throw Error(ExitCode::usage, fmt::format("{}: the file name is empty", option));
+    std::string* part = &prefix_;
+    const auto place = [&](int digits) {
+        if (has_pattern()) fail("two places for the frame number; a name has one, #### or %04d");
+        if (digits > most_digits) fail(fmt::format("a frame number of more than {} digits", most_digits));
+        digits_ = digits;
+        part = &suffix_;
+    };
+    for (size_t i = 0; i < text.size();) {
+        if (text[i] == '#') {
+            size_t end = i;
+            while (end < text.size() && text[end] == '#') ++end;
+            place(static_cast<int>(std::min<size_t>(end - i, most_digits + 1)));
+            i = end;
+        } else if (text[i] == '%') {
+            if (i + 1 < text.size() && text[i + 1] == '%') {
+                *part += '%';
+                i += 2;
+                continue;
+            }
+            size_t end = i + 1;
+            int digits = 1;
+            if (end < text.size() && text[end] == '0') {
+                digits = 0;
+                while (end < text.size() && text[end] >= '0' && text[end] <= '9')
+                    digits = std::min(digits * 10 + (text[end++] - '0'), most_digits + 1);
+            }
+            if (end >= text.size() || text[end] != 'd')
+                fail("after % only d, as in %d or %04d, or another % for a percent sign");
+            place(std::max(digits, 1));
+            i = end + 1;
+        } else {
+            *part += text[i++];
+        }
+    }
+}
+
+std::string OutputName::for_frame(int frame) const {
+    return has_pattern() ? fmt::format("{}{:0{}d}{}", prefix_, frame, digits_, suffix_) : prefix_;
+}
+
+FileKind file_kind(const std::string& path) {
+    const std::string extension = lower(std::filesystem::path(path).extension().string());
+    if (extension == ".exr") return FileKind::exr;
+    if (extension == ".out" || extension == ".data") return FileKind::raw;
+    throw Error(ExitCode::usage,
+                fmt::format("-o {}: images are written as .exr, or as the seed's raw frames .out and .data; {}", path,
+                            extension == ".png" ? "for a PNG add --preview FILE.png" : "name it *.exr"));
+}
+
+std::string default_output(const SceneDescription& scene, size_t frames_given) {
+    if (!scene.film.output.empty()) return scene.film.output;
+    const std::string stem = scene.source == "-" ? "stdin" : std::filesystem::path(scene.source).stem().string();
+    std::string name;
+    for (const char c : stem) name += c == '%' ? "%%" : std::string(1, c == '#' ? '_' : c);
+    return name + (frames_given > 1 ? ".####.exr" : ".exr");
+}
+
+std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames) {
+    if (!output.has_pattern() && given.size() > 1) {
+        std::filesystem::path better = output.text();
+        better.replace_extension(".####" + better.extension().string());
+        throw Error(ExitCode::usage,
+                    fmt::format("-o {} holds one frame and --frames names {}; put the frame number into "
+                                "the name, as in -o {}",
+                                output.text(), given.size(), better.string()));
+    }
+    if (!given.empty()) return given;
+    std::vector<int> frames(output.has_pattern() ? static_cast<size_t>(std::max(film_frames, 1)) : 1);
+    std::iota(frames.begin(), frames.end(), 0);
+    return frames;
+}
+
+void require_directory(const std::string& path) {
+    std::error_code error;
+    const std::filesystem::path directory = std::filesystem::path(path).parent_path();
+    if (!directory.empty() && !std::filesystem::is_directory(directory, error))
+        throw Error(ExitCode::file, fmt::format("{}: cannot be written: there is no directory {}; make it first", path,
+                                                directory.string()));
+    if (std::filesystem::is_directory(path, error))
+        throw Error(ExitCode::file, fmt::format("{}: cannot be written: it is a directory; name a file in it", path));
+}
+
+}  // namespace cistula

@@ -1,0 +1,51 @@
+// File names with a place for the frame number: beauty.####.exr, beauty.%04d.exr, frame%d.out.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/description.h"
+
+namespace cistula {
+
+/// A file name, or a pattern of one. A run of # is the frame number with at least as many digits, %d and %0Nd are
+/// printf's, %% is a percent sign.
+class OutputName {
+  public:
+    OutputName() = default;
+
+    /// `option` is what the messages blame ("-o"). Throws Error (usage) where the text holds two patterns or another
+    /// conversion.
+    OutputName(std::string_view text, std::string_view option);
+
+    bool has_pattern() const { return digits_ >= 0; }
+    std::string for_frame(int frame) const;
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string text_, prefix_, suffix_;
+    int digits_ = -1;  // least number of digits; -1: no pattern
+};
+
+enum class FileKind {
+    exr,
+    raw,  // the seed's frames: .out or .data
+};
+
+/// By the extension, case ignored. Throws Error (usage) for any other.
+FileKind file_kind(const std::string& path);
+
+/// Where no -o is given: the scene's own film.output if it names one, else SCENE.exr in the working directory, or
+/// SCENE.####.exr where several frames were asked for by name. A scene from standard input is called "stdin".
+std::string default_output(const SceneDescription& scene, size_t frames_given);
+
+/// The frames to render: those given; else all of the film with a pattern, the first without one. Throws Error (usage)
+/// where several are given for a name that holds one.
+std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames);
+
+/// Throws Error (file) where the directory that a file would go to does not exist, or the name is a directory's:
+/// better now than after an hour of rendering.
+void require_directory(const std::string& path);
+
+}  // namespace cistula

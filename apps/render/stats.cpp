@@ -1,0 +1,137 @@
+#include "stats.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "cistula/effects.h"
+
+namespace cistula {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string host_name() {
+    char name[256] = {};
+    return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
+}
+
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.rfind("model name", 0) == 0 && line.find(": ") != line.npos) return line.substr(line.find(": ") + 2);
+    return "unknown";
+}
+
+/// Bytes: the largest resident set of this process so far.
+uint64_t peak_memory() {
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json effect_list(uint32_t mask) {
+    Json names = Json::array();
+    for (int i = 0; i < effect_count; ++i)
+        if (mask >> i & 1) names.push_back(effect_names[i]);
+    return names;
+}
+
+Json phase(const std::string& name, double seconds) {
+    return {{"name", name},
+            {"run_type", "iteration"},
+            {"iterations", 1},
+            {"real_time", seconds * 1e3},
+            {"time_unit", "ms"}};
+}
+
+Json ledger(const LedgerTotals& totals) {
+    return {{"mean", totals.mean}, {"worst", totals.worst}};
+}
+
+Json frame_entry(const FrameStats& frame) {
+    Json entry = phase(fmt::format("frame/{}", frame.frame), frame.render_seconds);
+    entry["frame"] = frame.frame;
+    entry["file"] = frame.file;
+    entry["film_hash"] = frame.hash;
+    entry["pixels"] = static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
+    entry["render_ms"] = frame.render_seconds * 1e3;
+    entry["encode_ms"] = frame.encode_seconds * 1e3;
+    entry["write_ms"] = frame.write_seconds * 1e3;
+    entry["rays"] = {{"primary", frame.rays.primary},
+                     {"reflected", frame.rays.reflected},
+                     {"transmitted", frame.rays.transmitted},
+                     {"shadow", frame.rays.shadow},
+                     {"total", frame.rays.total()}};
+    entry["rays_per_second"] =
+        frame.render_seconds > 0 ? static_cast<double>(frame.rays.total()) / frame.render_seconds : 0.0;
+    entry["ledger"] = {{"pruned", ledger(frame.pruned)}, {"cut", ledger(frame.cut)}};
+    return entry;
+}
+
+}  // namespace
+
+LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) {
+    LedgerTotals totals;
+    const double unit = std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / film.samples;
+    for (size_t c = 0; c < 3; ++c) {
+        double sum = 0, worst = 0;
+        for (const PixelRecord& pixel : film.pixels) {
+            const double value = static_cast<double>((pixel.*member)[c]) * unit;
+            sum += value;
+            worst = std::max(worst, value);
+        }
+        totals.mean[c] = film.pixels.empty() ? 0 : sum / static_cast<double>(film.pixels.size());
+        totals.worst[c] = worst;
+    }
+    return totals;
+}
+
+std::string stats_json(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
+    const PixelRect& crop = settings.crop;
+    Json context = {
+        {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
+        {"host_name", host_name()},
+        {"executable", "render"},
+        {"num_cpus", std::thread::hardware_concurrency()},
+        {"cpu", processor_name()},
+        {"compiler", __VERSION__},
+        {"cistula_version", CISTULA_VERSION},
+        {"scene", stats.scene},
+        {"scene_hash", stats.scene_hash},
+        {"backend", options.backend == Backend::cuda ? "cuda" : "embree"},
+        {"intersector", stats.intersector},
+        {"precision", options.precision == Precision::double_ ? "double" : "float"},
+        {"threads", stats.threads},
+        {"resolution", {settings.full_width, settings.full_height}},
+        {"crop", {crop.x, crop.y, crop.width, crop.height}},
+        {"supersample", settings.supersample},
+        {"depth", settings.depth},
+        {"cutoff", settings.cutoff},
+        {"effects_required", effect_list(stats.required_effects)},
+        {"effects", effect_list(stats.effects)},
+        {"effects_mask", stats.effects},
+        {"scene_bytes", stats.scene_bytes},
+        {"peak_rss_bytes", peak_memory()},
+        {"frames_resumed", stats.resumed},
+    };
+    Json benchmarks = Json::array();
+    benchmarks.push_back(phase("read", stats.read_seconds));
+    benchmarks.push_back(phase("compile", stats.compile_seconds));
+    benchmarks.push_back(phase("tree", stats.tree_seconds));
+    for (const FrameStats& frame : stats.frames) benchmarks.push_back(frame_entry(frame));
+    const Json all = {{"context", context}, {"benchmarks", benchmarks}};
+    return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace cistula

@@ -1,0 +1,103 @@
+// Embree walks its tree over user geometry with a float ray; libcore's tests decide in Real.
+#pragma once
+
+#include "backend_embree/embree_api.h"
+#include "cistula/bvh.h"
+
+namespace cistula {
+
+/// A query's context, which the callbacks get back. `context` must stay first.
+template <class Real>
+struct ClosestQuery {
+    EmbreeContext context;
+    const SceneView<Real>* scene;
+    const Ray<Real>* ray;
+    TriangleRay<Real> triangle_ray;
+    Hit<Real> best;
+};
+
+/// The same for shadows; `visit` adds one primitive to the sum, with the effects of the mask that asks.
+template <class Real>
+struct ShadowQuery {
+    EmbreeContext context;
+    const SceneView<Real>* scene;
+    const ShadowRay<Real>* shadow;
+    TriangleRay<Real> triangle_ray;
+    ShadowSum sum;
+    void (*visit)(ShadowQuery&, uint32_t primitive);
+};
+
+template <class Real>
+struct EmbreeIntersector {
+    const SceneView<Real>& scene;
+    RTCScene tree;
+
+    Hit<Real> closest(const Ray<Real>& ray) const {
+        ClosestQuery<Real> query;
+        query.best = Hit<Real>();
+        if (!is_finite(ray)) return query.best;
+        embree_init(query.context);
+        query.scene = &scene;
+        query.ray = &ray;
+        query.triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
+        RTCRayHit rayhit;
+        set_ray(rayhit.ray, ray, tree_near(ray.after.t), RealTraits<float>::infinity);
+        rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        embree_intersect(tree, query.context, rayhit);
+        return query.best;
+    }
+
+    template <class E>
+    Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
+        if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
+        ShadowQuery<Real> query;
+        embree_init(query.context);
+        query.scene = &scene;
+        query.shadow = &shadow;
+        query.triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
+        query.visit = [](ShadowQuery<Real>& q, uint32_t primitive) {
+            shadow_primitive<Real, E>(*q.scene, primitive, *q.shadow, q.triangle_ray, q.sum);
+        };
+        shadow_start<Real, E>(scene, shadow, query.sum);
+        RTCRay ray;
+        set_ray(ray, shadow.ray, 0.0f, tree_far(shadow.distance));
+        embree_occluded(tree, query.context, ray);
+        return query.sum.template share<E, Real>();
+    }
+
+    static void set_ray(RTCRay& out, const Ray<Real>& ray, float near_t, float far_t) {
+        out.org_x = float(ray.origin.x);
+        out.org_y = float(ray.origin.y);
+        out.org_z = float(ray.origin.z);
+        out.dir_x = float(ray.direction.x);
+        out.dir_y = float(ray.direction.y);
+        out.dir_z = float(ray.direction.z);
+        out.tnear = near_t;
+        out.tfar = far_t;
+        out.time = 0.0f;
+        out.mask = ~0u;
+        out.id = 0;
+        out.flags = 0;
+    }
+
+    /// RTCIntersectFunctionN of the one user geometry.
+    static void on_intersect(const RTCIntersectFunctionNArguments* arguments) {
+        if (!arguments->valid[0]) return;
+        auto& query = *reinterpret_cast<ClosestQuery<Real>*>(arguments->context);
+        closest_primitive(*query.scene, arguments->primID, *query.ray, query.triangle_ray, query.best);
+        if (!query.best.found()) return;
+        auto* rayhit = reinterpret_cast<RTCRayHit*>(arguments->rayhit);
+        rayhit->ray.tfar = least(tree_far(query.best.t), rayhit->ray.tfar);
+        rayhit->hit.geomID = arguments->geomID;
+    }
+
+    /// RTCOccludedFunctionN: sums all crossings, so nothing ever occludes until every channel is dark.
+    static void on_occluded(const RTCOccludedFunctionNArguments* arguments) {
+        if (!arguments->valid[0]) return;
+        auto& query = *reinterpret_cast<ShadowQuery<Real>*>(arguments->context);
+        query.visit(query, arguments->primID);
+        if (query.sum.dark()) reinterpret_cast<RTCRay*>(arguments->ray)->tfar = -RealTraits<float>::infinity;
+    }
+};
+
+}  // namespace cistula

@@ -1,0 +1,75 @@
+#include "backend_embree/embree_tree.h"
+
+#include <vector>
+
+#include "backend_embree/frame_loop.h"
+#include "scene/error.h"
+
+namespace cistula {
+
+namespace {
+
+void fail(const std::string& what) {
+    throw Error(ExitCode::device, "Embree: " + what);
+}
+
+}  // namespace
+
+template <class Real>
+EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options) {
+    device_ = rtcNewDevice(options.device_config.c_str());
+    if (!device_) fail("no device for \"" + options.device_config + "\"");
+    rtcSetDeviceMemoryMonitorFunction(
+        device_,
+        [](void* self, ssize_t bytes, bool) {
+            static_cast<EmbreeTree*>(self)->memory_ += bytes;
+            return true;
+        },
+        this);
+    // Boxes are made here, before the commit, whose threads may run with flush-to-zero.
+    const uint32_t primitives = scene.convex.size + scene.clusters.size;
+    std::vector<PaddedBox> boxes(primitives);
+    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, primitives), [&](const auto& range) {
+        use_default_rounding();
+        for (uint32_t p = range.begin(); p != range.end(); ++p) boxes[p] = primitive_box(scene, p);
+    });
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    const RTCBuildQuality quality = options.tree_quality > 0 ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW;
+    rtcSetGeometryBuildQuality(geometry, quality);
+    rtcSetGeometryUserPrimitiveCount(geometry, primitives);
+    rtcSetGeometryUserData(geometry, boxes.data());
+    rtcSetGeometryBoundsFunction(
+        geometry,
+        [](const RTCBoundsFunctionArguments* arguments) {
+            const PaddedBox& box = static_cast<const PaddedBox*>(arguments->geometryUserPtr)[arguments->primID];
+            RTCBounds& out = *arguments->bounds_o;
+            out.lower_x = box.low[0];
+            out.lower_y = box.low[1];
+            out.lower_z = box.low[2];
+            out.upper_x = box.high[0];
+            out.upper_y = box.high[1];
+            out.upper_z = box.high[2];
+        },
+        nullptr);
+    rtcSetGeometryIntersectFunction(geometry, &EmbreeIntersector<Real>::on_intersect);
+    rtcSetGeometryOccludedFunction(geometry, &EmbreeIntersector<Real>::on_occluded);
+    rtcCommitGeometry(geometry);
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneBuildQuality(scene_, quality);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
+        fail("building the tree failed with error " + std::to_string(int(error)));
+}
+
+template <class Real>
+EmbreeTree<Real>::~EmbreeTree() {
+    if (scene_) rtcReleaseScene(scene_);
+    if (device_) rtcReleaseDevice(device_);
+}
+
+template class EmbreeTree<float>;
+template class EmbreeTree<double>;
+
+}  // namespace cistula

@@ -1,0 +1,68 @@
+// The host's launcher: render_pixel over tiles, spread by TBB, for any intersector.
+#pragma once
+
+#include <immintrin.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <mutex>
+#include <utility>
+
+#include "scene/frame_view.h"
+
+namespace cistula {
+
+/// Rounds to nearest, no flush to zero: other libraries' threads may have left these set otherwise.
+inline void use_default_rounding() {
+    _mm_setcsr(0x1f80);
+}
+
+template <class Real, class E, class Intersector>
+bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
+                  const FrameSettings& settings, Film& film, RenderProgress& progress) {
+    const PixelRect rect = film.rect;
+    const int tile = settings.tile, columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
+    std::mutex totals;
+    tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
+        use_default_rounding();
+        for (int64_t t = range.begin(); t != range.end(); ++t) {
+            if (progress.stop.load(std::memory_order_relaxed)) return;
+            const int x0 = int(t % columns) * tile, y0 = int(t / columns) * tile;
+            const int x1 = std::min(x0 + tile, rect.width), y1 = std::min(y0 + tile, rect.height);
+            RayCounts rays;
+            uint32_t flags = 0;
+            for (int y = y0; y < y1; ++y)
+                for (int x = x0; x < x1; ++x)
+                    flags |= render_pixel<Real, E>(scene, frame, intersector, rect.x + x, rect.y + y,
+                                                   film.pixels[size_t(y) * size_t(rect.width) + size_t(x)], rays);
+            progress.pixels_done += uint64_t(x1 - x0) * uint64_t(y1 - y0);
+            progress.rays += rays.total();
+            const std::lock_guard<std::mutex> lock(totals);
+            film.rays.add(rays);
+            film.flags |= flags;
+        }
+    });
+    return !progress.stop.load();
+}
+
+/// Runs the least instantiated mask that contains settings.effects (0: what the scene requires); `ran` tells which.
+template <class Real, class Intersector>
+bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, const Intersector& intersector,
+                  const CameraFrame& camera, const FrameSettings& settings, Film& film, RenderProgress& progress,
+                  uint32_t& ran) {
+    FrameView frame = frame_view(compiled, camera, settings);
+    prepare_film(film, settings, compiled.radiance_exponent);
+    use_default_rounding();
+    if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media)) film.flags |= flag_media_overflow;
+    const int index = least_mask(settings.effects | compiled.effects);
+    ran = effect_masks[index];
+    using Render = bool (*)(const SceneView<Real>&, const FrameView&, const Intersector&, const FrameSettings&, Film&,
+                            RenderProgress&);
+    static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
+        return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
+    }(std::make_index_sequence<effect_mask_count>());
+    return table[size_t(index)](scene, frame, intersector, settings, film, progress);
+}
+
+}  // namespace cistula

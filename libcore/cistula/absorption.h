@@ -1,0 +1,63 @@
+// What the solids along a straight line absorb: signed sums of integers over its crossings, so that faces at which nothing
+// changes leave every bit alone (Beer-Lambert; NUMERICS, 6).
+#pragma once
+
+#include "cistula/ray.h"
+#include "cistula/scene_view.h"
+#include "cistula/transmittance.h"
+
+namespace cistula {
+
+/// Absorption from a place on a ray, `begin`, to another, `dim`. The false one is for scenes without any.
+template <bool>
+struct Absorption {
+    PathSum sum[3];
+
+    /// The solids of `media` contain the ray from t on (sign -1) or up to t (sign 1).
+    template <class Real>
+    CISTULA_INLINE void add_all(const SceneView<Real>& scene, const MediaList& media, Real t, int sign) {
+        for (uint32_t i = 0; i < media.size; ++i)
+            add(scene, MediaList::solid_of(media.entries[i]), MediaList::count_of(media.entries[i]), t, sign);
+    }
+
+    template <class Real>
+    CISTULA_INLINE void add(const SceneView<Real>& scene, uint32_t solid, int count, Real t, int sign) {
+        const Vec3<Real>& sigma = scene.materials[scene.solids[solid].material].absorption;
+        for (int c = 0; c < 3; ++c)
+            sum[c].add(count < 0 ? -sign : sign, double(sigma[c]) * (count < 0 ? -count : count), double(t),
+                       4 * double(scene.extent));
+    }
+
+    template <class Real>
+    CISTULA_INLINE void begin(const SceneView<Real>& scene, const MediaList& media, Real t) {
+        for (PathSum& s : sum) s = PathSum();
+        if (t > Real(0)) add_all(scene, media, t, -1);
+    }
+
+    /// A face that is passed without shading.
+    template <class Real>
+    CISTULA_INLINE void cross(const SceneView<Real>& scene, uint64_t key, Real t) {
+        const CrossingKind kind = key_kind(key);
+        if (kind != CrossingKind::sheet) add(scene, key_solid(key), 1, t, kind == CrossingKind::enter ? -1 : 1);
+    }
+
+    /// Multiplies a weight by what is left at t.
+    template <class Real>
+    CISTULA_INLINE void dim(const SceneView<Real>& scene, const MediaList& media, Real t, Vec3<Real>& weight) {
+        add_all(scene, media, t, 1);
+        for (int c = 0; c < 3; ++c)
+            if (const uint64_t loss = sum[c].loss(); loss != 0) weight[c] *= share_of<Real>(loss);
+    }
+};
+
+template <>
+struct Absorption<false> {
+    template <class Real>
+    CISTULA_INLINE void begin(const SceneView<Real>&, const MediaList&, Real) {}
+    template <class Real>
+    CISTULA_INLINE void cross(const SceneView<Real>&, uint64_t, Real) {}
+    template <class Real>
+    CISTULA_INLINE void dim(const SceneView<Real>&, const MediaList&, Real, Vec3<Real>&) {}
+};
+
+}  // namespace cistula

@@ -1,0 +1,275 @@
+#include <algorithm>
+#include <cmath>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include "scene/clusters.h"
+#include "scene/compile_lights.h"
+#include "scene/compile_materials.h"
+#include "scene/compile_solids.h"
+#include "scene/compiled_scene.h"
+#include "scene/error.h"
+#include "scene/radiance_bound.h"
+#include "scene/scene_hash.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+template <class Real>
+Real rounded_up(double x) {
+    const auto r = static_cast<Real>(x);
+    return r < x ? std::nextafter(r, RealTraits<Real>::infinity) : r;
+}
+
+/// The builder leaves freed blocks with the allocator, which would keep them while the largest arrays are filled.
+void return_free_memory() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
+constexpr uint32_t fewest_in_seen_tree = 9;
+
+/// One compilation: the parts in the order in which they need one another.
+template <class Real>
+class Compiler {
+  public:
+    explicit Compiler(const SceneDescription& description)
+        : description_(description), source_(gather_scene(description)), frame_(find_frame(source_)) {}
+
+    std::unique_ptr<CompiledScene<Real>> compile() {
+        scene_.center = frame_.center;
+        scene_.scale = frame_.scale;
+        scene_.extent = rounded_up<Real>(frame_.extent);
+        scene_.solids.resize(source_.solids.size());
+        boxes_.resize(source_.solids.size());
+        closed_.assign(source_.solids.size(), true);
+        hash_.add(frame_.center);
+        hash_.add(static_cast<uint32_t>(frame_.scale));
+
+        compile_convex();
+        lights_ = frame_lights(source_, frame_, convex_);
+        incidents_.resize(lights_.size());
+        find_convex_incidents<Real>(lights_, convex_, frame_.extent, incidents_);
+        for (uint32_t i = 0; i < source_.solids.size(); ++i) {
+            scene_.solid_names.push_back(source_.solids[i].name);
+            scene_.solids[i].material = source_.solids[i].material;
+            if (!source_.solids[i].platonic) compile_mesh(i);
+        }
+        compile_shading();
+        compile_lights();
+        explain();
+        scene_.hash = hash_.hex();
+        return std::make_unique<CompiledScene<Real>>(std::move(scene_));
+    }
+
+  private:
+    void compile_convex() {
+        for (uint32_t i = 0; i < source_.solids.size(); ++i)
+            if (source_.solids[i].platonic) convex_.push_back(convex_solid(*source_.solids[i].platonic, i, frame_));
+        share_planes(convex_, frame_.extent);
+        for (const ConvexSolid& convex : convex_) {
+            Solid& solid = scene_.solids[convex.solid];
+            solid = {};
+            solid.kind = SolidKind::convex;
+            solid.first_slab = static_cast<uint32_t>(scene_.slabs.size());
+            solid.slab_count = static_cast<uint32_t>(convex.planes.size());
+            for (const PlanePair& p : convex.planes) {
+                scene_.slabs.push_back({Vec3<Real>(p.normal), static_cast<Real>(p.low), static_cast<Real>(p.high)});
+                hash_.add(p.normal);
+                hash_.add(p.low);
+                hash_.add(p.high);
+            }
+            bound_sphere(convex, solid);
+            hash_.add(convex.solid);
+            scene_.convex.push_back(convex.solid);
+            boxes_[convex.solid] = convex.box;
+        }
+    }
+
+    static void bound_sphere(const ConvexSolid& convex, Solid& solid) {
+        dvec3 sum(0);
+        for (const dvec3& p : convex.vertices) sum += p;
+        solid.center = Vec3<float>(sum / double(convex.vertices.size()));
+        double square = 0;
+        for (const dvec3& p : convex.vertices) {
+            const dvec3 out = p - dvec3(solid.center);
+            square = greatest(square, dot(out, out));
+        }
+        solid.padded_square = rounded_up<float>(square) + sphere_padding;
+    }
+
+    void compile_mesh(uint32_t number) {
+        SourceSolid& from = source_.solids[number];
+        hash_mesh(number);
+        MeshTopology topology = find_topology(from.mesh);
+        warn(from, topology);
+        const FramedMesh mesh(from.mesh, topology, frame_, sizeof(Real) == sizeof(float));
+        ApexHeights heights = apex_heights(mesh);
+        topology.next_along_edge = {};
+        const Groups groups = group_triangles(mesh);
+        prepare(number, mesh, groups, heights);
+        return_free_memory();
+
+        Solid& solid = scene_.solids[number];
+        solid.kind = topology.closed ? SolidKind::mesh : SolidKind::sheet;
+        closed_[number] = topology.closed;
+        solid.first_slab = solid.slab_count = 0;
+        solid.first_triangle = triangle_count_;
+        solid.first_uv = static_cast<uint32_t>(scene_.uvs.size());
+        append_clusters(mesh, groups, heights, number, triangle_count_, scene_.clusters);
+        const bool textured = source_.materials[from.material].texture >= 0;
+        for (uint32_t t = 0; t < mesh.size(); ++t)
+            for (const uint32_t corner : mesh.corners(t)) {
+                boxes_[number].add(mesh.vertex(corner));
+                if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
+            }
+        triangle_count_ += mesh.size();
+        from.mesh = {};  // its triangles are in the clusters now
+    }
+
+    /// What needs the tree over groups, which is gone before the clusters come.
+    void prepare(uint32_t number, const FramedMesh& mesh, const Groups& groups, ApexHeights& heights) {
+        const Tree tree = group_tree(mesh, groups);
+        const SourceSolid& from = source_.solids[number];
+        const uint32_t crossed = check_apexes(mesh, groups, tree, heights);
+        if (crossed > 0 && mesh.topology().closed)
+            scene_.warnings.push_back(from.place + ": " + from.name + ": the mesh passes through itself at " +
+                                      std::to_string(crossed) + " sides of triangles; rays may leak there");
+        find_triangle_incidents<Real>(lights_, mesh, groups, tree, number, triangle_count_, frame_.extent, incidents_);
+    }
+
+    void hash_mesh(uint32_t number) {
+        const MeshSource& mesh = source_.solids[number].mesh;
+        hash_.add(number);
+        for (const dvec3& p : mesh.vertices) hash_.add(frame_.point(p));
+        hash_.add_bytes(mesh.triangles.data(), mesh.triangles.size_bytes());
+        if (source_.materials[source_.solids[number].material].texture < 0) return;
+        for (const auto& uv : mesh.uvs) hash_.add(uv.x), hash_.add(uv.y);
+    }
+
+    void warn(const SourceSolid& solid, const MeshTopology& topology) {
+        const std::string place = solid.place + ": " + solid.name + ": ";
+        if (const std::string left_out = topology.left_out(); !left_out.empty())
+            scene_.warnings.push_back(place + left_out);
+        const double index = source_.materials[solid.material].index;
+        const dvec3 absorption = source_.materials[solid.material].absorption;
+        if (!topology.closed && (index != 1 || largest_component(absorption) > 0))
+            scene_.warnings.push_back(place + "is not closed (" + std::to_string(topology.open_edges) +
+                                      " open edges): its index and absorption have no effect");
+    }
+
+    void compile_shading() {
+        TextureSet textures = read_textures(source_);
+        scale_ = radiance_scale(description_, radiance_bound(source_, textures, lights_, boxes_),
+                                sizeof(Real) == sizeof(float));
+        scene_.radiance_exponent = scale_.exponent;
+        for (int c = 0; c < 3; ++c) scene_.bound[c] = rounded_up<Real>(scale_.bound[c]);
+        scene_.background = Vec3<Real>(scaled(description_.background));
+        for (const MaterialDescription& material : source_.materials) {
+            const int texture = material.texture < 0 ? -1 : textures.number[static_cast<size_t>(material.texture)];
+            scene_.materials.push_back(
+                compile_material<Real>(material, scaled(description_.ambient), texture, frame_, description_));
+        }
+        for (const SourceSolid& solid : source_.solids) {
+            const MaterialDescription& material = source_.materials[solid.material];
+            hash_.add(material);
+            hash_.add(static_cast<uint32_t>(scene_.materials[solid.material].texture));
+        }
+        for (const Texture& t : textures.textures) {
+            hash_.add(t.width);
+            hash_.add(t.height);
+            hash_.add(static_cast<uint32_t>(t.filter));
+            hash_.add(t.repeat[0]);
+            hash_.add(t.repeat[1]);
+        }
+        hash_.add_bytes(textures.texels.data(), textures.texels.size() * sizeof(textures.texels[0]));
+        hash_.add(description_.ambient);
+        hash_.add(description_.background);
+        hash_.add(scale_.bound);
+        hash_.add(static_cast<uint32_t>(scale_.exponent));
+        scene_.textures = std::move(textures.textures);
+        scene_.texels = std::move(textures.texels);
+    }
+
+    void compile_lights() {
+        for (size_t i = 0; i < lights_.size(); ++i) {
+            const FramedLight& light = lights_[i];
+            hash_.add(light.position);
+            hash_.add(light.color);
+            hash_.add(light.radiance);
+            hash_.add(light.radius);
+            hash_.add(static_cast<uint32_t>(light.falloff));
+            const Vec3<Real> position(light.position), intensity(scaled(light.color));
+            if (!is_finite(position) || !is_finite(intensity))
+                throw scene_error(description_, light.place,
+                                  std::string("the light is beyond the range of ") + RealTraits<Real>::name);
+            if (light.radius > 0) {
+                const Vec3<Real> radiance(scaled(light.radiance));
+                scene_.seen_lights.push_back({position, static_cast<Real>(light.radius), radiance});
+            }
+            if (!light.lights()) continue;
+            auto& faces = incidents_[i];
+            std::sort(faces.begin(), faces.end(), [](const Incident& a, const Incident& b) {
+                return a.solid != b.solid ? a.solid < b.solid : a.face < b.face;
+            });
+            const auto first = static_cast<uint32_t>(scene_.incidents.size());
+            scene_.lights.push_back({position, intensity, static_cast<Real>(light.falloff ? light.radius : 0.0), first,
+                                     static_cast<uint32_t>(faces.size())});
+            scene_.incidents.insert(scene_.incidents.end(), faces.begin(), faces.end());
+        }
+        if (scene_.seen_lights.size() < fewest_in_seen_tree) return;
+        std::vector<RTCBuildPrimitive> primitives;
+        for (const auto& light : scene_.seen_lights) {
+            const dvec3 center(light.center), radius{light.radius};
+            Box box{center - radius, center + radius};
+            primitives.push_back(padded_primitive(box, 0x1p-18 * static_cast<double>(scene_.extent),
+                                                  static_cast<uint32_t>(primitives.size())));
+        }
+        Tree tree = build_tree(primitives, 1);
+        scene_.seen_tree = std::move(tree.nodes);
+        scene_.seen_items = std::move(tree.items);
+    }
+
+    void explain() {
+        std::vector<MaterialUse> uses;
+        for (size_t i = 0; i < source_.solids.size(); ++i)
+            uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place, closed_[i]});
+        scene_.effect_reasons = explain_effects(description_, uses);
+        scene_.effects = required_effects(scene_.effect_reasons);
+    }
+
+    dvec3 scaled(const dvec3& radiance) const {
+        return {std::ldexp(radiance.x, -scale_.exponent), std::ldexp(radiance.y, -scale_.exponent),
+                std::ldexp(radiance.z, -scale_.exponent)};
+    }
+
+    const SceneDescription& description_;
+    SceneSource source_;
+    Frame frame_;
+    CompiledScene<Real> scene_;
+    std::vector<ConvexSolid> convex_;
+    std::vector<FramedLight> lights_;
+    IncidentLists incidents_;
+    std::vector<Box> boxes_;    // of each solid
+    std::vector<bool> closed_;  // each solid has an inside
+    uint32_t triangle_count_ = 0;
+    RadianceScale scale_;
+    SceneHash hash_;
+};
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description) {
+    return Compiler<Real>(description).compile();
+}
+
+template std::unique_ptr<CompiledScene<float>> compile_scene(const SceneDescription&);
+template std::unique_ptr<CompiledScene<double>> compile_scene(const SceneDescription&);
+
+}  // namespace cistula

@@ -1,0 +1,50 @@
+// From a frame's settings to what every pixel needs, the same for all backends.
+#pragma once
+
+#include "cistula/pixel.h"
+#include "scene/compiled_scene.h"
+#include "scene/error.h"
+#include "scene/renderer.h"
+
+namespace cistula {
+
+/// All but the solids around the camera, which need an intersector (camera_solids).
+template <class Real>
+FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera, const FrameSettings& settings) {
+    const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, what); };
+    if (settings.depth < 1 || settings.depth > largest_depth)
+        refuse("depth " + std::to_string(settings.depth) + ": must be from 1 to " + std::to_string(largest_depth));
+    if (settings.supersample < 1 || settings.supersample > 64)
+        refuse("supersample " + std::to_string(settings.supersample) + ": must be from 1 to 64");
+    if (!(settings.cutoff >= 0)) refuse("cutoff: must be at least 0");
+    const double unit = elementary::power_of_two(scene.scale);
+    FrameView frame;
+    frame.camera = camera.camera;
+    frame.camera.position = (camera.camera.position - scene.center) * unit;
+    frame.unit_length = 1 / unit;
+    frame.width = settings.full_width;
+    frame.height = settings.full_height;
+    frame.supersample = settings.supersample;
+    frame.tree.depth = settings.depth;
+    const int shift = fixed_shift(uint32_t(settings.supersample * settings.supersample));
+    frame.tree.fixed_scale = fixed_scale(shift);
+    // A budget beyond the bound itself prunes everything either way.
+    const double budget = least(elementary::scaled(settings.cutoff, -scene.radiance_exponent), 16.0);
+    frame.tree.budget = int64_t(floor_of(least(budget * frame.tree.fixed_scale, 0x1p62)));
+    return frame;
+}
+
+/// An empty film of the right size for a frame.
+inline void prepare_film(Film& film, const FrameSettings& settings, int radiance_exponent) {
+    film.full_width = settings.full_width;
+    film.full_height = settings.full_height;
+    film.rect = settings.crop;
+    film.radiance_exponent = radiance_exponent;
+    film.samples = settings.supersample * settings.supersample;
+    film.fixed_shift = fixed_shift(uint32_t(film.samples));
+    film.pixels.assign(size_t(film.rect.width) * size_t(film.rect.height), PixelRecord());
+    film.rays = RayCounts();
+    film.flags = 0;
+}
+
+}  // namespace cistula

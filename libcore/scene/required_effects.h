@@ -1,0 +1,35 @@
+// Which effects a scene calls for, and because of what.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cistula/effects.h"
+#include "scene/description.h"
+
+namespace cistula {
+
+/// `because` names the material, object or light that calls for the effect, or says that none does.
+struct EffectReason {
+    uint32_t effect = 0;  // one bit of Effect
+    bool needed = false;
+    std::string because;
+};
+
+/// A material as it is used: by which object, and whether that has an inside.
+struct MaterialUse {
+    const MaterialDescription* material = nullptr;
+    std::string place;  // "/objects/2"
+    bool closed = true;
+};
+
+/// One entry per effect, in the order of the bits. `uses` in file order; lights are those that light or are seen.
+std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses);
+
+/// Opens the meshes that the scene names for their materials, but no textures. Throws Error as compile_scene does.
+std::vector<EffectReason> explain_effects(const SceneDescription& scene);
+
+uint32_t required_effects(const std::vector<EffectReason>& reasons);
+uint32_t required_effects(const SceneDescription& scene);
+
+}  // namespace cistula

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Writes the assets that the scenes use and that a formula describes: knot.ply, and marble.data in the seed's format.
+
+Usage: scenes/make_assets.py [FOLDER]    (default: this script's folder)
+"""
+import math
+import os
+import struct
+import sys
+
+
+def trefoil(t):
+    """A point of the trefoil knot, t in [0, 1)."""
+    a = 2 * math.pi * t
+    return ((2 + math.cos(3 * a)) * math.cos(2 * a), (2 + math.cos(3 * a)) * math.sin(2 * a), 1.2 * math.sin(3 * a))
+
+
+def unit(v):
+    n = math.sqrt(sum(c * c for c in v))
+    return tuple(c / n for c in v)
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def write_knot(path, along=168, around=20, thickness=0.52):
+    """A closed tube around the knot: counter-clockwise seen from outside, binary little-endian PLY."""
+    step = 1e-5
+    vertices, triangles = [], []
+    for i in range(along):
+        t = i / along
+        p, after, before = trefoil(t), trefoil(t + step), trefoil(t - step)
+        tangent = unit(tuple(x - y for x, y in zip(after, before)))
+        bend = unit(tuple(x + y - 2 * z for x, y, z in zip(after, before, p)))
+        side = unit(cross(tangent, bend))
+        up = cross(side, tangent)
+        for j in range(around):
+            b = 2 * math.pi * j / around
+            vertices.append(tuple(p[k] + thickness * (math.cos(b) * up[k] + math.sin(b) * side[k]) for k in range(3)))
+            here, right = i * around + j, i * around + (j + 1) % around
+            over, corner = (here + around) % (along * around), (right + around) % (along * around)
+            triangles += [(here, over, corner), (here, corner, right)]
+    volume = 0.0
+    for a, b, c in triangles:
+        n = cross(vertices[b], vertices[c])
+        volume += sum(x * y for x, y in zip(vertices[a], n))
+    if volume < 0:
+        triangles = [(a, c, b) for a, b, c in triangles]
+    header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\nproperty float x\n"
+              f"property float y\nproperty float z\nelement face {len(triangles)}\n"
+              "property list uchar int vertex_indices\nend_header\n")
+    with open(path, "wb") as f:
+        f.write(header.encode())
+        f.write(b"".join(struct.pack("<3f", *v) for v in vertices))
+        f.write(b"".join(struct.pack("<B3i", 3, *t) for t in triangles))
+
+
+def write_marble(path, size=224):
+    """Dark and light marble in a herringbone of octagons: veins by folded sines, so that it repeats."""
+    rows = bytearray()
+    for y in range(size):
+        for x in range(size):
+            u, v = x / size, y / size
+            a, b = 2 * math.pi * u, 2 * math.pi * v
+            warp = math.sin(2 * a + 1.3 * math.sin(3 * b)) + 0.6 * math.sin(5 * b + 1.7 * math.sin(4 * a + b))
+            vein = abs(math.sin(3 * a + 2 * b + 1.6 * warp)) ** 0.35
+            cu, cv = abs((2 * u) % 1 - 0.5), abs((2 * v) % 1 - 0.5)
+            octagon = max(cu, cv, (cu + cv) * 0.72)
+            joint = 0.25 if abs(octagon - 0.43) < 0.012 else 1.0
+            base = (238, 229, 214) if octagon < 0.43 else (92, 70, 66)
+            shade = joint * (0.72 + 0.28 * vein)
+            rows += bytes(min(255, int(c * shade)) for c in base) + b"\xff"
+    with open(path, "wb") as f:
+        f.write(struct.pack("<2i", size, size) + rows)
+
+
+if __name__ == "__main__":
+    folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
+    write_knot(os.path.join(folder, "knot.ply"))
+    write_marble(os.path.join(folder, "marble.data"))

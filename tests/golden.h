@@ -1,0 +1,97 @@
+// The golden images: what they are rendered with, and where they lie. Shared by make_golden and the tests.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "backend_embree/embree_renderer.h"
+#include "scene/camera_path.h"
+#include "scene/film_picture.h"
+#include "scene/read_scene.h"
+
+namespace cistula::golden {
+
+inline constexpr int width = 320, height = 180;
+
+/// The names of all scenes in a folder, sorted: "benchmark" for benchmark.json.
+inline std::vector<std::string> scene_names(const std::filesystem::path& scenes) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(scenes))
+        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+inline FrameSettings settings_for(const SceneDescription& scene) {
+    FrameSettings settings;
+    settings.full_width = width;
+    settings.full_height = height;
+    settings.crop = {0, 0, width, height};
+    settings.depth = scene.depth;
+    settings.cutoff = scene.cutoff;
+    return settings;
+}
+
+inline OutputChannels channels() {
+    OutputChannels channels;
+    channels.error = channels.id = channels.z = channels.normal = true;
+    return channels;
+}
+
+template <class Real>
+Film render_with(Renderer& renderer, const SceneDescription& description, const FrameSettings& settings) {
+    Film film;
+    RenderProgress progress;
+    renderer.render(camera_at(description.camera, 0), settings, film, progress);
+    return film;
+}
+
+template <class Real>
+Film render_brute(const SceneDescription& description) {
+    const auto renderer = make_host_renderer<Real>(compile_scene<Real>(description), HostIntersector::brute);
+    return render_with<Real>(*renderer, description, settings_for(description));
+}
+
+template <class Real>
+Film render_embree(const SceneDescription& description, const EmbreeOptions& options = {}) {
+    const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(description), options);
+    return render_with<Real>(*renderer, description, settings_for(description));
+}
+
+/// The largest difference of R, G and B between two pictures of one size, and where it is.
+struct Difference {
+    double worst = 0;
+    std::string channel;
+    int x = 0, y = 0;
+    size_t differing = 0;
+};
+
+inline Difference compare(const LayeredPicture& a, const LayeredPicture& b, bool colors_only) {
+    Difference result;
+    for (const auto& channel : a.channels) {
+        if (colors_only && channel.name != "R" && channel.name != "G" && channel.name != "B") continue;
+        const auto other = std::find_if(b.channels.begin(), b.channels.end(),
+                                        [&](const auto& c) { return c.name == channel.name; });
+        if (other == b.channels.end() || other->values.size() != channel.values.size()) {
+            result.differing += channel.values.size();
+            continue;
+        }
+        for (size_t i = 0; i < channel.values.size(); ++i) {
+            const float x = channel.values[i], y = other->values[i];
+            if (bits_as<uint32_t>(x) == bits_as<uint32_t>(y)) continue;
+            ++result.differing;
+            const double difference = x > y ? double(x) - y : double(y) - x;
+            if (difference > result.worst)
+                result = {difference, channel.name, int(i) % a.width, int(i) / a.width, result.differing};
+        }
+    }
+    return result;
+}
+
+}  // namespace cistula::golden

@@ -1,0 +1,175 @@
+// A ray that bounces inside a closed solid stays there: convex solids by state, meshes by starting toward the apex.
+#include <gtest/gtest.h>
+
+#include "cistula/bvh.h"
+#include "cistula/snell.h"
+#include "cistula/surface.h"
+#include "scene/generated_mesh.h"
+#include "support_scene.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+using test::Random;
+using test::Triangle;
+
+/// How rays leave a face: as the renderer starts them, or by leaving out the face just hit and nothing else.
+enum class Start { as_rendered, skip_key_only };
+
+template <class Real>
+struct Bounces {
+    int done = 0, lost = 0, counted = 0, miscounted = 0;
+    double farthest_out = 0;  // of hit points of convex solids, in u M
+};
+
+/// `targets`: what to aim at now and then.
+template <class Real, class Intersector>
+void bounce(const SceneView<Real>& scene, const Intersector& intersector, const std::vector<Vec3<Real>>& targets,
+            const Vec3<Real>& inside, int bounces, Start start, Random& random, Bounces<Real>& result) {
+    const bool convex = scene.solids[0].kind == SolidKind::convex;
+    Ray<Real> ray;
+    bool fresh_start = true;
+    for (int i = 0; i < bounces; ++i, ++result.done) {
+        if (fresh_start) {
+            const Vec3<Real> target = targets[random.below(uint32_t(targets.size()))];
+            ray = test::ray_from(inside, normalized(i % 2 ? target - inside : Vec3<Real>(random.direction())));
+            ray.media.add(0, 1);
+            fresh_start = false;
+        }
+        const Hit<Real> hit = intersector.closest(ray);
+        if (!hit.found() || key_kind(hit.key) != CrossingKind::leave) {
+            ++result.lost;
+            fresh_start = true;
+            continue;
+        }
+        if (i % 16 == 0 && start == Start::as_rendered) {
+            // By parity: where the ray starts is inside, exactly, without any memory of the face that it left.
+            Ray<Real> line = ray;
+            if (!convex) line.from_solid = no_solid;
+            const test::Count count = test::cross_all(intersector, line);
+            ++result.counted;
+            result.miscounted += count.leaves != count.enters + 1;
+        }
+        const Surface<Real> s = surface_at<Real, Effects<0>>(scene, ray, hit);
+        if (convex)
+            for (uint32_t k = 0; k < scene.solids[0].slab_count; ++k) {
+                const Slab<Real>& slab = scene.slabs[scene.solids[0].first_slab + k];
+                const double n = double(dot(slab.normal, s.point));
+                const double out = greatest(n - double(slab.high), double(slab.low) - n);
+                result.farthest_out = greatest(result.farthest_out, out / double(RealTraits<Real>::unit * scene.extent));
+            }
+        Vec3<Real> direction = reflected(ray.direction, s.normal);
+        if (random.below(4) == 0) {  // at a corner, an edge or the middle of a triangle, where that is not behind the face
+            const Vec3<Real> aimed = normalized(targets[random.below(uint32_t(targets.size()))] - s.viewer_side);
+            if (dot(aimed, s.normal) > Real(0)) direction = aimed;
+        }
+        ray = test::spawn(start == Start::as_rendered ? s.viewer_side : s.point, direction, hit, ray.media);
+        if (start == Start::skip_key_only) ray.after = {Real(0), 0};
+    }
+}
+
+template <class Real>
+std::vector<Vec3<Real>> targets_of(Random& random, const std::vector<Triangle<Real>>& triangles) {
+    std::vector<Vec3<Real>> targets;
+    for (const Triangle<Real>& t : triangles) {
+        targets.push_back(t[0]);
+        targets.push_back(t[1] + (t[2] - t[1]) * Real(0.5));
+        targets.push_back(t[0] + (t[1] - t[0]) * Real(random.unit()));
+        targets.push_back((t[0] + t[1] + t[2]) / Real(3));
+    }
+    return targets;
+}
+
+template <class Real>
+class BouncesTest : public testing::Test {};
+using Precisions = testing::Types<float, double>;
+TYPED_TEST_SUITE(BouncesTest, Precisions);
+
+TYPED_TEST(BouncesTest, NoneIsLostInConvexSolids) {
+    using Real = TypeParam;
+    Random random(1);
+    Bounces<Real> result;
+    for (const double scale : {1.0, 1e-5})
+        for (const PlatonicSolid solid : test::platonic_solids)
+            for (const dvec3& turn : {dvec3(0), random.in_cube(180)}) {
+                SceneDescription description, mesh;
+                test::add_solid(description, solid, dvec3(0), scale, turn);
+                test::add_object(mesh, test::solid_mesh(solid, dvec3(0), scale, turn), 0);
+                const auto scene = test::compile<Real>(description), triangles = test::compile<Real>(mesh);
+                const SceneView<Real> view = scene->view();
+                bounce(view, BruteIntersector<Real>{view}, targets_of(random, test::all_triangles(*triangles)),
+                       Vec3<Real>(random.in_cube(0.1)), 60000, Start::as_rendered, random, result);
+            }
+    std::printf("%s: %d bounces, %d lost, %d of %d miscounted, points at most %.1f u M outside\n", RealTraits<Real>::name,
+                result.done, result.lost, result.miscounted, result.counted, result.farthest_out);
+    EXPECT_GE(result.done, 1000000);
+    EXPECT_EQ(result.lost, 0);
+    EXPECT_EQ(result.miscounted, 0);
+    EXPECT_LE(result.farthest_out, 64);  // what boxes allow for
+}
+
+struct MeshCase {
+    const char* name;
+    TrianglesObject mesh;
+    dvec3 inside;
+};
+
+std::vector<MeshCase> meshes() {
+    std::vector<MeshCase> cases;
+    cases.push_back({"torus", torus(1, 0.4, 16, 12), dvec3(1, 0.05, 0.1)});
+    cases.push_back({"coarse torus", torus(1, 0.5, 5, 3), dvec3(0.8, 0.05, 0.02)});
+    cases.push_back({"star", star(), dvec3(0.01, 0.02, -0.03)});
+    cases.push_back({"sharp star", star(0.2, 1), dvec3(0.01, 0.02, -0.03)});
+    cases.push_back({"bumpy sphere", bumpy_sphere(500), dvec3(0.01, 0.02, -0.03)});
+    for (const PlatonicSolid solid : test::platonic_solids)
+        cases.push_back({platonic_name(solid), test::solid_mesh(solid, dvec3(0), 1, dvec3(10, 20, 30)), dvec3(0.01, 0.02, -0.03)});
+    return cases;
+}
+
+template <class Real>
+Bounces<Real> bounce_in_meshes(int each, Start start) {
+    Random random(2);
+    Bounces<Real> all;
+    for (const double scale : {1.0, 1e-5})
+        for (const MeshCase& c : meshes()) {
+            SceneDescription description;
+            TrianglesObject mesh = c.mesh;
+            for (dvec3& v : mesh.vertices) v *= scale;
+            test::add_object(description, mesh, 0);
+            const auto scene = test::compile<Real>(description, true);
+            const SceneView<Real> view = scene->view();
+            EXPECT_EQ(view.solids[0].kind, SolidKind::mesh) << c.name;
+            const dvec3 inside = (c.inside * scale - scene->center) * std::ldexp(1.0, scene->scale);
+            Bounces<Real> result;
+            bounce(view, BvhIntersector<Real>{view}, targets_of(random, test::all_triangles(*scene)), Vec3<Real>(inside),
+                   each, start, random, result);
+            if (start == Start::as_rendered && (result.lost || result.miscounted))
+                ADD_FAILURE() << c.name << " at scale " << scale << ": " << result.lost << " lost, " << result.miscounted
+                              << " miscounted of " << result.done;
+            all.done += result.done;
+            all.lost += result.lost;
+            all.counted += result.counted;
+            all.miscounted += result.miscounted;
+        }
+    return all;
+}
+
+TYPED_TEST(BouncesTest, NoneIsLostInMeshes) {
+    using Real = TypeParam;
+    const Bounces<Real> result = bounce_in_meshes<Real>(60000, Start::as_rendered);
+    std::printf("%s: %d bounces, %d lost, %d of %d miscounted\n", RealTraits<Real>::name, result.done, result.lost,
+                result.miscounted, result.counted);
+    EXPECT_GE(result.done, 1000000);
+}
+
+// The test above would notice: without the offset rays do get lost.
+TYPED_TEST(BouncesTest, LeavingOutTheFaceAloneLosesRays) {
+    using Real = TypeParam;
+    const Bounces<Real> result = bounce_in_meshes<Real>(10000, Start::skip_key_only);
+    std::printf("%s: %d bounces by skipping the key alone, %d lost\n", RealTraits<Real>::name, result.done, result.lost);
+    EXPECT_GT(result.lost, 0);
+}
+
+}  // namespace
+}  // namespace cistula

@@ -1,0 +1,50 @@
+// Embree renders every golden image bit for bit, in both precisions, and the files say what the hashes say.
+#include <gtest/gtest.h>
+
+#include "golden.h"
+#include "scene/exr.h"
+
+using namespace cistula;
+
+namespace {
+
+const std::string source = CISTULA_SOURCE_DIR;
+
+class Golden : public ::testing::TestWithParam<std::string> {
+  protected:
+    std::string folder() const { return source + "/golden/" + GetParam(); }
+    SceneDescription scene() const { return read_scene(source + "/scenes/" + GetParam() + ".json"); }
+    nlohmann::json record() const { return nlohmann::json::parse(std::ifstream(folder() + "/golden.json")); }
+
+    template <class Real>
+    void check(const char* name) const {
+        const Film film = golden::render_embree<Real>(scene());
+        EXPECT_EQ(film.flags, 0u);
+        EXPECT_EQ(film_hash(film), record()[name]["hash"]) << "the integer sums differ";
+        const LayeredPicture expected = read_exr(folder() + "/" + name + ".exr");
+        const golden::Difference d = golden::compare(expected, to_layers(film, golden::channels()), false);
+        EXPECT_EQ(d.differing, 0u) << "worst: " << d.channel << " at " << d.x << ", " << d.y << " by " << d.worst;
+    }
+};
+
+TEST_P(Golden, FloatIsEqualBitForBit) {
+    check<float>("float");
+}
+
+TEST_P(Golden, DoubleIsEqualBitForBit) {
+    check<double>("double");
+}
+
+TEST_P(Golden, StatesTheWorstDifferenceOfThePrecisions) {
+    const auto stated = record()["float_against_double"];
+    const golden::Difference d =
+        golden::compare(read_exr(folder() + "/float.exr"), read_exr(folder() + "/double.exr"), true);
+    EXPECT_EQ(d.worst, stated["worst"].get<double>());
+    EXPECT_EQ(d.x, stated["x"].get<int>());
+    EXPECT_EQ(d.y, stated["y"].get<int>());
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Golden, ::testing::ValuesIn(golden::scene_names(source + "/scenes")),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace

@@ -1,0 +1,224 @@
+#include "scene/mesh_file.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/compiled_scene.h"
+#include "scene/mesh_topology.h"
+#include "scene/polygon.h"
+#include "scene_samples.h"
+#include "scratch_directory.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+using samples::expect_error;
+
+/// An OBJ of a cube from 0 to 1 by quads, its faces in two groups of three.
+const std::string cube_obj =
+    "mtllib cube.mtl\n"
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "usemtl red\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\n"
+    "usemtl glass\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+const std::string cube_mtl =
+    "newmtl red\nKd 0.5 0.25 0.125\nKs 0.25 0.5 0\nNs 40\nillum 2\n"
+    "newmtl glass\nKd 0.75 1 0.5\nKs 0.25 0.25 0.25\nNs 100\nNi 1.5\nd 0.25\nillum 7\n";
+
+const std::string tetrahedron_ply =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n2 0 0\n0 2 0\n0 0 2\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+MeshObject mesh_of(const std::string& file) {
+    MeshObject object;
+    object.file = file;
+    return object;
+}
+
+TEST(MeshFile, PlyTrianglesArePlaced) {
+    const ScratchDirectory scratch;
+    put_bytes(scratch.file("t.ply"), tetrahedron_ply);
+    MeshObject object = mesh_of(scratch.file("t.ply"));
+    object.scale = 2;
+    object.rotation = {0, 0, 90};
+    object.center = {10, 20, 30};
+    const auto parts = read_mesh(object, "/objects/0");
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_FALSE(parts[0].material);
+    EXPECT_EQ(parts[0].mesh.vertices.size(), 4u);
+    EXPECT_EQ(parts[0].mesh.triangles.size(), 4u);
+    EXPECT_TRUE(parts[0].mesh.uvs.empty());
+    bool found = false;
+    for (const dvec3& p : parts[0].mesh.vertices) found |= p == dvec3(10, 24, 30);  // (2, 0, 0)
+    EXPECT_TRUE(found);
+    EXPECT_TRUE(find_topology(parts[0].mesh).closed);
+}
+
+TEST(MeshFile, BinaryPlyToo) {
+    const ScratchDirectory scratch;
+    std::string bytes =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const float positions[9] = {0, 0, 0, 1.5f, 0, 0, 0, 2.5f, 0};
+    const int32_t indices[3] = {0, 1, 2};
+    bytes.append(reinterpret_cast<const char*>(positions), sizeof(positions));
+    bytes.push_back(3);
+    bytes.append(reinterpret_cast<const char*>(indices), sizeof(indices));
+    put_bytes(scratch.file("t.ply"), bytes);
+    const auto parts = read_mesh(mesh_of(scratch.file("t.ply")), "here");
+    ASSERT_EQ(parts.size(), 1u);
+    ASSERT_EQ(parts[0].mesh.triangles.size(), 1u);
+    EXPECT_EQ(parts[0].mesh.vertices[parts[0].mesh.triangles[0][1]], dvec3(1.5, 0, 0));
+}
+
+TEST(MeshFile, ObjGroupsBringTheirMaterials) {
+    const ScratchDirectory scratch;
+    put_bytes(scratch.file("cube.obj"), cube_obj);
+    put_bytes(scratch.file("cube.mtl"), cube_mtl);
+    const auto parts = read_mesh(mesh_of(scratch.file("cube.obj")), "here");
+    ASSERT_EQ(parts.size(), 2u);
+    for (const auto& part : parts) EXPECT_EQ(part.mesh.triangles.size(), 6u);
+    const auto& red = parts[0].material->name == "red" ? *parts[0].material : *parts[1].material;
+    const auto& glass = parts[0].material->name == "red" ? *parts[1].material : *parts[0].material;
+    EXPECT_EQ(red.name, "red");
+    EXPECT_EQ(red.color, dvec3(0.5, 0.25, 0.125));
+    EXPECT_EQ(red.specular, 0.5);
+    EXPECT_EQ(red.specular_color, dvec3(0.5, 1, 0));
+    EXPECT_EQ(red.exponent, 40);
+    EXPECT_EQ(red.transmission, 0);
+    EXPECT_EQ(red.reflection, 0);
+    EXPECT_EQ(red.index, 1);
+    EXPECT_FALSE(red.fresnel);
+    EXPECT_EQ(glass.name, "glass");
+    EXPECT_EQ(glass.transmission, 0.75);
+    EXPECT_EQ(glass.reflection, 0.25);
+    EXPECT_EQ(glass.tint, dvec3(0.75, 1, 0.5));
+    EXPECT_EQ(glass.index, 1.5);
+    EXPECT_EQ(glass.exponent, 100);
+    EXPECT_TRUE(glass.fresnel);
+}
+
+TEST(MeshFile, TrIsTransmission) {
+    const ScratchDirectory scratch;
+    put_bytes(scratch.file("cube.obj"), cube_obj);
+    put_bytes(scratch.file("cube.mtl"), "newmtl red\nTr 0.25\nillum 1\nKs 1 1 1\nnewmtl glass\nKd 1 1 1\nillum 0\n");
+    for (const auto& part : read_mesh(mesh_of(scratch.file("cube.obj")), "here")) {
+        const bool red = part.material->name == "red";
+        EXPECT_EQ(part.material->transmission, red ? 0.25 : 0);
+        EXPECT_EQ(part.material->specular, 0);
+        EXPECT_EQ(part.material->diffuse, red ? 1 : 0);
+    }
+}
+
+double area(const std::vector<dvec3>& vertices, const std::vector<std::array<uint32_t, 3>>& triangles) {
+    double sum = 0;
+    for (const auto& t : triangles) {
+        const dvec3 normal = cross(vertices[t[1]] - vertices[t[0]], vertices[t[2]] - vertices[t[0]]);
+        EXPECT_GE(normal.z, 0);
+        sum += normal.z / 2;
+    }
+    return sum;
+}
+
+TEST(Polygon, ConvexOnesBecomeAFan) {
+    const std::vector<dvec3> vertices = {{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {0, 2, 0}};
+    std::vector<std::array<uint32_t, 3>> triangles;
+    append_polygon(vertices, {0, 1, 2, 3, 4}, triangles);
+    const std::vector<std::array<uint32_t, 3>> fan = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
+    EXPECT_EQ(triangles, fan);
+}
+
+TEST(Polygon, EarsOfAnyPolygonFillItsArea) {
+    // A comb, and a spiral of right angles; their areas by the shoelace formula.
+    const std::vector<dvec3> comb = {{0, 0, 0}, {7, 0, 0}, {7, 3, 0}, {6, 3, 0}, {6, 1, 0}, {4, 1, 0}, {4, 3, 0},
+                                     {3, 3, 0}, {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
+    const std::vector<dvec3> spiral = {{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {1, 5, 0}, {1, 2, 0}, {3, 2, 0}, {3, 3, 0},
+                                       {2, 3, 0}, {2, 4, 0}, {4, 4, 0}, {4, 1, 0}, {0, 1, 0}};
+    for (const auto& outline : {comb, spiral}) {
+        double shoelace = 0;
+        for (size_t i = 0; i < outline.size(); ++i) {
+            const dvec3 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+            shoelace += (a.x * b.y - a.y * b.x) / 2;
+        }
+        for (uint32_t turn = 0; turn < outline.size(); ++turn) {
+            std::vector<uint32_t> corners;
+            for (uint32_t i = 0; i < outline.size(); ++i) corners.push_back((i + turn) % outline.size());
+            std::vector<std::array<uint32_t, 3>> triangles;
+            append_polygon(outline, corners, triangles);
+            EXPECT_EQ(triangles.size(), outline.size() - 2);
+            EXPECT_NEAR(area(outline, triangles), shoelace, 1e-12);
+        }
+    }
+}
+
+TEST(Polygon, OthersEndToo) {
+    const std::vector<dvec3> bow = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
+    std::vector<std::array<uint32_t, 3>> triangles;
+    append_polygon(bow, {0, 1, 2, 3, 4}, triangles);
+    EXPECT_EQ(triangles.size(), 3u);
+    append_polygon(bow, {0, 1}, triangles);
+    EXPECT_EQ(triangles.size(), 3u);
+}
+
+SceneDescription scene_with(const std::string& file, int material) {
+    SceneDescription scene = samples::empty_scene();
+    samples::add_object(scene, mesh_of(file), material);
+    return scene;
+}
+
+TEST(MeshFile, GroupsBecomeSolidsOfTheirOwnUnlessAMaterialJoinsThem) {
+    const ScratchDirectory scratch;
+    put_bytes(scratch.file("cube.obj"), cube_obj);
+    put_bytes(scratch.file("cube.mtl"), cube_mtl);
+    const auto own = compile_scene<float>(scene_with(scratch.file("cube.obj"), -1));
+    ASSERT_EQ(own->solids.size(), 2u);
+    EXPECT_EQ(own->solids[0].kind, SolidKind::sheet);
+    EXPECT_NE(own->solids[0].material, own->solids[1].material);
+    EXPECT_EQ(own->materials.size(), 3u);
+    EXPECT_NE(own->solid_names[0], own->solid_names[1]);
+    EXPECT_TRUE(own->effects & effect_fresnel);
+    const auto joined = compile_scene<float>(scene_with(scratch.file("cube.obj"), 0));
+    ASSERT_EQ(joined->solids.size(), 1u);
+    EXPECT_EQ(joined->solids[0].kind, SolidKind::mesh);
+    EXPECT_EQ(joined->solids[0].material, 0u);
+    EXPECT_FALSE(joined->effects & effect_fresnel);
+}
+
+TEST(MeshFile, TextureCoordinatesCountFromTheTop) {
+    const ScratchDirectory scratch;
+    put_bytes(scratch.file("t.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0.25\nvt 0.5 1\nf 1/1 2/2 3/3\n");
+    SceneDescription scene = scene_with(scratch.file("t.obj"), 0);
+    scene.textures.resize(1);
+    scene.materials[0].texture = 0;
+    const auto compiled = compile_scene<double>(scene);
+    ASSERT_EQ(compiled->uvs.size(), 3u);
+    EXPECT_EQ(compiled->uvs[1], Vec2<double>(1, 0.75));
+    put_bytes(scratch.file("t.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    expect_error([&] { compile_scene<double>(scene); }, ExitCode::usage,
+                 "test.json: /objects/0: the material plain has a texture, but the triangles have no texture coordinates");
+}
+
+TEST(MeshFile, ErrorsNameThePlaceAndTheFile) {
+    const ScratchDirectory scratch;
+    const auto refused = [&](const std::string& name, const std::string& bytes, const std::string& text) {
+        if (!bytes.empty()) put_bytes(scratch.file(name), bytes);
+        expect_error([&] { compile_scene<float>(scene_with(scratch.file(name), 0)); }, ExitCode::file, text);
+        expect_error([&] { compile_scene<float>(scene_with(scratch.file(name), 0)); }, ExitCode::file,
+                     "test.json: /objects/0: mesh " + scratch.file(name));
+    };
+    refused("missing.ply", "", "there is no such file");
+    refused("t.stl", "solid", "must be a .ply or an .obj file");
+    refused("broken.ply", "ply\nformat ascii 1.0\nnonsense\n", "line 3 of its header is not PLY");
+    refused("other.ply", "solid\n", "line 1 of its header is not PLY");
+    refused("short.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "no end_header");
+    refused("cut.ply", tetrahedron_ply.substr(0, tetrahedron_ply.find("end_header") + 15), "cannot be read: ");
+    refused("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "");
+    refused("lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n", "");
+    put_bytes(scratch.file("t.ply"), tetrahedron_ply);
+    expect_error([&] { compile_scene<float>(scene_with(scratch.file("t.ply"), -1)); }, ExitCode::usage,
+                 "/objects/0: the mesh brings no material of its own");
+}
+
+}  // namespace
+}  // namespace cistula

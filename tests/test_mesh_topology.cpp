@@ -1,0 +1,357 @@
+#include "scene/mesh_topology.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "scene/clusters.h"
+#include "scene/compiled_scene.h"
+#include "scene/mesh_apex.h"
+#include "scene_samples.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+using samples::solid;
+using samples::square;
+
+MeshSource source_of(const TrianglesObject& object) {
+    MeshSource source;
+    source.owned_vertices = object.vertices;
+    source.owned_triangles = object.triangles;
+    source.view_owned();
+    return source;
+}
+
+TrianglesObject platonic(int kind) {
+    return triangulated_solid(solid(static_cast<PlatonicSolid>(kind)));
+}
+
+TEST(MeshTopology, SolidsAndSmoothMeshesAreClosed) {
+    for (int kind = 0; kind < 5; ++kind) EXPECT_TRUE(find_topology(source_of(platonic(kind))).closed);
+    for (const auto& object : {torus(1, 0.3, 20, 10), star(), bumpy_sphere(2000)}) {
+        const MeshTopology topology = find_topology(source_of(object));
+        EXPECT_TRUE(topology.closed);
+        EXPECT_FALSE(topology.flipped);
+        EXPECT_TRUE(topology.all_kept);
+        EXPECT_EQ(topology.open_edges, 0u);
+        EXPECT_EQ(topology.count, object.triangles.size());
+    }
+}
+
+TEST(MeshTopology, VerticesAtOnePositionCountAsOne) {
+    const TrianglesObject joined = torus(1, 0.3, 12, 8);
+    TrianglesObject apart;
+    for (const auto& t : joined.triangles) {
+        const auto first = static_cast<uint32_t>(apart.vertices.size());
+        for (const uint32_t corner : t) apart.vertices.push_back(joined.vertices[corner]);
+        apart.triangles.push_back({first, first + 1, first + 2});
+    }
+    EXPECT_TRUE(find_topology(source_of(apart)).closed);
+    apart.vertices[0].x = std::nextafter(apart.vertices[0].x, 9);
+    EXPECT_FALSE(find_topology(source_of(apart)).closed);
+}
+
+TEST(MeshTopology, MinusZeroIsZero) {
+    TrianglesObject object = platonic(2);
+    for (auto& t : object.triangles) {
+        for (auto& corner : t) {
+            dvec3 p = object.vertices[corner];
+            for (int axis = 0; axis < 3; ++axis)
+                if (p[axis] == 0 && object.vertices.size() % 2) p[axis] = -0.0;
+            object.vertices.push_back(p);
+            corner = static_cast<uint32_t>(object.vertices.size() - 1);
+        }
+    }
+    EXPECT_TRUE(find_topology(source_of(object)).closed);
+}
+
+TEST(MeshTopology, InsideOutMeshesAreTurned) {
+    TrianglesObject object = star();
+    for (auto& t : object.triangles) std::swap(t[0], t[2]);
+    const MeshSource source = source_of(object);
+    const MeshTopology topology = find_topology(source);
+    EXPECT_TRUE(topology.closed);
+    EXPECT_TRUE(topology.flipped);
+    const Frame frame;
+    const FramedMesh mesh(source, topology, frame, false);
+    for (uint32_t i = 0; i < mesh.size(); ++i) {
+        const auto c = mesh.triangle(i);
+        EXPECT_GT(dot(c[0], cross(c[1], c[2])), 0);
+    }
+}
+
+TEST(MeshTopology, BrokenMeshesAreSheets) {
+    TrianglesObject hole = torus(1, 0.3, 12, 8);
+    hole.triangles.pop_back();
+    EXPECT_FALSE(find_topology(source_of(hole)).closed);
+    EXPECT_EQ(find_topology(source_of(hole)).open_edges, 3u);
+    TrianglesObject turned = torus(1, 0.3, 12, 8);
+    std::swap(turned.triangles[5][0], turned.triangles[5][1]);
+    EXPECT_FALSE(find_topology(source_of(turned)).closed);
+    TrianglesObject fin = platonic(1);  // a third triangle on an edge
+    fin.vertices.push_back({3, 3, 3});
+    fin.triangles.push_back({fin.triangles[0][0], fin.triangles[0][1], 8});
+    EXPECT_FALSE(find_topology(source_of(fin)).closed);
+    TrianglesObject doubled = platonic(1);
+    const auto once = doubled.triangles;
+    doubled.triangles.insert(doubled.triangles.end(), once.begin(), once.end());
+    EXPECT_FALSE(find_topology(source_of(doubled)).closed);
+    TrianglesObject flat = square();  // both sides of a triangle: closed, but without a volume
+    flat.triangles[1] = {0, 2, 1};
+    const MeshTopology topology = find_topology(source_of(flat));
+    EXPECT_EQ(topology.open_edges, 0u);
+    EXPECT_FALSE(topology.closed);
+}
+
+TEST(MeshTopology, TwoSolidsInOneMeshMayTouchAtAVertex) {
+    TrianglesObject two = platonic(2);
+    const TrianglesObject other = triangulated_solid(solid(PlatonicSolid::octahedron, {2, 0, 0}));
+    for (const auto& t : other.triangles) two.triangles.push_back({t[0] + 6, t[1] + 6, t[2] + 6});
+    two.vertices.insert(two.vertices.end(), other.vertices.begin(), other.vertices.end());
+    EXPECT_TRUE(find_topology(source_of(two)).closed);
+}
+
+TEST(MeshTopology, DegenerateTrianglesAreLeftOutAndCounted) {
+    TrianglesObject object = torus(1, 0.3, 12, 8);
+    const auto count = static_cast<uint32_t>(object.triangles.size());
+    const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    const auto first = static_cast<uint32_t>(object.vertices.size());
+    object.vertices.insert(object.vertices.end(), {{nan, 0, 0}, {0, inf, 0}, object.vertices[3]});
+    object.triangles.insert(object.triangles.begin() + 7, {3, first, 5});
+    object.triangles.insert(object.triangles.begin() + 9, {3, 4, first + 1});
+    object.triangles.push_back({3, 3, 5});
+    object.triangles.push_back({first + 2, 4, 3});
+    MeshTopology topology = find_topology(source_of(object));
+    EXPECT_TRUE(topology.closed);
+    EXPECT_EQ(topology.count, count);
+    EXPECT_EQ(topology.not_finite, 2u);
+    EXPECT_EQ(topology.repeated_vertex, 2u);
+    EXPECT_EQ(topology.source_triangle(6), 6u);
+    EXPECT_EQ(topology.source_triangle(7), 8u);
+    EXPECT_EQ(topology.left_out(),
+              "left out 2 triangles with a repeated vertex and 2 triangles with a vertex that is not finite");
+
+    TrianglesObject sheet = square();
+    sheet.vertices.push_back({5, 5, 0});
+    sheet.triangles.push_back({0, 2, 4});  // on the diagonal's line
+    topology = find_topology(source_of(sheet));
+    EXPECT_EQ(topology.zero_area, 1u);
+    EXPECT_EQ(topology.count, 2u);
+    EXPECT_EQ(topology.left_out(), "left out 1 triangle of zero area");
+}
+
+TEST(MeshTopology, SliversThatSealAMeshStay) {
+    // A vertex in the middle of one edge of a tetrahedron, known to one of its two triangles only; a sliver joins them.
+    TrianglesObject object;
+    object.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}};
+    object.triangles = {{0, 2, 4}, {4, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}, {0, 4, 1}};
+    const MeshTopology sealed = find_topology(source_of(object));
+    EXPECT_TRUE(sealed.closed);
+    EXPECT_EQ(sealed.count, 6u);
+    EXPECT_EQ(sealed.zero_area, 0u);
+    object.triangles.pop_back();
+    EXPECT_FALSE(find_topology(source_of(object)).closed);
+}
+
+TEST(MeshTopology, NothingLeftIsASheetOfNothing) {
+    SceneDescription scene = samples::empty_scene();
+    TrianglesObject object;
+    object.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    object.triangles = {{0, 1, 2}, {0, 0, 1}};
+    samples::add_object(scene, object);
+    samples::add_object(scene, square());
+    const auto compiled = compile_scene<float>(scene);
+    EXPECT_EQ(compiled->solids[0].kind, SolidKind::sheet);
+    EXPECT_EQ(compiled->clusters.size(), 1u);
+    ASSERT_EQ(compiled->warnings.size(), 1u);
+    EXPECT_EQ(compiled->warnings[0], "/objects/0: object 0: left out 1 triangle with a repeated vertex and 1 triangle of zero area");
+}
+
+/// Heights of a mesh before and after the check.
+struct Apexes {
+    explicit Apexes(const TrianglesObject& object, bool single_precision = false)
+        : source(source_of(object)),
+          topology(find_topology(source)),
+          mesh(source, topology, frame, single_precision),
+          first(apex_heights(mesh)),
+          checked(first) {
+        const Groups groups = group_triangles(mesh);
+        blocked = check_apexes(mesh, groups, group_tree(mesh, groups), checked);
+    }
+    dvec3 apex(uint32_t t, int side) const {
+        const auto c = mesh.triangle(t);
+        const dvec3 normal = normalized(cross(c[1] - c[0], c[2] - c[0]));
+        return (c[0] + c[1] + c[2]) / 3.0 + (side ? 1.0 : -1.0) * double(checked.side[side][t]) * normal;
+    }
+
+    MeshSource source;
+    Frame frame;
+    MeshTopology topology;
+    FramedMesh mesh;
+    ApexHeights first, checked;
+    uint32_t blocked = 0;
+};
+
+/// Turns of a closed mesh about a point (van Oosterom and Strackee 1983): 1 inside, 0 outside.
+double winding(const FramedMesh& mesh, const dvec3& p) {
+    double sum = 0;
+    for (uint32_t i = 0; i < mesh.size(); ++i) {
+        const auto t = mesh.triangle(i);
+        const dvec3 a = t[0] - p, b = t[1] - p, c = t[2] - p;
+        const double la = length(a), lb = length(b), lc = length(c);
+        sum += 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    }
+    return sum / (4 * M_PI);
+}
+
+/// Moller and Trumbore's test in long double, for interior crossings of the segment.
+bool segment_crosses(const dvec3& from, const dvec3& to, const std::array<dvec3, 3>& t) {
+    using V = glm::tvec3<long double>;
+    const auto cross_l = [](const V& a, const V& b) {
+        return V(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    };
+    const auto dot_l = [](const V& a, const V& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
+    const V d = V(to) - V(from), e1 = V(t[1]) - V(t[0]), e2 = V(t[2]) - V(t[0]), s = V(from) - V(t[0]);
+    const V p = cross_l(d, e2), q = cross_l(s, e1);
+    const long double det = dot_l(e1, p);
+    if (det == 0) return false;
+    const long double u = dot_l(s, p) / det, v = dot_l(d, q) / det, along = dot_l(e2, q) / det;
+    const long double slack = 1e-12L;
+    return u > slack && v > slack && u + v < 1 - slack && along > slack && along < 1 - slack;
+}
+
+void expect_free(const Apexes& apexes) {
+    for (uint32_t t = 0; t < apexes.mesh.size(); ++t)
+        for (int side = 0; side < 2; ++side)
+            for (const dvec3& corner : apexes.mesh.triangle(t))
+                for (uint32_t other = 0; other < apexes.mesh.size(); ++other)
+                    ASSERT_FALSE(other != t &&
+                                 segment_crosses(apexes.apex(t, side), corner, apexes.mesh.triangle(other)))
+                        << "triangle " << t << " side " << side << " by " << other;
+}
+
+TEST(MeshApex, LieOnTheirSideAndSeeTheirCorners) {
+    for (const bool single : {false, true}) {
+        std::vector<TrianglesObject> meshes = {torus(1, 0.3, 16, 12), star(0.3), bumpy_sphere(900, 0.3)};
+        for (int kind = 0; kind < 5; ++kind) meshes.push_back(platonic(kind));
+        for (const TrianglesObject& object : meshes) {
+            const Apexes apexes(object, single);
+            ASSERT_TRUE(apexes.topology.closed);
+            EXPECT_EQ(apexes.blocked, 0u);
+            for (uint32_t t = 0; t < apexes.mesh.size(); ++t) {
+                ASSERT_GT(apexes.checked.side[0][t], 0);
+                ASSERT_GT(apexes.checked.side[1][t], 0);
+                EXPECT_NEAR(winding(apexes.mesh, apexes.apex(t, 0)), 1, 1e-9);
+                EXPECT_NEAR(winding(apexes.mesh, apexes.apex(t, 1)), 0, 1e-9);
+            }
+            expect_free(apexes);
+        }
+    }
+}
+
+TEST(MeshApex, FlippedMeshesHaveTheSameApexes) {
+    TrianglesObject object = star(0.4);
+    const Apexes straight(object);
+    for (auto& t : object.triangles) std::swap(t[0], t[1]);
+    const Apexes turned(object);
+    ASSERT_TRUE(turned.topology.flipped);
+    for (uint32_t t = 0; t < straight.mesh.size(); ++t)
+        for (int side = 0; side < 2; ++side)
+            EXPECT_NEAR(turned.first.side[side][t], straight.first.side[side][t], 1e-7);
+}
+
+TEST(MeshApex, HeightsByHand) {
+    // Cube: interior angles of 90 degrees, factor 1 inside; outside 270, factor 1. Diagonals are flat: 180, factor 1.
+    const Apexes cube(platonic(1));
+    const double side = 2 / std::sqrt(3.0), inradius = side * side / (side * (2 + std::sqrt(2.0)));
+    for (uint32_t t = 0; t < 12; ++t)
+        for (int s = 0; s < 2; ++s) EXPECT_NEAR(cube.first.side[s][t], inradius / 8, 1e-8);
+    // Tetrahedron: acos(1 / 3) inside, tan(a / 2) = 1 / sqrt 2.
+    const Apexes tetrahedron(platonic(0));
+    const double edge = 4 / std::sqrt(6.0), r = edge / (2 * std::sqrt(3.0));
+    for (uint32_t t = 0; t < 4; ++t) {
+        EXPECT_NEAR(tetrahedron.first.side[0][t], r / 8 / std::sqrt(2.0), 1e-8);
+        EXPECT_NEAR(tetrahedron.first.side[1][t], r / 8, 1e-8);
+    }
+    // A lone triangle has no neighbors.
+    TrianglesObject lone = square();
+    lone.triangles.pop_back();
+    const Apexes single(lone);
+    EXPECT_NEAR(single.first.side[0][0], 2 / (2 + std::sqrt(2.0)) / 8, 1e-7);
+    EXPECT_EQ(single.first.side[0][0], single.first.side[1][0]);
+}
+
+TEST(MeshApex, SheetsFoldedSharplyTakeTheirNeighborIntoAccount) {
+    // Two triangles on one edge, the second folded back over the first by 0.02 radians, in either winding.
+    for (const bool same_winding : {true, false}) {
+        TrianglesObject fold;
+        fold.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, std::cos(0.02), std::sin(0.02)}};
+        fold.triangles = {{0, 1, 2}, same_winding ? std::array<uint32_t, 3>{1, 0, 3} : std::array<uint32_t, 3>{0, 1, 3}};
+        const Apexes apexes(fold);
+        const double inradius = 1 / (2 + std::sqrt(2.0));
+        EXPECT_NEAR(apexes.first.side[1][0], inradius / 8 * std::tan(0.01), 1e-8);
+        EXPECT_NEAR(apexes.first.side[0][0], inradius / 8, 1e-8);
+        expect_free(apexes);
+    }
+}
+
+TEST(MeshApex, SurfacesThatComeCloseLowerTheApexes) {
+    // Two parallel squares with a gap far below their size, unconnected: the apexes between them must stay in the gap.
+    TrianglesObject object = square();
+    const TrianglesObject upper = square(0.9, 0.001);
+    object.vertices.insert(object.vertices.end(), upper.vertices.begin(), upper.vertices.end());
+    for (const auto& t : upper.triangles) object.triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
+    const Apexes apexes(object);
+    EXPECT_EQ(apexes.blocked, 0u);
+    for (uint32_t t = 0; t < 2; ++t) {
+        EXPECT_GT(apexes.first.side[1][t], 0.05f);
+        EXPECT_LT(apexes.checked.side[1][t], 0.001f);
+        EXPECT_GT(apexes.checked.side[1][t], 0.0004f);
+        EXPECT_EQ(apexes.checked.side[0][t], apexes.first.side[0][t]);
+    }
+    expect_free(apexes);
+}
+
+TEST(MeshApex, SurfacesThatPassThroughOneAnotherAreCountedAndLowerNothing) {
+    TrianglesObject object = square();
+    object.vertices.insert(object.vertices.end(), {{0.5, -0.3, -1}, {0.5, -0.2, 1}, {0.6, -0.3, 1}});
+    object.triangles.push_back({4, 5, 6});  // through the first triangle of the square
+    const Apexes apexes(object);
+    EXPECT_EQ(apexes.blocked, 4u);
+    for (int side = 0; side < 2; ++side) EXPECT_EQ(apexes.checked.side[side], apexes.first.side[side]);
+}
+
+TEST(MeshApex, SoupsEndWithinTheBoundedNumberOfHalvings) {
+    const Apexes soup(triangle_soup(300, 1.5, 11));
+    EXPECT_GT(soup.blocked, 0u);
+    for (uint32_t t = 0; t < soup.mesh.size(); ++t)
+        for (int side = 0; side < 2; ++side)
+            EXPECT_GE(soup.checked.side[side][t], std::ldexp(soup.first.side[side][t], -most_halvings));
+}
+
+TEST(MeshApex, DoNotDependOnTheRun) {
+    const TrianglesObject object = bumpy_sphere(20000, 0.3);
+    const Apexes a(object), b(object);
+    EXPECT_EQ(a.checked.side[0], b.checked.side[0]);
+    EXPECT_EQ(a.checked.side[1], b.checked.side[1]);
+}
+
+TEST(Groups, AreTheSameFromRunToRunAndWellFilled) {
+    const MeshSource source = source_of(bumpy_sphere(100000));
+    const MeshTopology topology = find_topology(source);
+    const Frame frame;
+    const FramedMesh mesh(source, topology, frame, true);
+    const Groups first = group_triangles(mesh);
+    EXPECT_GT(double(mesh.size()) / (8 * first.size()), 0.8);
+    for (int i = 0; i < 3; ++i) {
+        const Groups again = group_triangles(mesh);
+        EXPECT_EQ(first.order, again.order);
+        EXPECT_EQ(first.first, again.first);
+    }
+}
+
+}  // namespace
+}  // namespace cistula

@@ -1,0 +1,114 @@
+#include "apps/render/output_name.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "expect_error.h"
+#include "scratch_directory.h"
+
+namespace cistula {
+namespace {
+
+std::string named(const char* text, int frame) {
+    return OutputName(text, "-o").for_frame(frame);
+}
+
+TEST(OutputName, Patterns) {
+    EXPECT_EQ(named("beauty.####.exr", 7), "beauty.0007.exr");
+    EXPECT_EQ(named("beauty.#.exr", 7), "beauty.7.exr");
+    EXPECT_EQ(named("beauty.##.exr", 12345), "beauty.12345.exr");
+    EXPECT_EQ(named("b%04d.exr", 42), "b0042.exr");
+    EXPECT_EQ(named("frames/frame%d.out", 120), "frames/frame120.out");
+    EXPECT_EQ(named("%02d/image.exr", 3), "03/image.exr");
+    EXPECT_EQ(named("100%%.%d.exr", 3), "100%.3.exr");
+    EXPECT_EQ(named("%0d.exr", 5), "5.exr");
+    for (const char* text : {"a.#.exr", "a%d.exr", "a%03d.exr"})
+        EXPECT_TRUE(OutputName(text, "-o").has_pattern()) << text;
+}
+
+TEST(OutputName, NoPattern) {
+    EXPECT_EQ(named("still.exr", 7), "still.exr");
+    EXPECT_EQ(named("50%%.exr", 7), "50%.exr");
+    EXPECT_FALSE(OutputName("still.exr", "-o").has_pattern());
+    EXPECT_FALSE(OutputName("50%%.exr", "-o").has_pattern());
+    EXPECT_FALSE(OutputName().has_pattern());
+    EXPECT_EQ(OutputName().for_frame(3), "");
+}
+
+TEST(OutputName, EveryFrameHasItsOwnName) {
+    for (const char* text : {"a.##.exr", "a%d.exr", "a%03d.exr"}) {
+        std::vector<std::string> names;
+        for (int frame = 0; frame < 1200; ++frame) names.push_back(named(text, frame));
+        std::sort(names.begin(), names.end());
+        EXPECT_EQ(std::unique(names.begin(), names.end()), names.end()) << text;
+    }
+}
+
+TEST(OutputName, Errors) {
+    const auto conversion = [](const std::string& text) {
+        return "-o " + text + ": after % only d, as in %d or %04d, or another % for a percent sign";
+    };
+    for (const std::string text : {"a%s.exr", "a%4d.exr", "50%.exr", "a%", "a%0", "a%-3d.exr", "a%ld.exr"})
+        EXPECT_ERROR(OutputName(text, "-o"), ExitCode::usage, conversion(text));
+    for (const std::string text : {"##/a.##.exr", "%d%d.exr", "#.%d.exr"})
+        EXPECT_ERROR(OutputName(text, "--preview"), ExitCode::usage,
+                     "--preview " + text + ": two places for the frame number; a name has one, #### or %04d");
+    EXPECT_ERROR(OutputName("%099d.exr", "-o"), ExitCode::usage, "-o %099d.exr: a frame number of more than 32 digits");
+    EXPECT_ERROR(OutputName("%0999999999999999999d.exr", "-o"), ExitCode::usage,
+                 "-o %0999999999999999999d.exr: a frame number of more than 32 digits");
+    EXPECT_ERROR(OutputName("", "-o"), ExitCode::usage, "-o: the file name is empty");
+}
+
+TEST(OutputName, KindsByExtension) {
+    EXPECT_EQ(file_kind("a.exr"), FileKind::exr);
+    EXPECT_EQ(file_kind("x.out/a.EXR"), FileKind::exr);
+    EXPECT_EQ(file_kind("frame%d.out"), FileKind::raw);
+    EXPECT_EQ(file_kind("frame.data"), FileKind::raw);
+    const std::string rule = ": images are written as .exr, or as the seed's raw frames .out and .data; ";
+    EXPECT_ERROR(file_kind("a.png"), ExitCode::usage, "-o a.png" + rule + "for a PNG add --preview FILE.png");
+    EXPECT_ERROR(file_kind("a.jpg"), ExitCode::usage, "-o a.jpg" + rule + "name it *.exr");
+    EXPECT_ERROR(file_kind("a"), ExitCode::usage, "-o a" + rule + "name it *.exr");
+    EXPECT_ERROR(file_kind("exr"), ExitCode::usage, "-o exr" + rule + "name it *.exr");
+}
+
+TEST(OutputName, Default) {
+    SceneDescription scene;
+    scene.source = "scenes/glass.json";
+    EXPECT_EQ(default_output(scene, 0), "glass.exr");
+    EXPECT_EQ(default_output(scene, 1), "glass.exr");
+    EXPECT_EQ(default_output(scene, 2), "glass.####.exr");
+    scene.source = "-";
+    EXPECT_EQ(default_output(scene, 0), "stdin.exr");
+    scene.source = "50%#1.json";
+    EXPECT_EQ(named(default_output(scene, 2).c_str(), 3), "50%_1.0003.exr");
+    scene.film.output = "frames/frame%d.out";
+    EXPECT_EQ(default_output(scene, 0), "frames/frame%d.out");
+}
+
+TEST(OutputName, FramesToRender) {
+    const OutputName pattern("b.####.exr", "-o"), plain("dir/b.exr", "-o");
+    EXPECT_EQ(frames_to_render(pattern, {}, 3), (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(frames_to_render(pattern, {5, 2}, 3), (std::vector<int>{5, 2}));
+    EXPECT_EQ(frames_to_render(plain, {}, 3), std::vector<int>{0});
+    EXPECT_EQ(frames_to_render(plain, {9}, 3), std::vector<int>{9});
+    EXPECT_ERROR(frames_to_render(plain, {1, 2}, 3), ExitCode::usage,
+                 "-o dir/b.exr holds one frame and --frames names 2; put the frame number into the name, as in "
+                 "-o dir/b.####.exr");
+}
+
+TEST(OutputName, DirectoriesAreAskedForFirst) {
+    const ScratchDirectory scratch;
+    require_directory(scratch.file("a.exr"));
+    require_directory("a.exr");
+    EXPECT_ERROR(require_directory(scratch.file("none/a.exr")), ExitCode::file,
+                 scratch.file("none/a.exr") + ": cannot be written: there is no directory " + scratch.file("none") +
+                     "; make it first");
+    std::filesystem::create_directory(scratch.file("d.exr"));
+    EXPECT_ERROR(require_directory(scratch.file("d.exr")), ExitCode::file,
+                 scratch.file("d.exr") + ": cannot be written: it is a directory; name a file in it");
+}
+
+}  // namespace
+}  // namespace cistula

@@ -1,0 +1,118 @@
+// Films of the built `render` that are resumed, interrupted, or cannot be written.
+#include <chrono>
+
+#include "render_program.h"
+#include "scene/exr.h"
+
+namespace cistula {
+namespace {
+
+using RenderFilm = RenderProgram;
+
+TEST_F(RenderFilm, ResumeSkipsWhatIsCompleteAndTheSame) {
+    const Arguments film{"s.json", "-o", "a.##.exr", "--resume"};
+    expect_done(film);
+    const std::string first = bytes_of(file("a.00.exr")), second = bytes_of(file("a.01.exr"));
+    const auto time_of = [&](const char* name) { return std::filesystem::last_write_time(file(name)); };
+    const auto old = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+    for (const char* name : {"a.00.exr", "a.01.exr", "a.02.exr"}) std::filesystem::last_write_time(file(name), old);
+
+    put_bytes(file("a.01.exr"), second.substr(0, second.size() / 2));  // cut short
+    std::filesystem::remove(file("a.02.exr"));
+    const ProgramResult result = run(film);
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_NE(result.error.find("1 of 3 frames are complete"), std::string::npos) << result.error;
+    EXPECT_EQ(time_of("a.00.exr"), old);
+    EXPECT_EQ(bytes_of(file("a.01.exr")), second);
+    EXPECT_TRUE(exists("a.02.exr"));
+
+    const auto rendered_again = [&](const Arguments& more) {
+        for (const char* name : {"a.00.exr", "a.01.exr", "a.02.exr"}) std::filesystem::last_write_time(file(name), old);
+        Arguments arguments = film;
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expect_done(arguments);
+        return time_of("a.00.exr") != old;
+    };
+    EXPECT_FALSE(rendered_again({"--threads", "1"}));
+    EXPECT_TRUE(rendered_again({"--depth", "3"}));
+    EXPECT_FALSE(rendered_again({"--depth", "3"}));
+    EXPECT_TRUE(rendered_again({"--bits", "half"}));
+    EXPECT_TRUE(rendered_again({"--aov", "Z"}));
+    EXPECT_TRUE(rendered_again({"--crop", "20x10+0+0"}));
+#if CISTULA_WITH_OIIO
+    EXPECT_TRUE(rendered_again({"--preview", "a.##.png"}));
+    EXPECT_FALSE(rendered_again({"--preview", "a.##.png"}));
+#endif
+    put_bytes(file("s.json"), std::string(scene_text).replace(std::string(scene_text).find("0.5, 0.1]"), 3, "0.4"));
+    EXPECT_TRUE(rendered_again({}));
+    EXPECT_NE(bytes_of(file("a.00.exr")), first);
+}
+
+TEST_F(RenderFilm, AFileThatCannotBeWrittenLeavesTheOldOneWhole) {
+    expect_done({"s.json", "-q", "-o", "a.exr"});
+    const std::string old = bytes_of(file("a.exr"));
+    ProgramResult result =
+        RunningProgram(program_, {"s.json", "-q", "-o", "a.exr", "--res", "200x100", "--aov", "N,Z,id"}, file(""), "",
+                       [] {
+                           const rlimit limit{4096, 4096};
+                           setrlimit(RLIMIT_FSIZE, &limit);
+                       })
+            .wait();
+    EXPECT_EQ(result.code, 3) << result.error;
+    EXPECT_EQ(result.error.rfind("render: a.exr: ", 0), 0u) << result.error;
+    EXPECT_EQ(bytes_of(file("a.exr")), old);
+    EXPECT_FALSE(has_part_files());
+    // A film ends at the first failure.
+    std::filesystem::create_directory(file("f.01.exr"));
+    result = run({"s.json", "-q", "-o", "f.##.exr"});
+    EXPECT_EQ(result.code, 3) << result.error;
+    EXPECT_NE(result.error.find("f.01.exr"), std::string::npos) << result.error;
+    EXPECT_TRUE(exists("f.00.exr"));
+    EXPECT_FALSE(exists("f.02.exr"));
+}
+
+TEST_F(RenderFilm, AnInterruptedFilmIsWholeAndGoesOn) {
+    // Frames that take far longer to render than to write: frame 1 is under way when the file of frame 0 appears.
+    const Arguments film{"s.json", "-o", "a.##.exr", "--res", "320x200", "--supersample", "4", "--threads", "2"};
+    put_bytes(file("a.01.exr"), "the old file");
+    RunningProgram running(program_, film, file(""));
+    ASSERT_TRUE(running.wait_until([&] { return exists("a.00.exr"); }, 300));
+    running.send(SIGINT);
+    const ProgramResult result = running.wait();
+    EXPECT_EQ(result.code, 130) << result.error;
+    EXPECT_NE(result.error.find("render: interrupted; 1 of 3 frames written"), std::string::npos) << result.error;
+    EXPECT_NE(result.error.find("--resume"), std::string::npos) << result.error;
+    EXPECT_TRUE(exr_is_complete(file("a.00.exr")));
+    EXPECT_EQ(bytes_of(file("a.01.exr")), "the old file");
+    EXPECT_FALSE(exists("a.02.exr"));
+    EXPECT_FALSE(has_part_files());
+
+    const std::string first = bytes_of(file("a.00.exr"));
+    const auto written = std::filesystem::last_write_time(file("a.00.exr"));
+    Arguments resumed = film;
+    resumed.push_back("--resume");
+    expect_done(resumed);
+    EXPECT_EQ(std::filesystem::last_write_time(file("a.00.exr")), written);
+    Arguments whole = film;
+    whole[2] = "b.##.exr";
+    expect_done(whole);
+    for (const char* frame : {"00", "01", "02"})
+        EXPECT_EQ(bytes_of(file(std::string("a.") + frame + ".exr")),
+                  bytes_of(file(std::string("b.") + frame + ".exr")));
+}
+
+TEST_F(RenderFilm, SigtermStopsAStillAndTheOldFileStays) {
+    put_bytes(file("a.exr"), "the old file");
+    RunningProgram running(program_, {"s.json", "-v", "-o", "a.exr", "--res", "4000x3000", "--supersample", "8"},
+                           file(""));
+    ASSERT_TRUE(running.wait_until([&] { return running.error_so_far().find("scene hash") != std::string::npos; }, 60));
+    running.send(SIGTERM);
+    const ProgramResult result = running.wait();
+    EXPECT_EQ(result.code, 130) << result.error;
+    EXPECT_NE(result.error.find("render: interrupted"), std::string::npos) << result.error;
+    EXPECT_EQ(bytes_of(file("a.exr")), "the old file");
+    EXPECT_FALSE(has_part_files());
+}
+
+}  // namespace
+}  // namespace cistula

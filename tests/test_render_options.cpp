@@ -1,0 +1,326 @@
+#include "apps/render/options.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+
+#include "apps/render/explain.h"
+#include "apps/render/film_loop.h"
+#include "apps/render/header_attributes.h"
+#include "apps/render/progress.h"
+#include "apps/render/stats.h"
+#include "expect_error.h"
+
+namespace cistula {
+namespace {
+
+RenderOptions parse(std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "render");
+    return parse_options(static_cast<int>(arguments.size()), arguments.data());
+}
+
+void expect_refused(const std::vector<const char*>& arguments, const std::string& message) {
+    EXPECT_ERROR(parse(arguments), ExitCode::usage, message);
+}
+
+TEST(RenderOptions, Defaults) {
+    const RenderOptions options = parse({"s.json"});
+    EXPECT_EQ(options.action, Action::render);
+    EXPECT_EQ(options.scene, "s.json");
+    EXPECT_EQ(options.backend, Backend::embree);
+    EXPECT_EQ(options.precision, Precision::single_);
+    EXPECT_EQ(options.progress, ProgressStyle::automatic);
+    EXPECT_TRUE(options.output.empty() && options.frames.empty() && options.preview.empty() && options.stats.empty());
+    EXPECT_FALSE(options.resolution || options.crop || options.supersample || options.depth || options.cutoff);
+    EXPECT_FALSE(options.channels.half || options.channels.error || options.resume || options.quiet || options.verbose);
+    EXPECT_EQ(options.threads, 0);
+}
+
+TEST(RenderOptions, AllTogether) {
+    const RenderOptions options = parse({"-o",
+                                         "b.####.exr",
+                                         "-f",
+                                         "0-10x5,7",
+                                         "--backend",
+                                         "cuda",
+                                         "--res",
+                                         "320x180",
+                                         "--crop=8x4+16+2",
+                                         "--supersample",
+                                         "3",
+                                         "--depth",
+                                         "9",
+                                         "--cutoff",
+                                         "1e-3",
+                                         "--precision",
+                                         "double",
+                                         "--threads",
+                                         "2",
+                                         "--bits",
+                                         "half",
+                                         "--preview",
+                                         "p.png",
+                                         "--aov",
+                                         "error,Z",
+                                         "--stats",
+                                         "s.json",
+                                         "--resume",
+                                         "--progress",
+                                         "plain",
+                                         "-v",
+                                         "-"});
+    EXPECT_EQ(options.scene, "-");
+    EXPECT_EQ(options.output, "b.####.exr");
+    EXPECT_EQ(options.frames, (std::vector<int>{0, 5, 10, 7}));
+    EXPECT_EQ(options.backend, Backend::cuda);
+    EXPECT_EQ(options.resolution->width, 320);
+    EXPECT_EQ(options.resolution->height, 180);
+    EXPECT_EQ(options.crop->x, 16);
+    EXPECT_EQ(options.crop->y, 2);
+    EXPECT_EQ(options.crop->width, 8);
+    EXPECT_EQ(options.crop->height, 4);
+    EXPECT_EQ(options.supersample, 3);
+    EXPECT_EQ(options.depth, 9);
+    EXPECT_EQ(options.cutoff, 1e-3);
+    EXPECT_EQ(options.precision, Precision::double_);
+    EXPECT_EQ(options.threads, 2);
+    EXPECT_EQ(options.preview, "p.png");
+    EXPECT_EQ(options.stats, "s.json");
+    EXPECT_EQ(options.progress, ProgressStyle::plain);
+    EXPECT_TRUE(options.channels.half && options.channels.error && options.channels.z && options.resume &&
+                options.verbose);
+    EXPECT_FALSE(options.channels.id || options.channels.samples || options.channels.cost || options.channels.normal);
+}
+
+TEST(RenderOptions, Actions) {
+    EXPECT_EQ(parse({"--help"}).action, Action::print_help);
+    EXPECT_EQ(parse({"-h", "s.json", "-o", "a.exr"}).action, Action::print_help);
+    EXPECT_EQ(parse({"--version"}).action, Action::print_version);
+    EXPECT_EQ(parse({"--print-template"}).action, Action::print_template);
+    EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
+}
+
+TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
+    const std::string help = help_text();
+    for (const char* part : {"--output",       "--frames",         "--backend", "--res",
+                             "--crop",         "--supersample",    "--depth",   "--cutoff",
+                             "--precision",    "--threads",        "--bits",    "--preview",
+                             "--aov",          "--explain",        "--stats",   "--resume",
+                             "--progress",     "--quiet",          "--verbose", "--help",
+                             "--version",      "--print-template", "Examples:", "Exit codes: 0 done",
+                             "130 interrupted"})
+        EXPECT_NE(help.find(part), std::string::npos) << part;
+}
+
+TEST(RenderOptions, Errors) {
+    expect_refused({}, "no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
+    expect_refused({"a.json", "b.json"}, "b.json: one scene at a time, and a.json is it already");
+    expect_refused({"s", "--dept", "3"}, "--dept: no such option; did you mean '--depth'?; --help lists them");
+    expect_refused({"s", "--dept=3"}, "--dept=3: no such option; did you mean '--depth'?; --help lists them");
+    for (const char* depth : {"0", "-1", "1025", "x", "4.0", "4 "})
+        expect_refused({"s", "--depth", depth},
+                       std::string("--depth ") + depth + ": must be a whole number from 1 to 1024");
+    expect_refused({"s", "--supersample", "65"}, "--supersample 65: must be a whole number from 1 to 64");
+    expect_refused({"s", "--threads", "0"}, "--threads 0: must be a whole number from 1 to 1024");
+    for (const char* cutoff : {"-1", "nan", "inf", "1e", "x"})
+        expect_refused(
+            {"s", "--cutoff", cutoff},
+            std::string("--cutoff ") + cutoff + ": must be a number, 0 or above, in the scene's units of radiance");
+    expect_refused({"s", "--backend", "cud"}, "--backend cud: must be embree or cuda; did you mean 'cuda'?");
+    expect_refused({"s", "--precision", "half"},
+                   "--precision half: must be float or double; known names: float, double");
+    expect_refused({"s", "--bits", "hal"}, "--bits hal: must be float or half; did you mean 'half'?");
+    expect_refused({"s", "--progress", "plane"},
+                   "--progress plane: must be auto or plain or none; did you mean 'plain'?");
+    expect_refused({"s", "-q", "-v"}, "-q and -v exclude each other; give one");
+    expect_refused({"s", "--frames", "9-3"}, "--frames 9-3: 9-3 runs backward; write 3-9");
+    EXPECT_THROW(parse({"s", "-o"}), Error);
+    EXPECT_THROW(parse({"s", "-o", ""}), Error);
+    EXPECT_THROW(parse({"s", "--depth", "3", "--depth", "4"}), Error);
+}
+
+TEST(RenderOptions, Sizes) {
+    for (const char* text :
+         {"", "640", "640x", "x480", "0x480", "640x-1", "640x480x2", "640X480", "65537x1", "640x480+0+0"})
+        EXPECT_ERROR(parse_size(text), ExitCode::usage,
+                     std::string("--res ") + text + ": must be WIDTHxHEIGHT, each from 1 to 65536, as in 1280x720");
+    for (const char* text : {"", "8x8", "8x8+1", "8x8+1+", "8x8-1+0", "8x8+1+-1", "8x8+1+1+1", "0x8+0+0", "8+1+1"})
+        EXPECT_ERROR(parse_crop(text), ExitCode::usage,
+                     std::string("--crop ") + text +
+                         ": must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");
+}
+
+TEST(RenderOptions, Layers) {
+    const OutputChannels all = parse_layers("N,Z,cost,samples,id,error,id");
+    EXPECT_TRUE(all.normal && all.z && all.cost && all.samples && all.id && all.error);
+    EXPECT_ERROR(parse_layers("eror"), ExitCode::usage, "--aov eror: there is no layer 'eror'; did you mean 'error'?");
+    EXPECT_ERROR(parse_layers("id,normals"), ExitCode::usage,
+                 "--aov id,normals: there is no layer 'normals'; known layers: error, id, samples, cost, Z, N");
+    EXPECT_ERROR(parse_layers("id,"), ExitCode::usage,
+                 "--aov id,: there is no layer ''; known layers: error, id, samples, cost, Z, N");
+}
+
+TEST(RenderOptions, OptionsOverrideTheScene) {
+    SceneDescription scene;
+    scene.film.width = 100;
+    scene.film.height = 50;
+    scene.film.supersample = 2;
+    scene.depth = 7;
+    scene.cutoff = 0.25;
+    const FrameSettings own = frame_settings(parse({"s"}), scene);
+    EXPECT_EQ(own.full_width, 100);
+    EXPECT_EQ(own.full_height, 50);
+    EXPECT_EQ(own.crop.width, 100);
+    EXPECT_EQ(own.crop.height, 50);
+    EXPECT_EQ(own.supersample, 2);
+    EXPECT_EQ(own.depth, 7);
+    EXPECT_EQ(own.cutoff, 0.25);
+    const FrameSettings given = frame_settings(
+        parse({"s", "--res", "20x10", "--crop", "5x10+15+0", "--supersample", "1", "--depth", "1", "--cutoff", "0"}),
+        scene);
+    EXPECT_EQ(given.full_width, 20);
+    EXPECT_EQ(given.full_height, 10);
+    EXPECT_EQ(given.crop.x, 15);
+    EXPECT_EQ(given.supersample, 1);
+    EXPECT_EQ(given.depth, 1);
+    EXPECT_EQ(given.cutoff, 0);
+    for (const char* crop : {"5x10+16+0", "5x10+15+1", "101x1+0+0", "1x1+2147483647+0", "1x1+0+2147483647"})
+        EXPECT_ERROR(frame_settings(parse({"s", "--res", "20x10", "--crop", crop}), scene), ExitCode::usage,
+                     std::string("--crop ") + crop + ": leaves the frame, which is 20x10");
+}
+
+TEST(HeaderAttributes, MatricesTakePointsWhereTheCameraSeesThem) {
+    CameraDescription description;
+    description.position = {3, -5, 2};
+    description.target = {0.5, 1, 0.25};
+    description.field_of_view = 70;
+    const Camera camera = camera_at(description, 0).camera;
+    const auto transformed = [](const std::vector<float>& m, const Vec3<double>& p) {
+        std::array<double, 4> q{};
+        for (size_t c = 0; c < 4; ++c) q[c] = p.x * m[c] + p.y * m[4 + c] + p.z * m[8 + c] + m[12 + c];
+        return q;
+    };
+    const int width = 320, height = 180;
+    for (const double x : {0.5, 100.0, 319.5})
+        for (const double y : {0.5, 90.0, 150.25})
+            for (const double distance : {0.25, 6.0}) {
+                const Vec3<double> direction = camera_direction(camera, x, y, width, height);
+                const Vec3<double> point = camera.position + distance * direction;
+                const double depth = distance * dot(direction, camera.forward);
+                const auto ndc = transformed(world_to_ndc(camera, width, height), point);
+                EXPECT_NEAR(ndc[3], depth, 1e-5);
+                EXPECT_NEAR(ndc[0] / ndc[3], 2 * x / width - 1, 2e-5);
+                EXPECT_NEAR(ndc[1] / ndc[3], 1 - 2 * y / height, 2e-5);
+                EXPECT_NEAR(ndc[2] / ndc[3], 1 - 1 / depth, 2e-5);
+                const auto seen = transformed(world_to_camera(camera), point);
+                EXPECT_NEAR(seen[0], distance * dot(direction, camera.right), 1e-5);
+                EXPECT_NEAR(seen[1], distance * dot(direction, camera.up), 1e-5);
+                EXPECT_NEAR(seen[2], -depth, 1e-5);
+                EXPECT_EQ(seen[3], 1);
+            }
+}
+
+TEST(HeaderAttributes, TellImagesApart) {
+    FrameSettings settings;
+    CameraFrame camera;
+    camera.camera.forward = {0, 1, 0};
+    camera.camera.right = {1, 0, 0};
+    camera.camera.up = {0, 0, 1};
+    LayeredPicture picture;
+    picture.width = picture.display_width = 4;
+    picture.height = picture.display_height = 2;
+    picture.channels = {{"R", false, {}}, {"G", false, {}}};
+    picture.attributes = header_attributes("abc", settings, Precision::single_, camera);
+    EXPECT_TRUE(is_same_image(picture, picture));
+    const auto differs = [&](const std::function<void(LayeredPicture&)>& change) {
+        LayeredPicture other = picture;
+        change(other);
+        return !is_same_image(other, picture);
+    };
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.x = 1; }));
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.display_width = 5; }));
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.channels[0].half = true; }));
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.channels.pop_back(); }));
+    EXPECT_FALSE(differs([](LayeredPicture& p) { std::swap(p.channels[0], p.channels[1]); }));
+    const auto attributes_differ = [&](const Attributes& attributes) {
+        return differs([&](LayeredPicture& p) { p.attributes = attributes; });
+    };
+    EXPECT_TRUE(attributes_differ(header_attributes("abd", settings, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes("abc", settings, Precision::double_, camera)));
+    FrameSettings other = settings;
+    other.cutoff = 1e-9;
+    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    other = settings;
+    other.depth = 5;
+    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    other = settings;
+    other.supersample = 2;
+    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    CameraFrame moved = camera;
+    moved.frame = 1;
+    EXPECT_TRUE(attributes_differ(header_attributes("abc", settings, Precision::single_, moved)));
+    // What does not reach the image does not reach the header.
+    other = settings;
+    other.tile = 64;
+    other.effects = all_effects;
+    EXPECT_FALSE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+}
+
+TEST(Progress, Texts) {
+    EXPECT_EQ(format_duration(0), "0:00");
+    EXPECT_EQ(format_duration(6.2), "0:07");
+    EXPECT_EQ(format_duration(754), "12:34");
+    EXPECT_EQ(format_duration(3723), "1:02:03");
+    EXPECT_EQ(format_rate(950), "950 rays/s");
+    EXPECT_EQ(format_rate(12.34e6), "12.3 Mrays/s");
+    EXPECT_EQ(format_rate(999.6e6), "1.00 Grays/s");
+    ProgressState state{12, 2, 10, 0.5, 25, 3e6};
+    EXPECT_DOUBLE_EQ(remaining_seconds(state), 75);
+    EXPECT_EQ(progress_line(state), "frame 12 (3/10): 50 %, 3.0 Mrays/s, ETA 1:15");
+    EXPECT_EQ(progress_bar(state, 64), "frame 12 (3/10) [########---------]  50 %  3.0 Mrays/s  ETA 1:15");
+    for (int columns = 0; columns < 200; ++columns)
+        EXPECT_LE(progress_bar(state, columns).size(), static_cast<size_t>(columns));
+    state.index = 0;
+    state.fraction = 0;
+    EXPECT_LT(remaining_seconds(state), 0);
+    EXPECT_EQ(progress_line(state), "frame 12 (1/10): 0 %, 3.0 Mrays/s, ETA ?");
+}
+
+TEST(Stats, LedgerTotalsAreInTheScenesUnits) {
+    Film film;
+    film.samples = 4;
+    film.fixed_shift = 60;
+    film.radiance_exponent = 1;
+    film.pixels.resize(2);
+    film.pixels[0].pruned[1] = int64_t{1} << 60;
+    film.pixels[1].pruned[1] = int64_t{1} << 62;
+    film.pixels[1].cut[2] = int64_t{1} << 59;
+    const LedgerTotals pruned = ledger_totals(film, &PixelRecord::pruned), cut = ledger_totals(film, &PixelRecord::cut);
+    EXPECT_EQ(pruned.mean, (std::array<double, 3>{0, 1.25, 0}));
+    EXPECT_EQ(pruned.worst, (std::array<double, 3>{0, 2, 0}));
+    EXPECT_EQ(cut.mean, (std::array<double, 3>{0, 0, 0.125}));
+    EXPECT_EQ(cut.worst, (std::array<double, 3>{0, 0, 0.25}));
+}
+
+TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
+    std::vector<EffectReason> reasons;
+    for (int i = 0; i < effect_count; ++i)
+        reasons.push_back(
+            {1u << i, (1u << i) == effect_diffuse, (1u << i) == effect_diffuse ? "material clay" : "no reason"});
+    const std::string table = explain_table("s.json", reasons);
+    EXPECT_NE(table.find("diffuse              yes     in        material clay\n"), std::string::npos) << table;
+    EXPECT_NE(table.find("fresnel              no      left out  no reason\n"), std::string::npos) << table;
+    EXPECT_NE(table.find("Mask 1 of "), std::string::npos) << table;
+}
+
+TEST(FilmLoop, EveryFlagHasItsWords) {
+    EXPECT_EQ(describe_flags(flag_not_finite), "a radiance was infinite or not a number");
+    EXPECT_EQ(describe_flags(flag_not_finite | flag_media_overflow),
+              "a radiance was infinite or not a number; a ray was inside more solids at once than it can list");
+    for (const RenderFlag flag : {flag_not_finite, flag_media_overflow, flag_stack_overflow, flag_too_many_crossings})
+        EXPECT_FALSE(describe_flags(flag).empty());
+}
+
+}  // namespace
+}  // namespace cistula

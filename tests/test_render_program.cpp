@@ -1,0 +1,285 @@
+// The built `render` from outside: exit codes, messages, files.
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "render_program.h"
+#include "scene/exr.h"
+#include "scene/seed_data.h"
+
+namespace cistula {
+namespace {
+
+constexpr const char* seed_text = R"(2
+floor.data
+frame%d.out
+32 20 90
+6.0 5.0 0.0 2.0 1.0 0.05 0.1 0.05 0.0 0.0
+3.0 0.0 3.1415926 1.5 0.5 0.03 0.07 0.02 0.0 0.0
+-2.5 2.5 2 0.9843 0.4745 0.0156 2.25 0.1 0.6
+2.5 2.5 2 0.49 0.3216 0.0078 1.732 0.1 0.6
+2.5 -2.5 2 0.949 0.773 0.05 2.118 0.1 0.6
+-5 -5 0
+5 -5 0
+5 5 0
+-5 5 0
+1
+-4 4 3 1 1 1
+3 1
+)";
+
+const std::vector<float>& channel(const LayeredPicture& picture, const std::string& name) {
+    for (const LayeredPicture::Channel& one : picture.channels)
+        if (one.name == name) return one.values;
+    throw std::runtime_error("no channel " + name);
+}
+
+TEST_F(RenderProgram, PrintsWhatItIsAskedFor) {
+    const ProgramResult help = run({"--help"}), version = run({"--version"}), sample = run({"--print-template"});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_NE(help.out.find("Examples:"), std::string::npos);
+    EXPECT_EQ(version.code, 0);
+    EXPECT_EQ(version.out, "render (Cistula) " CISTULA_VERSION "\n");
+    EXPECT_EQ(sample.code, 0);
+    EXPECT_NE(sample.out.find("frame%d"), std::string::npos);
+    EXPECT_EQ(help.error + version.error + sample.error, "");
+}
+
+TEST_F(RenderProgram, ExplainsAndRendersNothing) {
+    const ProgramResult result = run({"s.json", "--explain", "-o", "a.exr"});
+    EXPECT_EQ(result.code, 0) << result.error;
+    for (const char* part : {"effect", "refraction           yes", "absorption           no", "Left out: "})
+        EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+    EXPECT_FALSE(exists("a.exr"));
+}
+
+TEST_F(RenderProgram, RefusesInOneLine) {
+    expect_refused({}, ExitCode::usage, "no scene is given");
+    expect_refused({"s.json", "--dept", "3"}, ExitCode::usage, "did you mean '--depth'?");
+    expect_refused({"s.json", "-o", "a.png"}, ExitCode::usage, "for a PNG add --preview");
+    expect_refused({"s.json", "-o", "a.exr", "-f", "1-2"}, ExitCode::usage, "-o a.####.exr");
+    expect_refused({"s.json", "-o", "a.exr", "--crop", "8x8+33+0"}, ExitCode::usage,
+                   "leaves the frame, which is 40x24");
+    expect_refused({"s.json", "-o", "a.out", "--aov", "id"}, ExitCode::usage, "--aov needs an .exr");
+    expect_refused({"s.json", "-o", "a.out", "--resume"}, ExitCode::usage, "--resume needs an .exr");
+    expect_refused({"s.json", "-o", "a.out", "--bits", "half"}, ExitCode::usage, "--bits half needs an .exr");
+    expect_refused({"s.json", "-o", "a.##.exr", "--preview", "p.png"}, ExitCode::usage, "put #### into the name");
+    expect_refused({"s.json", "-o", "a.exr", "--preview", "p.jpg"}, ExitCode::usage, "a preview is a PNG");
+    expect_refused({"none.json", "-o", "a.exr"}, ExitCode::file, "none.json");
+    put_bytes(file("bad.json"), R"({"film": {"widht": 3}, "objects": []})");
+    expect_refused({"bad.json", "-o", "a.exr"}, ExitCode::usage, "'width'");
+    expect_refused({"s.json", "-o", "none/a.exr"}, ExitCode::file, "there is no directory none");
+    expect_refused({"s.json", "-o", "a.exr", "--stats", "none/a.json"}, ExitCode::file, "there is no directory none");
+    EXPECT_FALSE(exists("a.exr"));
+}
+
+TEST_F(RenderProgram, CudaIsRefusedAndNeverReplaced) {
+    expect_refused({"s.json", "-o", "a.exr", "--backend", "cuda"}, ExitCode::device, "no CUDA backend");
+    EXPECT_FALSE(exists("a.exr"));
+}
+
+TEST_F(RenderProgram, OneFrameOrAllOrSome) {
+    expect_done({"s.json", "-q"});
+    EXPECT_TRUE(exists("s.exr"));
+    expect_done({"s.json", "-q", "-o", "all.##.exr"});
+    for (const char* name : {"all.00.exr", "all.01.exr", "all.02.exr"}) EXPECT_TRUE(exists(name)) << name;
+    EXPECT_FALSE(exists("all.03.exr"));
+    EXPECT_EQ(bytes_of(file("s.exr")), bytes_of(file("all.00.exr")));
+    expect_done({"s.json", "-q", "-o", "one.exr", "-f", "2"});
+    EXPECT_EQ(bytes_of(file("one.exr")), bytes_of(file("all.02.exr")));
+    EXPECT_NE(bytes_of(file("one.exr")), bytes_of(file("all.01.exr")));
+    expect_done({"s.json", "-q", "-o", "some%03d.exr", "-f", "0-2x2,7"});
+    for (const char* name : {"some000.exr", "some002.exr", "some007.exr"}) EXPECT_TRUE(exists(name)) << name;
+    EXPECT_FALSE(exists("some001.exr"));
+    expect_done({"s.json", "-q", "-f", "0,1"});
+    EXPECT_TRUE(exists("s.0000.exr") && exists("s.0001.exr"));
+    EXPECT_FALSE(has_part_files());
+}
+
+TEST_F(RenderProgram, Previews) {
+#if CISTULA_WITH_OIIO
+    expect_done({"s.json", "-q", "-o", "a.##.exr", "--preview", "p.%d.png"});
+    for (const char* name : {"p.0.png", "p.1.png", "p.2.png"})
+        EXPECT_EQ(bytes_of(file(name)).substr(1, 3), "PNG") << name;
+    EXPECT_FALSE(exists("p.3.png"));
+#else
+    expect_refused({"s.json", "-q", "-o", "a.exr", "--preview", "p.png"}, ExitCode::file, "OpenImageIO");
+#endif
+}
+
+TEST_F(RenderProgram, ReadsStandardInput) {
+    expect_done({"s.json", "-q", "-o", "file.exr"});
+    expect_done({"-", "-q", "-o", "input.exr"}, scene_text);
+    EXPECT_EQ(bytes_of(file("file.exr")), bytes_of(file("input.exr")));
+}
+
+TEST_F(RenderProgram, TheSeedsInputGivesTheSeedsFrames) {
+    ColorPicture floor{2, 2, {{1, 1, 1}, {0, 0, 0}, {0, 0, 0}, {1, 1, 1}}};
+    write_seed_frame(file("floor.data"), floor);
+    expect_done({"-", "-q"}, seed_text);
+    EXPECT_TRUE(exists("frame0.out") && exists("frame1.out"));
+    EXPECT_FALSE(exists("frame2.out"));
+    const std::string bytes = bytes_of(file("frame0.out"));
+    ASSERT_EQ(bytes.size(), 8u + 32 * 20 * 4);
+    int32_t size[2];
+    std::memcpy(size, bytes.data(), 8);
+    EXPECT_EQ(size[0], 32);
+    EXPECT_EQ(size[1], 20);
+    // As a file, and to OpenEXR: the same picture before it was rounded to bytes.
+    put_bytes(file("input.txt"), seed_text);
+    expect_done({"input.txt", "-q", "-o", "frame.exr"});
+    const LayeredPicture image = read_exr(file("frame.exr"));
+    ColorPicture color{32, 20, {}};
+    for (size_t i = 0; i < 32 * 20; ++i)
+        color.texels.emplace_back(channel(image, "R")[i], channel(image, "G")[i], channel(image, "B")[i]);
+    write_seed_frame(file("again.out"), color);
+    EXPECT_EQ(bytes_of(file("again.out")), bytes);
+}
+
+TEST_F(RenderProgram, ACropIsTheSameRegion) {
+    const Arguments layers{"-q", "--aov", "error,id,samples,cost,Z,N", "--cutoff", "0.01", "--supersample", "2"};
+    Arguments full{"s.json", "-o", "full.exr"}, crop{"s.json", "-o", "crop.exr", "--crop", "13x7+21+11"};
+    full.insert(full.end(), layers.begin(), layers.end());
+    crop.insert(crop.end(), layers.begin(), layers.end());
+    expect_done(full);
+    expect_done(crop);
+    const LayeredPicture a = read_exr(file("full.exr")), b = read_exr(file("crop.exr"));
+    EXPECT_EQ(b.display_width, 40);
+    EXPECT_EQ(b.display_height, 24);
+    EXPECT_EQ(b.x, 21);
+    EXPECT_EQ(b.y, 11);
+    ASSERT_EQ(b.width, 13);
+    ASSERT_EQ(b.height, 7);
+    ASSERT_EQ(a.channels.size(), 14u);
+    ASSERT_EQ(b.channels.size(), 14u);
+    for (size_t c = 0; c < a.channels.size(); ++c) {
+        EXPECT_EQ(a.channels[c].name, b.channels[c].name);
+        for (size_t y = 0; y < 7; ++y)
+            for (size_t x = 0; x < 13; ++x) {
+                const float whole = a.channels[c].values[(y + 11) * 40 + x + 21],
+                            part = b.channels[c].values[y * 13 + x];
+                ASSERT_EQ(std::memcmp(&whole, &part, sizeof whole), 0) << a.channels[c].name << " " << x << " " << y;
+            }
+    }
+    EXPECT_EQ(*std::max_element(channel(b, "samples").begin(), channel(b, "samples").end()), 4);
+}
+
+TEST_F(RenderProgram, ThreadsNeverShow) {
+    for (const char* threads : {"1", "2", "7"})
+        expect_done(
+            {"s.json", "-q", "--aov", "id,cost", "-o", std::string("t") + threads + ".exr", "--threads", threads});
+    EXPECT_EQ(bytes_of(file("t1.exr")), bytes_of(file("t2.exr")));
+    EXPECT_EQ(bytes_of(file("t1.exr")), bytes_of(file("t7.exr")));
+}
+
+TEST_F(RenderProgram, OptionsReachTheImage) {
+    expect_done({"s.json", "-q", "-o", "base.exr"});
+    const std::string base = bytes_of(file("base.exr"));
+    const std::vector<Arguments> changes = {{"--depth", "1"},   {"--precision", "double"}, {"--supersample", "2"},
+                                            {"--res", "20x12"}, {"--bits", "half"},        {"--cutoff", "0.1"},
+                                            {"--aov", "N"}};
+    for (const Arguments& change : changes) {
+        Arguments arguments{"s.json", "-q", "-o", "other.exr"};
+        arguments.insert(arguments.end(), change.begin(), change.end());
+        expect_done(arguments);
+        EXPECT_NE(bytes_of(file("other.exr")), base) << change[0];
+    }
+    expect_done({"s.json", "-q", "-o", "other.exr", "--bits", "half", "--aov", "Z"});
+    for (const LayeredPicture::Channel& one : read_exr(file("other.exr")).channels)
+        EXPECT_EQ(one.half, one.name != "Z");
+}
+
+TEST_F(RenderProgram, TheHeaderSaysWhatTheImageDependsOn) {
+    expect_done(
+        {"s.json", "-q", "-o", "a.exr", "-f", "2", "--cutoff", "0.125", "--precision", "double", "--supersample", "2"});
+    const LayeredPicture picture = read_exr(file("a.exr"));
+    const auto& attributes = picture.attributes;
+    std::vector<std::string> names;
+    for (const auto& entry : attributes) names.push_back(entry.first);
+    EXPECT_EQ(names, (std::vector<std::string>{"chromaticities", "cistula:cutoff", "cistula:depth", "cistula:frame",
+                                               "cistula:precision", "cistula:sceneHash", "cistula:supersample",
+                                               "cistula:time", "cistula:version", "worldToCamera", "worldToNDC"}));
+    EXPECT_EQ(std::get<double>(attributes.at("cistula:cutoff")), 0.125);
+    EXPECT_EQ(std::get<int>(attributes.at("cistula:depth")), 6);
+    EXPECT_EQ(std::get<int>(attributes.at("cistula:frame")), 2);
+    EXPECT_EQ(std::get<double>(attributes.at("cistula:time")), 2);
+    EXPECT_EQ(std::get<int>(attributes.at("cistula:supersample")), 2);
+    EXPECT_EQ(std::get<std::string>(attributes.at("cistula:precision")), "double");
+    EXPECT_EQ(std::get<std::string>(attributes.at("cistula:version")), CISTULA_VERSION);
+    EXPECT_GE(std::get<std::string>(attributes.at("cistula:sceneHash")).size(), 16u);
+    EXPECT_EQ(std::get<std::vector<float>>(attributes.at("worldToNDC")).size(), 16u);
+    // Both precisions of one scene have one hash; another scene has another.
+    expect_done({"s.json", "-q", "-o", "b.exr", "--depth", "2"});
+    EXPECT_EQ(read_exr(file("b.exr")).attributes.at("cistula:sceneHash"), attributes.at("cistula:sceneHash"));
+    std::string other = scene_text;
+    other.replace(other.find("0.5, 0.1]"), 3, "0.4");
+    expect_done({"-", "-q", "-o", "c.exr"}, other);
+    EXPECT_NE(read_exr(file("c.exr")).attributes.at("cistula:sceneHash"), attributes.at("cistula:sceneHash"));
+}
+
+TEST_F(RenderProgram, StatsAreJson) {
+    expect_done({"s.json", "-q", "-o", "a.##.exr", "--stats", "s.stats.json", "--threads", "2", "--aov", "cost",
+                 "--cutoff", "0.05"});
+    const auto stats = nlohmann::json::parse(bytes_of(file("s.stats.json")));
+    const auto& context = stats.at("context");
+    EXPECT_EQ(context.at("threads"), 2);
+    EXPECT_EQ(context.at("backend"), "embree");
+    EXPECT_EQ(context.at("precision"), "float");
+    EXPECT_EQ(context.at("resolution"), nlohmann::json({40, 24}));
+    EXPECT_FALSE(context.at("intersector").get<std::string>().empty());
+    EXPECT_FALSE(context.at("host_name").get<std::string>().empty());
+    EXPECT_GT(context.at("peak_rss_bytes").get<uint64_t>(), 1u << 20);
+    EXPECT_GT(context.at("scene_bytes").get<uint64_t>(), 0u);
+    const auto has = [&](const char* list, const char* effect) {
+        const auto& names = context.at(list);
+        return std::find(names.begin(), names.end(), effect) != names.end();
+    };
+    EXPECT_TRUE(has("effects_required", "refraction") && has("effects", "refraction"));
+    EXPECT_FALSE(has("effects_required", "absorption"));
+    std::map<std::string, nlohmann::json> entries;
+    for (const auto& entry : stats.at("benchmarks")) entries[entry.at("name")] = entry;
+    for (const char* name : {"read", "compile", "tree", "frame/0", "frame/1", "frame/2"}) {
+        ASSERT_EQ(entries.count(name), 1u) << name;
+        EXPECT_GE(entries[name].at("real_time").get<double>(), 0);
+        EXPECT_EQ(entries[name].at("time_unit"), "ms");
+    }
+    const auto& frame = entries["frame/1"];
+    EXPECT_EQ(frame.at("file"), "a.01.exr");
+    EXPECT_EQ(frame.at("rays").at("primary"), 40 * 24);
+    const auto& rays = frame.at("rays");
+    EXPECT_EQ(rays.at("total").get<uint64_t>(),
+              rays.at("primary").get<uint64_t>() + rays.at("reflected").get<uint64_t>() +
+                  rays.at("transmitted").get<uint64_t>() + rays.at("shadow").get<uint64_t>());
+    const LayeredPicture image = read_exr(file("a.01.exr"));
+    double cost = 0;
+    for (const float value : channel(image, "cost")) cost += value;
+    EXPECT_EQ(rays.at("total").get<double>(), cost);
+    EXPECT_GT(frame.at("rays_per_second").get<double>(), 0);
+    EXPECT_EQ(frame.at("film_hash").get<std::string>().size(), 32u);
+    EXPECT_GT(frame.at("ledger").at("pruned").at("worst").at(0).get<double>(), 0);
+    EXPECT_LE(frame.at("ledger").at("pruned").at("worst").at(0).get<double>(), 0.05);
+}
+
+TEST_F(RenderProgram, ProgressAndSilence) {
+    const Arguments film{"s.json", "-o", "a.##.exr"};
+    const auto error_of = [&](const Arguments& more) {
+        Arguments arguments = film;
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.code, 0) << result.error;
+        EXPECT_EQ(result.out, "");
+        return result.error;
+    };
+    EXPECT_EQ(error_of({"-q"}), "");
+    const std::string plain = error_of({"--progress", "plain"});
+    for (const char* part : {"frame 0 (1/3): 100 %", "frame 2 (3/3): 100 %", "ETA 0:00", "rays/s"})
+        EXPECT_NE(plain.find(part), std::string::npos) << plain;
+    EXPECT_EQ(plain.find('\r'), std::string::npos);
+    EXPECT_EQ(error_of({"--progress", "none"}).find("ETA"), std::string::npos);
+    EXPECT_EQ(error_of({}).find('\r'), std::string::npos);
+    EXPECT_NE(error_of({"-v"}).find("scene hash"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cistula

@@ -1,0 +1,154 @@
+#include "scene/required_effects.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/compiled_scene.h"
+#include "scene_samples.h"
+
+namespace cistula {
+namespace {
+
+using samples::add_light;
+using samples::add_object;
+using samples::empty_scene;
+using samples::solid;
+using samples::square;
+
+std::string because(const SceneDescription& scene, uint32_t effect) {
+    for (const EffectReason& reason : explain_effects(scene))
+        if (reason.effect == effect) return reason.because;
+    return "";
+}
+
+/// Both ways to find out agree.
+uint32_t effects_of(const SceneDescription& scene) {
+    const uint32_t effects = required_effects(scene);
+    const auto compiled = compile_scene<float>(scene);
+    EXPECT_EQ(compiled->effects, effects);
+    EXPECT_EQ(required_effects(compiled->effect_reasons), effects);
+    return effects;
+}
+
+SceneDescription lit_cube() {
+    SceneDescription scene = empty_scene();
+    add_object(scene, solid(PlatonicSolid::cube));
+    add_light(scene, {0, 0, 4});
+    return scene;
+}
+
+TEST(RequiredEffects, EveryEffectIsExplainedInOrder) {
+    const auto reasons = explain_effects(lit_cube());
+    ASSERT_EQ(reasons.size(), size_t(effect_count));
+    for (int i = 0; i < effect_count; ++i) {
+        EXPECT_EQ(reasons[i].effect, 1u << i);
+        EXPECT_FALSE(reasons[i].because.empty());
+    }
+}
+
+TEST(RequiredEffects, AnUnlitSceneNeedsNone) {
+    SceneDescription scene = empty_scene();
+    add_object(scene, solid(PlatonicSolid::cube));
+    EXPECT_EQ(effects_of(scene), 0u);
+    add_light(scene, {0, 0, 3}, glm::dvec3{0}).radius = 0.5;
+    EXPECT_EQ(effects_of(scene), effect_visible_lights);
+    EXPECT_EQ(because(scene, effect_visible_lights), "the light /lights/0 is seen");
+    EXPECT_EQ(because(scene, effect_diffuse), "no light has an intensity above 0");
+}
+
+TEST(RequiredEffects, AnOpaqueCubeUnderALamp) {
+    SceneDescription scene = lit_cube();
+    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows);
+    EXPECT_EQ(because(scene, effect_diffuse), "material plain of /objects/0 has kd 1");
+    EXPECT_EQ(because(scene, effect_opaque_shadows), "material plain of /objects/0 has kt 0");
+    EXPECT_EQ(because(scene, effect_refraction), "no material lets rays pass");
+    scene.materials[0].specular = 0.5;
+    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_specular | effect_opaque_shadows);
+    scene.materials[0].diffuse = 0;
+    EXPECT_EQ(effects_of(scene), effect_specular | effect_opaque_shadows);
+}
+
+TEST(RequiredEffects, MirrorsAndGlass) {
+    SceneDescription scene = lit_cube();
+    auto& m = scene.materials[0];
+    m.reflection = 0.1;
+    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows | effect_reflection);
+    EXPECT_EQ(because(scene, effect_reflection), "material plain of /objects/0 has kr 0.1");
+    m.transmission = 0.5;
+    const uint32_t glassy = effect_diffuse | effect_transparent_shadows | effect_reflection | effect_transmission;
+    EXPECT_EQ(effects_of(scene), glassy);
+    EXPECT_EQ(because(scene, effect_opaque_shadows), "every material lets every color pass");
+    EXPECT_EQ(because(scene, effect_refraction), "no solid has an index other than 1");
+    m.tint = {1, 1, 0};
+    EXPECT_EQ(effects_of(scene), glassy | effect_opaque_shadows);
+    m.index = 1.5;
+    EXPECT_EQ(effects_of(scene), glassy | effect_opaque_shadows | effect_refraction);
+    EXPECT_EQ(because(scene, effect_refraction), "material plain of /objects/0 has index 1.5");
+    m.absorption.y = 1;
+    m.fresnel = true;
+    EXPECT_EQ(effects_of(scene), glassy | effect_opaque_shadows | effect_refraction | effect_absorption | effect_fresnel);
+}
+
+TEST(RequiredEffects, TotalReflectionAndFresnelCallForReflectionToo) {
+    SceneDescription scene = lit_cube();
+    auto& m = scene.materials[0];
+    m.transmission = 0.5;
+    m.index = 1.5;
+    EXPECT_TRUE(effects_of(scene) & effect_reflection);
+    EXPECT_EQ(because(scene, effect_reflection), "material plain of /objects/0 has index 1.5: total reflection");
+    m.index = 1;
+    EXPECT_FALSE(effects_of(scene) & effect_reflection);
+    m.transmission = 0;
+    m.reflection = 0.5;
+    m.fresnel = true;
+    EXPECT_TRUE(effects_of(scene) & effect_transmission);
+}
+
+TEST(RequiredEffects, SheetsHaveNoInside) {
+    SceneDescription scene = empty_scene();
+    auto& m = scene.materials[0];
+    m.transmission = 0.5;
+    m.index = 1.5;
+    m.absorption.x = 1;
+    add_object(scene, square());
+    EXPECT_EQ(effects_of(scene), effect_transmission);
+    EXPECT_EQ(compile_scene<float>(scene)->warnings.size(), 1u);
+    add_object(scene, torus(2, 0.5, 8, 6));
+    EXPECT_EQ(effects_of(scene), effect_transmission | effect_reflection | effect_refraction | effect_absorption);
+}
+
+TEST(RequiredEffects, TexturesWhereTheyShow) {
+    SceneDescription scene = empty_scene();
+    scene.textures.resize(1);
+    auto& m = scene.materials[0];
+    m.texture = 0;
+    add_object(scene, square());
+    EXPECT_EQ(effects_of(scene), effect_texture);  // by ambient light
+    scene.ambient = glm::dvec3{0};
+    EXPECT_EQ(effects_of(scene), 0u);
+    add_light(scene, {0, 0, 2});
+    EXPECT_EQ(effects_of(scene), effect_texture | effect_diffuse | effect_opaque_shadows);
+    m.reflection = 1;
+    EXPECT_EQ(effects_of(scene), uint32_t(effect_reflection));
+}
+
+TEST(RequiredEffects, LightsOnEdgesAndFalloff) {
+    SceneDescription scene = empty_scene();
+    SolidObject object = solid(PlatonicSolid::octahedron);
+    object.edge_lights.count = 2;
+    object.edge_lights.radius = 0.05;
+    add_object(scene, object);
+    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows | effect_visible_lights);
+    EXPECT_EQ(because(scene, effect_visible_lights), "the lights on the edges of /objects/0 are seen");
+    std::get<SolidObject>(scene.objects[0].shape).edge_lights.falloff = true;
+    EXPECT_EQ(effects_of(scene),
+              effect_diffuse | effect_opaque_shadows | effect_visible_lights | effect_light_falloff);
+}
+
+TEST(RequiredEffects, UnusedMaterialsCallForNothing) {
+    SceneDescription scene = lit_cube();
+    scene.materials.push_back(samples::material("glass", 0.5, 0.5));
+    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows);
+}
+
+}  // namespace
+}  // namespace cistula
