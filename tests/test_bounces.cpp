@@ -57,10 +57,12 @@ void bounce(const SceneView<Real>& scene, const Intersector& intersector, const 
                 const Slab<Real>& slab = scene.slabs[scene.solids[0].first_slab + k];
                 const double n = double(dot(slab.normal, s.point));
                 const double out = greatest(n - double(slab.high), double(slab.low) - n);
-                result.farthest_out = greatest(result.farthest_out, out / double(RealTraits<Real>::unit * scene.extent));
+                result.farthest_out =
+                    greatest(result.farthest_out, out / double(RealTraits<Real>::unit * scene.extent));
             }
         Vec3<Real> direction = reflected(ray.direction, s.normal);
-        if (random.below(4) == 0) {  // at a corner, an edge or the middle of a triangle, where that is not behind the face
+        if (random.below(4) ==
+            0) {  // at a corner, an edge or the middle of a triangle, where that is not behind the face
             const Vec3<Real> aimed = normalized(targets[random.below(uint32_t(targets.size()))] - s.viewer_side);
             if (dot(aimed, s.normal) > Real(0)) direction = aimed;
         }
@@ -101,8 +103,9 @@ TYPED_TEST(BouncesTest, NoneIsLostInConvexSolids) {
                 bounce(view, BruteIntersector<Real>{view}, targets_of(random, test::all_triangles(*triangles)),
                        Vec3<Real>(random.in_cube(0.1)), 60000, Start::as_rendered, random, result);
             }
-    std::printf("%s: %d bounces, %d lost, %d of %d miscounted, points at most %.1f u M outside\n", RealTraits<Real>::name,
-                result.done, result.lost, result.miscounted, result.counted, result.farthest_out);
+    std::printf("%s: %d bounces, %d lost, %d of %d miscounted, points at most %.1f u M outside\n",
+                RealTraits<Real>::name, result.done, result.lost, result.miscounted, result.counted,
+                result.farthest_out);
     EXPECT_GE(result.done, 1000000);
     EXPECT_EQ(result.lost, 0);
     EXPECT_EQ(result.miscounted, 0);
@@ -123,7 +126,8 @@ std::vector<MeshCase> meshes() {
     cases.push_back({"sharp star", star(0.2, 1), dvec3(0.01, 0.02, -0.03)});
     cases.push_back({"bumpy sphere", bumpy_sphere(500), dvec3(0.01, 0.02, -0.03)});
     for (const PlatonicSolid solid : test::platonic_solids)
-        cases.push_back({platonic_name(solid), test::solid_mesh(solid, dvec3(0), 1, dvec3(10, 20, 30)), dvec3(0.01, 0.02, -0.03)});
+        cases.push_back(
+            {platonic_name(solid), test::solid_mesh(solid, dvec3(0), 1, dvec3(10, 20, 30)), dvec3(0.01, 0.02, -0.03)});
     return cases;
 }
 
@@ -142,11 +146,11 @@ Bounces<Real> bounce_in_meshes(int each, Start start) {
             EXPECT_EQ(view.solids[0].kind, SolidKind::mesh) << c.name;
             const dvec3 inside = (c.inside * scale - scene->center) * std::ldexp(1.0, scene->scale);
             Bounces<Real> result;
-            bounce(view, BvhIntersector<Real>{view}, targets_of(random, test::all_triangles(*scene)), Vec3<Real>(inside),
-                   each, start, random, result);
+            bounce(view, BvhIntersector<Real>{view}, targets_of(random, test::all_triangles(*scene)),
+                   Vec3<Real>(inside), each, start, random, result);
             if (start == Start::as_rendered && (result.lost || result.miscounted))
-                ADD_FAILURE() << c.name << " at scale " << scale << ": " << result.lost << " lost, " << result.miscounted
-                              << " miscounted of " << result.done;
+                ADD_FAILURE() << c.name << " at scale " << scale << ": " << result.lost << " lost, "
+                              << result.miscounted << " miscounted of " << result.done;
             all.done += result.done;
             all.lost += result.lost;
             all.counted += result.counted;
@@ -167,7 +171,8 @@ TYPED_TEST(BouncesTest, NoneIsLostInMeshes) {
 TYPED_TEST(BouncesTest, LeavingOutTheFaceAloneLosesRays) {
     using Real = TypeParam;
     const Bounces<Real> result = bounce_in_meshes<Real>(10000, Start::skip_key_only);
-    std::printf("%s: %d bounces by skipping the key alone, %d lost\n", RealTraits<Real>::name, result.done, result.lost);
+    std::printf("%s: %d bounces by skipping the key alone, %d lost\n", RealTraits<Real>::name, result.done,
+                result.lost);
     EXPECT_GT(result.lost, 0);
 }
 

@@ -28,9 +28,12 @@ dvec3 target_on(Random& random, const PlatonicShape& shape, const std::vector<dv
     const auto& edge = shape.edges[random.below(uint32_t(shape.edges.size()))];
     const dvec3 &a = points[edge.vertices[0]], &b = points[edge.vertices[1]];
     switch (random.below(4)) {
-        case 0: return points[random.below(uint32_t(points.size()))];
-        case 1: return a + (b - a) * (random.below(2) ? 0.5 : random.unit());
-        case 2: return (a + (b - a) * random.unit()) * (1 + random.between(-1, 1) * 0x1p-20);
+        case 0:
+            return points[random.below(uint32_t(points.size()))];
+        case 1:
+            return a + (b - a) * (random.below(2) ? 0.5 : random.unit());
+        case 2:
+            return (a + (b - a) * random.unit()) * (1 + random.between(-1, 1) * 0x1p-20);
         default: {
             dvec3 sum(0);
             for (const uint32_t v : face.vertices) sum += points[v];
@@ -70,10 +73,10 @@ TYPED_TEST(ConvexTest, SolidsAreEnteredAndLeftExactlyOnce) {
                     const Count count = test::cross_all(brute, test::ray_from(origin, direction));
                     ASSERT_EQ(count.enters, count.leaves) << platonic_name(solid) << " " << i;
                     ASSERT_LE(count.enters, 1);
-                    const double inside = test::chord(shape, Rotation(turn), radius, 1e-4, dvec3(origin) - center,
-                                                      dvec3(direction));
-                    const double around = test::chord(shape, Rotation(turn), radius, -1e-4, dvec3(origin) - center,
-                                                      dvec3(direction));
+                    const double inside =
+                        test::chord(shape, Rotation(turn), radius, 1e-4, dvec3(origin) - center, dvec3(direction));
+                    const double around =
+                        test::chord(shape, Rotation(turn), radius, -1e-4, dvec3(origin) - center, dvec3(direction));
                     if (inside > 1e-3) {
                         ASSERT_EQ(count.enters, 1) << platonic_name(solid) << " " << i;
                         ++through;
@@ -120,7 +123,8 @@ TYPED_TEST(ConvexTest, TheSphereAroundASolidDecidesNothing) {
                 Vec3<Real> target(place + target_on(random, shape, points));
                 if (i % 2) target += Vec3<Real>(random.in_cube(1e-6));
                 const Ray<Real> ray = test::ray_from(origin, normalized(target - origin));
-                const Hit<Real> a = BruteIntersector<Real>{view}.closest(ray), b = BruteIntersector<Real>{bare_view}.closest(ray);
+                const Hit<Real> a = BruteIntersector<Real>{view}.closest(ray),
+                                b = BruteIntersector<Real>{bare_view}.closest(ray);
                 ASSERT_TRUE(a.t == b.t && a.key == b.key) << platonic_name(solid) << " " << size << " " << i;
                 hits += a.found();
                 grazed += !a.found();
@@ -141,10 +145,11 @@ TYPED_TEST(ConvexTest, ParallelRaysAndSignedZeros) {
     const Real smallest = std::numeric_limits<Real>::denorm_min(), least_normal = std::numeric_limits<Real>::min();
     for (int axis = 0; axis < 3; ++axis)
         for (const Real sign : {Real(1), Real(-1)})
-            for (const Real tiny : {Real(0), -Real(0), smallest, -smallest, least_normal / 4, -least_normal / 4, least_normal,
-                                    -least_normal, Real(0x1p-100), Real(-0x1p-100)})
+            for (const Real tiny : {Real(0), -Real(0), smallest, -smallest, least_normal / 4, -least_normal / 4,
+                                    least_normal, -least_normal, Real(0x1p-100), Real(-0x1p-100)})
                 for (const Real other : {Real(0), -Real(0)})
-                    for (const Real at : {Real(0), half / 2, half, -half, std::nextafter(half, Real(2)), std::nextafter(half, Real(0))}) {
+                    for (const Real at : {Real(0), half / 2, half, -half, std::nextafter(half, Real(2)),
+                                          std::nextafter(half, Real(0))}) {
                         Vec3<Real> origin(Real(0)), direction(other);
                         origin[axis] = -2 * sign;
                         origin[(axis + 1) % 3] = at;
@@ -179,7 +184,8 @@ TYPED_TEST(ConvexTest, TouchingSolidsShareTheirFace) {
     using Real = TypeParam;
     Random random(3);
     int shared = 0;
-    for (const PlatonicSolid solid : {PlatonicSolid::cube, PlatonicSolid::octahedron, PlatonicSolid::dodecahedron, PlatonicSolid::icosahedron})
+    for (const PlatonicSolid solid :
+         {PlatonicSolid::cube, PlatonicSolid::octahedron, PlatonicSolid::dodecahedron, PlatonicSolid::icosahedron})
         for (int placement = 0; placement < 6; ++placement) {
             const PlatonicShape& shape = platonic_shape(solid);
             const dvec3 turn = placement == 0 ? dvec3(0) : random.in_cube(180), center = random.in_cube(1);
@@ -194,8 +200,9 @@ TYPED_TEST(ConvexTest, TouchingSolidsShareTheirFace) {
             for (int i = 0; i < 5000; ++i) {
                 // Through the shared face well inside its edges, from either side.
                 const dvec3 across = random.direction();
-                const dvec3 middle = (center + normal * shape.inradius +
-                                      (across - dot(across, normal) * normal) * 0.1 - scene->center) * factor;
+                const dvec3 middle =
+                    (center + normal * shape.inradius + (across - dot(across, normal) * normal) * 0.1 - scene->center) *
+                    factor;
                 const dvec3 way = normalized(normal * (i % 2 ? 1.0 : -1.0) + random.in_cube(0.2));
                 Ray<Real> ray = test::ray_from(Vec3<Real>(middle - way * 3.0), Vec3<Real>(way));
                 Hit<Real> hits[4];
@@ -217,8 +224,8 @@ TYPED_TEST(ConvexTest, TouchingSolidsShareTheirFace) {
     EXPECT_EQ(shared, 4 * 6 * 5000);
 }
 
-// Against 113 bits: a camera far away sees the right face wherever the point is farther from an edge than rounding goes:
-// 8 u of double times the distance for the line, 16 u of Real for its start in the scene.
+// Against 113 bits: a camera far away sees the right face wherever the point is farther from an edge than rounding
+// goes: 8 u of double times the distance for the line, 16 u of Real for its start in the scene.
 TYPED_TEST(ConvexTest, FarCamerasSeeTheRightFace) {
     using Real = TypeParam;
     Random random(4);
@@ -263,7 +270,8 @@ TYPED_TEST(ConvexTest, FarCamerasSeeTheRightFace) {
                     const Slab<Real>& slab = view.slabs[record.first_slab + s];
                     Quad nd = 0, no = 0;
                     for (int k = 0; k < 3; ++k) nd += Quad(slab.normal[k]) * d[k], no += Quad(slab.normal[k]) * o[k];
-                    const Quad low = (Quad(slab.low) - no) / nd, high = (Quad(slab.high) - no) / nd, slack = doubt / fabsq(nd);
+                    const Quad low = (Quad(slab.low) - no) / nd, high = (Quad(slab.high) - no) / nd,
+                               slack = doubt / fabsq(nd);
                     const Quad in = nd > 0 ? low : high, out = nd > 0 ? high : low;
                     if (finiteq(in)) entering.push_back({in, slack, 2 * s + (nd > 0 ? 0 : 1)});
                     leave = fminq(leave, out + slack);

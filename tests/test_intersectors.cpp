@@ -60,9 +60,11 @@ std::vector<Case> cases() {
     });
     add("nested solids", [](auto& s, auto& r) {
         for (int i = 0; i < 5; ++i)
-            test::add_solid(s, test::platonic_solids[i], dvec3(0), 1.0 / (1 + i * i), r.in_cube(180), coloured_glass(s, r));
+            test::add_solid(s, test::platonic_solids[i], dvec3(0), 1.0 / (1 + i * i), r.in_cube(180),
+                            coloured_glass(s, r));
         for (int i = 0; i < 3; ++i)
-            test::add_object(s, test::solid_mesh(PlatonicSolid::cube, dvec3(0.02 * i), 0.8 - 0.2 * i), coloured_glass(s, r));
+            test::add_object(s, test::solid_mesh(PlatonicSolid::cube, dvec3(0.02 * i), 0.8 - 0.2 * i),
+                             coloured_glass(s, r));
     });
     add("many solids", [](auto& s, auto& r) {
         for (int i = 0; i < 60; ++i) {
@@ -75,7 +77,8 @@ std::vector<Case> cases() {
         const double half = 1 / std::sqrt(3.0);
         for (int x = 0; x < 3; ++x)
             for (int y = 0; y < 3; ++y)
-                test::add_solid(s, PlatonicSolid::cube, {2 * half * x, 2 * half * y, 0}, 1, dvec3(0), coloured_glass(s, r));
+                test::add_solid(s, PlatonicSolid::cube, {2 * half * x, 2 * half * y, 0}, 1, dvec3(0),
+                                coloured_glass(s, r));
     });
     add("mixed", [](auto& s, auto& r) {
         test::add_object(s, moved(triangle_soup(100, 1, 5), dvec3(0), dvec3(2)), coloured_glass(s, r));
@@ -133,7 +136,8 @@ Record<Real> record(const CompiledScene<Real>& compiled, const SceneView<Real>& 
             const Light<Real>& light = scene.lights[random.below(scene.lights.size)];
             const Vec3<Real> to_light = light.position - s.viewer_side;
             const Real distance = length(to_light);
-            const ShadowRay<Real> shadow{test::spawn(s.viewer_side, to_light / distance, hit, ray.media), distance, &light};
+            const ShadowRay<Real> shadow{test::spawn(s.viewer_side, to_light / distance, hit, ray.media), distance,
+                                         &light};
             result.shadows.push_back({shadow, brute.template transmittance<AllEffects>(shadow),
                                       brute.template transmittance<OpaqueOnly>(shadow)});
             if (random.below(3) == 0)
@@ -192,7 +196,8 @@ TYPED_TEST(IntersectorsTest, AllFindTheSameBits) {
         const Record<Real> expected = record(*compiled, scene, 24000);
         rays += expected.closest.size() + 2 * expected.shadows.size();
         for (const auto& [ray, hit] : expected.closest) hits += hit.found();
-        for (const auto& s : expected.shadows) partly_lit += s.all != Vec3<Real>(Real(0)) && s.all != Vec3<Real>(Real(1));
+        for (const auto& s : expected.shadows)
+            partly_lit += s.all != Vec3<Real>(Real(0)) && s.all != Vec3<Real>(Real(1));
         expect_same(expected, BvhIntersector<Real>{scene}, std::string(c.name) + ", bvh");
         const auto quick = test::compile<Real>(c.scene, true, 0);
         const SceneView<Real> quick_scene = quick->view();
@@ -201,9 +206,9 @@ TYPED_TEST(IntersectorsTest, AllFindTheSameBits) {
         expect_same(expected, BvhIntersector<Real>{quick_scene}, std::string(c.name) + ", quick bvh");
         for (const EmbreeOptions& options : embree_options()) {
             const EmbreeTree<Real> tree(scene, options);
-            expect_same(expected, EmbreeIntersector<Real>{scene, tree.scene()},
-                        std::string(c.name) + ", Embree " + options.device_config + " " +
-                            std::to_string(options.tree_quality));
+            expect_same(
+                expected, EmbreeIntersector<Real>{scene, tree.scene()},
+                std::string(c.name) + ", Embree " + options.device_config + " " + std::to_string(options.tree_quality));
         }
     }
     std::printf("%s: %zu rays, %zu hits, %zu partly lit\n", RealTraits<Real>::name, rays, hits, partly_lit);
@@ -250,7 +255,8 @@ TYPED_TEST(IntersectorsTest, RaysThatAreNotFiniteMeetNothing) {
     const Real inf = RealTraits<Real>::infinity;
     for (const Real bad : {std::numeric_limits<Real>::quiet_NaN(), inf, -inf})
         for (int k = 0; k < 6; ++k) {
-            Ray<Real> ray = test::ray_from(Vec3<Real>(Real(2), Real(0), Real(0)), Vec3<Real>(Real(-1), Real(0), Real(0)));
+            Ray<Real> ray =
+                test::ray_from(Vec3<Real>(Real(2), Real(0), Real(0)), Vec3<Real>(Real(-1), Real(0), Real(0)));
             (k < 3 ? ray.origin[k] : ray.direction[k - 3]) = bad;
             const ShadowRay<Real> shadow{ray, Real(1), &scene.lights[0]};
             EXPECT_FALSE(embree.closest(ray).found());

@@ -167,7 +167,8 @@ TEST(MeshTopology, NothingLeftIsASheetOfNothing) {
     EXPECT_EQ(compiled->solids[0].kind, SolidKind::sheet);
     EXPECT_EQ(compiled->clusters.size(), 1u);
     ASSERT_EQ(compiled->warnings.size(), 1u);
-    EXPECT_EQ(compiled->warnings[0], "/objects/0: object 0: left out 1 triangle with a repeated vertex and 1 triangle of zero area");
+    EXPECT_EQ(compiled->warnings[0],
+              "/objects/0: object 0: left out 1 triangle with a repeated vertex and 1 triangle of zero area");
 }
 
 /// Heights of a mesh before and after the check.
@@ -289,7 +290,8 @@ TEST(MeshApex, SheetsFoldedSharplyTakeTheirNeighborIntoAccount) {
     for (const bool same_winding : {true, false}) {
         TrianglesObject fold;
         fold.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, std::cos(0.02), std::sin(0.02)}};
-        fold.triangles = {{0, 1, 2}, same_winding ? std::array<uint32_t, 3>{1, 0, 3} : std::array<uint32_t, 3>{0, 1, 3}};
+        fold.triangles = {{0, 1, 2},
+                          same_winding ? std::array<uint32_t, 3>{1, 0, 3} : std::array<uint32_t, 3>{0, 1, 3}};
         const Apexes apexes(fold);
         const double inradius = 1 / (2 + std::sqrt(2.0));
         EXPECT_NEAR(apexes.first.side[1][0], inradius / 8 * std::tan(0.01), 1e-8);

@@ -46,7 +46,9 @@ TEST_P(Platonic, CircumradiusIsOne) {
 
 TEST_P(Platonic, EdgesAreEquallyLongAndDistinct) {
     std::set<std::array<uint32_t, 2>> distinct;
-    const auto side = [&](const auto& e) { return length(shape().vertices[e.vertices[0]] - shape().vertices[e.vertices[1]]); };
+    const auto side = [&](const auto& e) {
+        return length(shape().vertices[e.vertices[0]] - shape().vertices[e.vertices[1]]);
+    };
     for (const auto& edge : shape().edges) {
         EXPECT_NEAR(side(edge), side(shape().edges[0]), ulps);
         EXPECT_LT(edge.vertices[0], edge.vertices[1]);
@@ -59,7 +61,8 @@ TEST_P(Platonic, EveryEdgeJoinsTwoFacesInOppositeDirections) {
     std::map<std::array<uint32_t, 2>, uint32_t> directed;
     for (const auto& face : shape().faces)
         for (size_t i = 0; i < face.vertices.size(); ++i)
-            EXPECT_TRUE(directed.insert({{face.vertices[i], face.vertices[(i + 1) % face.vertices.size()]}, face.id}).second);
+            EXPECT_TRUE(
+                directed.insert({{face.vertices[i], face.vertices[(i + 1) % face.vertices.size()]}, face.id}).second);
     EXPECT_EQ(directed.size(), 2 * shape().edges.size());
     for (const auto& edge : shape().edges) {
         std::array<uint32_t, 2> faces = {directed.at({edge.vertices[0], edge.vertices[1]}),

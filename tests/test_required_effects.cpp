@@ -85,7 +85,8 @@ TEST(RequiredEffects, MirrorsAndGlass) {
     EXPECT_EQ(because(scene, effect_refraction), "material plain of /objects/0 has index 1.5");
     m.absorption.y = 1;
     m.fresnel = true;
-    EXPECT_EQ(effects_of(scene), glassy | effect_opaque_shadows | effect_refraction | effect_absorption | effect_fresnel);
+    EXPECT_EQ(effects_of(scene),
+              glassy | effect_opaque_shadows | effect_refraction | effect_absorption | effect_fresnel);
 }
 
 TEST(RequiredEffects, TotalReflectionAndFresnelCallForReflectionToo) {
@@ -140,8 +141,7 @@ TEST(RequiredEffects, LightsOnEdgesAndFalloff) {
     EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows | effect_visible_lights);
     EXPECT_EQ(because(scene, effect_visible_lights), "the lights on the edges of /objects/0 are seen");
     std::get<SolidObject>(scene.objects[0].shape).edge_lights.falloff = true;
-    EXPECT_EQ(effects_of(scene),
-              effect_diffuse | effect_opaque_shadows | effect_visible_lights | effect_light_falloff);
+    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows | effect_visible_lights | effect_light_falloff);
 }
 
 TEST(RequiredEffects, UnusedMaterialsCallForNothing) {

@@ -61,8 +61,17 @@ class SnellTest : public testing::Test {
 using Precisions = testing::Types<float, double>;
 TYPED_TEST_SUITE(SnellTest, Precisions);
 
-constexpr double indices[][2] = {{1, 1.5}, {1.5, 1}, {1, 2.417}, {2.417, 1}, {1.33, 1.5}, {1.5, 1.33},
-                                 {1, 1.0000001}, {1.0000001, 1}, {1, 40}, {40, 1}, {1, 0x1.0000000000001p0}};
+constexpr double indices[][2] = {{1, 1.5},
+                                 {1.5, 1},
+                                 {1, 2.417},
+                                 {2.417, 1},
+                                 {1.33, 1.5},
+                                 {1.5, 1.33},
+                                 {1, 1.0000001},
+                                 {1.0000001, 1},
+                                 {1, 40},
+                                 {40, 1},
+                                 {1, 0x1.0000000000001p0}};
 
 TYPED_TEST(SnellTest, DirectionAndReflectanceAreWithinTheStatedErrors) {
     using Real = TypeParam;
@@ -110,7 +119,8 @@ TYPED_TEST(SnellTest, DirectionAndReflectanceAreWithinTheStatedErrors) {
     EXPECT_LE(worst_reflectance, 0.51);
 }
 
-// sin = n (1 + k 2^-22): the decision is that of the angle itself, not of its rounding; in double, in steps of 2^-50 too.
+// sin = n (1 + k 2^-22): the decision is that of the angle itself, not of its rounding; in double, in steps of 2^-50
+// too.
 TYPED_TEST(SnellTest, CriticalAngleIsDecidedInFineSteps) {
     using Real = TypeParam;
     Random random(2);
@@ -125,8 +135,7 @@ TYPED_TEST(SnellTest, CriticalAngleIsDecidedInFineSteps) {
                 ASSERT_EQ(refracted(d, normal, index[0], index[1]).total, k > 0) << index[0] << " " << k;
                 // The same angle about other normals: the formula decides as its exact value does.
                 const glm::dvec3 n = random.direction();
-                const Vec3<Real> about(n),
-                    turned = TestFixture::incoming(random, n, double(sqrtq((1 - s) * (1 + s))));
+                const Vec3<Real> about(n), turned = TestFixture::incoming(random, n, double(sqrtq((1 - s) * (1 + s))));
                 const Exact<Real> exact(turned, about, index[0], index[1]);
                 ASSERT_EQ(refracted(turned, about, index[0], index[1]).total, !(exact.g2 > 0));
             }
@@ -152,12 +161,13 @@ TYPED_TEST(SnellTest, BrewsterReflectsNoParallelLight) {
     using Real = TypeParam;
     for (const double n : {1.33, 1.5, 2.417}) {
         const double c = 1 / std::sqrt(1 + n * n), s = n * c;
-        const Refraction<Real> found = refracted(Vec3<Real>(Real(s), Real(0), Real(-c)),
-                                                 Vec3<Real>(Real(0), Real(0), Real(1)), 1.0, n);
+        const Refraction<Real> found =
+            refracted(Vec3<Real>(Real(s), Real(0), Real(-c)), Vec3<Real>(Real(0), Real(0), Real(1)), 1.0, n);
         const double amplitude = (n * n - 1) / (n * n + 1);
         EXPECT_NEAR(double(found.reflectance), amplitude * amplitude / 2, 8 * double(RealTraits<Real>::unit));
         // Brewster's law: the refracted ray is at right angles to the reflected one.
-        const Vec3<Real> mirror = reflected(Vec3<Real>(Real(s), Real(0), Real(-c)), Vec3<Real>(Real(0), Real(0), Real(1)));
+        const Vec3<Real> mirror =
+            reflected(Vec3<Real>(Real(s), Real(0), Real(-c)), Vec3<Real>(Real(0), Real(0), Real(1)));
         EXPECT_NEAR(double(dot(mirror, found.direction)), 0, 8 * double(RealTraits<Real>::unit));
     }
 }
@@ -202,7 +212,8 @@ TYPED_TEST(SnellTest, ReflectedIsTheMirrorDirection) {
         for (int k = 0; k < 3; ++k) dn += Quad(d[k]) * Quad(n[k]);
         for (int k = 0; k < 3; ++k) exact[k] = Quad(d[k]) - 2 * dn * Quad(n[k]), square += exact[k] * exact[k];
         for (int k = 0; k < 3; ++k)
-            worst = std::max(worst, double(fabsq(Quad(found[k]) - exact[k] / sqrtq(square)) / Quad(RealTraits<Real>::unit)));
+            worst = std::max(worst,
+                             double(fabsq(Quad(found[k]) - exact[k] / sqrtq(square)) / Quad(RealTraits<Real>::unit)));
     }
     std::printf("%s: mirror direction %.3f u\n", RealTraits<Real>::name, worst);
     EXPECT_LE(worst, 5);

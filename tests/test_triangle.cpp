@@ -163,14 +163,15 @@ TYPED_TEST(TriangleTest, TinyShearsKeepTheirSigns) {
         const auto tiny = [&] { return Real(double(size) * random.between(-1, 1)); };
         const Vec3<Real> a(tiny(), tiny(), Real(1)), b(tiny(), tiny(), Real(-1));
         // A tetrahedron with the edge ab and one cd across it.
-        const Vec3<Real> c(Real(1), Real(0.25), Real(0)), d(Real(-1), Real(0.5), Real(0)), e(Real(0.125), Real(-1), Real(0));
+        const Vec3<Real> c(Real(1), Real(0.25), Real(0)), d(Real(-1), Real(0.5), Real(0)),
+            e(Real(0.125), Real(-1), Real(0));
         CompiledScene<Real> scene;
         test::add_clusters<Real>(scene, {{a, c, d}, {a, d, e}, {a, e, c}, {b, d, c}, {b, e, d}, {b, c, e}},
                                  SolidKind::mesh);
         const SceneView<Real> view = scene.view();
-        const Count count = test::cross_all(BruteIntersector<Real>{view},
-                                            test::ray_from(Vec3<Real>(tiny(), tiny(), Real(3)),
-                                                           Vec3<Real>(tiny(), tiny(), Real(-1))));
+        const Count count =
+            test::cross_all(BruteIntersector<Real>{view},
+                            test::ray_from(Vec3<Real>(tiny(), tiny(), Real(3)), Vec3<Real>(tiny(), tiny(), Real(-1))));
         ASSERT_EQ(count.enters, 1) << i;
         ASSERT_EQ(count.leaves, 1) << i;
         ++through;
@@ -199,7 +200,7 @@ TYPED_TEST(TriangleTest, EdgeFunctionsAreAntisymmetric) {
         const Real ab = ShearedTriangle<Real>::of(cluster, 0, ray).edge[2];
         const Real ba = ShearedTriangle<Real>::of(cluster, 1, ray).edge[2];
         ASSERT_EQ(ab > 0, ba < 0) << double(a.x) << " " << double(b.x);
-        ASSERT_EQ(ab < 0, ba > 0);
+        ASSERT_EQ(ab<0, ba> 0);
     }
 }
 
@@ -243,8 +244,13 @@ TYPED_TEST(TriangleTest, DegenerateAndNotFiniteTrianglesAreNeverHit) {
     const auto v = [](Real x, Real y, Real z) { return Vec3<Real>(x, y, z); };
     CompiledScene<Real> scene;
     test::add_clusters<Real>(scene,
-                             {{a, a, a}, {a, b, a}, {a, b, b}, {a, b, v(nan, nan, nan)},
-                              {a, v(nan, 0, 0), c}, {v(0, 0, nan), b, c}, {a, b, v(0, inf, 0)},
+                             {{a, a, a},
+                              {a, b, a},
+                              {a, b, b},
+                              {a, b, v(nan, nan, nan)},
+                              {a, v(nan, 0, 0), c},
+                              {v(0, 0, nan), b, c},
+                              {a, b, v(0, inf, 0)},
                               {v(-inf, -inf, 0), v(inf, -inf, 0), v(0, inf, 0)}},
                              SolidKind::sheet);
     const SceneView<Real> view = scene.view();
@@ -252,8 +258,9 @@ TYPED_TEST(TriangleTest, DegenerateAndNotFiniteTrianglesAreNeverHit) {
     Random random(6);
     for (int i = 0; i < 100000; ++i) {
         const Vec3<Real> origin(Vec3<Real>(random.direction() * 2.0));
-        const Vec3<Real> target =
-            i % 3 == 0 ? a : i % 3 == 1 ? along(a, Real(random.unit()), b - a) : Vec3<Real>(random.in_cube(1));
+        const Vec3<Real> target = i % 3 == 0   ? a
+                                  : i % 3 == 1 ? along(a, Real(random.unit()), b - a)
+                                               : Vec3<Real>(random.in_cube(1));
         ASSERT_FALSE(brute.closest(test::ray_from(origin, target - origin)).found()) << i;
     }
     // Nor does a ray that is not finite, or that goes nowhere, hit a triangle that is there.
@@ -277,7 +284,9 @@ TYPED_TEST(TriangleTest, TheSignOfDetTellsTheSide) {
     using Real = TypeParam;
     const Vec3<Real> a(Real(-1), Real(-1), Real(0)), b(Real(1), Real(-1), Real(0)), c(Real(0), Real(1), Real(0));
     for (int turn = 0; turn < 3; ++turn) {
-        const auto permuted = [&](const Vec3<Real>& v) { return Vec3<Real>(v[turn], v[(turn + 1) % 3], v[(turn + 2) % 3]); };
+        const auto permuted = [&](const Vec3<Real>& v) {
+            return Vec3<Real>(v[turn], v[(turn + 1) % 3], v[(turn + 2) % 3]);
+        };
         CompiledScene<Real> scene;
         test::add_clusters<Real>(scene, {{permuted(a), permuted(b), permuted(c)}}, SolidKind::mesh);
         const SceneView<Real> view = scene.view();
@@ -308,8 +317,10 @@ TYPED_TEST(TriangleTest, ClusterPathEqualsTheOneLanePath) {
         for (auto& corner : cluster.corner)
             for (auto& axis : corner)
                 for (Real& x : axis) x = Real(random.below(9)) / Real(4) - Real(1);
-        const Vec3<Real> origin(Real(random.below(9)) / Real(4) - Real(1), Real(random.below(9)) / Real(4) - Real(1), Real(-2));
-        Vec3<Real> direction(Real(random.below(5)) / Real(4) - Real(0.5), Real(random.below(5)) / Real(4) - Real(0.5), Real(1));
+        const Vec3<Real> origin(Real(random.below(9)) / Real(4) - Real(1), Real(random.below(9)) / Real(4) - Real(1),
+                                Real(-2));
+        Vec3<Real> direction(Real(random.below(5)) / Real(4) - Real(0.5), Real(random.below(5)) / Real(4) - Real(0.5),
+                             Real(1));
         if (i % 2) direction = Vec3<Real>(random.direction());
         const auto ray = TriangleRay<Real>::of(origin, direction);
         uint32_t one_by_one = 0;
@@ -352,8 +363,9 @@ TYPED_TEST(TriangleTest, BothDirectionsAgree) {
         const Count back = test::cross_all(brute, test::ray_from(far, -a.direction));
         ASSERT_EQ(there.enters, there.leaves);
         ASSERT_EQ(back.enters, back.leaves);
-        const double inside = test::chord(platonic_shape(PlatonicSolid::icosahedron), Rotation(dvec3(10, 20, 30)),
-                                          std::ldexp(1.0, scene->scale), 1e-4, dvec3(a.origin), normalized(dvec3(a.direction)));
+        const double inside =
+            test::chord(platonic_shape(PlatonicSolid::icosahedron), Rotation(dvec3(10, 20, 30)),
+                        std::ldexp(1.0, scene->scale), 1e-4, dvec3(a.origin), normalized(dvec3(a.direction)));
         if (inside < 1e-3) continue;
         ++compared;
         ASSERT_EQ(there.enters, 1);

@@ -13,7 +13,8 @@ struct Camera {
 
 /// The unit direction through the point (x, y) of a picture of width x height pixels; (0, 0) is its top left corner.
 CISTULA_HD inline Vec3<double> camera_direction(const Camera& camera, double x, double y, int width, int height) {
-    const double sx = (2 * x / width - 1) * camera.tan_half_width;
+    // Exact numerators: mirrored points have mirrored directions, bit for bit.
+    const double sx = (2 * x - width) / width * camera.tan_half_width;
     const double sy = (height - 2 * y) / width * camera.tan_half_width;
     return normalized(camera.forward + sx * camera.right + sy * camera.up);
 }

@@ -58,7 +58,7 @@ CISTULA_INLINE bool passes_by(const Solid& solid, const Vec3<Real>& origin, cons
 
 /// The ray's next crossing of a convex solid, if it is less than `best`.
 template <class Real>
-CISTULA_INLINE void closest_convex(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
+CISTULA_CALLED void closest_convex(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
                                    Hit<Real>& best) {
     const bool inside = ray.media.contains(index), own = ray.from_solid == index;
     if (own && !inside) return;

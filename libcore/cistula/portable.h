@@ -23,13 +23,17 @@
 #error "Cistula's images are defined by IEEE arithmetic: build without -ffast-math."
 #endif
 
-// GCC inlines by size; the ray loops are worth more than its estimate.
+// GCC inlines by size; the ray loops are worth more than its estimate. The primitive tests are called instead: on the
+// host that costs nothing measurable and spares every mask its copy of them.
 #if defined(__GNUC__)
 #define CISTULA_INLINE CISTULA_HD inline __attribute__((always_inline))
-#define CISTULA_NOINLINE CISTULA_HD __attribute__((noinline))
 #else
 #define CISTULA_INLINE CISTULA_HD inline
-#define CISTULA_NOINLINE CISTULA_HD
+#endif
+#if defined(__GNUC__) && !CISTULA_ON_DEVICE
+#define CISTULA_CALLED CISTULA_HD __attribute__((noinline))
+#else
+#define CISTULA_CALLED CISTULA_HD inline
 #endif
 
 namespace cistula {

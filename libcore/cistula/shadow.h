@@ -85,7 +85,7 @@ CISTULA_INLINE bool light_on_convex(const SceneView<Real>& scene, const Light<Re
 }
 
 template <class Real, class E>
-CISTULA_INLINE void shadow_convex(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
+CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
                                   ShadowSum& sum) {
     const Ray<Real>& ray = shadow.ray;
     const bool inside = ray.media.contains(index), own = ray.from_solid == index;
@@ -115,7 +115,7 @@ CISTULA_INLINE void shadow_convex(const SceneView<Real>& scene, uint32_t index, 
 }
 
 template <class Real, class E>
-CISTULA_INLINE void shadow_cluster(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
+CISTULA_CALLED void shadow_cluster(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
                                    const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
     const Cluster<Real>& cluster = scene.clusters[index];
     for (uint32_t mask = cluster_candidates(cluster, triangle_ray); mask != 0; mask &= mask - 1) {

@@ -136,7 +136,7 @@ CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, int lane, const
 
 /// The ray's next crossing of a cluster's triangles, if it is less than `best`.
 template <class Real>
-CISTULA_INLINE void closest_cluster(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
+CISTULA_CALLED void closest_cluster(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
                                     const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     const Cluster<Real>& cluster = scene.clusters[index];
     for (uint32_t mask = cluster_candidates(cluster, triangle_ray); mask != 0; mask &= mask - 1) {

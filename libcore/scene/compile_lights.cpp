@@ -75,9 +75,9 @@ void find_convex_incidents(const std::vector<FramedLight>& lights, const std::ve
         for (size_t k = 0; k < convex.size(); ++k) {
             const ConvexSolid& solid = convex[k];
             const bool own = lights[i].convex == static_cast<int>(k);
-            if (!own && (p.x < solid.box.low.x - reach || p.x > solid.box.high.x + reach ||
-                         p.y < solid.box.low.y - reach || p.y > solid.box.high.y + reach ||
-                         p.z < solid.box.low.z - reach || p.z > solid.box.high.z + reach))
+            if (!own &&
+                (p.x < solid.box.low.x - reach || p.x > solid.box.high.x + reach || p.y < solid.box.low.y - reach ||
+                 p.y > solid.box.high.y + reach || p.z < solid.box.low.z - reach || p.z > solid.box.high.z + reach))
                 continue;
             const bool inside = within<Real>(solid, p, tolerance);
             for (uint32_t slab = 0; slab < solid.planes.size(); ++slab) {
@@ -118,9 +118,9 @@ void find_triangle_incidents(const std::vector<FramedLight>& lights, const Frame
     }
 }
 
-#define CISTULA_INSTANTIATE(Real)                                                                                 \
-    template void find_convex_incidents<Real>(const std::vector<FramedLight>&, const std::vector<ConvexSolid>&,   \
-                                              double, IncidentLists&);                                            \
+#define CISTULA_INSTANTIATE(Real)                                                                                  \
+    template void find_convex_incidents<Real>(const std::vector<FramedLight>&, const std::vector<ConvexSolid>&,    \
+                                              double, IncidentLists&);                                             \
     template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, const Groups&, \
                                                 const Tree&, uint32_t, uint32_t, double, IncidentLists&);
 CISTULA_INSTANTIATE(float)

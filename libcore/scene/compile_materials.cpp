@@ -87,8 +87,8 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     m.specular = Vec3<Real>(material.specular * material.specular_color);
     m.diffuse = static_cast<Real>(material.diffuse);
     m.exponent = static_cast<Real>(material.exponent);
-    const bool integer = material.exponent <= largest_integer_exponent &&
-                         material.exponent == floor_of(material.exponent);
+    const bool integer =
+        material.exponent <= largest_integer_exponent && material.exponent == floor_of(material.exponent);
     m.integer_exponent = integer ? static_cast<int32_t>(material.exponent) : -1;
     m.reflection = static_cast<Real>(material.reflection);
     m.transmission = static_cast<Real>(material.transmission);

@@ -63,7 +63,8 @@ void share_offsets(const std::vector<PlanePair*>& pairs, double tolerance) {
         for (double* stored : {&pair->low, &pair->high})
             if (*stored != -INFINITY) offsets.push_back({negated ? -*stored : *stored, stored, negated});
     }
-    std::stable_sort(offsets.begin(), offsets.end(), [](const Offset& a, const Offset& b) { return a.value < b.value; });
+    std::stable_sort(offsets.begin(), offsets.end(),
+                     [](const Offset& a, const Offset& b) { return a.value < b.value; });
     double shared = -INFINITY;
     for (const Offset& offset : offsets) {
         if (offset.value - shared > tolerance) shared = offset.value;

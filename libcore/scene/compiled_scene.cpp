@@ -43,10 +43,10 @@ Box convex_box(const SceneView<Real>& scene, const Solid& solid) {
             for (size_t k = j + 1; k < planes.size(); ++k) {
                 const double determinant = dot(across, planes[k].normal);
                 if (magnitude(determinant) < 1e-6) continue;
-                const dvec3 corner = (planes[i].distance * cross(planes[j].normal, planes[k].normal) +
-                                      planes[j].distance * cross(planes[k].normal, planes[i].normal) +
-                                      planes[k].distance * across) /
-                                     determinant;
+                const dvec3 corner =
+                    (planes[i].distance * cross(planes[j].normal, planes[k].normal) +
+                     planes[j].distance * cross(planes[k].normal, planes[i].normal) + planes[k].distance * across) /
+                    determinant;
                 bool inside = true;
                 for (const Plane& p : planes) inside &= dot(p.normal, corner) <= p.distance + corner_slack * extent;
                 if (inside) box.add(corner);

@@ -90,7 +90,8 @@ Frame find_frame(const SceneSource& source) {
         throw scene_error(description, "/frame",
                           "the largest coordinate is " + std::to_string(extent) +
                               " in the pinned frame; it must stay under 2: choose a lesser scale or another center");
-    // Unpinned, M may lie just under 1 (see largest_extent); what is derived from it is then a little larger than need be.
+    // Unpinned, M may lie just under 1 (see largest_extent); what is derived from it is then a little larger than need
+    // be.
     frame.extent = description.frame ? (extent > 0 ? extent : 1) : greatest(extent, 1.0);
     return frame;
 }

@@ -39,7 +39,8 @@ TrianglesObject bumpy_sphere(uint32_t triangles, double bump) {
     object.vertices.reserve(uint64_t(rows - 1) * columns + 2);
     object.triangles.reserve(2 * uint64_t(rows - 1) * columns);
     const auto add_vertex = [&](const dvec3& p) {
-        const double wave = elementary::sin(9 * p.x + 1) * elementary::sin(11 * p.y + 2) * elementary::sin(10 * p.z + 3);
+        const double wave =
+            elementary::sin(9 * p.x + 1) * elementary::sin(11 * p.y + 2) * elementary::sin(10 * p.z + 3);
         object.vertices.push_back(p * (1 + bump * wave));
     };
     add_vertex({0, 0, -1});

@@ -16,7 +16,8 @@ TrianglesObject torus(double radius, double tube, uint32_t around, uint32_t acro
 /// A closed star: spikes over every face of an icosahedron, so that edges between spikes are reflex.
 TrianglesObject star(double inner = 0.5, double outer = 1);
 
-/// Open, random triangles in [-1, 1]^3 with corners within `size` / 4 of a random point, axis by axis; the same for the same seed.
+/// Open, random triangles in [-1, 1]^3 with corners within `size` / 4 of a random point, axis by axis; the same for the
+/// same seed.
 TrianglesObject triangle_soup(uint32_t triangles, double size, uint64_t seed);
 
 /// A Platonic solid as triangles, placed like the object.

@@ -76,7 +76,8 @@ struct ApexView {
         const dvec3 apex = along(centroid, height, up);
         const double apex_volume = volume(apex, q[0], q[1], q[2]);
         for (int i = 0; i < 3; ++i)
-            if (shared[0] != i && shared[1] != i && shared[2] != i && crosses(apex, apex_volume, corner[i], q)) return true;
+            if (shared[0] != i && shared[1] != i && shared[2] != i && crosses(apex, apex_volume, corner[i], q))
+                return true;
         for (int i = 0; i < 3; ++i) {  // the side across from corner i
             const int b = (i + 1) % 3, c = (i + 2) % 3;
             const std::array<dvec3, 3> face{apex, corner[b], corner[c]};
@@ -143,20 +144,24 @@ uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& 
         const double size = length(normal);
         if (!(size > 0)) return;
         for (int side = 0; side < 2; ++side) {
-            const ApexView view{corner, (corner[0] + corner[1] + corner[2]) / 3.0, side ? normal / size : -normal / size};
+            const ApexView view{corner, (corner[0] + corner[1] + corner[2]) / 3.0,
+                                side ? normal / size : -normal / size};
             float& height = heights.side[side][t];
             int halvings = 0;
             bool through = false;
             for (const Neighbor* other : near) {
                 float lower = height;
                 int more = 0;
-                const auto blocked = [&] { return lower > 0 && view.blocked_by(other->corner, static_cast<double>(lower)); };
+                const auto blocked = [&] {
+                    return lower > 0 && view.blocked_by(other->corner, static_cast<double>(lower));
+                };
                 bool free = !blocked();
                 for (; !free && halvings + more < most_halvings; free = !blocked()) {
                     lower /= 2;
                     ++more;
                 }
-                // What goes through the triangle itself blocks every apex: none is better than that of its other neighbors.
+                // What goes through the triangle itself blocks every apex: none is better than that of its other
+                // neighbors.
                 through |= !free;
                 if (!free) continue;
                 height = lower;

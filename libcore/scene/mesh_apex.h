@@ -20,9 +20,9 @@ ApexHeights apex_heights(const FramedMesh& mesh);
 /// An apex is halved at most this often, so 2^-24 of its first height is the floor.
 inline constexpr int most_halvings = 24;
 
-/// Halves heights until no other triangle of the mesh reaches between a triangle and its apexes: not across the segments
-/// to the corners, not through the sides between them. What blocks even the lowest apex goes through the triangle itself
-/// and is passed over. Returns how many sides of triangles have that.
+/// Halves heights until no other triangle of the mesh reaches between a triangle and its apexes: not across the
+/// segments to the corners, not through the sides between them. What blocks even the lowest apex goes through the
+/// triangle itself and is passed over. Returns how many sides of triangles have that.
 uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights);
 
 }  // namespace cistula

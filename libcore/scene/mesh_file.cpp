@@ -5,10 +5,10 @@
 #include <fstream>
 #include <sstream>
 
-#include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <assimp/Importer.hpp>
 
 #include "scene/polygon.h"
 #include "scene/rotation.h"
@@ -49,7 +49,8 @@ void check_ply_header(const std::string& place, const std::string& file) {
                                        word == "element" || word == "property";
         if (!known)
             refuse(place, file,
-                   "cannot be read: line " + std::to_string(number) + " of its header is not PLY; it must be \"ply\", " +
+                   "cannot be read: line " + std::to_string(number) +
+                       " of its header is not PLY; it must be \"ply\", " +
                        "then format, comment, element, property and end_header lines");
     }
     refuse(place, file, "cannot be read: its header has no end_header line");
@@ -111,7 +112,8 @@ MeshPart part_of(const aiMesh& from, const MeshObject& object) {
         const bool in_range = std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
                                           [&from](unsigned corner) { return corner < from.mNumVertices; });
         if (in_range)
-            append_polygon(mesh.owned_vertices, {face.mIndices, face.mIndices + face.mNumIndices}, mesh.owned_triangles);
+            append_polygon(mesh.owned_vertices, {face.mIndices, face.mIndices + face.mNumIndices},
+                           mesh.owned_triangles);
     }
     if (from.HasTextureCoords(0)) {
         mesh.owned_uvs.reserve(from.mNumVertices);
@@ -138,8 +140,7 @@ std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& pla
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                                             aiComponent_COLORS | aiComponent_BONEWEIGHTS);
     // Not aiProcess_Triangulate: Debian's build of it ends the program on some broken files.
-    const aiScene* scene =
-        importer.ReadFile(object.file, aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices);
+    const aiScene* scene = importer.ReadFile(object.file, aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices);
     if (!scene) refuse(place, object.file, "cannot be read: " + one_line(importer.GetErrorString()));
 
     std::vector<MeshPart> parts;

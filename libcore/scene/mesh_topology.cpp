@@ -75,15 +75,14 @@ struct HalfEdge {
     uint32_t high_vertex, number;
 };
 
-/// Links the half-edges of every edge in a ring and counts the edges that are not two half-edges in opposite directions.
+/// Links the half-edges of every edge in a ring and counts the edges that are not two half-edges in opposite
+/// directions.
 void link_edges(const MeshSource& mesh, const std::vector<uint32_t>& welded, MeshTopology& topology) {
     const uint32_t count = topology.count;
     const auto vertex = [&](uint32_t half_edge) {
         return welded[mesh.triangles[topology.source_triangle(half_edge / 3)][half_edge % 3]];
     };
-    const auto end = [&](uint32_t half_edge) {
-        return vertex(half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1);
-    };
+    const auto end = [&](uint32_t half_edge) { return vertex(half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1); };
 
     std::vector<uint32_t> first(mesh.vertices.size() + 1, 0);
     for (uint32_t h = 0; h < 3 * count; ++h) ++first[std::min(vertex(h), end(h))];
@@ -126,8 +125,8 @@ double signed_volume(const MeshSource& mesh, const MeshTopology& topology) {
     double sum = 0, magnitudes = 0;
     for (uint32_t i = 0; i < topology.count; ++i) {
         const auto& t = mesh.triangles[topology.source_triangle(i)];
-        const double term = dot(mesh.vertices[t[0]] - origin,
-                                cross(mesh.vertices[t[1]] - origin, mesh.vertices[t[2]] - origin));
+        const double term =
+            dot(mesh.vertices[t[0]] - origin, cross(mesh.vertices[t[1]] - origin, mesh.vertices[t[2]] - origin));
         sum += term;
         magnitudes += magnitude(term);
     }

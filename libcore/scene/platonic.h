@@ -11,9 +11,11 @@
 
 namespace cistula {
 
-/// Octahedron: vertices on the axes. Cube: faces across the axes. Dodecahedron and icosahedron: golden-ratio coordinates.
+/// Octahedron: vertices on the axes. Cube: faces across the axes. Dodecahedron and icosahedron: golden-ratio
+/// coordinates.
 struct PlatonicShape {
-    /// A pair of opposite planes, -distance <= normal.x <= distance; a single one (tetrahedron): only normal.x <= distance.
+    /// A pair of opposite planes, -distance <= normal.x <= distance; a single one (tetrahedron): only normal.x <=
+    /// distance.
     struct Planes {
         glm::dvec3 normal;  // unit
         bool single;

@@ -51,11 +51,11 @@ dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, cons
         const MaterialDescription& m = source.materials[source.solids[i].material];
         if (local_share(m) == 0 || boxes[i].empty()) continue;
         const dvec3 light = falling.empty() ? constant : constant + falloff_light(falling, boxes[i]);
-        const dvec3 texel = m.texture < 0 ? dvec3{1}
-                                          : textures.largest[static_cast<size_t>(
-                                                textures.number[static_cast<size_t>(m.texture)])];
-        const dvec3 local = m.color * texel * (m.ambient * scene.ambient + m.diffuse * light) +
-                            m.specular * m.specular_color * light;
+        const dvec3 texel =
+            m.texture < 0 ? dvec3{1}
+                          : textures.largest[static_cast<size_t>(textures.number[static_cast<size_t>(m.texture)])];
+        const dvec3 local =
+            m.color * texel * (m.ambient * scene.ambient + m.diffuse * light) + m.specular * m.specular_color * light;
         bound = largest_of(bound, local);
     }
     return bound;
@@ -81,10 +81,11 @@ RadianceScale radiance_scale(const SceneDescription& scene, const dvec3& bound, 
     const double largest = largest_component(used);
     const double limit = single_precision ? 0x1p100 : 0x1p900;
     if (!(largest <= limit) || !is_finite(used))
-        throw scene_error(scene, "",
-                          "the radiance bound is " + text(largest) + ", above 2^" +
-                              (single_precision ? "100, what single precision can take; use --precision double or " : "900; ") +
-                              "dimmer lights");
+        throw scene_error(
+            scene, "",
+            "the radiance bound is " + text(largest) + ", above 2^" +
+                (single_precision ? "100, what single precision can take; use --precision double or " : "900; ") +
+                "dimmer lights");
     if (largest > 0) {
         int exponent;
         const double mantissa = std::frexp(largest, &exponent);  // in [1/2, 1)

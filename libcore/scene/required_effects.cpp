@@ -86,8 +86,7 @@ class Explainer {
             if (m.transmission > 0) return "has kt " + number(m.transmission);
             return passes(m) ? std::string("splits its light by Fresnel's terms") : std::string();
         });
-        by_material(effect_refraction,
-                    passing_ ? "no solid has an index other than 1" : "no material lets rays pass",
+        by_material(effect_refraction, passing_ ? "no solid has an index other than 1" : "no material lets rays pass",
                     [&](const MaterialUse& u) {
                         const bool bends = passing_ && u.closed && u.material->index != 1;
                         return bends ? "has index " + number(u.material->index) : std::string();
@@ -148,11 +147,12 @@ class Explainer {
                                 return m.transmission > 0 ? std::string("lets a color not pass") : "has kt 0";
                         return std::string();
                     });
-        by_material(effect_transparent_shadows, lit ? "no material has kt above 0" : no_light_, [&](const MaterialUse& u) {
-            const MaterialDescription& m = *u.material;
-            const bool lets_pass = lit && any(m.transmission * m.tint);
-            return lets_pass ? "has kt " + number(m.transmission) : std::string();
-        });
+        by_material(effect_transparent_shadows, lit ? "no material has kt above 0" : no_light_,
+                    [&](const MaterialUse& u) {
+                        const MaterialDescription& m = *u.material;
+                        const bool lets_pass = lit && any(m.transmission * m.tint);
+                        return lets_pass ? "has kt " + number(m.transmission) : std::string();
+                    });
     }
 
     const SceneDescription& scene_;

@@ -18,10 +18,14 @@ inline SineCosine sine_cosine_of_degrees(double degrees) {
     const double radians = (turned - 90 * quarter) * (3.14159265358979323846 / 180);
     const double s = elementary::sin(radians), c = elementary::cos(radians);
     switch (static_cast<int>(quarter) & 3) {
-        case 0: return {s, c};
-        case 1: return {c, -s};
-        case 2: return {-s, -c};
-        default: return {-c, s};
+        case 0:
+            return {s, c};
+        case 1:
+            return {c, -s};
+        case 2:
+            return {-s, -c};
+        default:
+            return {-c, s};
     }
 }
 

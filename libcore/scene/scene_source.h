@@ -1,4 +1,5 @@
-// The solids of a description with all that they come from at hand: meshes read, materials numbered. Inside libcore/scene.
+// The solids of a description with all that they come from at hand: meshes read, materials numbered. Inside
+// libcore/scene.
 #pragma once
 
 #include <array>

@@ -1,0 +1,73 @@
+"""bars.py OUT.json RECORD.json...: merges records of Google Benchmark and prints every bar beside what was measured."""
+import json
+import statistics
+import sys
+
+
+class Records:
+    def __init__(self, paths):
+        self.context, self.benchmarks = None, []
+        for path in paths:
+            with open(path) as file:
+                record = json.load(file)
+            record["context"].pop("executable", None)
+            self.context = self.context or record["context"]
+            self.benchmarks += record["benchmarks"]
+
+    def runs(self, name):
+        """The repetitions of a benchmark, in the order in which they ran."""
+        chosen = [b for b in self.benchmarks if b["run_type"] == "iteration" and b["run_name"].startswith(name)]
+        if not chosen:
+            sys.exit(f"bars.py: the records have no benchmark {name}")
+        return sorted(chosen, key=lambda b: b.get("repetition_index", 0))
+
+    def times(self, name):
+        return [b["real_time"] for b in self.runs(name)]
+
+    def counter(self, name, key):
+        return self.runs(name)[0][key]
+
+    def ratio(self, over, under):
+        """Of the medians, and the range over the single repetitions of both."""
+        a, b = self.times(over), self.times(under)
+        return statistics.median(a) / statistics.median(b), min(a) / max(b), max(a) / min(b)
+
+
+def main():
+    out, *paths = sys.argv[1:]
+    records = Records(paths)
+    scene, sphere = "benchmark.json/", "bumpy_sphere/"
+    bars = []  # name, what holds, bar, value, low, high
+
+    def bar(name, relation, limit, value, low=None, high=None):
+        met = value >= limit if relation == ">=" else value <= limit
+        entry = {"bar": name, "relation": relation, "limit": limit, "value": value, "met": met}
+        if low is not None:
+            entry["low"], entry["high"] = low, high
+        bars.append(entry)
+
+    bar("POV-Ray's time / Cistula's, depth 16", ">=", 15, *records.ratio(scene + "povray", scene + "cistula"))
+    bar("  share of pixels within 0.004 of it", ">=", 0.99, records.counter(scene + "images", "share_within_0.004"))
+    bar("rays a second / Embree's robust triangles", ">=", 0.95,
+        *records.ratio(sphere + "embree_robust", sphere + "cistula/float"))
+    bar("bytes a triangle at the peak, float", "<=", 160, records.counter(sphere + "memory/float", "bytes_per_triangle"))
+    bar("bytes a triangle at the peak, double", "<=", 240, records.counter(sphere + "memory/double", "bytes_per_triangle"))
+    for depth in (4, 16):
+        bar(f"time of double / float, depth {depth}", "<=", 1.6,
+            *records.ratio(f"{scene}double/depth:{depth}", f"{scene}float/depth:{depth}"))
+
+    for b in bars:
+        spread = f"{b['low']:9.3f} to {b['high']:<9.3f}" if "low" in b else ""
+        print(f"{b['bar']:<42} {b['value']:9.3f}  {b['relation']} {b['limit']:<6} {'met' if b['met'] else 'MISSED':<7}{spread}")
+    for name in ("povray", "cistula"):
+        times = records.times(scene + name)
+        print(f"{name} on benchmark.json, depth 16: median {statistics.median(times):.0f} ms, "
+              f"{min(times):.0f} to {max(times):.0f}")
+    with open(out, "w") as file:
+        json.dump({"context": records.context, "benchmarks": records.benchmarks, "bars": bars}, file, indent=2)
+        file.write("\n")
+    print(f"written: {out}")
+
+
+if __name__ == "__main__":
+    main()

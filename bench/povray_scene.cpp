@@ -1,0 +1,117 @@
+#include "povray_scene.h"
+
+#include <fmt/format.h>
+
+#include "scene/error.h"
+#include "scene/frame.h"
+#include "scene/platonic.h"
+#include "scene/scene_source.h"
+
+namespace cistula::bench {
+namespace {
+
+using glm::dvec3;
+
+/// Shortest decimals that read back as the same doubles.
+std::string vector(const dvec3& v) {
+    return fmt::format("<{}, {}, {}>", v.x, v.y, v.z);
+}
+std::string color(const dvec3& v) {
+    return "rgb " + vector(v);
+}
+
+bool is_gray(const dvec3& v) {
+    return v.x == v.y && v.y == v.z;
+}
+
+/// Refuses what has no equal in POV-Ray's light model, or one with other edges.
+void check(const SceneDescription& scene, const SceneSource& source) {
+    const auto refuse = [&](const std::string& what) {
+        throw Error(ExitCode::usage, scene.source + ": cannot be put in POV-Ray's terms: " + what);
+    };
+    for (const MaterialDescription& m : source.materials) {
+        if (m.index != 1 || m.fresnel) refuse("material " + m.name + " refracts; its index must be 1");
+        if (m.absorption != dvec3(0)) refuse("material " + m.name + " absorbs; its absorption must be 0");
+        if (m.tint != dvec3(1)) refuse("material " + m.name + " tints what passes; its tint must be white");
+        if (!is_gray(m.specular_color)) refuse("material " + m.name + " has a colored highlight; it must be gray");
+        if (m.texture >= 0 && !scene.textures[size_t(m.texture)].file.empty())
+            refuse("material " + m.name + " has a texture from a file; it must be a checker");
+    }
+    if (!is_gray(scene.ambient)) refuse("the ambient color must be gray");
+    for (const LightDescription& light : scene.lights)
+        if (light.falloff || light.radius > 0) refuse("a light falls off or is seen; it must do neither");
+    for (const SourceSolid& solid : source.solids)
+        if (solid.platonic && solid.platonic->edge_lights.count > 0) refuse("a solid has lights on its edges");
+}
+
+/// Two cells a unit of uv times repeat, placed by the first triangle's uvs (a planar object has one such map).
+std::string checker(const TextureDescription& texture, const dvec3& base, const MeshSource& mesh) {
+    const auto& t = mesh.triangles[0];
+    const dvec3 p = mesh.vertices[t[0]], b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
+    const glm::dvec2 scale = texture.repeat * 2.0;
+    const glm::dvec2 at = mesh.uvs[t[0]] * scale;
+    const glm::dvec2 db = mesh.uvs[t[1]] * scale - at, dc = mesh.uvs[t[2]] * scale - at;
+    const double det = db.x * dc.y - db.y * dc.x;
+    const dvec3 along_x = (b * dc.y - c * db.y) / det, along_y = (c * db.x - b * dc.x) / det;
+    const dvec3 normal = normalized(cross(b, c));
+    // POV-Ray's checker has cells in depth too: the triangles go through the middle of one.
+    const dvec3 corner = p - at.x * along_x - at.y * along_y - 0.5 * normal;
+    return fmt::format("checker {} {} matrix <{}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}>",
+                       color(base * texture.checker[0]), color(base * texture.checker[1]), along_x.x, along_x.y,
+                       along_x.z, along_y.x, along_y.y, along_y.z, normal.x, normal.y, normal.z, corner.x, corner.y,
+                       corner.z);
+}
+
+/// POV-Ray weakens the ambient and diffuse light of what transmits kt by 1 - kt, but neither its highlights nor its mirrored
+/// light; Cistula weakens all local light by 1 - kr - kt.
+std::string texture(const SceneDescription& scene, const MaterialDescription& m, const MeshSource& mesh) {
+    const double local = 1 - m.reflection - m.transmission;
+    const double painted = m.transmission < 1 ? local / (1 - m.transmission) : 0;
+    const std::string pigment =
+        m.texture >= 0 ? checker(scene.textures[size_t(m.texture)], m.color, mesh)
+                       : fmt::format("{}{}", color(m.color), m.transmission > 0 ? fmt::format(" transmit {}", m.transmission) : "");
+    return fmt::format(
+        "texture {{ pigment {{ {} }} finish {{ ambient {} diffuse {} phong {} phong_size {} {}}} }}", pigment,
+        m.ambient * scene.ambient.x * painted, m.diffuse * painted, m.specular * m.specular_color.x * local, m.exponent,
+        m.reflection > 0 ? fmt::format("reflection {} ", m.reflection) : "");
+}
+
+MeshSource triangles_of(const SolidObject& solid) {
+    MeshSource mesh;
+    mesh.owned_vertices = world_vertices(solid);
+    mesh.owned_triangles = triangulated(platonic_shape(solid.solid));
+    mesh.view_owned();
+    return mesh;
+}
+
+}  // namespace
+
+std::string povray_scene(const SceneDescription& scene, const CameraFrame& frame, int width, int height,
+                         int max_trace_level) {
+    const SceneSource source = gather_scene(scene);
+    check(scene, source);
+    std::string text = "#version 3.7;\n";
+    text += fmt::format("global_settings {{ assumed_gamma 1.0 ambient_light rgb 1 max_trace_level {} adc_bailout 0 }}\n",
+                        max_trace_level);
+    text += fmt::format("background {{ {} }}\n", color(scene.background));
+    // All three vectors are given, so POV-Ray's left-handed default does not come in.
+    const Camera& camera = frame.camera;
+    text += fmt::format("camera {{ perspective location {} direction {} right {} up {} }}\n", vector(camera.position),
+                        vector(camera.forward), vector(camera.right * (2 * camera.tan_half_width)),
+                        vector(camera.up * (2 * camera.tan_half_width * height / width)));
+    for (const LightDescription& light : scene.lights)
+        if (light.color != dvec3(0))
+            text += fmt::format("light_source {{ {} {} }}\n", vector(light.position), color(light.color));
+    for (const SourceSolid& solid : source.solids) {
+        const MeshSource made = solid.platonic ? triangles_of(*solid.platonic) : MeshSource();
+        const MeshSource& mesh = solid.platonic ? made : solid.mesh;
+        text += "mesh {\n";
+        for (const auto& t : mesh.triangles)
+            text += fmt::format("  triangle {{ {}, {}, {} }}\n", vector(mesh.vertices[t[0]]), vector(mesh.vertices[t[1]]),
+                                vector(mesh.vertices[t[2]]));
+        text += "  " + texture(scene, source.materials[solid.material], mesh) + "\n}\n";
+    }
+    return text;
+}
+
+}  // namespace cistula::bench
