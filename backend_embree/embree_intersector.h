@@ -35,7 +35,7 @@ struct EmbreeIntersector {
     Hit<Real> closest(const Ray<Real>& ray) const {
         ClosestQuery<Real> query;
         query.best = Hit<Real>();
-        if (!is_finite(ray)) return query.best;
+        if (!is_finite(ray) || closest_enclosed(scene, ray, query.best)) return query.best;
         embree_init(query.context);
         query.scene = &scene;
         query.ray = &ray;

@@ -21,15 +21,15 @@ class Records:
             sys.exit(f"bars.py: the records have no benchmark {name}")
         return sorted(chosen, key=lambda b: b.get("repetition_index", 0))
 
-    def times(self, name):
-        return [b["real_time"] for b in self.runs(name)]
+    def times(self, name, clock="real_time"):
+        return [b[clock] for b in self.runs(name)]
 
     def counter(self, name, key):
         return self.runs(name)[0][key]
 
-    def ratio(self, over, under):
+    def ratio(self, over, under, clock="real_time"):
         """Of the medians, and the range over the single repetitions of both."""
-        a, b = self.times(over), self.times(under)
+        a, b = self.times(over, clock), self.times(under, clock)
         return statistics.median(a) / statistics.median(b), min(a) / max(b), max(a) / min(b)
 
 
@@ -49,16 +49,18 @@ def main():
     bar("POV-Ray's time / Cistula's, depth 16", ">=", 15, *records.ratio(scene + "povray", scene + "cistula"))
     bar("  share of pixels within 0.004 of it", ">=", 0.99, records.counter(scene + "images", "share_within_0.004"))
     bar("rays a second / Embree's robust triangles", ">=", 0.95,
-        *records.ratio(sphere + "embree_robust", sphere + "cistula/float"))
-    bar("bytes a triangle at the peak, float", "<=", 160, records.counter(sphere + "memory/float", "bytes_per_triangle"))
-    bar("bytes a triangle at the peak, double", "<=", 240, records.counter(sphere + "memory/double", "bytes_per_triangle"))
+        *records.ratio(sphere + "embree_robust", sphere + "cistula/float", "cpu_time"))
+    for precision, limit in (("float", 160), ("double", 240)):
+        bar(f"bytes a triangle at the peak, {precision}", "<=", limit,
+            records.counter(f"{sphere}memory/{precision}", "bytes_per_triangle"))
     for depth in (4, 16):
         bar(f"time of double / float, depth {depth}", "<=", 1.6,
             *records.ratio(f"{scene}double/depth:{depth}", f"{scene}float/depth:{depth}"))
 
     for b in bars:
         spread = f"{b['low']:9.3f} to {b['high']:<9.3f}" if "low" in b else ""
-        print(f"{b['bar']:<42} {b['value']:9.3f}  {b['relation']} {b['limit']:<6} {'met' if b['met'] else 'MISSED':<7}{spread}")
+        verdict = "met" if b["met"] else "MISSED"
+        print(f"{b['bar']:<42} {b['value']:9.3f}  {b['relation']} {b['limit']:<6} {verdict:<7}{spread}")
     for name in ("povray", "cistula"):
         times = records.times(scene + name)
         print(f"{name} on benchmark.json, depth 16: median {statistics.median(times):.0f} ms, "

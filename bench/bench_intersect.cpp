@@ -1,7 +1,6 @@
-// Cistula's triangles, each hit exactly once, against Embree's own robust ones: primary rays on a bumpy sphere of 1.3 million
-// triangles, one thread; and what that sphere takes of memory.
-// bench_intersect --memory float|double|none: in a process of its own, the peak while generating, compiling and building
-// the tree (none: before any of it), in bytes.
+// Cistula's triangles, each hit exactly once, against Embree's own robust ones: primary rays on a bumpy sphere of 1.3
+// million triangles, one thread; and what that sphere takes of memory. bench_intersect --memory float|double|none: in a
+// process of its own, the peak while generating, compiling and building the tree (none: before any of it), in bytes.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -55,7 +54,8 @@ std::vector<Ray<Real>> primary_rays(const CompiledScene<Real>& compiled, const S
                     Ray<Real> ray;
                     Vec3<double> direction;
                     double start;
-                    if (primary_ray(compiled.view(), frame, x + 0.5, y + 0.5, ray, direction, start)) rays.push_back(ray);
+                    if (primary_ray(compiled.view(), frame, x + 0.5, y + 0.5, ray, direction, start))
+                        rays.push_back(ray);
                 }
     return rays;
 }
@@ -157,7 +157,8 @@ void check_agreement() {
         differing += !(ours == theirs || std::abs(ours - theirs) < 1e-3f);
     }
     if (hits == 0 || differing * 1000 > hits)
-        throw Error(ExitCode::failed, fmt::format("of {} hits {} differ from Embree's; at most 1 in 1000 may", hits, differing));
+        throw Error(ExitCode::failed,
+                    fmt::format("of {} hits {} differ from Embree's; at most 1 in 1000 may", hits, differing));
 }
 
 void measure_memory(benchmark::State& state, const std::string& precision) {
@@ -183,7 +184,9 @@ void register_all(const std::vector<std::string>&) {
     setting->single.rays = primary_rays(*setting->single.compiled, setting->scene);
     setting->twice.rays = primary_rays(*setting->twice.compiled, setting->scene);
     check_agreement();
-    benchmark::RegisterBenchmark("bumpy_sphere/embree_robust", time_embree)->MinTime(0.1)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("bumpy_sphere/embree_robust", time_embree)
+        ->MinTime(0.1)
+        ->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("bumpy_sphere/cistula/float", [](auto& s) { time_cistula(s, setting->single); })
         ->MinTime(0.1)
         ->Unit(benchmark::kMillisecond);
@@ -205,7 +208,9 @@ int main(int argc, char** argv) {
     using namespace cistula::bench;
     if (argc == 3 && std::strcmp(argv[1], "--memory") == 0) {
         const std::string what = argv[2];
-        fmt::print("{:.0f}\n", what == "float" ? memory_of_ours<float>() : what == "double" ? memory_of_ours<double>() : peak_memory());
+        fmt::print("{:.0f}\n", what == "float"    ? memory_of_ours<float>()
+                               : what == "double" ? memory_of_ours<double>()
+                                                  : peak_memory());
         return 0;
     }
     return run_program(argc, argv, repetitions, register_all);

@@ -33,16 +33,17 @@ double povray_trace_seconds(const std::string& log) {
 }
 
 double run_povray() {
-    return povray_trace_seconds(output_of(fmt::format(
-        "povray {} {} +FE +W{} +H{} +WT{} -A -D -V", quoted("+I" + paths.povray_scene.string()),
-        quoted("+O" + paths.povray_image.string()), width, height, threads)));
+    return povray_trace_seconds(
+        output_of(fmt::format("povray {} {} +FE +W{} +H{} +WT{} -A -D -V", quoted("+I" + paths.povray_scene.string()),
+                              quoted("+O" + paths.povray_image.string()), width, height, threads)));
 }
 
 nlohmann::json run_cistula() {
-    output_of(fmt::format("{} {} -o {} --res {}x{} --depth {} --cutoff 0 --supersample 1 --threads {} --stats {} "
-                          "--progress none -q",
-                          quoted(CISTULA_BIN_DIR "/render"), quoted(paths.scene), quoted(paths.image), width, height,
-                          depth, threads, quoted(paths.stats)));
+    output_of(
+        fmt::format("{} {} -o {} --res {}x{} --depth {} --cutoff 0 --supersample 1 --threads {} --stats {} "
+                    "--progress none -q",
+                    quoted(CISTULA_BIN_DIR "/render"), quoted(paths.scene), quoted(paths.image), width, height, depth,
+                    threads, quoted(paths.stats)));
     const nlohmann::json stats = nlohmann::json::parse(std::ifstream(paths.stats));
     for (const auto& entry : stats.at("benchmarks"))
         if (entry.contains("render_ms")) return entry;

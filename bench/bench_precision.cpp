@@ -26,7 +26,8 @@ void time_frame(benchmark::State& state, Precision precision, int depth, uint32_
     for (auto _ : state) {
         RenderProgress progress;
         renderer.render(camera, settings, film, progress);
-        if (film.flags != 0) throw Error(ExitCode::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
+        if (film.flags != 0)
+            throw Error(ExitCode::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
     }
     state.counters["rays"] = double(film.rays.total());
     state.counters["rays_per_second"] =

@@ -62,18 +62,19 @@ std::string checker(const TextureDescription& texture, const dvec3& base, const 
                        corner.z);
 }
 
-/// POV-Ray weakens the ambient and diffuse light of what transmits kt by 1 - kt, but neither its highlights nor its mirrored
-/// light; Cistula weakens all local light by 1 - kr - kt.
+/// POV-Ray weakens the ambient and diffuse light of what transmits kt by 1 - kt, but neither its highlights nor its
+/// mirrored light; Cistula weakens all local light by 1 - kr - kt.
 std::string texture(const SceneDescription& scene, const MaterialDescription& m, const MeshSource& mesh) {
     const double local = 1 - m.reflection - m.transmission;
     const double painted = m.transmission < 1 ? local / (1 - m.transmission) : 0;
     const std::string pigment =
         m.texture >= 0 ? checker(scene.textures[size_t(m.texture)], m.color, mesh)
-                       : fmt::format("{}{}", color(m.color), m.transmission > 0 ? fmt::format(" transmit {}", m.transmission) : "");
-    return fmt::format(
-        "texture {{ pigment {{ {} }} finish {{ ambient {} diffuse {} phong {} phong_size {} {}}} }}", pigment,
-        m.ambient * scene.ambient.x * painted, m.diffuse * painted, m.specular * m.specular_color.x * local, m.exponent,
-        m.reflection > 0 ? fmt::format("reflection {} ", m.reflection) : "");
+                       : fmt::format("{}{}", color(m.color),
+                                     m.transmission > 0 ? fmt::format(" transmit {}", m.transmission) : "");
+    return fmt::format("texture {{ pigment {{ {} }} finish {{ ambient {} diffuse {} phong {} phong_size {} {}}} }}",
+                       pigment, m.ambient * scene.ambient.x * painted, m.diffuse * painted,
+                       m.specular * m.specular_color.x * local, m.exponent,
+                       m.reflection > 0 ? fmt::format("reflection {} ", m.reflection) : "");
 }
 
 MeshSource triangles_of(const SolidObject& solid) {
@@ -91,8 +92,9 @@ std::string povray_scene(const SceneDescription& scene, const CameraFrame& frame
     const SceneSource source = gather_scene(scene);
     check(scene, source);
     std::string text = "#version 3.7;\n";
-    text += fmt::format("global_settings {{ assumed_gamma 1.0 ambient_light rgb 1 max_trace_level {} adc_bailout 0 }}\n",
-                        max_trace_level);
+    text +=
+        fmt::format("global_settings {{ assumed_gamma 1.0 ambient_light rgb 1 max_trace_level {} adc_bailout 0 }}\n",
+                    max_trace_level);
     text += fmt::format("background {{ {} }}\n", color(scene.background));
     // All three vectors are given, so POV-Ray's left-handed default does not come in.
     const Camera& camera = frame.camera;
@@ -107,8 +109,8 @@ std::string povray_scene(const SceneDescription& scene, const CameraFrame& frame
         const MeshSource& mesh = solid.platonic ? made : solid.mesh;
         text += "mesh {\n";
         for (const auto& t : mesh.triangles)
-            text += fmt::format("  triangle {{ {}, {}, {} }}\n", vector(mesh.vertices[t[0]]), vector(mesh.vertices[t[1]]),
-                                vector(mesh.vertices[t[2]]));
+            text += fmt::format("  triangle {{ {}, {}, {} }}\n", vector(mesh.vertices[t[0]]),
+                                vector(mesh.vertices[t[1]]), vector(mesh.vertices[t[2]]));
         text += "  " + texture(scene, source.materials[solid.material], mesh) + "\n}\n";
     }
     return text;

@@ -45,6 +45,6 @@ TEST_P(Golden, StatesTheWorstDifferenceOfThePrecisions) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden, ::testing::ValuesIn(golden::scene_names(source + "/scenes")),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& scene) { return scene.param; });
 
 }  // namespace

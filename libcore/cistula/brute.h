@@ -31,7 +31,7 @@ struct BruteIntersector {
     /// The least (t, key) after ray.after that the primitive tests accept.
     CISTULA_INLINE Hit<Real> closest(const Ray<Real>& ray) const {
         Hit<Real> best;
-        if (!is_finite(ray)) return best;
+        if (!is_finite(ray) || closest_enclosed(scene, ray, best)) return best;
         for (uint32_t i = 0; i < scene.convex.size; ++i) closest_convex(scene, scene.convex[i], ray, best);
         if (!scene.clusters.empty()) {
             const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);

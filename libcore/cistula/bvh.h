@@ -95,7 +95,7 @@ struct BvhIntersector {
 
     CISTULA_INLINE Hit<Real> closest(const Ray<Real>& ray) const {
         Hit<Real> best;
-        if (!is_finite(ray)) return best;
+        if (!is_finite(ray) || closest_enclosed(scene, ray, best)) return best;
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
         BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
         box_ray.near_limit = tree_near(ray.after.t);

@@ -81,6 +81,16 @@ CISTULA_CALLED void closest_convex(const SceneView<Real>& scene, uint32_t index,
     if (best.improves(t, key)) best = {t, key, Real(0), Real(0), 0, !inside};
 }
 
+/// The next crossing of a ray inside a solid that stands alone, which is the way out of it; false for any other ray.
+template <class Real>
+CISTULA_INLINE bool closest_enclosed(const SceneView<Real>& scene, const Ray<Real>& ray, Hit<Real>& best) {
+    if (ray.media.size != 1) return false;
+    const uint32_t solid = MediaList::solid_of(ray.media.entries[0]);
+    if (!scene.solids[solid].alone || MediaList::count_of(ray.media.entries[0]) <= 0) return false;
+    closest_convex(scene, solid, ray, best);
+    return true;
+}
+
 /// Strictly inside all planes.
 template <class Real>
 CISTULA_HD inline bool inside_convex(const SceneView<Real>& scene, const Solid& solid, const Vec3<Real>& point) {

@@ -84,8 +84,25 @@ class RayTree {
 
     /// Straight on through a face.
     CISTULA_INLINE void pass(Ray<Real>& ray, const Hit<Real>& hit) {
+        const uint32_t solid = key_solid(hit.key);
+        if (ray.fresh() && solid == ray.from_solid && scene_.solids[solid].kind == SolidKind::mesh)
+            count_passed_over(ray, hit);
         change_media(ray.media, hit.key);
         ray.after = {hit.t, hit.key};
+    }
+
+    /// A line that starts on a mesh takes its first crossing from the right side. Others of that mesh that rounding puts
+    /// before it, at an edge that the line grazes, count all the same once it goes on straight.
+    CISTULA_INLINE void count_passed_over(Ray<Real>& ray, const Hit<Real>& hit) {
+        Ray<Real> probe = ray;
+        probe.from_solid = no_solid;
+        for (;;) {
+            const Hit<Real> next = intersector_.closest(probe);
+            if (!Crossing<Real>{next.t, next.key}.before(hit.t, hit.key)) return;
+            if (key_solid(next.key) == ray.from_solid) change_media(ray.media, next.key);
+            change_media(probe.media, next.key);
+            probe.after = {next.t, next.key};
+        }
     }
 
     /// A crossing with nothing to shade: inside a medium of higher priority, or of a clear face between equal media.

@@ -29,6 +29,8 @@ struct Solid {
     uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
     Vec3<float> center;               // convex: of a sphere around it,
     float padded_square;              // ... and the square of its radius plus sphere_padding
+    uint32_t alone;                   // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
+                                      // hits next is its own face
 };
 
 /// So much that rounding never turns a ray that the slabs accept into one that passes the sphere by: the terms of the

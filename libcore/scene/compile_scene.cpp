@@ -33,6 +33,7 @@ void return_free_memory() {
 }
 
 constexpr uint32_t fewest_in_seen_tree = 9;
+constexpr size_t most_pairs = 10'000'000;
 
 /// One compilation: the parts in the order in which they need one another.
 template <class Real>
@@ -62,6 +63,7 @@ class Compiler {
         }
         compile_shading();
         compile_lights();
+        find_solids_alone();
         explain();
         scene_.hash = hash_.hex();
         return std::make_unique<CompiledScene<Real>>(std::move(scene_));
@@ -88,6 +90,25 @@ class Compiler {
             hash_.add(convex.solid);
             scene_.convex.push_back(convex.solid);
             boxes_[convex.solid] = convex.box;
+        }
+    }
+
+    /// Only spares work, so that scenes of very many pairs may do without.
+    void find_solids_alone() {
+        const SceneView<Real> view = scene_.view();
+        const size_t primitives = view.convex.size + view.clusters.size;
+        if (view.convex.empty() || view.convex.size * primitives > most_pairs) return;
+        std::vector<PaddedBox> boxes;
+        for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
+        for (uint32_t a = 0; a < view.convex.size; ++a) {
+            bool alone = true;
+            for (uint32_t b = 0; b < primitives && alone; ++b) {
+                bool apart = a == b;
+                for (int k = 0; k < 3; ++k)
+                    apart |= boxes[a].high[k] < boxes[b].low[k] || boxes[b].high[k] < boxes[a].low[k];
+                alone = apart;
+            }
+            scene_.solids[view.convex[a]].alone = alone ? 1 : 0;
         }
     }
 
