@@ -21,9 +21,13 @@ if(TARGET cistula_embree)
     install(FILES backend_embree/embree_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_embree")
 endif()
 
+set(CISTULA_OIIO_MODULE "")
+if(TARGET cistula_oiio)
+    set(CISTULA_OIIO_MODULE "${CMAKE_SHARED_MODULE_PREFIX}cistula_oiio${CMAKE_SHARED_MODULE_SUFFIX}")
+endif()
 configure_package_config_file(cmake/cistulaConfig.cmake.in "${PROJECT_BINARY_DIR}/cistulaConfig.cmake"
-    INSTALL_DESTINATION "${CISTULA_INSTALL_CMAKE}" NO_SET_AND_CHECK_MACRO)
+    INSTALL_DESTINATION "${CISTULA_INSTALL_CMAKE}" PATH_VARS CISTULA_INSTALL_MODULES NO_SET_AND_CHECK_MACRO)
 # Before 1.0 every minor version may break.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/cistulaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/cistulaConfig.cmake" "${PROJECT_BINARY_DIR}/cistulaConfigVersion.cmake"
-    cmake/FindOpenImageIO.cmake DESTINATION "${CISTULA_INSTALL_CMAKE}")
+    DESTINATION "${CISTULA_INSTALL_CMAKE}")

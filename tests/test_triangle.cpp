@@ -326,19 +326,27 @@ TYPED_TEST(TriangleTest, ClusterPathEqualsTheOneLanePath) {
         uint32_t one_by_one = 0;
         for (uint32_t lane = 0; lane < cluster.count; ++lane)
             one_by_one |= uint32_t(ShearedTriangle<Real>::of(cluster, int(lane), ray).within()) << lane;
-        ASSERT_EQ(cluster_candidates(cluster, ray), one_by_one);
+        CandidateLanes<Real> lanes;
+        ASSERT_EQ(cluster_candidates(cluster, ray, lanes), one_by_one);
         candidates += one_by_one != 0;
-        // Alone in a cluster or among others, a triangle is crossed at the same bits.
+        // Alone in a cluster or among others, a triangle is crossed at the same bits, which are those of the scalar test.
         for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+            if (!(one_by_one >> lane & 1u)) continue;
+            const auto sheared = ShearedTriangle<Real>::of(cluster, int(lane), ray);
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_EQ(lanes.edge[c][lane], sheared.edge[c]);
+                ASSERT_EQ(lanes.z[c][lane], sheared.z[c]);
+            }
             Cluster<Real> alone{};
             alone.count = 1;
             for (int c = 0; c < 3; ++c)
                 for (int axis = 0; axis < 3; ++axis) alone.corner[c][axis][0] = cluster.corner[c][axis][lane];
             TriangleCrossing<Real> a{}, b{};
-            const bool crossed = cross_triangle(cluster, int(lane), ray, a);
-            ASSERT_EQ(crossed, cross_triangle(alone, 0, ray, b));
+            CandidateLanes<Real> alone_lanes;
+            ASSERT_EQ(cluster_candidates(alone, ray, alone_lanes), 1u);
+            const bool crossed = cross_triangle(cluster, lanes, lane, ray, a);
+            ASSERT_EQ(crossed, cross_triangle(alone, alone_lanes, 0, ray, b));
             if (!crossed) continue;
-            ASSERT_TRUE(one_by_one >> lane & 1u);
             ASSERT_TRUE(a.t == b.t && a.u == b.u && a.v == b.v && a.enters == b.enters);
         }
     }

@@ -7,45 +7,94 @@
 
 namespace cistula {
 
-/// Where a line is inside all slabs. Faces as in Slab.
+/// Where a line is inside all slabs. A line beside a slab that it is parallel to has enter = infinity.
 template <class Real>
 struct ConvexInterval {
     Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
-    uint32_t enter_face = 0, leave_face = 0;
-    bool beside = false;  // parallel to a slab and not inside it: seen from outside, a miss
 
     /// For an origin outside.
-    CISTULA_INLINE bool met() const { return !beside && enter <= leave && leave > Real(0); }
+    CISTULA_INLINE bool met() const { return enter <= leave && leave > Real(0); }
 };
 
 inline constexpr uint32_t no_face = 0xffffffffu;
 
-/// For an origin outside the slabs that follow a miss are left out; met() stays false whatever they say. `skipped` is a
-/// face that cannot be the one to leave by.
+/// Where a line crosses one slab. Selects only, since which slab decides is unpredictable; all callers use the same
+/// operations, so that the face of a value can be looked up afterwards.
+template <class Real>
+CISTULA_INLINE void cross_slab(const Vec3<Real>& normal, Real low, Real high, const Vec3<Real>& origin,
+                               const Vec3<Real>& direction, Real& enter, Real& leave) {
+    const Real nd = dot(normal, direction), no = dot(normal, origin);
+    const Real inverse = Real(1) / nd;
+    const Real at_low = (low - no) * inverse, at_high = (high - no) * inverse;
+    // Subnormal counts as parallel: its inverse overflows, and where the origin lies in the plane 0 * inf is NaN.
+    const bool parallel = magnitude(nd) < RealTraits<Real>::least_normal;
+    const Real beside = no >= high || no <= low ? RealTraits<Real>::infinity : -RealTraits<Real>::infinity;
+    const Real first = at_low < at_high ? at_low : at_high, last = at_low < at_high ? at_high : at_low;
+    enter = parallel ? beside : first;
+    leave = parallel ? RealTraits<Real>::infinity : last;
+}
+
+/// The same for eight at once, as the compiler fills vectors with it.
+template <class Real>
+CISTULA_INLINE void cross_slabs(const SlabGroup<Real>& group, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                                Real (&enter)[slab_lanes], Real (&leave)[slab_lanes]) {
+#pragma GCC ivdep
+    for (int i = 0; i < slab_lanes; ++i)
+        cross_slab(Vec3<Real>(group.nx[i], group.ny[i], group.nz[i]), group.low[i], group.high[i], origin, direction,
+                   enter[i], leave[i]);
+}
+
+template <class Real>
+CISTULA_INLINE Real greatest_lane(const Real (&a)[slab_lanes]) {
+    return greatest(greatest(greatest(a[0], a[4]), greatest(a[2], a[6])), greatest(greatest(a[1], a[5]), greatest(a[3], a[7])));
+}
+template <class Real>
+CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
+    return least(least(least(a[0], a[4]), least(a[2], a[6])), least(least(a[1], a[5]), least(a[3], a[7])));
+}
+
+/// `skipped` is a face that cannot be the one to leave by.
 template <class Real>
 CISTULA_INLINE ConvexInterval<Real> convex_interval(const SceneView<Real>& scene, const Solid& solid,
                                                     const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                                    bool outside, uint32_t skipped = no_face) {
+                                                    uint32_t skipped = no_face) {
     ConvexInterval<Real> interval;
     const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
+    const auto leaves_by_skipped = [&] {
+        return (dot(slabs[skipped / 2].normal, direction) > Real(0)) == ((skipped & 1u) != 0);
+    };
+#if CISTULA_ON_DEVICE
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const Slab<Real>& slab = slabs[i];
-        const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin);
-        // Subnormal counts as parallel: its inverse overflows, and where the origin lies in the plane 0 * inf is NaN.
-        if (magnitude(nd) < RealTraits<Real>::least_normal) {
-            interval.beside |= no >= slab.high || no <= slab.low;
-            continue;
-        }
-        const Real inverse = Real(1) / nd;
-        const Real at_low = (slab.low - no) * inverse, at_high = (slab.high - no) * inverse;
-        const bool upward = nd > Real(0);
-        const Real enter = upward ? at_low : at_high, leave = upward ? at_high : at_low;
-        const uint32_t enter_face = 2 * i + (upward ? 0 : 1), leave_face = enter_face ^ 1;
-        if (enter > interval.enter) interval.enter = enter, interval.enter_face = enter_face;
-        if (leave < interval.leave && leave_face != skipped) interval.leave = leave, interval.leave_face = leave_face;
-        if (outside && !(interval.enter <= interval.leave && interval.leave > Real(0))) break;
+        Real enter, leave;
+        cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
+        interval.enter = greatest(enter, interval.enter);
+        if (skipped / 2 != i || !leaves_by_skipped()) interval.leave = least(leave, interval.leave);
     }
+#else
+    for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
+        alignas(32) Real enter[slab_lanes], leave[slab_lanes];
+        cross_slabs(scene.slab_groups[solid.first_group + first / slab_lanes], origin, direction, enter, leave);
+        if (skipped / 2 - first < uint32_t(slab_lanes) && leaves_by_skipped())
+            leave[skipped / 2 - first] = RealTraits<Real>::infinity;
+        interval.enter = greatest(greatest_lane(enter), interval.enter);
+        interval.leave = least(least_lane(leave), interval.leave);
+    }
+#endif
     return interval;
+}
+
+/// The first face by which the line enters or leaves at t, as convex_interval found it.
+template <class Real>
+CISTULA_INLINE uint32_t convex_face(const SceneView<Real>& scene, const Solid& solid, const Vec3<Real>& origin,
+                                    const Vec3<Real>& direction, Real t, bool leaves, uint32_t skipped = no_face) {
+    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        Real enter, leave;
+        cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
+        const uint32_t face = 2 * i + ((dot(slabs[i].normal, direction) > Real(0)) == leaves ? 1 : 0);
+        if ((leaves ? leave : enter) == t && face != skipped) return face;
+    }
+    return 0;
 }
 
 /// Whether a ray that starts outside surely misses: spares most rays the slabs, decides no hit.
@@ -64,20 +113,15 @@ CISTULA_CALLED void closest_convex(const SceneView<Real>& scene, uint32_t index,
     if (own && !inside) return;
     const Solid& solid = scene.solids[index];
     if (!inside && passes_by(solid, ray.origin, ray.direction)) return;
-    const ConvexInterval<Real> interval =
-        convex_interval(scene, solid, ray.origin, ray.direction, !inside, own ? ray.from_face : no_face);
-    Real t;
-    uint64_t key;
-    if (inside) {
-        t = greatest(interval.leave, Real(0));
-        key = make_key(CrossingKind::leave, index, interval.leave_face);
-        if (!(t < RealTraits<Real>::infinity)) return;
-    } else {
-        if (!interval.met()) return;
-        t = greatest(interval.enter, Real(0));
-        key = make_key(CrossingKind::enter, index, interval.enter_face);
-        if (!ray.after.before(t, key)) return;
-    }
+    const uint32_t skipped = own ? ray.from_face : no_face;
+    const ConvexInterval<Real> interval = convex_interval(scene, solid, ray.origin, ray.direction, skipped);
+    if (!inside && !interval.met()) return;
+    // Before the face, which takes a look at every slab, what the time alone decides.
+    const Real found = inside ? interval.leave : interval.enter, t = greatest(found, Real(0));
+    if (!(t <= best.t && t < RealTraits<Real>::infinity) || (!inside && t < ray.after.t)) return;
+    const uint32_t face = convex_face(scene, solid, ray.origin, ray.direction, found, inside, skipped);
+    const uint64_t key = make_key(inside ? CrossingKind::leave : CrossingKind::enter, index, face);
+    if (!inside && !ray.after.before(t, key)) return;
     if (best.improves(t, key)) best = {t, key, Real(0), Real(0), 0, !inside};
 }
 

@@ -70,6 +70,29 @@ CISTULA_INLINE To bits_as(const From& from) {
     return to;
 }
 
+/// The number of the lowest set bit; bits != 0.
+CISTULA_INLINE uint32_t lowest_bit(uint32_t bits) {
+#if CISTULA_ON_DEVICE
+    return uint32_t(__ffs(int(bits)) - 1);
+#else
+    return uint32_t(__builtin_ctz(bits));
+#endif
+}
+
+/// Bit i: the sign of lanes[i]. `lanes` is aligned to 32 bytes.
+CISTULA_INLINE uint32_t sign_bits(const int32_t (&lanes)[8]) {
+#if defined(__AVX__) && !defined(__CUDACC__)
+    using Eight __attribute__((vector_size(32))) = float;
+    Eight eight;
+    memcpy(&eight, lanes, sizeof eight);
+    return uint32_t(__builtin_ia32_movmskps256(eight));
+#else
+    uint32_t bits = 0;
+    for (int i = 0; i < 8; ++i) bits |= uint32_t(lanes[i] < 0) << i;
+    return bits;
+#endif
+}
+
 /// A view of `size` elements that something else owns; std::span without its host-only members.
 template <class T>
 struct Span {

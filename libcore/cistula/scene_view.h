@@ -20,11 +20,21 @@ struct Slab {
     Real low, high;
 };
 
+inline constexpr int slab_lanes = 8;
+
+/// Eight slabs side by side, so that the host tests a ray against all at once. Unused lanes have a zero normal and no
+/// sides.
+template <class Real>
+struct alignas(32) SlabGroup {
+    Real nx[slab_lanes], ny[slab_lanes], nz[slab_lanes], low[slab_lanes], high[slab_lanes];
+};
+
 /// Solids are numbered in file order, which is also the priority of their media: later wins.
 struct Solid {
     SolidKind kind;
     uint32_t material;
-    uint32_t first_slab, slab_count;  // convex: slabs, first those that are single planes last
+    uint32_t first_slab, slab_count;  // convex: its slabs
+    uint32_t first_group;             // convex: the same slabs, ceil(slab_count / 8) groups
     uint32_t first_triangle;          // mesh, sheet: scene-wide number of its first triangle
     uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
     Vec3<float> center;               // convex: of a sphere around it,
@@ -121,6 +131,7 @@ template <class Real>
 struct SceneView {
     Span<Solid> solids;
     Span<Slab<Real>> slabs;
+    Span<SlabGroup<Real>> slab_groups;
     Span<uint32_t> convex;              // the convex solids; primitive p < convex.size is convex[p]
     Span<Cluster<Real>> clusters;       // primitive p >= convex.size is clusters[p - convex.size]
     Span<Vec2<Real>> uvs;

@@ -94,7 +94,7 @@ CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, 
     if (!inside && passes_by(solid, ray.origin, ray.direction)) return;
     const Material<Real>& material = scene.materials[solid.material];
     const ConvexInterval<Real> interval =
-        convex_interval(scene, solid, ray.origin, ray.direction, !inside, own ? ray.from_face : no_face);
+        convex_interval(scene, solid, ray.origin, ray.direction, own ? ray.from_face : no_face);
     const Real enter = inside ? Real(0) : greatest(interval.enter, Real(0));
     const Real leave = least(greatest(interval.leave, Real(0)), shadow.distance);
     bool outside = false;
@@ -118,11 +118,11 @@ template <class Real, class E>
 CISTULA_CALLED void shadow_cluster(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
                                    const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
     const Cluster<Real>& cluster = scene.clusters[index];
-    for (uint32_t mask = cluster_candidates(cluster, triangle_ray); mask != 0; mask &= mask - 1) {
-        uint32_t lane = 0;
-        while (!(mask >> lane & 1u)) ++lane;
+    CandidateLanes<Real> lanes;
+    for (uint32_t mask = cluster_candidates(cluster, triangle_ray, lanes); mask != 0; mask &= mask - 1) {
+        const uint32_t lane = lowest_bit(mask);
         TriangleCrossing<Real> c;
-        if (!cross_triangle(cluster, int(lane), triangle_ray, c)) continue;
+        if (!cross_triangle(cluster, lanes, lane, triangle_ray, c)) continue;
         if (!(c.t >= Real(0) && c.t < shadow.distance)) continue;
         const uint32_t triangle = cluster.triangle[lane];
         if (shadow.ray.from_solid == cluster.solid && shadow.ray.from_face == triangle) continue;

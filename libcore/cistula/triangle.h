@@ -78,13 +78,23 @@ struct ShearedTriangle {
     }
 };
 
+/// What the eight-lane test leaves for the lanes that it names: edge functions and corners' distances along kz.
+template <class Real>
+struct alignas(32) CandidateLanes {
+    Real edge[3][cluster_lanes], z[3][cluster_lanes];
+};
+
 /// The lanes that a ray may hit, as bits: the inclusive edge tests only, eight at once.
 template <class Real>
-CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const TriangleRay<Real>& ray) {
+CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const TriangleRay<Real>& ray,
+                                           CandidateLanes<Real>& lanes) {
     uint32_t mask = 0;
 #if CISTULA_ON_DEVICE
-    for (uint32_t lane = 0; lane < cluster.count; ++lane)
-        mask |= uint32_t(ShearedTriangle<Real>::of(cluster, int(lane), ray).within()) << lane;
+    for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+        const ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, int(lane), ray);
+        for (int c = 0; c < 3; ++c) lanes.edge[c][lane] = s.edge[c], lanes.z[c][lane] = s.z[c];
+        mask |= uint32_t(s.within()) << lane;
+    }
 #else
     // Straight code over lanes, so that the compiler fills vectors with it: same operations, same bits.
     const Real *px[3], *py[3], *pz[3];
@@ -106,10 +116,11 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
         const Real w = difference_of_products(bx, ay, by, ax);
         const int32_t up = int32_t(u >= Real(0)) & int32_t(v >= Real(0)) & int32_t(w >= Real(0));
         const int32_t down = int32_t(u <= Real(0)) & int32_t(v <= Real(0)) & int32_t(w <= Real(0));
-        within[lane] = (up | down) << lane;
+        within[lane] = -(up | down);
+        lanes.edge[0][lane] = u, lanes.edge[1][lane] = v, lanes.edge[2][lane] = w;
+        lanes.z[0][lane] = az, lanes.z[1][lane] = bz, lanes.z[2][lane] = cz;
     }
-    for (int lane = 0; lane < cluster_lanes; ++lane) mask |= uint32_t(within[lane]);
-    mask &= (1u << cluster.count) - 1u;
+    mask = sign_bits(within) & ((1u << cluster.count) - 1u);
 #endif
     return mask;
 }
@@ -123,14 +134,16 @@ struct TriangleCrossing {
 
 /// The exact test of one candidate lane; t is not yet compared with anything.
 template <class Real>
-CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, int lane, const TriangleRay<Real>& ray,
-                                   TriangleCrossing<Real>& crossing) {
-    const ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, lane, ray);
-    if (!s.within()) return false;
-    const Real det = s.edge[0] + s.edge[1] + s.edge[2];
-    if (det == Real(0) || !s.owns_zero_edges(det > Real(0) ? Real(1) : Real(-1))) return false;
-    const Real depth = s.edge[0] * (ray.sz * s.z[0]) + s.edge[1] * (ray.sz * s.z[1]) + s.edge[2] * (ray.sz * s.z[2]);
-    crossing = {depth / det, s.edge[1] / det, s.edge[2] / det, det > Real(0)};
+CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, const CandidateLanes<Real>& lanes, uint32_t lane,
+                                   const TriangleRay<Real>& ray, TriangleCrossing<Real>& crossing) {
+    const Real u = lanes.edge[0][lane], v = lanes.edge[1][lane], w = lanes.edge[2][lane], det = u + v + w;
+    if (u == Real(0) || v == Real(0) || w == Real(0)) {
+        if (det == Real(0)) return false;
+        const ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, int(lane), ray);
+        if (!s.owns_zero_edges(det > Real(0) ? Real(1) : Real(-1))) return false;
+    }
+    const Real depth = u * (ray.sz * lanes.z[0][lane]) + v * (ray.sz * lanes.z[1][lane]) + w * (ray.sz * lanes.z[2][lane]);
+    crossing = {depth / det, v / det, w / det, det > Real(0)};
     return true;
 }
 
@@ -139,11 +152,11 @@ template <class Real>
 CISTULA_CALLED void closest_cluster(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
                                     const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     const Cluster<Real>& cluster = scene.clusters[index];
-    for (uint32_t mask = cluster_candidates(cluster, triangle_ray); mask != 0; mask &= mask - 1) {
-        uint32_t lane = 0;
-        while (!(mask >> lane & 1u)) ++lane;
+    CandidateLanes<Real> lanes;
+    for (uint32_t mask = cluster_candidates(cluster, triangle_ray, lanes); mask != 0; mask &= mask - 1) {
+        const uint32_t lane = lowest_bit(mask);
         TriangleCrossing<Real> c;
-        if (!cross_triangle(cluster, int(lane), triangle_ray, c)) continue;
+        if (!cross_triangle(cluster, lanes, lane, triangle_ray, c)) continue;
         const uint32_t triangle = cluster.triangle[lane];
         const bool own = ray.from_solid == cluster.solid;
         if (!(c.t >= Real(0)) || (own && ray.from_face == triangle)) continue;

@@ -86,6 +86,7 @@ class Compiler {
                 hash_.add(p.low);
                 hash_.add(p.high);
             }
+            group_slabs(solid);
             bound_sphere(convex, solid);
             hash_.add(convex.solid);
             scene_.convex.push_back(convex.solid);
@@ -109,6 +110,21 @@ class Compiler {
                 alone = apart;
             }
             scene_.solids[view.convex[a]].alone = alone ? 1 : 0;
+        }
+    }
+
+    void group_slabs(Solid& solid) {
+        solid.first_group = static_cast<uint32_t>(scene_.slab_groups.size());
+        for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
+            SlabGroup<Real> group{};
+            for (uint32_t i = 0; i < slab_lanes; ++i) {
+                const bool used = first + i < solid.slab_count;
+                const Slab<Real> slab = used ? scene_.slabs[solid.first_slab + first + i] : Slab<Real>{};
+                group.nx[i] = slab.normal.x, group.ny[i] = slab.normal.y, group.nz[i] = slab.normal.z;
+                group.low[i] = used ? slab.low : -RealTraits<Real>::infinity;
+                group.high[i] = used ? slab.high : RealTraits<Real>::infinity;
+            }
+            scene_.slab_groups.push_back(group);
         }
     }
 

@@ -80,6 +80,7 @@ SceneView<Real> CompiledScene<Real>::view() const {
     SceneView<Real> v;
     v.solids = span_of(solids);
     v.slabs = span_of(slabs);
+    v.slab_groups = span_of(slab_groups);
     v.convex = span_of(convex);
     v.clusters = span_of(clusters);
     v.uvs = span_of(uvs);
@@ -101,7 +102,7 @@ SceneView<Real> CompiledScene<Real>::view() const {
 
 template <class Real>
 size_t CompiledScene<Real>::memory() const {
-    return bytes_of(solids) + bytes_of(slabs) + bytes_of(convex) + bytes_of(clusters) + bytes_of(uvs) +
+    return bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) + bytes_of(clusters) + bytes_of(uvs) +
            bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(seen_lights) + bytes_of(textures) +
            bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) + bytes_of(seen_tree) + bytes_of(seen_items);
 }

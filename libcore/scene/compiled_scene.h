@@ -16,6 +16,7 @@ template <class Real>
 struct CompiledScene {
     std::vector<Solid> solids;
     std::vector<Slab<Real>> slabs;
+    std::vector<SlabGroup<Real>> slab_groups;
     std::vector<uint32_t> convex;
     std::vector<Cluster<Real>> clusters;
     std::vector<Vec2<Real>> uvs;

@@ -25,4 +25,23 @@ run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${work}/build" -G "${GENERATOR}" -D "C
     -D "CMAKE_CXX_COMPILER=${COMPILER}" -D CMAKE_BUILD_TYPE=Release)
 run("${CMAKE_COMMAND}" --build "${work}/build")
 run("${work}/build/headers")
-run("${work}/build/libraries")
+
+# With the module for pictures, where the package has it: also from a program that was installed elsewhere, and from the installed
+# programs of a prefix that was moved.
+set(picture "")
+if(OIIO)
+    set(picture "${work}/picture.png")
+endif()
+run("${work}/build/libraries" ${picture})
+run("${CMAKE_COMMAND}" --install "${work}/build" --prefix "${work}/elsewhere")
+run("${work}/elsewhere/bin/libraries" ${picture})
+if(OIIO)
+    file(REMOVE "${picture}")
+    file(RENAME "${prefix}" "${work}/moved")
+    file(WRITE "${work}/scene.json" [[{"film": {"width": 8, "height": 6}, "materials": {"m": {}},
+        "objects": [{"solid": "cube", "material": "m"}], "lights": [{"position": [3, -4, 5]}]}]])
+    run("${work}/moved/bin/render" "${work}/scene.json" -q -o "${work}/picture.exr" --preview "${picture}")
+    if(NOT EXISTS "${picture}")
+        message(FATAL_ERROR "the moved program wrote no ${picture}")
+    endif()
+endif()

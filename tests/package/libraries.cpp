@@ -1,4 +1,5 @@
-// Compiles a scene and renders it: every library is linked, with all that it needs.
+// Compiles a scene and renders it: every library is linked, with all that it needs. Pictures named in the arguments are
+// written and read: the module for them is found.
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -6,8 +7,9 @@
 #include "backend_embree/embree_renderer.h"
 #include "scene/camera_path.h"
 #include "scene/compiled_scene.h"
+#include "scene/picture_io.h"
 
-int main() try {
+int main(int argc, char** argv) try {
     cistula::SceneDescription description;
     description.materials.emplace_back();
     cistula::ObjectDescription cube;
@@ -31,6 +33,10 @@ int main() try {
     if (center.id != 1 || corner.id != 0) {
         std::fprintf(stderr, "id %d in the middle, %d in the corner\n", center.id, corner.id);
         return 1;
+    }
+    for (int i = 1; i < argc; ++i) {
+        cistula::write_preview(argv[i], {2, 1, {glm::vec3(0), glm::vec3(1)}});
+        if (cistula::read_texture(argv[i]).texels.at(1) != glm::vec3(1)) return 1;
     }
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
