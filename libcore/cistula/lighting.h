@@ -32,6 +32,7 @@ CISTULA_INLINE void add_local_light(const SceneView<Real>& scene, const Intersec
         for (uint32_t i = 0; i < scene.lights.size; ++i) {
             const Light<Real>& light = scene.lights[i];
             Vec3<Real> to_light = light.position - s.viewer_side;
+            if (!(dot(s.normal, to_light) > Real(0))) continue;  // before the square root
             const Real distance = length(to_light);
             to_light /= distance;
             const Real n_l = dot(s.normal, to_light);
