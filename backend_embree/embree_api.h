@@ -1,11 +1,7 @@
 // Embree 3 and 4, which differ in how a query passes its context.
 #pragma once
 
-#if CISTULA_EMBREE_MAJOR >= 4
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
+#include "scene/embree_handles.h"
 
 namespace cistula {
 

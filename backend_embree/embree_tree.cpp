@@ -17,10 +17,10 @@ void fail(const std::string& what) {
 
 template <class Real>
 EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options) {
-    device_ = rtcNewDevice(options.device_config.c_str());
+    device_.reset(rtcNewDevice(options.device_config.c_str()));
     if (!device_) fail("no device for \"" + options.device_config + "\"");
     rtcSetDeviceMemoryMonitorFunction(
-        device_,
+        device_.get(),
         [](void* self, ssize_t bytes, bool) {
             static_cast<EmbreeTree*>(self)->memory_ += bytes;
             return true;
@@ -33,7 +33,8 @@ EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& 
         use_default_rounding();
         for (uint32_t p = range.begin(); p != range.end(); ++p) boxes[p] = primitive_box(scene, p);
     });
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    const GeometryPointer owner(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
+    const RTCGeometry geometry = owner.get();
     const RTCBuildQuality quality = options.tree_quality > 0 ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW;
     rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetGeometryUserPrimitiveCount(geometry, primitives);
@@ -54,19 +55,12 @@ EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& 
     rtcSetGeometryIntersectFunction(geometry, &EmbreeIntersector<Real>::on_intersect);
     rtcSetGeometryOccludedFunction(geometry, &EmbreeIntersector<Real>::on_occluded);
     rtcCommitGeometry(geometry);
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneBuildQuality(scene_, quality);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
+    scene_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneBuildQuality(scene_.get(), quality);
+    rtcAttachGeometry(scene_.get(), geometry);
+    rtcCommitScene(scene_.get());
+    if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
         fail("building the tree failed with error " + std::to_string(int(error)));
-}
-
-template <class Real>
-EmbreeTree<Real>::~EmbreeTree() {
-    if (scene_) rtcReleaseScene(scene_);
-    if (device_) rtcReleaseDevice(device_);
 }
 
 template class EmbreeTree<float>;

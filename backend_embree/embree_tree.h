@@ -14,17 +14,16 @@ template <class Real>
 class EmbreeTree {
   public:
     EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options);
-    ~EmbreeTree();
     EmbreeTree(const EmbreeTree&) = delete;
     EmbreeTree& operator=(const EmbreeTree&) = delete;
 
-    RTCScene scene() const { return scene_; }
+    RTCScene scene() const { return scene_.get(); }
     size_t memory() const { return size_t(memory_.load()); }
 
   private:
-    RTCDevice device_ = nullptr;
-    RTCScene scene_ = nullptr;
-    std::atomic<ssize_t> memory_{0};
+    std::atomic<ssize_t> memory_{0};  // first, since the device counts in it until it is gone
+    DevicePointer device_;
+    ScenePointer scene_;
 };
 
 }  // namespace cistula

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 
+#include "apps/common/build_info.h"
 #include "scene/error.h"
 
 namespace cistula::bench {
@@ -23,17 +24,6 @@ std::string table_value(const char* file, const std::string& key) {
         if (value != line.npos) return line.substr(value);
     }
     return {};
-}
-
-std::string commit() {
-    const std::string git = "git -C " + quoted(CISTULA_SOURCE_DIR) + " ";
-    try {
-        std::string id = output_of(git + "rev-parse --short=12 HEAD");
-        id = id.substr(0, id.find('\n'));
-        return output_of(git + "status --porcelain").empty() ? id : id + " with changes";
-    } catch (const Error&) {
-        return "unknown";
-    }
 }
 
 }  // namespace
@@ -81,8 +71,8 @@ int run_program(int argc, char** argv, int repetitions, void (*register_all)(con
     }
     benchmark::AddCustomContext("cpu", table_value("/proc/cpuinfo", "model name"));
     benchmark::AddCustomContext("compiler", __VERSION__);
-    benchmark::AddCustomContext("flags", CISTULA_BENCH_FLAGS);
-    benchmark::AddCustomContext("commit", commit());
+    benchmark::AddCustomContext("flags", build_flags());
+    benchmark::AddCustomContext("commit", build_commit());
     try {
         register_all(arguments);
         benchmark::RunSpecifiedBenchmarks();

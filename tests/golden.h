@@ -44,8 +44,7 @@ inline OutputChannels channels() {
     return channels;
 }
 
-template <class Real>
-Film render_with(Renderer& renderer, const SceneDescription& description, const FrameSettings& settings) {
+inline Film render_with(Renderer& renderer, const SceneDescription& description, const FrameSettings& settings) {
     Film film;
     RenderProgress progress;
     renderer.render(camera_at(description.camera, 0), settings, film, progress);
@@ -55,13 +54,13 @@ Film render_with(Renderer& renderer, const SceneDescription& description, const 
 template <class Real>
 Film render_brute(const SceneDescription& description) {
     const auto renderer = make_host_renderer<Real>(compile_scene<Real>(description), HostIntersector::brute);
-    return render_with<Real>(*renderer, description, settings_for(description));
+    return render_with(*renderer, description, settings_for(description));
 }
 
 template <class Real>
 Film render_embree(const SceneDescription& description, const EmbreeOptions& options = {}) {
     const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(description), options);
-    return render_with<Real>(*renderer, description, settings_for(description));
+    return render_with(*renderer, description, settings_for(description));
 }
 
 /// The largest difference of R, G and B between two pictures of one size, and where it is.

@@ -28,6 +28,29 @@ void write_and_compare(const fs::path& file, const LayeredPicture& picture) {
     write_exr(file.string(), picture);
 }
 
+/// The hashes tell of changes too small for the floats of the pictures.
+void write_and_compare(const fs::path& file, const nlohmann::ordered_json& record) {
+    const std::string text = record.dump(2) + "\n";
+    if (!fs::exists(file)) {
+        fmt::print("  {}: new\n", file.string());
+    } else {
+        std::ifstream in(file, std::ios::binary);
+        const std::string before{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+        if (before == text) {
+            fmt::print("  {}: unchanged\n", file.string());
+            return;
+        }
+        fmt::print("  {}: changed\n", file.string());
+        const auto old = nlohmann::json::parse(before, nullptr, false);
+        for (const auto& [key, value] : record.items()) {
+            const std::string was = old.is_object() && old.contains(key) ? old[key].dump() : "nothing";
+            // By value, as the keys' order may differ.
+            if (was != nlohmann::json(value).dump()) fmt::print("    {}: was {}, is {}\n", key, was, value.dump());
+        }
+    }
+    write_file_atomically(file.string(), text);
+}
+
 void make(const fs::path& folder, const std::string& name) {
     fmt::print("{}\n", name);
     const SceneDescription scene = read_scene(std::string(CISTULA_SOURCE_DIR) + "/scenes/" + name + ".json");
@@ -63,7 +86,7 @@ void make(const fs::path& folder, const std::string& name) {
           {"x", d.x},
           {"y", d.y},
           {"share_over_half_of_1_255", double(over) / (golden::width * golden::height)}}}};
-    write_file_atomically((folder / name / "golden.json").string(), record.dump(2) + "\n");
+    write_and_compare(folder / name / "golden.json", record);
 }
 
 }  // namespace

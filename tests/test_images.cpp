@@ -1,12 +1,19 @@
-// What may never change an image: threads, tiles, instruction sets, trees, the order of lights, effects that a scene does
+// What may never change an image: threads, tiles, instruction sets, control registers, trees, the order of lights, effects that a scene does
 // not use, and solids that cannot be seen. And what truncation may take away: at most what the ledger says.
 #include <gtest/gtest.h>
+#include <immintrin.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
+#include <atomic>
+
+#include "backend_embree/embree_api.h"
 #include "cistula/fixed_sum.h"
 #include "golden.h"
 #include "scene/compiled_scene.h"
 #include "scene/generated_mesh.h"
+#include "scene/platonic.h"
 
 using namespace cistula;
 
@@ -30,7 +37,7 @@ FrameSettings small_frame(const SceneDescription& scene, int depth = 0) {
 template <class Real>
 Film render(const SceneDescription& scene, const FrameSettings& settings, const EmbreeOptions& options = {}) {
     const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(scene), options);
-    return golden::render_with<Real>(*renderer, scene, settings);
+    return golden::render_with(*renderer, scene, settings);
 }
 
 /// 0 <= reference - image <= ledger of the image, per pixel and channel, in integers.
@@ -49,6 +56,51 @@ Film render(const SceneDescription& scene, const FrameSettings& settings, const 
     used = stated > 0 ? double(lost) / double(stated) : 1;
     return ::testing::AssertionSuccess();
 }
+
+struct InstructionSet {
+    const char* config;
+    bool here;  // whether this processor has it
+    int lanes;  // of the widest packets of rays that Embree then handles natively
+};
+
+bool has_avx2() {
+    return __builtin_cpu_supports("avx2");
+}
+
+/// All that Embree calls avx512.
+bool has_avx512() {
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512vl");
+}
+
+/// What a device made with this configuration says of itself: 4, 8 or 16 lanes; 0: none.
+int widest_rays(const char* config) {
+    const RTCDevice device = rtcNewDevice(config);
+    if (!device) return 0;
+    int lanes = 0;
+    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED)) lanes = 4;
+    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) lanes = 8;
+    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) lanes = 16;
+    rtcReleaseDevice(device);
+    return lanes;
+}
+
+/// Default exceptions masked, rounding down, results and operands that are subnormal flushed to zero.
+constexpr unsigned disturbed_register = 0x1f80u | 0x2000u | 0x8000u | 0x0040u;
+constexpr unsigned control_bits = 0xffc0u;  // all but the sticky flags
+
+/// Sets this thread's control register for as long as it lives.
+class ControlRegister {
+  public:
+    explicit ControlRegister(unsigned value) : before_(_mm_getcsr()) { _mm_setcsr(value); }
+    ~ControlRegister() { _mm_setcsr(before_); }
+    ControlRegister(const ControlRegister&) = delete;
+    ControlRegister& operator=(const ControlRegister&) = delete;
+
+  private:
+    unsigned before_;
+};
 
 template <class Real>
 constexpr double largest_share_apart = sizeof(Real) == 4 ? 0.002 : 0.0002;
@@ -75,10 +127,17 @@ TYPED_TEST(Images, InstructionSetsAndTreesChangeNothing) {
     const SceneDescription scene = load("mesh");
     const FrameSettings settings = small_frame(scene, 4);
     const std::string expected = film_hash(render<TypeParam>(scene, settings));
-    for (const char* isa : {"isa=sse2", "isa=avx2", "isa=avx512"}) {
+    for (const InstructionSet& isa : {InstructionSet{"isa=sse2", true, 4}, InstructionSet{"isa=avx2", has_avx2(), 8},
+                                      InstructionSet{"isa=avx512", has_avx512(), 16}}) {
+        if (!isa.here) {
+            std::cout << "[ skipped  ] " << isa.config << ": this processor lacks it\n";
+            continue;
+        }
+        EXPECT_EQ(widest_rays(isa.config), isa.lanes) << "Embree did not take " << isa.config;
         EmbreeOptions options;
-        options.device_config = isa;
-        EXPECT_EQ(film_hash(render<TypeParam>(scene, settings, options)), expected) << isa;
+        options.device_config = isa.config;
+        options.always_tree = true;
+        EXPECT_EQ(film_hash(render<TypeParam>(scene, settings, options)), expected) << isa.config;
     }
     EmbreeOptions quick;
     quick.tree_quality = 0;
@@ -87,7 +146,7 @@ TYPED_TEST(Images, InstructionSetsAndTreesChangeNothing) {
         auto compiled = compile_scene<TypeParam>(scene);
         build_primitive_tree(*compiled, quality);
         const auto renderer = make_host_renderer<TypeParam>(std::move(compiled), HostIntersector::bvh);
-        EXPECT_EQ(film_hash(golden::render_with<TypeParam>(*renderer, scene, settings)), expected) << "bvh " << quality;
+        EXPECT_EQ(film_hash(golden::render_with(*renderer, scene, settings)), expected) << "bvh " << quality;
     }
 }
 
@@ -151,23 +210,79 @@ TYPED_TEST(Images, IndexOneIsInvisible) {
     air.transmission = 1;
     scene.materials.push_back(air);
     const int material = int(scene.materials.size()) - 1;
-    for (const PlatonicSolid solid : {PlatonicSolid::icosahedron, PlatonicSolid::tetrahedron}) {
+    TrianglesObject ring = torus(1.3, 0.55, 40, 24);
+    for (glm::dvec3& p : ring.vertices) p += glm::dvec3{0.4, -0.3, 1.1};
+    std::vector<std::pair<std::string, std::variant<SolidObject, TrianglesObject, MeshObject>>> shapes;
+    for (const PlatonicSolid kind : {PlatonicSolid::icosahedron, PlatonicSolid::tetrahedron}) {
+        SolidObject shape;
+        shape.solid = kind;
+        shape.center = {0.4, -0.3, 1.1};
+        shape.radius = 1.7;
+        shapes.emplace_back(std::string(platonic_name(kind)) + " of planes", shape);
+        shapes.emplace_back(std::string(platonic_name(kind)) + " of triangles", triangulated_solid(shape));
+    }
+    shapes.emplace_back("torus", ring);
+    const std::vector<ObjectDescription> objects = scene.objects;
+    for (const auto& [name, shape] : shapes) {
         ObjectDescription object;
         object.name = "nothing";
         object.material = material;
-        SolidObject shape;
-        shape.solid = solid;
-        shape.center = {0.4, -0.3, 1.1};
-        shape.radius = 1.7;
         object.shape = shape;
+        scene.objects = objects;
         scene.objects.insert(scene.objects.begin(), object);
         const Film with = render<TypeParam>(scene, settings);
-        EXPECT_EQ(with.flags, 0u);
-        size_t differing = 0;
+        EXPECT_EQ(with.flags, 0u) << name;
+        size_t differing = 0, first = with.pixels.size();
         for (size_t i = 0; i < with.pixels.size(); ++i)
-            differing += std::memcmp(with.pixels[i].radiance, without.pixels[i].radiance, sizeof without.pixels[i].radiance) != 0;
-        EXPECT_EQ(differing, 0u);
+            if (std::memcmp(with.pixels[i].radiance, without.pixels[i].radiance, sizeof without.pixels[i].radiance) != 0) {
+                ++differing;
+                first = std::min(first, i);
+            }
+        EXPECT_EQ(differing, 0u) << name << ", first at " << first % 160 << ", " << first / 160;
+        scene.materials[size_t(material)].index = 1.25;  // it is in view
+        EXPECT_NE(film_hash(render<TypeParam>(scene, settings)), film_hash(without)) << name;
+        scene.materials[size_t(material)].index = 1;
     }
+}
+
+/// Whatever other code left in the control registers of the calling thread and of the workers.
+TYPED_TEST(Images, ControlRegistersChangeNothing) {
+    SceneDescription scene = load("mesh");
+    scene.frame = FrameOfReference{{0.1, -0.3, 0.7}, -4, 64.0};  // so that moving the camera to the frame rounds
+    const FrameSettings settings = small_frame(scene, 4);
+    auto compiled = compile_scene<TypeParam>(scene), treed = compile_scene<TypeParam>(scene);
+    build_primitive_tree(*treed, 1);
+    const CameraFrame camera = camera_at(scene.camera, 0);
+    const std::string expected = film_hash(render<TypeParam>(scene, settings));
+    const ControlRegister disturbed(disturbed_register);
+    // Its workers take over the register of the thread that makes it.
+    tbb::task_arena arena;
+    arena.initialize();
+    arena.execute([&] {
+        const auto disturb = [&] {
+            std::atomic<int> default_before{0};
+            tbb::parallel_for(
+                0, 256,
+                [&](int) {
+                    default_before += (_mm_getcsr() & control_bits) != disturbed_register;
+                    _mm_setcsr(disturbed_register);
+                },
+                tbb::simple_partitioner());
+            _mm_setcsr(disturbed_register);
+            return default_before.load();
+        };
+        EXPECT_EQ(disturb(), 0) << "the arena does not hand its register down, so that this test shows less";
+        const auto renderer = make_embree_renderer<TypeParam>(std::move(compiled));
+        const auto host = make_host_renderer<TypeParam>(std::move(treed), HostIntersector::bvh);
+        for (Renderer* each : {renderer.get(), host.get()}) {
+            disturb();
+            Film film;
+            RenderProgress progress;
+            each->render(camera, settings, film, progress);
+            EXPECT_EQ(film.flags, 0u);
+            EXPECT_EQ(film_hash(film), expected) << each->intersector();
+        }
+    });
 }
 
 /// Solids as planes and as closed meshes go different ways through the code: to one picture, but for the rays that rounding

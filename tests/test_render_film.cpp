@@ -48,6 +48,24 @@ TEST_F(RenderFilm, ResumeSkipsWhatIsCompleteAndTheSame) {
     EXPECT_NE(bytes_of(file("a.00.exr")), first);
 }
 
+TEST_F(RenderFilm, ResumeSeesACameraThatChangedByLessThanAFloat) {
+    const Arguments film{"s.json", "-q", "-o", "a.##.exr", "--resume"};
+    expect_done(film);
+    const LayeredPicture before = read_exr(file("a.01.exr"));
+    put_bytes(
+        file("s.json"),
+        std::string(scene_text).replace(std::string(scene_text).find("\"fov\": 60"), 9, "\"fov\": 60.0000000000001"));
+    expect_done(film);
+    const LayeredPicture after = read_exr(file("a.01.exr"));
+    for (const char* same : {"worldToCamera", "worldToNDC", "cistula:sceneHash"})
+        EXPECT_EQ(before.attributes.at(same), after.attributes.at(same)) << same;
+    EXPECT_NE(before.attributes.at("cistula:cameraHash"), after.attributes.at("cistula:cameraHash"));
+    EXPECT_EQ(std::get<std::string>(after.attributes.at("cistula:cameraHash")).size(), 32u);
+    const std::string bytes = bytes_of(file("a.01.exr"));
+    expect_done({"s.json", "-q", "-o", "fresh.exr", "-f", "1"});
+    EXPECT_EQ(bytes_of(file("fresh.exr")), bytes);
+}
+
 TEST_F(RenderFilm, AFileThatCannotBeWrittenLeavesTheOldOneWhole) {
     expect_done({"s.json", "-q", "-o", "a.exr"});
     const std::string old = bytes_of(file("a.exr"));

@@ -74,6 +74,32 @@ TEST_F(RenderProgram, RefusesInOneLine) {
     EXPECT_FALSE(exists("a.exr"));
 }
 
+TEST_F(RenderProgram, RefusesNamesThatMeet) {
+    const std::string scene = bytes_of(file("s.json"));
+    std::filesystem::create_directory(file("d"));
+    std::filesystem::create_symlink("d", file("link"));
+    const std::string both = ": would be both ";
+    expect_refused({"s.json", "-o", "x.exr", "--stats", "x.exr"}, ExitCode::usage,
+                   "x.exr" + both + "--stats and an image; give each a file of its own");
+    expect_refused({"s.json", "-o", "./x.exr", "--stats", "d/../x.exr"}, ExitCode::usage,
+                   both + "--stats and an image");
+    expect_refused({"s.json", "-o", "d/x.exr", "--stats", "link/x.exr"}, ExitCode::usage,
+                   both + "--stats and an image");
+    expect_refused({"s.json", "-o", "x.exr", "--stats", file("x.exr")}, ExitCode::usage, both + "--stats and an image");
+    expect_refused({"s.json", "-o", "x.#.exr", "--stats", "x.2.exr"}, ExitCode::usage,
+                   "x.2.exr" + both + "--stats and an image");
+    expect_refused({"s.json", "-o", "x.#.exr", "--preview", "p%02d.png", "--stats", "p01.png"}, ExitCode::usage,
+                   "p01.png" + both + "--stats and a preview");
+    expect_refused({"s.json", "-o", "x.exr", "--stats", "s.json"}, ExitCode::usage, both + "the scene and --stats");
+    put_bytes(file("s1.exr"), scene);
+    expect_refused({"s1.exr", "-o", "s#.exr"}, ExitCode::usage, "s1.exr" + both + "the scene and an image");
+    put_bytes(file("s.png"), scene);
+    expect_refused({"s.png", "-o", "x.exr", "--preview", "s.png"}, ExitCode::usage, both + "the scene and a preview");
+    for (const char* name : {"s.json", "s1.exr", "s.png"}) EXPECT_EQ(bytes_of(file(name)), scene) << name;
+    EXPECT_FALSE(exists("x.exr") || exists("d/x.exr") || exists("s0.exr"));
+    expect_done({"s.json", "-q", "-o", "x.#.exr", "--stats", "x.3.exr", "-f", "1"});  // frame 3 is not rendered
+}
+
 TEST_F(RenderProgram, CudaIsRefusedAndNeverReplaced) {
     expect_refused({"s.json", "-o", "a.exr", "--backend", "cuda"}, ExitCode::device, "no CUDA backend");
     EXPECT_FALSE(exists("a.exr"));
@@ -197,9 +223,10 @@ TEST_F(RenderProgram, TheHeaderSaysWhatTheImageDependsOn) {
     const auto& attributes = picture.attributes;
     std::vector<std::string> names;
     for (const auto& entry : attributes) names.push_back(entry.first);
-    EXPECT_EQ(names, (std::vector<std::string>{"chromaticities", "cistula:cutoff", "cistula:depth", "cistula:frame",
-                                               "cistula:precision", "cistula:sceneHash", "cistula:supersample",
-                                               "cistula:time", "cistula:version", "worldToCamera", "worldToNDC"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"chromaticities", "cistula:cameraHash", "cistula:cutoff",
+                                               "cistula:depth", "cistula:frame", "cistula:precision",
+                                               "cistula:sceneHash", "cistula:supersample", "cistula:time",
+                                               "cistula:version", "worldToCamera", "worldToNDC"}));
     EXPECT_EQ(std::get<double>(attributes.at("cistula:cutoff")), 0.125);
     EXPECT_EQ(std::get<int>(attributes.at("cistula:depth")), 6);
     EXPECT_EQ(std::get<int>(attributes.at("cistula:frame")), 2);
@@ -229,6 +256,8 @@ TEST_F(RenderProgram, StatsAreJson) {
     EXPECT_EQ(context.at("resolution"), nlohmann::json({40, 24}));
     EXPECT_FALSE(context.at("intersector").get<std::string>().empty());
     EXPECT_FALSE(context.at("host_name").get<std::string>().empty());
+    EXPECT_NE(context.at("flags").get<std::string>().find("-ffp-contract=off"), std::string::npos);
+    EXPECT_GE(context.at("commit").get<std::string>().size(), 7u);
     EXPECT_GT(context.at("peak_rss_bytes").get<uint64_t>(), 1u << 20);
     EXPECT_GT(context.at("scene_bytes").get<uint64_t>(), 0u);
     const auto has = [&](const char* list, const char* effect) {
@@ -278,7 +307,11 @@ TEST_F(RenderProgram, ProgressAndSilence) {
     EXPECT_EQ(plain.find('\r'), std::string::npos);
     EXPECT_EQ(error_of({"--progress", "none"}).find("ETA"), std::string::npos);
     EXPECT_EQ(error_of({}).find('\r'), std::string::npos);
-    EXPECT_NE(error_of({"-v"}).find("scene hash"), std::string::npos);
+    const std::string verbose = error_of({"-v"});
+    EXPECT_NE(verbose.find("scene hash"), std::string::npos) << verbose;
+    const size_t effects = verbose.find("render: effects: texture, diffuse, ");
+    ASSERT_NE(effects, std::string::npos) << verbose;
+    EXPECT_NE(verbose.substr(effects, verbose.find('\n', effects) - effects).find(", refraction"), std::string::npos);
 }
 
 }  // namespace

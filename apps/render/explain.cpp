@@ -7,11 +7,8 @@
 namespace cistula {
 namespace {
 
-std::string names_of(uint32_t mask) {
-    std::vector<std::string> names;
-    for (int i = 0; i < effect_count; ++i)
-        if (mask >> i & 1) names.push_back(effect_names[i]);
-    return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
+std::string list_of(uint32_t mask) {
+    return mask == 0 ? "nothing" : fmt::format("{}", fmt::join(names_of_effects(mask), ", "));
 }
 
 }  // namespace
@@ -30,7 +27,7 @@ std::string explain_table(const std::string& scene, const std::vector<EffectReas
         table += fmt::format(row, effect_names[std::countr_zero(reason.effect)], reason.needed ? "yes" : "no",
                              (mask & reason.effect) != 0 ? "in" : "left out", reason.because);
     table += fmt::format("\nMask {} of {} runs. Left out: {}. In without need: {}; never a bit of the image.\n",
-                         chosen + 1, effect_mask_count, names_of(all_effects & ~mask), names_of(mask & ~required));
+                         chosen + 1, effect_mask_count, list_of(all_effects & ~mask), list_of(mask & ~required));
     return table;
 }
 

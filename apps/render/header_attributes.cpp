@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "scene/fnv128.h"
+
 namespace cistula {
 namespace {
 
@@ -12,6 +14,15 @@ std::vector<float> to_floats(const Row (&rows)[4]) {
     for (const Row& row : rows)
         for (const double value : row) values.push_back(static_cast<float>(value));
     return values;
+}
+
+/// Sees what the matrices, which are floats, round away.
+std::string camera_hash(const Camera& camera) {
+    Fnv128 hash;
+    for (const Vec3<double>* v : {&camera.position, &camera.forward, &camera.right, &camera.up})
+        for (const double value : {v->x, v->y, v->z}) hash.add(value);
+    hash.add(camera.tan_half_width);
+    return hash.hex();
 }
 
 }  // namespace
@@ -45,6 +56,7 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
                              const CameraFrame& camera) {
     return {
         {"chromaticities", std::vector<float>{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
+        {"cistula:cameraHash", camera_hash(camera.camera)},
         {"cistula:cutoff", settings.cutoff},
         {"cistula:depth", settings.depth},
         {"cistula:frame", camera.frame},

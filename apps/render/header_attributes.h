@@ -15,8 +15,8 @@ namespace cistula {
 
 using Attributes = decltype(LayeredPicture::attributes);
 
-/// Scene hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera, worldToNDC, chromaticities
-/// (Rec. 709, D65). docs/programs.md says what each holds.
+/// Scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera, worldToNDC,
+/// chromaticities (Rec. 709, D65). docs/programs.md says what each holds.
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera);
 

@@ -17,6 +17,7 @@
 #include "scene/compiled_scene.h"
 #include "scene/error.h"
 #include "scene/read_scene.h"
+#include "scene/required_effects.h"
 #include "scene/suggest.h"
 
 namespace cistula {
@@ -73,6 +74,7 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
         require_directory(outputs.preview.for_frame(outputs.frames.front()));
     }
     if (!options.stats.empty()) require_directory(options.stats);
+    require_different_files(options.scene, outputs.image, outputs.preview, options.stats, outputs.frames);
     return outputs;
 }
 
@@ -136,6 +138,8 @@ void render_scene(const RenderOptions& options) {
             throw;
         }
         write_stats();
+        if (options.verbose && !stats.frames.empty())  // the renderer knows what ran
+            fmt::print(stderr, "render: effects: {}\n", fmt::join(names_of_effects(stats.effects), ", "));
         if (!options.quiet) print_summary(stats, outputs.image, seconds);
     });
 }

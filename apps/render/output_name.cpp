@@ -3,21 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
+#include <map>
 #include <numeric>
 
 #include "scene/error.h"
+#include "scene/file_bytes.h"
 
 namespace cistula {
 namespace {
 
 constexpr int most_digits = 32;
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
-}
 
 }  // namespace
 
@@ -67,7 +63,7 @@ std::string OutputName::for_frame(int frame) const {
 }
 
 FileKind file_kind(const std::string& path) {
-    const std::string extension = lower(std::filesystem::path(path).extension().string());
+    const std::string extension = lower_extension(path);
     if (extension == ".exr") return FileKind::exr;
     if (extension == ".out" || extension == ".data") return FileKind::raw;
     throw Error(ExitCode::usage,
@@ -96,6 +92,28 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
     std::vector<int> frames(output.has_pattern() ? static_cast<size_t>(std::max(film_frames, 1)) : 1);
     std::iota(frames.begin(), frames.end(), 0);
     return frames;
+}
+
+void require_different_files(const std::string& scene, const OutputName& image, const OutputName& preview,
+                             const std::string& stats, const std::vector<int>& frames) {
+    std::map<std::string, const char*> users;
+    const auto use = [&](const std::string& path, const char* what) {
+        if (path.empty()) return;
+        std::error_code error;
+        // Absolute first: weakly_canonical leaves a relative path so where its beginning does not exist.
+        const std::filesystem::path absolute = std::filesystem::absolute(path, error);
+        const std::filesystem::path real = std::filesystem::weakly_canonical(absolute, error);
+        const auto [user, is_new] = users.emplace((error ? absolute.lexically_normal() : real).string(), what);
+        if (!is_new && std::string_view(user->second) != what)
+            throw Error(ExitCode::usage, fmt::format("{}: would be both {} and {}; give each a file of its own", path,
+                                                     user->second, what));
+    };
+    if (scene != "-") use(scene, "the scene");
+    use(stats, "--stats");
+    for (const int frame : frames) {
+        use(image.for_frame(frame), "an image");
+        use(preview.for_frame(frame), "a preview");
+    }
 }
 
 void require_directory(const std::string& path) {

@@ -14,7 +14,8 @@
 #include <fstream>
 #include <thread>
 
-#include "cistula/effects.h"
+#include "apps/common/build_info.h"
+#include "scene/required_effects.h"
 
 namespace cistula {
 namespace {
@@ -38,13 +39,6 @@ uint64_t peak_memory() {
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
-}
-
-Json effect_list(uint32_t mask) {
-    Json names = Json::array();
-    for (int i = 0; i < effect_count; ++i)
-        if (mask >> i & 1) names.push_back(effect_names[i]);
-    return names;
 }
 
 Json phase(const std::string& name, double seconds) {
@@ -106,6 +100,8 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
         {"num_cpus", std::thread::hardware_concurrency()},
         {"cpu", processor_name()},
         {"compiler", __VERSION__},
+        {"flags", build_flags()},
+        {"commit", build_commit()},
         {"cistula_version", CISTULA_VERSION},
         {"scene", stats.scene},
         {"scene_hash", stats.scene_hash},
@@ -118,8 +114,8 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
         {"supersample", settings.supersample},
         {"depth", settings.depth},
         {"cutoff", settings.cutoff},
-        {"effects_required", effect_list(stats.required_effects)},
-        {"effects", effect_list(stats.effects)},
+        {"effects_required", names_of_effects(stats.required_effects)},
+        {"effects", names_of_effects(stats.effects)},
         {"effects_mask", stats.effects},
         {"scene_bytes", stats.scene_bytes},
         {"peak_rss_bytes", peak_memory()},

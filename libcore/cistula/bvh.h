@@ -48,15 +48,13 @@ CISTULA_INLINE float tree_near(Real t) {
     return greatest(float(t) * (1.0f - tree_slack_relative) - tree_slack_absolute, 0.0f);
 }
 
-inline constexpr int tree_stack = 64;  // a tree of depth 64 is never built (scene/build_tree.cpp)
-
 /// Calls visit(item) for the candidates of box_ray, nearer boxes first; visit returns the new far limit.
 template <class Visit>
 CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>& items, BoxRay box_ray,
                               const Visit& visit) {
     if (nodes.empty()) return;
-    int32_t pending[tree_stack];
-    float pending_t[tree_stack];
+    int32_t pending[max_tree_depth + 1];
+    float pending_t[max_tree_depth + 1];
     int depth = 0;
     int32_t node = 0;
     for (;;) {

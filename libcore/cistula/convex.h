@@ -12,8 +12,9 @@ template <class Real>
 struct ConvexInterval {
     Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
 
-    /// For an origin outside.
-    CISTULA_INLINE bool met() const { return enter <= leave && leave > Real(0); }
+    /// For an origin outside. A solid that ends where the line starts, give or take the rounding of a point on a shared
+    /// face, is behind it.
+    CISTULA_INLINE bool met(Real extent) const { return enter <= leave && leave > incidence<Real> * extent; }
 };
 
 inline constexpr uint32_t no_face = 0xffffffffu;
@@ -115,7 +116,7 @@ CISTULA_CALLED void closest_convex(const SceneView<Real>& scene, uint32_t index,
     if (!inside && passes_by(solid, ray.origin, ray.direction)) return;
     const uint32_t skipped = own ? ray.from_face : no_face;
     const ConvexInterval<Real> interval = convex_interval(scene, solid, ray.origin, ray.direction, skipped);
-    if (!inside && !interval.met()) return;
+    if (!inside && !interval.met(scene.extent)) return;
     // Before the face, which takes a look at every slab, what the time alone decides.
     const Real found = inside ? interval.leave : interval.enter, t = greatest(found, Real(0));
     if (!(t <= best.t && t < RealTraits<Real>::infinity) || (!inside && t < ray.after.t)) return;

@@ -24,13 +24,15 @@ CISTULA_INLINE double index_of(const SceneView<Real>& scene, const MediaList& me
 }
 
 /// Total internal reflection sends the transmitted share into the mirrored ray; `fresnel` splits kr + kt by the exact
-/// dielectric terms, of which nothing is reflected between equal indices.
+/// dielectric terms, of which nothing is reflected between equal indices. A sheet has no other side to bend into: kr and
+/// kt stand as they are.
 template <class Real, class E>
 CISTULA_INLINE Shares<Real> split_at(const SceneView<Real>& scene, const Material<Real>& m, const Vec3<Real>& direction,
-                                     const Vec3<Real>& normal, const MediaList& before, const MediaList& beyond) {
+                                     const Vec3<Real>& normal, const MediaList& before, const MediaList& beyond,
+                                     bool sheet) {
     Shares<Real> shares{m.reflection, m.filter, false, direction};
     if constexpr (E::has(effect_refraction)) {
-        const bool fresnel = E::has(effect_fresnel) && m.fresnel != 0;
+        const bool fresnel = E::has(effect_fresnel) && m.fresnel != 0 && !sheet;
         const Real both = m.reflection + m.transmission;
         const double from = index_of(scene, before), to = index_of(scene, beyond);
         if (from == to) {

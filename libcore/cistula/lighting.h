@@ -32,7 +32,8 @@ CISTULA_INLINE void add_local_light(const SceneView<Real>& scene, const Intersec
         for (uint32_t i = 0; i < scene.lights.size; ++i) {
             const Light<Real>& light = scene.lights[i];
             Vec3<Real> to_light = light.position - s.viewer_side;
-            if (!(dot(s.normal, to_light) > Real(0))) continue;  // before the square root
+            // A light in the plane of the face lights it at no angle; rounding must not decide on which side it is.
+            if (!(dot(s.normal, to_light) > incidence<Real> * scene.extent)) continue;
             const Real distance = length(to_light);
             to_light /= distance;
             const Real n_l = dot(s.normal, to_light);

@@ -57,7 +57,10 @@ CISTULA_HD inline bool camera_solids(const SceneView<Real>& scene, const Interse
     if (!meshes) return fits;
     // Through no axis, edge or symmetry that a scene is likely to have.
     const Vec3<double> direction = normalized(Vec3<double>(0.36, 0.48, 0.8112));
-    const double distance = 4 * double(scene.extent);
+    // From the sphere of radius 2 M, as all rays (NUMERICS, 1).
+    const double ahead = dot(point, direction);
+    const double rest = 4 * double(scene.extent) * double(scene.extent) - (dot(point, point) - ahead * ahead);
+    const double distance = ahead + square_root(greatest(rest, 0.0));
     Ray<Real> ray;
     ray.origin = Vec3<Real>(along(point, -distance, direction));
     ray.direction = Vec3<Real>(direction);
@@ -101,7 +104,7 @@ CISTULA_HD inline uint32_t render_pixel(const SceneView<Real>& scene, const Fram
         record.z = float((start + double(first.hit.t)) * dot(direction, frame.camera.forward) * frame.unit_length);
         for (int c = 0; c < 3; ++c) record.normal[c] = float(first.normal[c]);
     }
-    record.rays = uint32_t(own.total());
+    record.rays = uint32_t(least(own.total(), uint64_t(0xffffffffu)));
     rays.add(own);
     return flags;
 }

@@ -30,7 +30,7 @@ class PixelSums {
     }
 
     /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of the
-    /// budget that is left, and what could only add contributions that truncate to 0.
+    /// budget that is left, and what could add one unit of the sums at most.
     CISTULA_INLINE bool afford(const Vec3<Real>& weight) {
         int64_t most[3];
         const int64_t worst = most_of(weight, most);

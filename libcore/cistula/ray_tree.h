@@ -5,6 +5,7 @@
 #include "cistula/absorption.h"
 #include "cistula/interface.h"
 #include "cistula/lighting.h"
+#include "cistula/meeting.h"
 #include "cistula/seen_light.h"
 
 namespace cistula {
@@ -12,7 +13,7 @@ namespace cistula {
 inline constexpr int largest_depth = 1024;
 /// Faces that one ray may pass without shading or bending; more fail the render (flag_too_many_crossings).
 inline constexpr int largest_crossings = 1 << 20;
-/// Every pending branch weighs at most half of the one pushed before it, and one under 2^-62 is dropped.
+/// The branch that is followed after the k-th push weighs at most 2^-k, and one under 2^-62 is dropped.
 inline constexpr int branch_stack = 66;
 
 /// Part of a tree that is still to be followed: `weight` times what `ray` sees.
@@ -43,17 +44,17 @@ class RayTree {
     CISTULA_HD FirstHit<Real> trace(const Ray<Real>& primary) {
         FirstHit<Real> first;
         Branch<Real> branch{primary, Vec3<Real>(Real(1))};
-        Hit<Real> hit;
-        const bool surface = next_surface(branch, hit, first.anything);
+        Meeting<Real> meeting;
+        const bool surface = next_surface(branch, meeting, first.anything);
         if (!surface) return first;
         first.anything = true;
-        first.hit = hit;
-        first.normal = surface_at<Real, Effects<0>>(scene_, branch.ray, hit).normal;
+        first.hit = meeting.hit;
+        first.normal = surface_at<Real, Effects<0>>(scene_, branch.ray, meeting.hit).normal;
         Branch<Real> pending[branch_stack];
         int count = 0;
-        while (shade(branch, hit, pending, count) || pop(branch, pending, count)) {
+        while (shade(branch, meeting, pending, count) || pop(branch, pending, count)) {
             bool light = false;
-            while (!next_surface(branch, hit, light))
+            while (!next_surface(branch, meeting, light))
                 if (!pop(branch, pending, count)) return first;
         }
         return first;
@@ -76,54 +77,50 @@ class RayTree {
         return true;
     }
 
-    CISTULA_INLINE void change_media(MediaList& media, uint64_t key) {
-        const CrossingKind kind = key_kind(key);
-        if (kind != CrossingKind::sheet && !media.add(key_solid(key), kind == CrossingKind::enter ? 1 : -1))
-            sums_.flag(flag_media_overflow);
-    }
-
     /// Straight on through a face.
-    CISTULA_INLINE void pass(Ray<Real>& ray, const Hit<Real>& hit) {
-        const uint32_t solid = key_solid(hit.key);
+    CISTULA_INLINE void pass(Ray<Real>& ray, const Meeting<Real>& meeting) {
+        const Crossing<Real>& crossing = meeting.taken[0];
+        const uint32_t solid = key_solid(crossing.key);
+        MediaList media = meeting.beyond;
         if (ray.fresh() && solid == ray.from_solid && scene_.solids[solid].kind == SolidKind::mesh)
-            count_passed_over(ray, hit);
-        change_media(ray.media, hit.key);
-        ray.after = {hit.t, hit.key};
+            count_passed_over(ray, crossing, media);
+        ray.media = media;
+        ray.after = meeting.taken[meeting.count - 1];
     }
 
     /// A line that starts on a mesh takes its first crossing from the right side. Others of that mesh that rounding puts
     /// before it, at an edge that the line grazes, count all the same once it goes on straight.
-    CISTULA_INLINE void count_passed_over(Ray<Real>& ray, const Hit<Real>& hit) {
+    CISTULA_INLINE void count_passed_over(const Ray<Real>& ray, const Crossing<Real>& crossing, MediaList& media) {
         Ray<Real> probe = ray;
         probe.from_solid = no_solid;
         for (;;) {
             const Hit<Real> next = intersector_.closest(probe);
-            if (!Crossing<Real>{next.t, next.key}.before(hit.t, hit.key)) return;
-            if (key_solid(next.key) == ray.from_solid) change_media(ray.media, next.key);
-            change_media(probe.media, next.key);
+            if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
+            const CrossingKind kind = key_kind(next.key);
+            const int change = kind == CrossingKind::enter ? 1 : -1;
+            bool fits = true;
+            if (key_solid(next.key) == ray.from_solid) fits = media.add(ray.from_solid, change);
+            if (kind != CrossingKind::sheet) fits &= probe.media.add(key_solid(next.key), change);
+            if (!fits) sums_.flag(flag_media_overflow);
             probe.after = {next.t, next.key};
         }
     }
 
     /// A crossing with nothing to shade: inside a medium of higher priority, or of a clear face between equal media.
-    CISTULA_INLINE bool invisible(const Ray<Real>& ray, const Hit<Real>& hit) {
-        const uint32_t solid = key_solid(hit.key), medium = ray.media.medium();
-        if (key_kind(hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
+    CISTULA_INLINE bool invisible(const Ray<Real>& ray, const Meeting<Real>& meeting) {
+        const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
+        if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
         if (!scene_.materials[scene_.solids[solid].material].clear) return false;
-        if constexpr (E::has(effect_refraction)) {
-            MediaList beyond = ray.media;
-            change_media(beyond, hit.key);
-            return index_of(scene_, ray.media) == index_of(scene_, beyond);
-        }
+        if constexpr (E::has(effect_refraction)) return index_of(scene_, ray.media) == index_of(scene_, meeting.beyond);
         return true;
     }
 
     /// Goes on to the next face that has anything to shade. Otherwise adds the light or background that the ray ends on.
-    CISTULA_INLINE bool next_surface(Branch<Real>& branch, Hit<Real>& hit, bool& light) {
+    CISTULA_INLINE bool next_surface(Branch<Real>& branch, Meeting<Real>& meeting, bool& light) {
         Absorption<E::has(effect_absorption)> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
         for (int crossings = 0;; ++crossings) {
-            hit = intersector_.closest(branch.ray);
+            const Hit<Real> hit = intersector_.closest(branch.ray);
             if constexpr (E::has(effect_visible_lights)) {
                 const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, hit.t);
                 if (seen.light != no_light) {
@@ -137,12 +134,14 @@ class RayTree {
                 sums_.add(branch.weight * scene_.background);
                 return false;
             }
-            if (!invisible(branch.ray, hit)) {
-                absorption.dim(scene_, branch.ray.media, hit.t, branch.weight);
+            meeting = meeting_at(scene_, intersector_, branch.ray, hit);
+            if (!meeting.fits) sums_.flag(flag_media_overflow);
+            if (!invisible(branch.ray, meeting)) {
+                absorption.dim(scene_, branch.ray.media, meeting.hit.t, branch.weight);
                 return true;
             }
-            absorption.cross(scene_, hit.key, hit.t);
-            pass(branch.ray, hit);
+            for (int i = 0; i < meeting.count; ++i) absorption.cross(scene_, meeting.taken[i].key, meeting.taken[i].t);
+            pass(branch.ray, meeting);
             if (crossings == largest_crossings) {
                 sums_.flag(flag_too_many_crossings);
                 return false;
@@ -152,17 +151,17 @@ class RayTree {
 
     /// Adds a face's local light and replaces the branch by the lighter of its children; the heavier one is pushed. False
     /// if there is none to go on with.
-    CISTULA_INLINE bool shade(Branch<Real>& branch, const Hit<Real>& hit, Branch<Real>* pending, int& count) {
+    CISTULA_INLINE bool shade(Branch<Real>& branch, const Meeting<Real>& meeting, Branch<Real>* pending, int& count) {
+        const Hit<Real>& hit = meeting.hit;
         const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, hit);
+        if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
         const Material<Real>& m = *s.material;
         if (m.local > Real(0))
             add_local_light<Real, E>(scene_, intersector_, branch.ray, hit, s, branch.weight * m.local, sums_, rays_);
         if constexpr (!E::has(effect_reflection | effect_transmission)) return false;
 
-        MediaList beyond = branch.ray.media;
-        if constexpr (E::has(effect_transmission)) change_media(beyond, hit.key);
-        const Shares<Real> shares =
-            split_at<Real, E>(scene_, m, branch.ray.direction, s.normal, branch.ray.media, beyond);
+        const Shares<Real> shares = split_at<Real, E>(scene_, m, branch.ray.direction, s.normal, branch.ray.media,
+                                                      meeting.beyond, key_kind(hit.key) == CrossingKind::sheet);
         const Vec3<Real> mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
         // Sums over channels, so that a child that is not the heavier is at most half its parent.
         const Real mirrored_size = mirrored.x + mirrored.y + mirrored.z, through_size = through.x + through.y + through.z;
@@ -178,54 +177,29 @@ class RayTree {
             if (count == branch_stack)
                 sums_.flag(flag_stack_overflow);
             else
-                become(pending[count++], branch, hit, s, shares, beyond, !through_first, through_first ? mirrored : through);
+                become(pending[count++], branch, meeting, s, shares, !through_first, through_first ? mirrored : through);
         } else if (!(mirrored_size > Real(0)) && !(through_size > Real(0))) {
             return false;
         }
-        become(branch, branch, hit, s, shares, beyond, through_first, through_first ? through : mirrored);
+        become(branch, branch, meeting, s, shares, through_first, through_first ? through : mirrored);
         return follow(branch);
     }
 
     /// Makes `child` (which may be `parent` itself) the ray that goes through, or the mirrored one.
-    CISTULA_INLINE void become(Branch<Real>& child, const Branch<Real>& parent, const Hit<Real>& hit,
-                               const Surface<Real>& s, const Shares<Real>& shares, const MediaList& beyond,
-                               bool goes_through, const Vec3<Real>& weight) {
+    CISTULA_INLINE void become(Branch<Real>& child, const Branch<Real>& parent, const Meeting<Real>& meeting,
+                               const Surface<Real>& s, const Shares<Real>& shares, bool goes_through,
+                               const Vec3<Real>& weight) {
         child.depth = parent.depth + 1;
         child.weight = weight;
         child.mirrored = !goes_through;
         if (!goes_through) {
-            child.ray = spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), hit, parent.ray.media);
-            return;
-        }
-        if (!shares.bends) {
+            child.ray =
+                spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
+        } else if (shares.bends) {
+            child.ray = spawned(s.far_side, shares.through, meeting.hit, meeting.beyond);
+        } else {
             child.ray = parent.ray;
-            pass(child.ray, hit);
-            return;
-        }
-        Ray<Real> bent = spawned(s.far_side, shares.through, hit, beyond);
-        skip_coincident(parent.ray, hit, bent);
-        child.ray = bent;
-    }
-
-    /// A bent ray starts a little beyond the face, perhaps beyond faces of other meshes that touch it there: those count
-    /// as crossed. (Convex solids need no such care; their state decides.)
-    CISTULA_INLINE void skip_coincident(const Ray<Real>& straight, const Hit<Real>& hit, Ray<Real>& bent) {
-        bool other_mesh = false;
-        for (uint32_t i = 0; i < bent.media.size; ++i) {
-            const uint32_t solid = MediaList::solid_of(bent.media.entries[i]);
-            other_mesh |= solid != key_solid(hit.key) && scene_.solids[solid].kind == SolidKind::mesh;
-        }
-        if (!other_mesh) return;
-        const Real reach = hit.t + Real(16) * RealTraits<Real>::unit * scene_.extent;
-        Ray<Real> ahead = straight;
-        pass(ahead, hit);
-        for (int i = 0; i < MediaList::capacity; ++i) {
-            const Hit<Real> next = intersector_.closest(ahead);
-            if (!(next.t <= reach)) return;
-            const uint32_t solid = key_solid(next.key);
-            if (solid != key_solid(hit.key) && scene_.solids[solid].kind == SolidKind::mesh)
-                change_media(bent.media, next.key);
-            pass(ahead, next);
+            pass(child.ray, meeting);
         }
     }
 

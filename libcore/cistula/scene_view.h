@@ -39,6 +39,7 @@ struct Solid {
     uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
     Vec3<float> center;               // convex: of a sphere around it,
     float padded_square;              // ... and the square of its radius plus sphere_padding
+    uint32_t touched;                 // convex, mesh: 1 if its padded box meets that of another such solid
     uint32_t alone;                   // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
                                       // hits next is its own face
 };
@@ -53,10 +54,10 @@ inline constexpr int cluster_lanes = 8;
 template <class Real>
 struct alignas(32) Cluster {
     Real corner[3][3][cluster_lanes];  // [corner][axis][lane]; unused lanes hold a zero-area triangle
-    Real height[2][cluster_lanes];     // apex height h, [0] on the side normals point away from (inside), [1] outside
-    uint32_t triangle[cluster_lanes];  // scene-wide triangle numbers
     uint32_t solid;
-    uint32_t count;
+    uint32_t count;                    // beside the corners, as every test reads it
+    uint32_t triangle[cluster_lanes];  // scene-wide triangle numbers
+    Real height[2][cluster_lanes];     // apex height h, [0] on the side normals point away from (inside), [1] outside
 };
 
 /// What a face is made of. Shares: local 1 - kr - kt, reflected kr, transmitted kt * tint.
@@ -91,6 +92,10 @@ struct Light {
     uint32_t first_incident;  // faces that the light lies on, grouped by solid
     uint32_t incident_count;
 };
+
+/// A light lies on a face if it is within this much of the plane, as a share of M (NUMERICS, 5).
+template <class Real>
+inline constexpr Real incidence = 16 * RealTraits<Real>::unit;
 
 /// A face that a light lies on. face: of a convex solid 2 slab + side, of triangles the scene-wide triangle number.
 struct Incident {

@@ -107,7 +107,7 @@ CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, 
         return;
     }
     if (!inside) {
-        if (!interval.met() || !(enter < shadow.distance)) return;
+        if (!interval.met(scene.extent) || !(enter < shadow.distance)) return;
         sum.cross<E>(material);
     }
     if (greatest(interval.leave, Real(0)) < shadow.distance) sum.cross<E>(material);

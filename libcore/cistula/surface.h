@@ -28,6 +28,20 @@ CISTULA_INLINE Vec3<Real> toward_apex(const Vec3<Real>& point, const Vec3<Real>&
     return along(point, k, apex - point);
 }
 
+template <class Real>
+CISTULA_INLINE Real largest_magnitude(const Vec3<Real>& a) {
+    return greatest(magnitude(a.x), greatest(magnitude(a.y), magnitude(a.z)));
+}
+
+/// The unit normal of a triangle from two of its edges. Scaled on the way, as the square of the area of a small one
+/// underflows; not finite for one without area.
+template <class Real>
+CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>& ac) {
+    const Real scale = Real(1) / greatest(largest_magnitude(ab), largest_magnitude(ac));
+    const Vec3<Real> n = cross(ab * scale, ac * scale);
+    return normalized(n / largest_magnitude(n));
+}
+
 template <class Real, class E>
 CISTULA_INLINE Surface<Real> surface_at(const SceneView<Real>& scene, const Ray<Real>& ray, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
@@ -49,7 +63,7 @@ CISTULA_INLINE Surface<Real> surface_at(const SceneView<Real>& scene, const Ray<
     for (int c = 0; c < 3; ++c)
         corner[c] = {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
     const Vec3<Real> ab = corner[1] - corner[0], ac = corner[2] - corner[0];
-    const Vec3<Real> normal = normalized(cross(ab, ac));
+    const Vec3<Real> normal = triangle_normal(ab, ac);
     s.point = along(along(corner[0], hit.u, ab), hit.v, ac);
     s.normal = hit.enters ? normal : -normal;
     const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);

@@ -35,11 +35,15 @@ struct TriangleRay {
     }
 };
 
-/// Products of coordinates below this could underflow and lose their sign; they count as 0 for all triangles alike.
+/// Coordinates whose products could lose digits to underflow, and with them their sign, count as 0, for all triangles
+/// alike: below 2^-51 in float the last digit of a product is below 2^-149.
+template <class Real>
+inline constexpr Real least_sheared = sizeof(Real) == sizeof(float) ? Real(0x1p-51) : Real(0x1p-60);
+
 template <class Real>
 CISTULA_INLINE Real sheared(Real across, Real shear, Real depth) {
     const Real s = across - shear * depth;
-    return magnitude(s) < Real(0x1p-60) ? Real(0) : s;
+    return magnitude(s) < least_sheared<Real> ? Real(0) : s;
 }
 
 /// Corners relative to the ray and sheared along it, and edge functions opposite to each.

@@ -67,7 +67,7 @@ std::vector<FramedLight> frame_lights(const SceneSource& source, const Frame& fr
 template <class Real>
 void find_convex_incidents(const std::vector<FramedLight>& lights, const std::vector<ConvexSolid>& convex,
                            double extent, IncidentLists& incidents) {
-    const double tolerance = 16 * static_cast<double>(RealTraits<Real>::unit) * extent;
+    const double tolerance = static_cast<double>(incidence<Real>) * extent;
     const double reach = 4 * tolerance;  // beyond a solid's box by more than this, nothing can be incident
     for (size_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].lights()) continue;
@@ -100,7 +100,7 @@ template <class Real>
 void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, const Groups& groups,
                              const Tree& tree, uint32_t solid, uint32_t first_triangle, double extent,
                              IncidentLists& incidents) {
-    const double tolerance = 16 * static_cast<double>(RealTraits<Real>::unit) * extent;
+    const double tolerance = static_cast<double>(incidence<Real>) * extent;
     for (size_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].lights()) continue;
         const dvec3 p = rounded<Real>(lights[i].position);

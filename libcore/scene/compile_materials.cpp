@@ -90,10 +90,13 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     const bool integer =
         material.exponent <= largest_integer_exponent && material.exponent == floor_of(material.exponent);
     m.integer_exponent = integer ? static_cast<int32_t>(material.exponent) : -1;
-    m.reflection = static_cast<Real>(material.reflection);
-    m.transmission = static_cast<Real>(material.transmission);
+    // What a scene may exceed 1 by must not grow from bounce to bounce.
+    const double whole = greatest(material.reflection + material.transmission, 1.0);
+    const double transmission = material.transmission / whole;
+    m.reflection = static_cast<Real>(material.reflection / whole);
+    m.transmission = static_cast<Real>(transmission);
     m.local = local_share(material) > 0 ? local_rounded_down(m.reflection, m.transmission) : 0;
-    m.filter = Vec3<Real>(material.transmission * material.tint);
+    m.filter = Vec3<Real>(transmission * material.tint);
     m.tint = Vec3<Real>(material.tint);
     const dvec3 absorption = material.absorption / frame.factor;
     if (largest_component(absorption) * frame.extent > largest_absorption)
@@ -104,7 +107,7 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     m.index = material.index;
     m.opaque = 0;
     for (int c = 0; c < 3; ++c) {
-        const double share = material.transmission * material.tint[c];
+        const double share = transmission * material.tint[c];
         const bool opaque = !(m.filter[c] > 0);
         m.opaque |= static_cast<uint32_t>(opaque) << c;
         m.filter_loss[c] = opaque ? 0 : loss_of(share);

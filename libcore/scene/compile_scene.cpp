@@ -5,6 +5,7 @@
 #include <malloc.h>
 #endif
 
+#include "cistula/ray.h"
 #include "scene/clusters.h"
 #include "scene/compile_lights.h"
 #include "scene/compile_materials.h"
@@ -34,6 +35,7 @@ void return_free_memory() {
 
 constexpr uint32_t fewest_in_seen_tree = 9;
 constexpr size_t most_pairs = 10'000'000;
+constexpr double touching = 0x1p-17;  // far above the reach of a meeting
 
 /// One compilation: the parts in the order in which they need one another.
 template <class Real>
@@ -43,6 +45,9 @@ class Compiler {
         : description_(description), source_(gather_scene(description)), frame_(find_frame(source_)) {}
 
     std::unique_ptr<CompiledScene<Real>> compile() {
+        if (source_.solids.size() >= no_solid)
+            throw scene_error(description_, "/objects",
+                              std::to_string(source_.solids.size()) + " solids: at most " + std::to_string(no_solid - 1));
         scene_.center = frame_.center;
         scene_.scale = frame_.scale;
         scene_.extent = rounded_up<Real>(frame_.extent);
@@ -63,6 +68,7 @@ class Compiler {
         }
         compile_shading();
         compile_lights();
+        find_touched();
         find_solids_alone();
         explain();
         scene_.hash = hash_.hex();
@@ -92,6 +98,22 @@ class Compiler {
             scene_.convex.push_back(convex.solid);
             boxes_[convex.solid] = convex.box;
         }
+    }
+
+    /// Solids with an inside that may share a face with another one (meeting.h).
+    void find_touched() {
+        std::vector<uint32_t> order;
+        for (uint32_t i = 0; i < scene_.solids.size(); ++i)
+            if (scene_.solids[i].kind != SolidKind::sheet && !boxes_[i].empty()) order.push_back(i);
+        std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return boxes_[a].low.x < boxes_[b].low.x; });
+        const auto near = [&](const Box& a, const Box& b, int axis) {
+            return a.low[axis] <= b.high[axis] + touching && b.low[axis] <= a.high[axis] + touching;
+        };
+        for (size_t i = 0; i < order.size(); ++i)
+            for (size_t j = i + 1; j < order.size() && near(boxes_[order[i]], boxes_[order[j]], 0); ++j) {
+                if (near(boxes_[order[i]], boxes_[order[j]], 1) && near(boxes_[order[i]], boxes_[order[j]], 2))
+                    scene_.solids[order[i]].touched = scene_.solids[order[j]].touched = 1;
+            }
     }
 
     /// Only spares work, so that scenes of very many pairs may do without.

@@ -8,6 +8,7 @@
 
 #include "cistula/elementary.h"
 #include "cistula/fixed_sum.h"
+#include "scene/fnv128.h"
 
 namespace cistula {
 namespace {
@@ -43,28 +44,6 @@ float rounded_up_to_half(float value) {
     if (static_cast<float>(nearest) < value) nearest.setBits(static_cast<uint16_t>(nearest.bits() + 1));
     return static_cast<float>(nearest);
 }
-
-class Hash {
-  public:
-    template <class T>
-    void add(T value) {
-        const auto bits = static_cast<uint64_t>(value);
-        for (size_t i = 0; i < sizeof(T); ++i) state_ = (state_ ^ (bits >> (8 * i) & 255u)) * prime;
-    }
-    void add(float value) { add(bits_as<uint32_t>(value)); }
-
-    std::string hexadecimal() const {
-        std::string text;
-        for (int shift = 124; shift >= 0; shift -= 4)
-            text += "0123456789abcdef"[static_cast<int>(state_ >> shift) & 15];
-        return text;
-    }
-
-  private:
-    __extension__ typedef unsigned __int128 Wide;
-    static constexpr Wide prime = (static_cast<Wide>(1) << 88) + 0x13b;
-    Wide state_ = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) + 0x62b821756295c58du;
-};
 
 }  // namespace
 
@@ -117,7 +96,7 @@ ColorPicture to_color(const Film& film) {
 }
 
 std::string film_hash(const Film& film) {
-    Hash hash;
+    Fnv128 hash;
     for (const PixelRecord& pixel : film.pixels) {
         for (const int64_t value : pixel.radiance) hash.add(value);
         for (const int64_t value : pixel.pruned) hash.add(value);
@@ -128,7 +107,7 @@ std::string film_hash(const Film& film) {
         hash.add(pixel.z);
         for (const float value : pixel.normal) hash.add(value);
     }
-    return hash.hexadecimal();
+    return hash.hex();
 }
 
 }  // namespace cistula

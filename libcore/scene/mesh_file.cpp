@@ -10,8 +10,10 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include "scene/file_bytes.h"
 #include "scene/polygon.h"
 #include "scene/rotation.h"
+#include "scene/suggest.h"
 
 namespace cistula {
 namespace {
@@ -20,18 +22,6 @@ using glm::dvec3;
 
 [[noreturn]] void refuse(const std::string& place, const std::string& file, const std::string& what) {
     throw Error(ExitCode::file, place + ": mesh " + file + ": " + what);
-}
-
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (c == '\n' || c == '\r') c = ' ';
-    return text;
-}
-
-std::string extension(const std::string& file) {
-    std::string text = std::filesystem::path(file).extension().string();
-    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return text;
 }
 
 /// Assimp 5.2 never returns from a PLY header with a line that it does not know, or without an end.
@@ -128,7 +118,7 @@ MeshPart part_of(const aiMesh& from, const MeshObject& object) {
 }  // namespace
 
 std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place) {
-    const std::string kind = extension(object.file);
+    const std::string kind = lower_extension(object.file);
     if (kind != ".ply" && kind != ".obj") refuse(place, object.file, "must be a .ply or an .obj file");
     std::error_code error;
     if (!std::filesystem::is_regular_file(object.file, error))

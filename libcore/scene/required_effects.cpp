@@ -178,6 +178,13 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene) {
     return explain_effects(scene, uses);
 }
 
+std::vector<std::string> names_of_effects(uint32_t mask) {
+    std::vector<std::string> names;
+    for (int i = 0; i < effect_count; ++i)
+        if (mask >> i & 1) names.emplace_back(effect_names[i]);
+    return names;
+}
+
 uint32_t required_effects(const std::vector<EffectReason>& reasons) {
     uint32_t effects = 0;
     for (const EffectReason& reason : reasons)

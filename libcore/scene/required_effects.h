@@ -29,6 +29,9 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene, const s
 /// Opens the meshes that the scene names for their materials, but no textures. Throws Error as compile_scene does.
 std::vector<EffectReason> explain_effects(const SceneDescription& scene);
 
+/// The names of the effects in a mask, in the order of the bits.
+std::vector<std::string> names_of_effects(uint32_t mask);
+
 uint32_t required_effects(const std::vector<EffectReason>& reasons);
 uint32_t required_effects(const SceneDescription& scene);
 

@@ -17,10 +17,4 @@ void SceneHash::add(const MaterialDescription& m) {
     add(static_cast<uint32_t>(m.fresnel));
 }
 
-std::string SceneHash::hex() const {
-    std::string text;
-    for (int shift = 124; shift >= 0; shift -= 4) text += "0123456789abcdef"[static_cast<int>(state_ >> shift) & 15];
-    return text;
-}
-
 }  // namespace cistula

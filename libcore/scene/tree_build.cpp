@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <memory>
 
 #include "scene/error.h"
 
@@ -11,15 +10,6 @@ namespace cistula {
 namespace {
 
 constexpr uint32_t group_size = cluster_lanes;
-
-struct ReleaseDevice {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseBvh {
-    void operator()(RTCBVH bvh) const { rtcReleaseBVH(bvh); }
-};
-using DevicePointer = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
-using BvhPointer = std::unique_ptr<RTCBVHTy, ReleaseBvh>;
 
 void* run_builder(RTCBuildArguments& arguments, RTCDevice device) {
     void* root = rtcBuildBVH(&arguments);

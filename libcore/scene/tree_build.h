@@ -4,13 +4,8 @@
 #include <span>
 #include <vector>
 
-#if defined(CISTULA_EMBREE_MAJOR) && CISTULA_EMBREE_MAJOR >= 4
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include "cistula/scene_view.h"
+#include "scene/embree_handles.h"
 #include "scene/frame.h"
 
 namespace cistula {

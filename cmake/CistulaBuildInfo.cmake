@@ -1,0 +1,23 @@
+# cistula_build_info: the flags and the commit of a build, which render --stats and the benchmarks record.
+string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
+set(_flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_host}")
+string(REPLACE ";" " " _flags "${_flags}")
+string(STRIP "${_flags}" _flags)
+
+# A source tree without its own .git may lie in some other repository, whose commit says nothing.
+set(_commit "")
+find_program(CISTULA_GIT git)
+mark_as_advanced(CISTULA_GIT)
+if(CISTULA_GIT AND EXISTS "${PROJECT_SOURCE_DIR}/.git")
+    execute_process(COMMAND "${CISTULA_GIT}" -C "${PROJECT_SOURCE_DIR}" describe --always --dirty --abbrev=12
+        OUTPUT_VARIABLE _commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+if(NOT _commit)
+    set(_commit "unknown")
+endif()
+
+add_library(cistula_build_info STATIC "${PROJECT_SOURCE_DIR}/apps/common/build_info.cpp")
+target_include_directories(cistula_build_info PUBLIC "${PROJECT_SOURCE_DIR}")
+target_compile_definitions(cistula_build_info PRIVATE
+    CISTULA_BUILD_FLAGS="${_flags}" CISTULA_BUILD_COMMIT="${_commit}")
+target_link_libraries(cistula_build_info PRIVATE cistula_contract cistula_warnings)

@@ -1,0 +1,56 @@
+// A ray meets a face: which of the crossings that rounding cannot tell apart is shaded, and what is beyond them all.
+// Touching bodies then pass light from one index straight to the other (NUMERICS, 4), and what stays on the viewer's side
+// is in the viewer's medium.
+#pragma once
+
+#include "cistula/ray.h"
+#include "cistula/surface.h"
+
+namespace cistula {
+
+template <class Real>
+struct Meeting {
+    static constexpr int capacity = 4;
+
+    Hit<Real> hit;                   // the crossing to shade: of the solid with the highest priority
+    Crossing<Real> taken[capacity];  // crossings that change the media, in their order; sheets change none
+    int count = 0;
+    MediaList beyond;                // after all of them
+    bool fits = true;                // whether the lists had room
+
+    CISTULA_INLINE void take(const Hit<Real>& crossing) {
+        const CrossingKind kind = key_kind(crossing.key);
+        taken[count++] = {crossing.t, crossing.key};
+        if (kind != CrossingKind::sheet) fits &= beyond.add(key_solid(crossing.key), kind == CrossingKind::enter ? 1 : -1);
+    }
+};
+
+/// `hit` is the ray's next crossing. A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so
+/// crossings of other solids within twice that of the face belong to the same meeting.
+template <class Real, class Intersector>
+CISTULA_INLINE Meeting<Real> meeting_at(const SceneView<Real>& scene, const Intersector& intersector,
+                                        const Ray<Real>& ray, const Hit<Real>& hit) {
+    Meeting<Real> meeting;
+    meeting.hit = hit;
+    meeting.beyond = ray.media;
+    meeting.take(hit);
+    if (!scene.solids[key_solid(hit.key)].touched) return meeting;
+    const Real cosine = magnitude(dot(surface_at<Real, Effects<0>>(scene, ray, hit).normal, ray.direction));
+    const Real reach = hit.t + Real(16) * RealTraits<Real>::unit * scene.extent / greatest(cosine, Real(0x1p-10));
+    Ray<Real> probe = ray;
+    while (meeting.count < Meeting<Real>::capacity) {
+        probe.media = meeting.beyond;
+        probe.after = meeting.taken[meeting.count - 1];
+        const Hit<Real> next = intersector.closest(probe);
+        const uint32_t solid = key_solid(next.key);
+        if (!(next.t <= reach) || key_kind(next.key) == CrossingKind::sheet || solid == key_solid(hit.key)) break;
+        const bool higher = solid > key_solid(meeting.hit.key);
+        // The state of a convex solid sees to it that leaving it is not missed later.
+        if (scene.solids[solid].kind == SolidKind::convex && key_kind(next.key) == CrossingKind::leave && !higher) break;
+        meeting.take(next);
+        if (higher) meeting.hit = next;
+    }
+    return meeting;
+}
+
+}  // namespace cistula
