@@ -51,9 +51,9 @@ template <class Real, class Intersector>
 bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, const Intersector& intersector,
                   const CameraFrame& camera, const FrameSettings& settings, Film& film, RenderProgress& progress,
                   uint32_t& ran) {
+    use_default_rounding();
     FrameView frame = frame_view(compiled, camera, settings);
     prepare_film(film, settings, compiled.radiance_exponent);
-    use_default_rounding();
     if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media)) film.flags |= flag_media_overflow;
     const int index = least_mask(settings.effects | compiled.effects);
     ran = effect_masks[index];

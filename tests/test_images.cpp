@@ -1,5 +1,6 @@
-// What may never change an image: threads, tiles, instruction sets, control registers, trees, the order of lights, effects that a scene does
-// not use, and solids that cannot be seen. And what truncation may take away: at most what the ledger says.
+// What may never change an image: threads, tiles, instruction sets, control registers, trees, the order of lights,
+// effects that a scene does not use, and solids that cannot be seen. And what truncation may take away: at most what the
+// ledger says.
 #include <gtest/gtest.h>
 #include <immintrin.h>
 #include <tbb/global_control.h>
@@ -7,6 +8,7 @@
 #include <tbb/task_arena.h>
 
 #include <atomic>
+#include <iostream>
 
 #include "backend_embree/embree_api.h"
 #include "cistula/fixed_sum.h"
@@ -234,7 +236,7 @@ TYPED_TEST(Images, IndexOneIsInvisible) {
         EXPECT_EQ(with.flags, 0u) << name;
         size_t differing = 0, first = with.pixels.size();
         for (size_t i = 0; i < with.pixels.size(); ++i)
-            if (std::memcmp(with.pixels[i].radiance, without.pixels[i].radiance, sizeof without.pixels[i].radiance) != 0) {
+            if (std::memcmp(with.pixels[i].radiance, without.pixels[i].radiance, sizeof with.pixels[i].radiance) != 0) {
                 ++differing;
                 first = std::min(first, i);
             }
