@@ -26,7 +26,7 @@ Film film_of(int samples, int exponent, const std::vector<PixelRecord>& pixels) 
     film.samples = samples;
     film.fixed_shift = fixed_shift(static_cast<uint32_t>(samples));
     film.radiance_exponent = exponent;
-    film.pixels = pixels;
+    film.pixels.assign(pixels.begin(), pixels.end());
     return film;
 }
 

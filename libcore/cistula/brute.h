@@ -33,7 +33,7 @@ struct BruteIntersector {
         Hit<Real> best;
         if (!is_finite(ray) || closest_enclosed(scene, ray, best)) return best;
         for (uint32_t i = 0; i < scene.convex.size; ++i) closest_convex(scene, scene.convex[i], ray, best);
-        if (!scene.clusters.empty()) {
+        if (scene.clusters.size > 1 || (scene.clusters.size == 1 && !leaves_flat(scene, 0, ray))) {
             const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
             for (uint32_t i = 0; i < scene.clusters.size; ++i) closest_cluster(scene, i, ray, triangle_ray, best);
         }

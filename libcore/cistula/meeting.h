@@ -14,9 +14,17 @@ struct Meeting {
 
     Hit<Real> hit;                   // the crossing to shade: of the solid with the highest priority
     Crossing<Real> taken[capacity];  // crossings that change the media, in their order; sheets change none
-    int count = 0;
+    int count;
     MediaList beyond;                // after all of them
-    bool fits = true;                // whether the lists had room
+    bool fits;                       // whether the lists had room
+
+    CISTULA_INLINE void begin(const Ray<Real>& ray, const Hit<Real>& first) {
+        hit = first;
+        count = 0;
+        beyond = ray.media;
+        fits = true;
+        take(first);
+    }
 
     CISTULA_INLINE void take(const Hit<Real>& crossing) {
         const CrossingKind kind = key_kind(crossing.key);
@@ -28,13 +36,10 @@ struct Meeting {
 /// `hit` is the ray's next crossing. A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so
 /// crossings of other solids within twice that of the face belong to the same meeting.
 template <class Real, class Intersector>
-CISTULA_INLINE Meeting<Real> meeting_at(const SceneView<Real>& scene, const Intersector& intersector,
-                                        const Ray<Real>& ray, const Hit<Real>& hit) {
-    Meeting<Real> meeting;
-    meeting.hit = hit;
-    meeting.beyond = ray.media;
-    meeting.take(hit);
-    if (!scene.solids[key_solid(hit.key)].touched) return meeting;
+CISTULA_INLINE void meet(const SceneView<Real>& scene, const Intersector& intersector, const Ray<Real>& ray,
+                         const Hit<Real>& hit, Meeting<Real>& meeting) {
+    meeting.begin(ray, hit);
+    if (!scene.solids[key_solid(hit.key)].touched) return;
     const Real cosine = magnitude(dot(surface_at<Real, Effects<0>>(scene, ray, hit).normal, ray.direction));
     const Real reach = hit.t + Real(16) * RealTraits<Real>::unit * scene.extent / greatest(cosine, Real(0x1p-10));
     Ray<Real> probe = ray;
@@ -50,7 +55,6 @@ CISTULA_INLINE Meeting<Real> meeting_at(const SceneView<Real>& scene, const Inte
         meeting.take(next);
         if (higher) meeting.hit = next;
     }
-    return meeting;
 }
 
 }  // namespace cistula

@@ -134,7 +134,7 @@ class RayTree {
                 sums_.add(branch.weight * scene_.background);
                 return false;
             }
-            meeting = meeting_at(scene_, intersector_, branch.ray, hit);
+            meet(scene_, intersector_, branch.ray, hit, meeting);
             if (!meeting.fits) sums_.flag(flag_media_overflow);
             if (!invisible(branch.ray, meeting)) {
                 absorption.dim(scene_, branch.ray.media, meeting.hit.t, branch.weight);

@@ -39,6 +39,8 @@ struct Solid {
     uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
     Vec3<float> center;               // convex: of a sphere around it,
     float padded_square;              // ... and the square of its radius plus sphere_padding
+    uint32_t flat;                    // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
+                                      // on it does not meet it again
     uint32_t touched;                 // convex, mesh: 1 if its padded box meets that of another such solid
     uint32_t alone;                   // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
                                       // hits next is its own face

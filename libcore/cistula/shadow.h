@@ -117,6 +117,7 @@ CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, 
 template <class Real, class E>
 CISTULA_CALLED void shadow_cluster(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
                                    const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
+    if (leaves_flat(scene, index, shadow.ray)) return;
     const Cluster<Real>& cluster = scene.clusters[index];
     CandidateLanes<Real> lanes;
     for (uint32_t mask = cluster_candidates(cluster, triangle_ray, lanes); mask != 0; mask &= mask - 1) {

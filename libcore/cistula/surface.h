@@ -33,13 +33,16 @@ CISTULA_INLINE Real largest_magnitude(const Vec3<Real>& a) {
     return greatest(magnitude(a.x), greatest(magnitude(a.y), magnitude(a.z)));
 }
 
-/// The unit normal of a triangle from two of its edges. Scaled on the way, as the square of the area of a small one
-/// underflows; not finite for one without area.
+/// The unit normal of a triangle from two of its edges; not finite for one without area. The square of a small one's area
+/// underflows, so that those are scaled first.
 template <class Real>
 CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>& ac) {
+    const Vec3<Real> n = cross(ab, ac);
+    const Real square = dot(n, n);
+    if (square > Real(0x1p-80)) return n / square_root(square);
     const Real scale = Real(1) / greatest(largest_magnitude(ab), largest_magnitude(ac));
-    const Vec3<Real> n = cross(ab * scale, ac * scale);
-    return normalized(n / largest_magnitude(n));
+    const Vec3<Real> scaled = cross(ab * scale, ac * scale);
+    return normalized(scaled / largest_magnitude(scaled));
 }
 
 template <class Real, class E>

@@ -178,6 +178,7 @@ class Compiler {
         solid.kind = topology.closed ? SolidKind::mesh : SolidKind::sheet;
         closed_[number] = topology.closed;
         solid.first_slab = solid.slab_count = 0;
+        solid.flat = !topology.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * frame_.extent) ? 1 : 0;
         solid.first_triangle = triangle_count_;
         solid.first_uv = static_cast<uint32_t>(scene_.uvs.size());
         append_clusters(mesh, groups, heights, number, triangle_count_, scene_.clusters);
@@ -189,6 +190,23 @@ class Compiler {
             }
         triangle_count_ += mesh.size();
         from.mesh = {};  // its triangles are in the clusters now
+    }
+
+    /// Whether all corners lie within `tolerance` of the plane of the largest triangle.
+    static bool is_flat(const FramedMesh& mesh, double tolerance) {
+        dvec3 normal(0), on(0);
+        for (uint32_t t = 0; t < mesh.size(); ++t) {
+            const auto corners = mesh.corners(t);
+            const dvec3 a = mesh.vertex(corners[0]);
+            const dvec3 n = cross(mesh.vertex(corners[1]) - a, mesh.vertex(corners[2]) - a);
+            if (dot(n, n) > dot(normal, normal)) normal = n, on = a;
+        }
+        if (!(dot(normal, normal) > 0)) return false;
+        normal = normalized(normal);
+        for (uint32_t t = 0; t < mesh.size(); ++t)
+            for (const uint32_t corner : mesh.corners(t))
+                if (magnitude(dot(normal, mesh.vertex(corner) - on)) > tolerance) return false;
+        return true;
     }
 
     /// What needs the tree over groups, which is gone before the clusters come.

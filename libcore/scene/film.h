@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "cistula/pixel_record.h"
@@ -13,6 +15,23 @@ struct PixelRect {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
+/// Leaves trivial elements unset: the threads that render the pixels touch their memory first.
+template <class T>
+struct UnsetAllocator : std::allocator<T> {
+    template <class U>
+    struct rebind {
+        using other = UnsetAllocator<U>;
+    };
+    template <class U>
+    void construct(U* place) {
+        ::new (static_cast<void*>(place)) U;
+    }
+    template <class U, class... Arguments>
+    void construct(U* place, Arguments&&... arguments) {
+        ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+    }
+};
+
 /// One rendered frame (or its crop). pixels is row-major over rect.
 struct Film {
     int full_width = 0, full_height = 0;
@@ -20,7 +39,7 @@ struct Film {
     int radiance_exponent = 0;  // radiances were divided by 2^radiance_exponent
     int samples = 1;            // per pixel
     int fixed_shift = 0;        // s of the fixed sums
-    std::vector<PixelRecord> pixels;
+    std::vector<PixelRecord, UnsetAllocator<PixelRecord>> pixels;
     RayCounts rays;
     uint32_t flags = 0;         // RenderFlag bits of all pixels
 };

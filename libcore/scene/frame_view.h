@@ -34,7 +34,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     return frame;
 }
 
-/// An empty film of the right size for a frame.
+/// A film of the right size for a frame, its pixels unset.
 inline void prepare_film(Film& film, const FrameSettings& settings, int radiance_exponent) {
     film.full_width = settings.full_width;
     film.full_height = settings.full_height;
@@ -42,7 +42,8 @@ inline void prepare_film(Film& film, const FrameSettings& settings, int radiance
     film.radiance_exponent = radiance_exponent;
     film.samples = settings.supersample * settings.supersample;
     film.fixed_shift = fixed_shift(uint32_t(film.samples));
-    film.pixels.assign(size_t(film.rect.width) * size_t(film.rect.height), PixelRecord());
+    film.pixels.clear();
+    film.pixels.resize(size_t(film.rect.width) * size_t(film.rect.height));
     film.rays = RayCounts();
     film.flags = 0;
 }
