@@ -84,10 +84,11 @@ struct EmbreeIntersector {
     static void on_intersect(const RTCIntersectFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<ClosestQuery<Real>*>(arguments->context);
+        const uint64_t before = query.best.key;
         closest_primitive(*query.scene, arguments->primID, *query.ray, query.triangle_ray, query.best);
-        if (!query.best.found()) return;
+        if (query.best.key == before) return;
         auto* rayhit = reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-        rayhit->ray.tfar = least(tree_far(query.best.t), rayhit->ray.tfar);
+        rayhit->ray.tfar = tree_far(query.best.t);
         rayhit->hit.geomID = arguments->geomID;
     }
 

@@ -292,7 +292,7 @@ TEST(Stats, LedgerTotalsAreInTheScenesUnits) {
     film.samples = 4;
     film.fixed_shift = 60;
     film.radiance_exponent = 1;
-    film.pixels.resize(2);
+    film.pixels.assign(2, PixelRecord());
     film.pixels[0].pruned[1] = int64_t{1} << 60;
     film.pixels[1].pruned[1] = int64_t{1} << 62;
     film.pixels[1].cut[2] = int64_t{1} << 59;

@@ -17,7 +17,7 @@ namespace {
 LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
     Film one;
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
-    one.pixels.resize(1);
+    one.pixels.assign(1, PixelRecord());
     LayeredPicture picture = to_layers(one, job.options.channels);
     const PixelRect& crop = job.settings.crop;
     picture.width = crop.width;
