@@ -154,12 +154,13 @@ CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, const Candidate
 /// Whether a line starts on the flat sheet to which a cluster belongs.
 template <class Real>
 CISTULA_INLINE bool leaves_flat(const SceneView<Real>& scene, uint32_t cluster, const Ray<Real>& ray) {
-    return scene.clusters[cluster].solid == ray.from_solid && scene.solids[ray.from_solid].flat != 0;
+    return ray.from_solid != no_solid && scene.clusters[cluster].solid == ray.from_solid &&
+           scene.solids[ray.from_solid].flat != 0;
 }
 
 /// The ray's next crossing of a cluster's triangles, if it is less than `best`.
 template <class Real>
-CISTULA_CALLED void closest_cluster(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
+CISTULA_INLINE void closest_cluster(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
                                     const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     if (leaves_flat(scene, index, ray)) return;
     const Cluster<Real>& cluster = scene.clusters[index];
