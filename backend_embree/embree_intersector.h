@@ -29,6 +29,7 @@ struct ShadowQuery {
 
 template <class Real>
 struct EmbreeIntersector {
+    using Media = MediaList;
     const SceneView<Real>& scene;
     RTCScene tree;
 

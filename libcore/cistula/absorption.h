@@ -14,10 +14,9 @@ struct Absorption {
     PathSum sum[3];
 
     /// The solids of `media` contain the ray from t on (sign -1) or up to t (sign 1).
-    template <class Real>
-    CISTULA_INLINE void add_all(const SceneView<Real>& scene, const MediaList& media, Real t, int sign) {
-        for (uint32_t i = 0; i < media.size; ++i)
-            add(scene, MediaList::solid_of(media.entries[i]), MediaList::count_of(media.entries[i]), t, sign);
+    template <class Real, class Media>
+    CISTULA_INLINE void add_all(const SceneView<Real>& scene, const Media& media, Real t, int sign) {
+        media.for_each([&](uint32_t solid, int count) { add(scene, solid, count, t, sign); });
     }
 
     template <class Real>
@@ -28,8 +27,8 @@ struct Absorption {
                        4 * double(scene.extent));
     }
 
-    template <class Real>
-    CISTULA_INLINE void begin(const SceneView<Real>& scene, const MediaList& media, Real t) {
+    template <class Real, class Media>
+    CISTULA_INLINE void begin(const SceneView<Real>& scene, const Media& media, Real t) {
         for (PathSum& s : sum) s = PathSum();
         if (t > Real(0)) add_all(scene, media, t, -1);
     }
@@ -37,13 +36,13 @@ struct Absorption {
     /// A face that is passed without shading.
     template <class Real>
     CISTULA_INLINE void cross(const SceneView<Real>& scene, uint64_t key, Real t) {
-        const CrossingKind kind = key_kind(key);
-        if (kind != CrossingKind::sheet) add(scene, key_solid(key), 1, t, kind == CrossingKind::enter ? -1 : 1);
+        const int change = media_change(key_kind(key));
+        if (change != 0) add(scene, key_solid(key), 1, t, -change);
     }
 
     /// Multiplies a weight by what is left at t.
-    template <class Real>
-    CISTULA_INLINE void dim(const SceneView<Real>& scene, const MediaList& media, Real t, Vec3<Real>& weight) {
+    template <class Real, class Media>
+    CISTULA_INLINE void dim(const SceneView<Real>& scene, const Media& media, Real t, Vec3<Real>& weight) {
         add_all(scene, media, t, 1);
         for (int c = 0; c < 3; ++c)
             if (const uint64_t loss = sum[c].loss(); loss != 0) weight[c] *= share_of<Real>(loss);
@@ -52,12 +51,12 @@ struct Absorption {
 
 template <>
 struct Absorption<false> {
-    template <class Real>
-    CISTULA_INLINE void begin(const SceneView<Real>&, const MediaList&, Real) {}
+    template <class Real, class Media>
+    CISTULA_INLINE void begin(const SceneView<Real>&, const Media&, Real) {}
     template <class Real>
     CISTULA_INLINE void cross(const SceneView<Real>&, uint64_t, Real) {}
-    template <class Real>
-    CISTULA_INLINE void dim(const SceneView<Real>&, const MediaList&, Real, Vec3<Real>&) {}
+    template <class Real, class Media>
+    CISTULA_INLINE void dim(const SceneView<Real>&, const Media&, Real, Vec3<Real>&) {}
 };
 
 }  // namespace cistula

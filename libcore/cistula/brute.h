@@ -6,8 +6,8 @@
 namespace cistula {
 
 /// The exact test of one primitive against one ray; trees and Embree only choose which ones to call it on.
-template <class Real>
-CISTULA_INLINE void closest_primitive(const SceneView<Real>& scene, uint32_t primitive, const Ray<Real>& ray,
+template <class Real, class Media>
+CISTULA_INLINE void closest_primitive(const SceneView<Real>& scene, uint32_t primitive, const Ray<Real, Media>& ray,
                                       const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     if (primitive < scene.convex.size)
         closest_convex(scene, scene.convex[primitive], ray, best);
@@ -15,8 +15,8 @@ CISTULA_INLINE void closest_primitive(const SceneView<Real>& scene, uint32_t pri
         closest_cluster(scene, primitive - scene.convex.size, ray, triangle_ray, best);
 }
 
-template <class Real, class E>
-CISTULA_INLINE void shadow_primitive(const SceneView<Real>& scene, uint32_t primitive, const ShadowRay<Real>& shadow,
+template <class Real, class E, class Media>
+CISTULA_INLINE void shadow_primitive(const SceneView<Real>& scene, uint32_t primitive, const ShadowRay<Real, Media>& shadow,
                                      const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
     if (primitive < scene.convex.size)
         shadow_convex<Real, E>(scene, scene.convex[primitive], shadow, sum);
@@ -24,12 +24,13 @@ CISTULA_INLINE void shadow_primitive(const SceneView<Real>& scene, uint32_t prim
         shadow_cluster<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, sum);
 }
 
-template <class Real>
+template <class Real, class MediaKind = MediaList>
 struct BruteIntersector {
+    using Media = MediaKind;
     const SceneView<Real>& scene;
 
     /// The least (t, key) after ray.after that the primitive tests accept.
-    CISTULA_INLINE Hit<Real> closest(const Ray<Real>& ray) const {
+    CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
         if (!is_finite(ray) || closest_enclosed(scene, ray, best)) return best;
         for (uint32_t i = 0; i < scene.convex.size; ++i) closest_convex(scene, scene.convex[i], ray, best);
@@ -42,7 +43,7 @@ struct BruteIntersector {
 
     /// The share of the light's intensity that reaches the ray's origin, per channel.
     template <class E>
-    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
+    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real, Media>& shadow) const {
         ShadowSum sum;
         if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
         shadow_start<Real, E>(scene, shadow, sum);

@@ -87,11 +87,12 @@ CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>&
     }
 }
 
-template <class Real>
+template <class Real, class MediaKind = MediaList>
 struct BvhIntersector {
+    using Media = MediaKind;
     const SceneView<Real>& scene;
 
-    CISTULA_INLINE Hit<Real> closest(const Ray<Real>& ray) const {
+    CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
         if (!is_finite(ray) || closest_enclosed(scene, ray, best)) return best;
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
@@ -106,7 +107,7 @@ struct BvhIntersector {
     }
 
     template <class E>
-    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
+    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real, Media>& shadow) const {
         ShadowSum sum;
         if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
         shadow_start<Real, E>(scene, shadow, sum);

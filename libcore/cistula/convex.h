@@ -107,8 +107,8 @@ CISTULA_INLINE bool passes_by(const Solid& solid, const Vec3<Real>& origin, cons
 }
 
 /// The ray's next crossing of a convex solid, if it is less than `best`.
-template <class Real>
-CISTULA_CALLED void closest_convex(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
+template <class Real, class Media>
+CISTULA_CALLED void closest_convex(const SceneView<Real>& scene, uint32_t index, const Ray<Real, Media>& ray,
                                    Hit<Real>& best) {
     const bool inside = ray.media.contains(index), own = ray.from_solid == index;
     if (own && !inside) return;
@@ -127,11 +127,10 @@ CISTULA_CALLED void closest_convex(const SceneView<Real>& scene, uint32_t index,
 }
 
 /// The next crossing of a ray inside a solid that stands alone, which is the way out of it; false for any other ray.
-template <class Real>
-CISTULA_INLINE bool closest_enclosed(const SceneView<Real>& scene, const Ray<Real>& ray, Hit<Real>& best) {
-    if (ray.media.size != 1) return false;
-    const uint32_t solid = MediaList::solid_of(ray.media.entries[0]);
-    if (!scene.solids[solid].alone || MediaList::count_of(ray.media.entries[0]) <= 0) return false;
+template <class Real, class Media>
+CISTULA_INLINE bool closest_enclosed(const SceneView<Real>& scene, const Ray<Real, Media>& ray, Hit<Real>& best) {
+    const uint32_t solid = ray.media.only();
+    if (solid == no_solid || !scene.solids[solid].alone) return false;
     closest_convex(scene, solid, ray, best);
     return true;
 }

@@ -15,6 +15,10 @@ CISTULA_INLINE uint64_t make_key(CrossingKind kind, uint32_t solid, uint32_t fac
 CISTULA_INLINE CrossingKind key_kind(uint64_t key) {
     return CrossingKind(key >> 56);
 }
+/// What a crossing adds to the count of its solid.
+CISTULA_INLINE int media_change(CrossingKind kind) {
+    return kind == CrossingKind::enter ? 1 : kind == CrossingKind::leave ? -1 : 0;
+}
 CISTULA_INLINE uint32_t key_solid(uint64_t key) {
     return uint32_t(key >> 32) & 0xffffffu;
 }

@@ -9,10 +9,10 @@
 namespace cistula {
 
 /// A new line from a face.
-template <class Real>
-CISTULA_INLINE Ray<Real> spawned(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
-                                 const MediaList& media) {
-    Ray<Real> ray;
+template <class Real, class Media>
+CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
+                                 const Media& media) {
+    Ray<Real, Media> ray;
     ray.origin = origin;
     ray.direction = direction;
     ray.from_solid = key_solid(hit.key);
@@ -22,10 +22,10 @@ CISTULA_INLINE Ray<Real> spawned(const Vec3<Real>& origin, const Vec3<Real>& dir
 }
 
 /// Adds `weight` times the local term (DESIGN, Light), seen along `ray`.
-template <class Real, class E, class Intersector>
+template <class Real, class E, class Intersector, class Media>
 CISTULA_INLINE void add_local_light(const SceneView<Real>& scene, const Intersector& intersector,
-                                    const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s,
-                                    const Vec3<Real>& weight, PixelSums<Real>& sums, RayCounts& rays) {
+                                    const Ray<Real, Media>& ray, const Hit<Real>& hit, const Surface<Real>& s,
+                                    const Vec3<Real>& weight, PixelSums<Real>& sums, TreeRays& rays) {
     const Material<Real>& m = *s.material;
     sums.add(weight * (s.color * m.ambient));
     if constexpr (E::has(effect_diffuse | effect_specular)) {
@@ -42,7 +42,7 @@ CISTULA_INLINE void add_local_light(const SceneView<Real>& scene, const Intersec
             if (lit == Vec3<Real>(Real(0))) continue;
             Vec3<Real> arrives(Real(1));
             if constexpr (E::has(effect_opaque_shadows | effect_transparent_shadows)) {
-                const ShadowRay<Real> shadow{spawned(s.viewer_side, to_light, hit, ray.media), distance, &light};
+                const ShadowRay<Real, Media> shadow{spawned(s.viewer_side, to_light, hit, ray.media), distance, &light};
                 ++rays.shadow;
                 arrives = intersector.template transmittance<E>(shadow);
             }

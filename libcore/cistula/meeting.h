@@ -8,17 +8,17 @@
 
 namespace cistula {
 
-template <class Real>
+template <class Real, class Media = MediaList>
 struct Meeting {
-    static constexpr int capacity = 4;
+    static constexpr int capacity = Media::contacts ? 4 : 1;
 
     Hit<Real> hit;                   // the crossing to shade: of the solid with the highest priority
     Crossing<Real> taken[capacity];  // crossings that change the media, in their order; sheets change none
     int count;
-    MediaList beyond;                // after all of them
+    Media beyond;                    // after all of them
     bool fits;                       // whether the lists had room
 
-    CISTULA_INLINE void begin(const Ray<Real>& ray, const Hit<Real>& first) {
+    CISTULA_INLINE void begin(const Ray<Real, Media>& ray, const Hit<Real>& first) {
         hit = first;
         count = 0;
         beyond = ray.media;
@@ -27,23 +27,23 @@ struct Meeting {
     }
 
     CISTULA_INLINE void take(const Hit<Real>& crossing) {
-        const CrossingKind kind = key_kind(crossing.key);
         taken[count++] = {crossing.t, crossing.key};
-        if (kind != CrossingKind::sheet) fits &= beyond.add(key_solid(crossing.key), kind == CrossingKind::enter ? 1 : -1);
+        const int change = media_change(key_kind(crossing.key));
+        if (change != 0) fits &= beyond.add(key_solid(crossing.key), change);
     }
 };
 
 /// `hit` is the ray's next crossing. A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so
 /// crossings of other solids within twice that of the face belong to the same meeting.
-template <class Real, class Intersector>
-CISTULA_INLINE void meet(const SceneView<Real>& scene, const Intersector& intersector, const Ray<Real>& ray,
-                         const Hit<Real>& hit, Meeting<Real>& meeting) {
+template <class Real, class Intersector, class Media>
+CISTULA_INLINE void meet(const SceneView<Real>& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
+                         const Hit<Real>& hit, Meeting<Real, Media>& meeting) {
     meeting.begin(ray, hit);
-    if (!scene.solids[key_solid(hit.key)].touched) return;
-    const Real cosine = magnitude(dot(surface_at<Real, Effects<0>>(scene, ray, hit).normal, ray.direction));
-    const Real reach = hit.t + Real(16) * RealTraits<Real>::unit * scene.extent / greatest(cosine, Real(0x1p-10));
-    Ray<Real> probe = ray;
-    while (meeting.count < Meeting<Real>::capacity) {
+    if (!Media::contacts || !scene.solids[key_solid(hit.key)].touched) return;
+    const Real cosine = magnitude(dot(normal_at(scene, hit), ray.direction));
+    const Real reach = hit.t + incidence<Real> * scene.extent / greatest(cosine, Real(0x1p-10));
+    Ray<Real, Media> probe = ray;
+    while (meeting.count < Meeting<Real, Media>::capacity) {
         probe.media = meeting.beyond;
         probe.after = meeting.taken[meeting.count - 1];
         const Hit<Real> next = intersector.closest(probe);

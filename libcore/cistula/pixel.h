@@ -18,9 +18,9 @@ struct FrameView {
 
 /// The ray through a point of the picture, from where it enters the sphere of radius 2 M (NUMERICS, 1), in double for
 /// either Real. `start` is how far from the camera that is. False: it passes the scene by.
-template <class Real>
+template <class Real, class Media>
 CISTULA_HD inline bool primary_ray(const SceneView<Real>& scene, const FrameView& frame, double x, double y,
-                                   Ray<Real>& ray, Vec3<double>& direction, double& start) {
+                                   Ray<Real, Media>& ray, Vec3<double>& direction, double& start) {
     direction = camera_direction(frame.camera, x, y, frame.width, frame.height);
     Vec3<double> origin = frame.camera.position;
     const double radius = 2 * double(scene.extent), square = radius * radius;
@@ -37,7 +37,7 @@ CISTULA_HD inline bool primary_ray(const SceneView<Real>& scene, const FrameView
     }
     ray.origin = Vec3<Real>(origin);
     ray.direction = Vec3<Real>(direction);
-    ray.media = frame.camera_media;
+    assign(ray.media, frame.camera_media);
     return true;
 }
 
@@ -68,25 +68,26 @@ CISTULA_HD inline bool camera_solids(const SceneView<Real>& scene, const Interse
         const Hit<Real> hit = intersector.closest(ray);
         if (!(double(hit.t) < distance)) return fits;
         const uint32_t solid = key_solid(hit.key);
-        const CrossingKind kind = key_kind(hit.key);
-        if (kind != CrossingKind::sheet) ray.media.add(solid, kind == CrossingKind::enter ? 1 : -1);
-        if (scene.solids[solid].kind == SolidKind::mesh) fits &= media.add(solid, kind == CrossingKind::enter ? 1 : -1);
+        const int change = media_change(key_kind(hit.key));
+        if (change != 0) ray.media.add(solid, change);
+        if (scene.solids[solid].kind == SolidKind::mesh) fits &= media.add(solid, change);
         ray.after = {hit.t, hit.key};
     }
 }
 
-/// All samples of pixel (px, py), the k x k grid of centers. Adds to `rays`; returns RenderFlag bits.
-template <class Real, class E, class Intersector>
+/// All samples of pixel (px, py), the k x k grid of centers. Adds to `rays`; returns RenderFlag bits. What `taker` takes
+/// is missing from the record: resume_branch adds it.
+template <class Real, class E, class Intersector, class Taker = KeepBranches>
 CISTULA_HD inline uint32_t render_pixel(const SceneView<Real>& scene, const FrameView& frame,
                                         const Intersector& intersector, int px, int py, PixelRecord& record,
-                                        RayCounts& rays) {
+                                        RayCounts& rays, Taker taker = {}) {
     record = PixelRecord();
     record.z = RealTraits<float>::infinity;
     uint32_t flags = 0;
     RayCounts own;
     const int k = frame.supersample, chosen = (k / 2) * k + k / 2;
     for (int sample = 0; sample < k * k; ++sample) {
-        Ray<Real> ray;
+        Ray<Real, typename Intersector::Media> ray;
         Vec3<double> direction;
         double start;
         const double x = px + (sample % k + 0.5) / k, y = py + (sample / k + 0.5) / k;
@@ -96,8 +97,10 @@ CISTULA_HD inline uint32_t render_pixel(const SceneView<Real>& scene, const Fram
             sums.add(scene.background);
             continue;
         }
-        RayTree<Real, E, Intersector> tree(scene, intersector, frame.tree.depth, sums, own);
+        TreeRays tree_rays;
+        RayTree<Real, E, Intersector, Taker> tree(scene, intersector, frame.tree.depth, sums, tree_rays, taker);
         const FirstHit<Real> first = tree.trace(ray);
+        own.add(tree_rays);
         record.hits += first.anything ? 1 : 0;
         if (sample != chosen || !first.hit.found()) continue;
         record.id = int32_t(key_solid(first.hit.key)) + 1;
@@ -105,6 +108,25 @@ CISTULA_HD inline uint32_t render_pixel(const SceneView<Real>& scene, const Fram
         for (int c = 0; c < 3; ++c) record.normal[c] = float(first.normal[c]);
     }
     record.rays = uint32_t(least(own.total(), uint64_t(0xffffffffu)));
+    rays.add(own);
+    return flags;
+}
+
+/// The rest of a tree from a branch that a taker took; `record` gets sums and rays of its own.
+template <class Real, class E, class Intersector, class Taker = KeepBranches>
+CISTULA_HD inline uint32_t resume_branch(const SceneView<Real>& scene, const FrameView& frame,
+                                         const Intersector& intersector,
+                                         Branch<Real, typename Intersector::Media>& branch, PixelRecord& record,
+                                         RayCounts& rays, Taker taker = {}) {
+    record = PixelRecord();
+    uint32_t flags = 0;
+    PixelSums<Real> sums(frame.tree, scene.bound, record, flags);
+    TreeRays tree_rays;
+    RayTree<Real, E, Intersector, Taker> tree(scene, intersector, frame.tree.depth, sums, tree_rays, taker);
+    tree.resume(branch);
+    RayCounts own;
+    own.add(tree_rays);
+    record.rays = uint32_t(own.total());
     rays.add(own);
     return flags;
 }

@@ -13,11 +13,21 @@ enum RenderFlag : uint32_t {
     flag_too_many_crossings = 1u << 3,  // a straight ray crossed more faces than the limit
 };
 
+/// Rays of one tree. A tree of 2^32 rays would take hours.
+struct TreeRays {
+    uint32_t reflected = 0, transmitted = 0, shadow = 0;
+};
+
 struct RayCounts {
     uint64_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
 
     CISTULA_INLINE void add(const RayCounts& o) {
         primary += o.primary;
+        reflected += o.reflected;
+        transmitted += o.transmitted;
+        shadow += o.shadow;
+    }
+    CISTULA_INLINE void add(const TreeRays& o) {
         reflected += o.reflected;
         transmitted += o.transmitted;
         shadow += o.shadow;

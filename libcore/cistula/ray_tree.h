@@ -17,9 +17,9 @@ inline constexpr int largest_crossings = 1 << 20;
 inline constexpr int branch_stack = 66;
 
 /// Part of a tree that is still to be followed: `weight` times what `ray` sees.
-template <class Real>
+template <class Real, class Media = MediaList>
 struct Branch {
-    Ray<Real> ray;
+    Ray<Real, Media> ray;
     Vec3<Real> weight;
     int depth = 0;  // surfaces above it
     bool mirrored = false;
@@ -33,56 +33,79 @@ struct FirstHit {
     Vec3<Real> normal{Real(0)};
 };
 
-template <class Real, class E, class Intersector>
+/// What a RayTree asks about branches that wait: whether somebody else takes them. Here nobody does.
+struct KeepBranches {
+    CISTULA_INLINE void shaded() {}
+    template <class Branch>
+    CISTULA_INLINE bool take(const Branch&) {
+        return false;
+    }
+};
+
+template <class Real, class E, class Intersector, class Taker = KeepBranches>
 class RayTree {
   public:
+    using Media = typename Intersector::Media;
+
     CISTULA_INLINE RayTree(const SceneView<Real>& scene, const Intersector& intersector, int depth,
-                           PixelSums<Real>& sums, RayCounts& rays)
-        : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums), rays_(rays) {}
+                           PixelSums<Real>& sums, TreeRays& rays, Taker taker = {})
+        : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums), rays_(rays), taker_(taker) {}
 
     /// Adds all that the primary ray sees to the sums.
-    CISTULA_HD FirstHit<Real> trace(const Ray<Real>& primary) {
-        FirstHit<Real> first;
-        Branch<Real> branch{primary, Vec3<Real>(Real(1))};
-        Meeting<Real> meeting;
-        const bool surface = next_surface(branch, meeting, first.anything);
-        if (!surface) return first;
-        first.anything = true;
-        first.hit = meeting.hit;
-        first.normal = surface_at<Real, Effects<0>>(scene_, branch.ray, meeting.hit).normal;
-        Branch<Real> pending[branch_stack];
-        int count = 0;
-        while (shade(branch, meeting, pending, count) || pop(branch, pending, count)) {
-            bool light = false;
-            while (!next_surface(branch, meeting, light))
-                if (!pop(branch, pending, count)) return first;
-        }
-        return first;
+    CISTULA_INLINE FirstHit<Real> trace(const Ray<Real, Media>& primary) {
+        Branch<Real, Media> branch{primary, Vec3<Real>(Real(1))};
+        return walk(branch);
+    }
+
+    /// Goes on with a branch that another tree's taker took. What is taken depends on no order only where the budget of
+    /// truncation is 0.
+    CISTULA_INLINE void resume(Branch<Real, Media>& branch) {
+        if (follow(branch)) walk(branch);
     }
 
   private:
-    CISTULA_INLINE bool pop(Branch<Real>& branch, const Branch<Real>* pending, int& count) {
+    CISTULA_INLINE FirstHit<Real> walk(Branch<Real, Media>& branch) {
+        FirstHit<Real> first;
+        Meeting<Real, Media> meeting;
+        Branch<Real, Media> pending[branch_stack];
+        int count = 0;
+        for (bool at_first = true;; at_first = false) {
+            bool light = false;
+            const bool surface = next_surface(branch, meeting, light);
+            if (at_first) {
+                first.anything = surface || light;
+                if (surface) first.hit = meeting.hit, first.normal = normal_at(scene_, meeting.hit);
+            }
+            if (surface) {
+                taker_.shaded();
+                if (shade(branch, meeting, pending, count)) continue;
+            }
+            if (!pop(branch, pending, count)) return first;
+        }
+    }
+
+    CISTULA_INLINE bool pop(Branch<Real, Media>& branch, const Branch<Real, Media>* pending, int& count) {
         while (count > 0) {
             --count;
-            if (!follow(pending[count])) continue;
+            if (taker_.take(pending[count]) || !follow(pending[count])) continue;
             branch = pending[count];
             return true;
         }
         return false;
     }
 
-    CISTULA_INLINE bool follow(const Branch<Real>& branch) {
+    CISTULA_INLINE bool follow(const Branch<Real, Media>& branch) {
         if (!sums_.afford(branch.weight)) return false;
         ++(branch.mirrored ? rays_.reflected : rays_.transmitted);
         return true;
     }
 
     /// Straight on through a face.
-    CISTULA_INLINE void pass(Ray<Real>& ray, const Meeting<Real>& meeting) {
+    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting) {
         const Crossing<Real>& crossing = meeting.taken[0];
         const uint32_t solid = key_solid(crossing.key);
-        MediaList media = meeting.beyond;
-        if (ray.fresh() && solid == ray.from_solid && scene_.solids[solid].kind == SolidKind::mesh)
+        Media media = meeting.beyond;
+        if (Media::meshes && ray.fresh() && solid == ray.from_solid && scene_.solids[solid].kind == SolidKind::mesh)
             count_passed_over(ray, crossing, media);
         ray.media = media;
         ray.after = meeting.taken[meeting.count - 1];
@@ -90,24 +113,23 @@ class RayTree {
 
     /// A line that starts on a mesh takes its first crossing from the right side. Others of that mesh that rounding puts
     /// before it, at an edge that the line grazes, count all the same once it goes on straight.
-    CISTULA_INLINE void count_passed_over(const Ray<Real>& ray, const Crossing<Real>& crossing, MediaList& media) {
-        Ray<Real> probe = ray;
+    CISTULA_INLINE void count_passed_over(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media) {
+        Ray<Real, Media> probe = ray;
         probe.from_solid = no_solid;
         for (;;) {
             const Hit<Real> next = intersector_.closest(probe);
             if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
-            const CrossingKind kind = key_kind(next.key);
-            const int change = kind == CrossingKind::enter ? 1 : -1;
+            const int change = media_change(key_kind(next.key));
             bool fits = true;
             if (key_solid(next.key) == ray.from_solid) fits = media.add(ray.from_solid, change);
-            if (kind != CrossingKind::sheet) fits &= probe.media.add(key_solid(next.key), change);
+            if (change != 0) fits &= probe.media.add(key_solid(next.key), change);
             if (!fits) sums_.flag(flag_media_overflow);
             probe.after = {next.t, next.key};
         }
     }
 
     /// A crossing with nothing to shade: inside a medium of higher priority, or of a clear face between equal media.
-    CISTULA_INLINE bool invisible(const Ray<Real>& ray, const Meeting<Real>& meeting) {
+    CISTULA_INLINE bool invisible(const Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting) {
         const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
         if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
         if (!scene_.materials[scene_.solids[solid].material].clear) return false;
@@ -116,7 +138,7 @@ class RayTree {
     }
 
     /// Goes on to the next face that has anything to shade. Otherwise adds the light or background that the ray ends on.
-    CISTULA_INLINE bool next_surface(Branch<Real>& branch, Meeting<Real>& meeting, bool& light) {
+    CISTULA_INLINE bool next_surface(Branch<Real, Media>& branch, Meeting<Real, Media>& meeting, bool& light) {
         Absorption<E::has(effect_absorption)> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
         for (int crossings = 0;; ++crossings) {
@@ -151,7 +173,7 @@ class RayTree {
 
     /// Adds a face's local light and replaces the branch by the lighter of its children; the heavier one is pushed. False
     /// if there is none to go on with.
-    CISTULA_INLINE bool shade(Branch<Real>& branch, const Meeting<Real>& meeting, Branch<Real>* pending, int& count) {
+    CISTULA_INLINE bool shade(Branch<Real, Media>& branch, const Meeting<Real, Media>& meeting, Branch<Real, Media>* pending, int& count) {
         const Hit<Real>& hit = meeting.hit;
         const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, hit);
         if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
@@ -186,7 +208,7 @@ class RayTree {
     }
 
     /// Makes `child` (which may be `parent` itself) the ray that goes through, or the mirrored one.
-    CISTULA_INLINE void become(Branch<Real>& child, const Branch<Real>& parent, const Meeting<Real>& meeting,
+    CISTULA_INLINE void become(Branch<Real, Media>& child, const Branch<Real, Media>& parent, const Meeting<Real, Media>& meeting,
                                const Surface<Real>& s, const Shares<Real>& shares, bool goes_through,
                                const Vec3<Real>& weight) {
         child.depth = parent.depth + 1;
@@ -207,7 +229,8 @@ class RayTree {
     const Intersector& intersector_;
     const int depth_;
     PixelSums<Real>& sums_;
-    RayCounts& rays_;
+    TreeRays& rays_;
+    Taker taker_;
 };
 
 }  // namespace cistula

@@ -9,9 +9,9 @@
 namespace cistula {
 
 /// A straight line to a light; refraction does not bend it. ray.after plays no part.
-template <class Real>
+template <class Real, class Media = MediaList>
 struct ShadowRay {
-    Ray<Real> ray;
+    Ray<Real, Media> ray;
     Real distance;
     const Light<Real>* light;
 };
@@ -84,10 +84,10 @@ CISTULA_INLINE bool light_on_convex(const SceneView<Real>& scene, const Light<Re
     return incident;
 }
 
-template <class Real, class E>
-CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
+template <class Real, class E, class Media>
+CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                   ShadowSum& sum) {
-    const Ray<Real>& ray = shadow.ray;
+    const Ray<Real, Media>& ray = shadow.ray;
     const bool inside = ray.media.contains(index), own = ray.from_solid == index;
     if (own && !inside) return;
     const Solid& solid = scene.solids[index];
@@ -114,44 +114,38 @@ CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, 
     if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(leave - enter, Real(0)));
 }
 
-template <class Real, class E>
-CISTULA_CALLED void shadow_cluster(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real>& shadow,
+template <class Real, class E, class Media>
+CISTULA_CALLED void shadow_cluster(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                    const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
     if (leaves_flat(scene, index, shadow.ray)) return;
     const Cluster<Real>& cluster = scene.clusters[index];
-    CandidateLanes<Real> lanes;
-    for (uint32_t mask = cluster_candidates(cluster, triangle_ray, lanes); mask != 0; mask &= mask - 1) {
-        const uint32_t lane = lowest_bit(mask);
-        TriangleCrossing<Real> c;
-        if (!cross_triangle(cluster, lanes, lane, triangle_ray, c)) continue;
-        if (!(c.t >= Real(0) && c.t < shadow.distance)) continue;
+    for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
+        if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
         const uint32_t triangle = cluster.triangle[lane];
-        if (shadow.ray.from_solid == cluster.solid && shadow.ray.from_face == triangle) continue;
+        if (shadow.ray.from_solid == cluster.solid && shadow.ray.from_face == triangle) return;
         bool holds_light = false;
         for (uint32_t i = 0; i < shadow.light->incident_count; ++i) {
             const Incident& face = scene.incidents[shadow.light->first_incident + i];
             holds_light |= face.solid == cluster.solid && face.face == triangle;
         }
-        if (holds_light) continue;
+        if (holds_light) return;
         const Solid& solid = scene.solids[cluster.solid];
         const Material<Real>& material = scene.materials[solid.material];
         sum.cross<E>(material);
         if constexpr (E::has(effect_absorption))
             if (solid.kind == SolidKind::mesh) sum.absorb_rest(material, shadow.distance - c.t, c.enters ? 1 : -1, scene.extent);
-    }
+    });
 }
 
 /// What meshes that contain the start of the ray add.
-template <class Real, class E>
-CISTULA_INLINE void shadow_start(const SceneView<Real>& scene, const ShadowRay<Real>& shadow, ShadowSum& sum) {
+template <class Real, class E, class Media>
+CISTULA_INLINE void shadow_start(const SceneView<Real>& scene, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
     if constexpr (E::has(effect_absorption)) {
-        const MediaList& media = shadow.ray.media;
-        for (uint32_t i = 0; i < media.size; ++i) {
-            const Solid& solid = scene.solids[MediaList::solid_of(media.entries[i])];
-            const int count = MediaList::count_of(media.entries[i]);
+        shadow.ray.media.for_each([&](uint32_t index, int count) {
+            const Solid& solid = scene.solids[index];
             for (int n = 0; solid.kind == SolidKind::mesh && n != count; n += count > 0 ? 1 : -1)
                 sum.absorb_rest(scene.materials[solid.material], shadow.distance, count > 0 ? 1 : -1, scene.extent);
-        }
+        });
     }
 }
 

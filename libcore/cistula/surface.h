@@ -45,17 +45,40 @@ CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>
     return normalized(scaled / largest_magnitude(scaled));
 }
 
-template <class Real, class E>
-CISTULA_INLINE Surface<Real> surface_at(const SceneView<Real>& scene, const Ray<Real>& ray, const Hit<Real>& hit) {
+/// The corners of the triangle that was hit.
+template <class Real>
+CISTULA_INLINE void triangle_corners(const SceneView<Real>& scene, const Hit<Real>& hit, Vec3<Real> (&corner)[3]) {
+    const Cluster<Real>& cluster = scene.clusters[hit.slot / cluster_lanes];
+    const uint32_t lane = hit.slot % cluster_lanes;
+    for (int c = 0; c < 3; ++c)
+        corner[c] = {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
+}
+
+/// The unit normal on the viewer's side.
+template <class Real>
+CISTULA_INLINE Vec3<Real> normal_at(const SceneView<Real>& scene, const Hit<Real>& hit) {
+    const Solid& solid = scene.solids[key_solid(hit.key)];
+    const uint32_t face = key_face(hit.key);
+    if (solid.kind == SolidKind::convex) {
+        const Vec3<Real>& normal = scene.slabs[solid.first_slab + face / 2].normal;
+        const bool outward = (face & 1u) != 0;  // the high side's outward normal is the slab's
+        return outward == hit.enters ? normal : -normal;
+    }
+    Vec3<Real> corner[3];
+    triangle_corners(scene, hit, corner);
+    const Vec3<Real> normal = triangle_normal(corner[1] - corner[0], corner[2] - corner[0]);
+    return hit.enters ? normal : -normal;
+}
+
+template <class Real, class E, class Media>
+CISTULA_INLINE Surface<Real> surface_at(const SceneView<Real>& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     const uint32_t face = key_face(hit.key);
     Surface<Real> s;
     s.material = &scene.materials[solid.material];
     s.color = s.material->color;
+    s.normal = normal_at(scene, hit);
     if (solid.kind == SolidKind::convex) {
-        const Vec3<Real>& normal = scene.slabs[solid.first_slab + face / 2].normal;
-        const bool outward = (face & 1u) != 0;  // the high side's outward normal is the slab's
-        s.normal = outward == hit.enters ? normal : -normal;
         s.point = along(ray.origin, hit.t, ray.direction);
         s.viewer_side = s.far_side = s.point;
         return s;
@@ -63,12 +86,8 @@ CISTULA_INLINE Surface<Real> surface_at(const SceneView<Real>& scene, const Ray<
     const Cluster<Real>& cluster = scene.clusters[hit.slot / cluster_lanes];
     const uint32_t lane = hit.slot % cluster_lanes;
     Vec3<Real> corner[3];
-    for (int c = 0; c < 3; ++c)
-        corner[c] = {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
-    const Vec3<Real> ab = corner[1] - corner[0], ac = corner[2] - corner[0];
-    const Vec3<Real> normal = triangle_normal(ab, ac);
-    s.point = along(along(corner[0], hit.u, ab), hit.v, ac);
-    s.normal = hit.enters ? normal : -normal;
+    triangle_corners(scene, hit, corner);
+    s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
     const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);
     s.viewer_side = toward_apex(s.point, centroid, s.normal, cluster.height[hit.enters][lane], scene.extent);
     s.far_side = toward_apex(s.point, centroid, -s.normal, cluster.height[!hit.enters][lane], scene.extent);

@@ -46,6 +46,13 @@ CISTULA_INLINE Real sheared(Real across, Real shear, Real depth) {
     return magnitude(s) < least_sheared<Real> ? Real(0) : s;
 }
 
+/// An accepted crossing of one triangle.
+template <class Real>
+struct TriangleCrossing {
+    Real t, u, v;
+    bool enters;  // against the normal
+};
+
 /// Corners relative to the ray and sheared along it, and edge functions opposite to each.
 template <class Real>
 struct ShearedTriangle {
@@ -80,6 +87,7 @@ struct ShearedTriangle {
         }
         return true;
     }
+
 };
 
 /// What the eight-lane test leaves for the lanes that it names: edge functions and corners' distances along kz.
@@ -129,58 +137,76 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
     return mask;
 }
 
-/// An accepted crossing of one triangle.
+/// The exact test of one candidate, given its edge functions and its corners' distances along kz; t is not yet compared
+/// with anything.
 template <class Real>
-struct TriangleCrossing {
-    Real t, u, v;
-    bool enters;  // against the normal
-};
-
-/// The exact test of one candidate lane; t is not yet compared with anything.
-template <class Real>
-CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, const CandidateLanes<Real>& lanes, uint32_t lane,
-                                   const TriangleRay<Real>& ray, TriangleCrossing<Real>& crossing) {
-    const Real u = lanes.edge[0][lane], v = lanes.edge[1][lane], w = lanes.edge[2][lane], det = u + v + w;
+CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, uint32_t lane, const TriangleRay<Real>& ray,
+                                   const Real (&edge)[3], const Real (&z)[3], TriangleCrossing<Real>& crossing) {
+    const Real u = edge[0], v = edge[1], w = edge[2], det = u + v + w;
     if (u == Real(0) || v == Real(0) || w == Real(0)) {
         if (det == Real(0)) return false;
         const ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, int(lane), ray);
         if (!s.owns_zero_edges(det > Real(0) ? Real(1) : Real(-1))) return false;
     }
-    const Real depth = u * (ray.sz * lanes.z[0][lane]) + v * (ray.sz * lanes.z[1][lane]) + w * (ray.sz * lanes.z[2][lane]);
+    const Real depth = u * (ray.sz * z[0]) + v * (ray.sz * z[1]) + w * (ray.sz * z[2]);
     crossing = {depth / det, v / det, w / det, det > Real(0)};
     return true;
 }
 
-/// Whether a line starts on the flat sheet to which a cluster belongs.
 template <class Real>
-CISTULA_INLINE bool leaves_flat(const SceneView<Real>& scene, uint32_t cluster, const Ray<Real>& ray) {
+CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, const CandidateLanes<Real>& lanes, uint32_t lane,
+                                   const TriangleRay<Real>& ray, TriangleCrossing<Real>& crossing) {
+    const Real edge[3] = {lanes.edge[0][lane], lanes.edge[1][lane], lanes.edge[2][lane]};
+    const Real z[3] = {lanes.z[0][lane], lanes.z[1][lane], lanes.z[2][lane]};
+    return cross_triangle(cluster, lane, ray, edge, z, crossing);
+}
+
+/// Calls visit(lane, crossing) for every triangle of a cluster that the ray's line crosses, wherever.
+template <class Real, class Visit>
+CISTULA_INLINE void for_each_crossing(const Cluster<Real>& cluster, const TriangleRay<Real>& ray, const Visit& visit) {
+#if CISTULA_ON_DEVICE
+    // One after the other in registers: a buffer of lanes would be memory here.
+    for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+        const ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, int(lane), ray);
+        TriangleCrossing<Real> c;
+        if (s.within() && cross_triangle(cluster, lane, ray, s.edge, s.z, c)) visit(lane, c);
+    }
+#else
+    CandidateLanes<Real> lanes;
+    for (uint32_t mask = cluster_candidates(cluster, ray, lanes); mask != 0; mask &= mask - 1) {
+        const uint32_t lane = lowest_bit(mask);
+        TriangleCrossing<Real> c;
+        if (cross_triangle(cluster, lanes, lane, ray, c)) visit(lane, c);
+    }
+#endif
+}
+
+/// Whether a line starts on the flat sheet to which a cluster belongs.
+template <class Real, class Media>
+CISTULA_INLINE bool leaves_flat(const SceneView<Real>& scene, uint32_t cluster, const Ray<Real, Media>& ray) {
     return ray.from_solid != no_solid && scene.clusters[cluster].solid == ray.from_solid &&
            scene.solids[ray.from_solid].flat != 0;
 }
 
 /// The ray's next crossing of a cluster's triangles, if it is less than `best`.
-template <class Real>
-CISTULA_INLINE void closest_cluster(const SceneView<Real>& scene, uint32_t index, const Ray<Real>& ray,
+template <class Real, class Media>
+CISTULA_INLINE void closest_cluster(const SceneView<Real>& scene, uint32_t index, const Ray<Real, Media>& ray,
                                     const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     if (leaves_flat(scene, index, ray)) return;
     const Cluster<Real>& cluster = scene.clusters[index];
-    CandidateLanes<Real> lanes;
-    for (uint32_t mask = cluster_candidates(cluster, triangle_ray, lanes); mask != 0; mask &= mask - 1) {
-        const uint32_t lane = lowest_bit(mask);
-        TriangleCrossing<Real> c;
-        if (!cross_triangle(cluster, lanes, lane, triangle_ray, c)) continue;
+    for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
         const uint32_t triangle = cluster.triangle[lane];
         const bool own = ray.from_solid == cluster.solid;
-        if (!(c.t >= Real(0)) || (own && ray.from_face == triangle)) continue;
+        if (!(c.t >= Real(0)) || (own && ray.from_face == triangle)) return;
         CrossingKind kind = c.enters ? CrossingKind::enter : CrossingKind::leave;
         if (scene.solids[cluster.solid].kind == SolidKind::sheet)
             kind = CrossingKind::sheet;
         else if (own && ray.fresh() && c.enters == ray.media.contains(cluster.solid))
-            continue;  // a line that starts on this mesh first crosses it from the side on which it starts
+            return;  // a line that starts on this mesh first crosses it from the side on which it starts
         const uint64_t key = make_key(kind, cluster.solid, triangle);
         if (ray.after.before(c.t, key) && best.improves(c.t, key))
             best = {c.t, key, c.u, c.v, index * uint32_t(cluster_lanes) + lane, c.enters};
-    }
+    });
 }
 
 }  // namespace cistula
