@@ -114,12 +114,18 @@ PaddedBox primitive_box(const SceneView<Real>& scene, uint32_t primitive) {
 }
 
 template <class Real>
-void build_primitive_tree(CompiledScene<Real>& scene, int quality) {
-    const SceneView<Real> view = scene.view();
+PrimitiveTree primitive_tree(const SceneView<Real>& scene, int quality) {
     std::vector<RTCBuildPrimitive> primitives;
-    primitives.reserve(view.convex.size + view.clusters.size);
-    for (uint32_t i = 0; i < view.convex.size + view.clusters.size; ++i) primitives.push_back(boxed_primitive(view, i));
+    primitives.reserve(scene.convex.size + scene.clusters.size);
+    for (uint32_t i = 0; i < scene.convex.size + scene.clusters.size; ++i)
+        primitives.push_back(boxed_primitive(scene, i));
     Tree tree = build_tree(primitives, quality);
+    return {std::move(tree.nodes), std::move(tree.items)};
+}
+
+template <class Real>
+void build_primitive_tree(CompiledScene<Real>& scene, int quality) {
+    PrimitiveTree tree = primitive_tree(scene.view(), quality);
     scene.tree = std::move(tree.nodes);
     scene.tree_items = std::move(tree.items);
 }
@@ -128,6 +134,8 @@ template struct CompiledScene<float>;
 template struct CompiledScene<double>;
 template PaddedBox primitive_box(const SceneView<float>&, uint32_t);
 template PaddedBox primitive_box(const SceneView<double>&, uint32_t);
+template PrimitiveTree primitive_tree(const SceneView<float>&, int);
+template PrimitiveTree primitive_tree(const SceneView<double>&, int);
 template void build_primitive_tree(CompiledScene<float>&, int);
 template void build_primitive_tree(CompiledScene<double>&, int);
 

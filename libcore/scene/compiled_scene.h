@@ -50,7 +50,15 @@ struct CompiledScene {
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description);
 
-/// Adds the tree over primitives that bvh.h walks (Embree's builder). quality: 0 quick, 1 the builder's best.
+/// The tree over primitives that bvh.h walks (Embree's builder). quality: 0 quick, 1 the builder's best.
+struct PrimitiveTree {
+    std::vector<TreeNode> nodes;
+    std::vector<uint32_t> items;
+};
+template <class Real>
+PrimitiveTree primitive_tree(const SceneView<Real>& scene, int quality = 1);
+
+/// Adds that tree to the scene.
 template <class Real>
 void build_primitive_tree(CompiledScene<Real>& scene, int quality = 1);
 

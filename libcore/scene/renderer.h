@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "scene/camera_path.h"
 #include "scene/film.h"
@@ -30,6 +31,12 @@ struct RenderProgress {
     std::atomic<bool> stop{false};  // set it: the render returns at the next tile
 };
 
+/// Where the time of the last frame went, in seconds; of the devices that had part in it the slowest.
+struct RenderTimes {
+    double kernel = 0;    // devices at work on pixels
+    double transfer = 0;  // from their being done to the film's being whole
+};
+
 /// Renders frames of one scene in one precision. Not thread-safe: one render at a time.
 class Renderer {
   public:
@@ -39,11 +46,21 @@ class Renderer {
     virtual bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                         RenderProgress& progress) = 0;
 
+    /// Announces the frame that render() will be asked for after the next one, so that a device can begin it early.
+    /// Asking for another one then costs time, nothing else.
+    virtual void expect(const CameraFrame&, const FrameSettings&) {}
+
     /// The mask of effects that the last render ran.
     virtual uint32_t effects() const = 0;
 
     /// "embree", "bvh", "brute", "cuda".
     virtual std::string intersector() const = 0;
+
+    /// Of backends with devices of their own; else zeros.
+    virtual RenderTimes times() const { return {}; }
+
+    /// What the user should know of the last frame, one line each: that it went by parts for want of memory, ...
+    virtual std::vector<std::string> notes() const { return {}; }
 
     /// Bytes of geometry, trees and shading data.
     virtual size_t memory() const = 0;

@@ -1,0 +1,153 @@
+#include "backend_cuda/device_worker.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+namespace cistula {
+namespace {
+
+constexpr size_t staging_bytes = size_t{32} << 20;
+/// Branches that may wait per pixel of a part; trees that find no room are walked to their end where they are.
+constexpr size_t queue_share = 2;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+void use_device(int device) {
+    CISTULA_CUDA_CHECK(cudaSetDevice(device));
+}
+
+template <class Real>
+DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, DevicePath path, int split)
+    : device_(device), path_(path), split_(split) {
+    arena_.reserve(std::max<size_t>(scene.bytes().size(), 1));
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(),
+                                       cudaMemcpyHostToDevice, compute_));
+    queue_sizes_.reserve(passes * sizeof(unsigned int));
+    for (PartSlot& slot : slots_) {
+        slot.tally.reserve(sizeof(DeviceTally));
+        slot.tally_copy.reserve(sizeof(DeviceTally));
+    }
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+    scene_ = scene.at(arena_.as<void>());
+}
+
+template <class Real>
+bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit) {
+    use_device(device_);
+    const size_t bytes = pixels * sizeof(PixelRecord);
+    const size_t branch = queued_branch_bytes<Real>(path_), wanted = split_ > 0 ? pixels / queue_share : 0;
+    if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
+    for (PartSlot& slot : slots_)
+        if (!slot.records.try_reserve(bytes)) return false;
+    for (DeviceMemory& queue : queue_)
+        if (!queue.try_reserve(wanted * branch)) return false;
+    queue_capacity_ = wanted;
+    return true;
+}
+
+template <class Real>
+void DeviceWorker<Real>::start(const FramePart& part, int index) {
+    use_device(device_);
+    PartSlot& slot = slots_[index];
+    slot.part = part;
+    FrameJob<Real> job;
+    job.scene = scene_;
+    job.frame = part.frame;
+    job.records = slot.records.as<PixelRecord>();
+    job.x = part.rect.x;
+    job.y = part.rect.y;
+    job.width = part.rect.width;
+    job.height = part.rect.height;
+    job.first_strip = part.first_strip;
+    job.strip_step = part.strip_step;
+    job.rows = part.strips * strip_rows;
+    job.tally = slot.tally.as<DeviceTally>();
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(queue_sizes_.as<void>(), 0, passes * sizeof(unsigned int), compute_));
+    CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
+    // A budget is spent in the order of one thread's stack; and small trees are not worth splitting.
+    const bool splits = split_ > 0 && part.frame.tree.budget == 0 &&
+                        (part.frame.tree.depth > 30 || (1 << part.frame.tree.depth) > split_);
+    const auto queue = [&](int pass) {
+        BranchQueue q;
+        q.items = queue_[pass % 2].as<void>();
+        q.capacity = static_cast<unsigned int>(queue_capacity_);
+        q.size = queue_sizes_.as<unsigned int>() + pass;
+        return q;
+    };
+    job.surfaces = split_;
+    if (splits) job.to = queue(0);
+    launch_pixels(part.mask, path_, job, compute_);
+    for (int pass = 1; splits && pass < passes; ++pass) {
+        job.from = queue(pass - 1);
+        job.to = pass + 1 < passes ? queue(pass) : BranchQueue();
+        launch_branches(part.mask, path_, job, compute_);
+    }
+    CISTULA_CUDA_CHECK(cudaEventRecord(slot.end, compute_));
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.tally_copy.as<void>(), job.tally, sizeof(DeviceTally),
+                                       cudaMemcpyDeviceToHost, compute_));
+    CISTULA_CUDA_CHECK(cudaEventRecord(slot.done, compute_));
+}
+
+template <class Real>
+void DeviceWorker<Real>::fetch(int index, Film& film) {
+    use_device(device_);
+    PartSlot& slot = slots_[index];
+    CISTULA_CUDA_CHECK(cudaEventSynchronize(slot.done));
+    kernel_seconds += slot.end.since(slot.begin) * 1e-3;
+    const auto start = std::chrono::steady_clock::now();
+    copy_rows(slot, film);
+    const DeviceTally& tally = *slot.tally_copy.as<DeviceTally>();
+    for (const auto& counts : tally.rays) {
+        rays.primary += counts[0];
+        rays.reflected += counts[1];
+        rays.transmitted += counts[2];
+        rays.shadow += counts[3];
+    }
+    flags |= tally.flags;
+    transfer_seconds += seconds_since(start);
+}
+
+template <class Real>
+void DeviceWorker<Real>::wait() const {
+    use_device(device_);
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+}
+
+/// Through two page-locked buffers: one is filled while threads spread the other over the film.
+template <class Real>
+void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
+    const FramePart& part = slot.part;
+    const size_t width = size_t(part.rect.width), row_bytes = width * sizeof(PixelRecord);
+    const int rows = part.strips * strip_rows, batch = int(std::max<size_t>(staging_bytes / row_bytes, 1));
+    for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * row_bytes);
+    const auto fill = [&](int first, int buffer) {
+        CISTULA_CUDA_CHECK(cudaMemcpyAsync(staging_[buffer].as<void>(),
+                                           slot.records.as<PixelRecord>() + size_t(first) * width,
+                                           size_t(std::min(batch, rows - first)) * row_bytes, cudaMemcpyDeviceToHost, copy_));
+        CISTULA_CUDA_CHECK(cudaEventRecord(staged_[buffer], copy_));
+    };
+    fill(0, 0);
+    for (int first = 0, buffer = 0; first < rows; first += batch, buffer ^= 1) {
+        CISTULA_CUDA_CHECK(cudaEventSynchronize(staged_[buffer]));
+        if (first + batch < rows) fill(first + batch, buffer ^ 1);
+        const PixelRecord* from = staging_[buffer].as<PixelRecord>();
+        tbb::parallel_for(0, std::min(batch, rows - first), [&](int i) {
+            const int row = first + i;
+            const int y = (part.first_strip + row / strip_rows * part.strip_step) * strip_rows + row % strip_rows;
+            if (y < part.rect.height) std::memcpy(&film.pixels[size_t(y) * width], from + size_t(i) * width, row_bytes);
+        });
+    }
+}
+
+template class DeviceWorker<float>;
+template class DeviceWorker<double>;
+
+}  // namespace cistula

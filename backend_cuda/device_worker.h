@@ -1,0 +1,78 @@
+// One GPU's share of frames: a part at a time on its way through the kernels while the one before is read back.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "backend_cuda/cuda_resources.h"
+#include "backend_cuda/frame_job.h"
+#include "scene/film.h"
+#include "scene/scene_arena.h"
+
+namespace cistula {
+
+/// "7.5 or later": what this build's kernels run on.
+std::string kernel_architectures();
+bool kernels_run_on_capability(int capability);
+
+/// Makes a device current for the calls of this thread.
+void use_device(int device);
+
+/// Strips of a frame's rectangle that a device renders in one go.
+struct FramePart {
+    FrameView frame;
+    PixelRect rect;
+    int first_strip = 0, strip_step = 1, strips = 0;
+    int mask = 0;  // index of effect_masks
+};
+
+/// A part on its way.
+struct PartSlot {
+    DeviceMemory records, tally;
+    PinnedMemory tally_copy;
+    CudaEvent begin, end, done;  // of the kernels; of all, the tally's copy too
+    FramePart part;
+};
+
+template <class Real>
+class DeviceWorker {
+  public:
+    static constexpr int slots = 2;  // parts on their way at once
+
+    DeviceWorker(int device, const SceneArena<Real>& scene, DevicePath path, int split);
+
+    /// Room for parts of that many pixels in both slots. False where there is none.
+    bool reserve(size_t pixels, size_t memory_limit);
+
+    /// Enqueues a part; nothing is waited for. Its slot must be free.
+    void start(const FramePart& part, int slot);
+
+    /// Waits for the part in a slot and puts its pixels where they belong in the film.
+    void fetch(int slot, Film& film);
+
+    /// Waits for all that was started.
+    void wait() const;
+
+    int device() const { return device_; }
+    double kernel_seconds = 0, transfer_seconds = 0;  // of all parts fetched; the caller resets them
+    RayCounts rays;
+    uint32_t flags = 0;
+
+  private:
+    static constexpr int passes = 4;  // over pixels, then over queues
+
+    void copy_rows(const PartSlot& slot, Film& film);
+
+    const int device_;
+    const DevicePath path_;
+    const int split_;
+    CudaStream compute_, copy_;
+    DeviceMemory arena_, queue_[2], queue_sizes_;
+    PinnedMemory staging_[2];
+    CudaEvent staged_[2];
+    size_t queue_capacity_ = 0;
+    SceneView<Real> scene_;
+    PartSlot slots_[slots];
+};
+
+}  // namespace cistula

@@ -1,0 +1,60 @@
+// What the host asks of a device for a part of a frame, and the kernels' launcher.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include "cistula/pixel.h"
+
+namespace cistula {
+
+/// Rows of a frame come in strips of this many, so that several devices can take turns.
+inline constexpr int strip_rows = 8;
+
+/// Ray counts and flags, added up by many blocks: spread over slots, so that they do not queue for one.
+struct DeviceTally {
+    static constexpr int slots = 64;
+    unsigned long long rays[slots][4];  // in the order of RayCounts
+    unsigned int flags;
+};
+
+/// Branches that wait for the next pass, of any kind of media: bytes for `capacity` of them.
+struct BranchQueue {
+    void* items = nullptr;
+    unsigned int capacity = 0;
+    unsigned int* size = nullptr;  // may pass capacity: what found no room
+};
+
+/// Rows of the frame's rectangle: strip s of the job is strip first_strip + s * strip_step of the rectangle.
+template <class Real>
+struct FrameJob {
+    SceneView<Real> scene;  // in device memory
+    FrameView frame;
+    PixelRecord* records = nullptr;  // rows x width, row by row
+    int x = 0, y = 0;                // of the rectangle in the frame
+    int width = 0, height = 0;       // of the rectangle
+    int first_strip = 0, strip_step = 1;
+    int rows = 0;  // whole strips; rows below the rectangle are left alone
+    DeviceTally* tally = nullptr;
+    BranchQueue from, to;  // passes after the first read `from`
+    int surfaces = 0;      // that a thread shades before what waits goes `to` the queue
+};
+
+/// Which intersector and which form of media the kernels use. Never changes the image.
+enum class DevicePath {
+    plain_loop,  // few primitives, closed solids all convex and apart
+    tree,        // any scene
+};
+inline constexpr int device_path_count = 2;
+
+/// Bytes of a queued branch.
+template <class Real>
+size_t queued_branch_bytes(DevicePath path);
+
+/// Enqueues a pass over all pixels of the job, or over the branches of job.from. `mask` is an index of effect_masks.
+/// Throws Error (device).
+template <class Real>
+void launch_pixels(int mask, DevicePath path, const FrameJob<Real>& job, cudaStream_t stream);
+template <class Real>
+void launch_branches(int mask, DevicePath path, const FrameJob<Real>& job, cudaStream_t stream);
+
+}  // namespace cistula
