@@ -14,10 +14,10 @@ setup = $(if $(filter no,$(SETUP)),@true,@cmake/install-packages $(1))
 configure = @cmake/configure $(1) $(CMAKE_ARGS)
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-asan bench golden install cuda-toolkit clean
+.PHONY: help render build test test-asan bench gpu-check golden install cuda-toolkit clean
 
 help: ## this list
-	@echo 'make TARGET [PRESET=release|debug|asan] [SETUP=no] [CMAKE_ARGS=...]'
+	@echo 'make TARGET [PRESET=release|release-all|debug|asan] [SETUP=no] [CMAKE_ARGS=...]'
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
 render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
@@ -43,6 +43,22 @@ bench: ## build the benchmarks and run them; JSON into out/bench
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD)
 	bench/run $(BUILD)
+
+# For the GPUs of this machine, where nothing else is asked for: no driver then compiles kernels at every start.
+define own_architectures
+$(if $(findstring CMAKE_CUDA_ARCHITECTURES,$(CMAKE_ARGS))$(CUDAARCHS),,$(shell \
+    nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/null | tr -d '. ' | grep -E '^[0-9]+$$' | sort -nu | \
+    paste -sd';' | sed -n "s/..*/'-DCMAKE_CUDA_ARCHITECTURES=&'/p"))
+endef
+
+gpu-check: ## on a machine with a GPU: compare it with the CPU bit for bit, and time it; JSON into out/bench
+	$(call setup,packages.txt)
+	$(call configure,$(PRESET)) $(own_architectures)
+	@cmake --build $(BUILD) --target help | grep -qw gpu_check || \
+	    { echo 'gpu-check: this build has no CUDA backend (the configuration says why; make cuda-toolkit fetches nvcc)' >&2; exit 4; }
+	@cmake --build $(BUILD) --target gpu_check seed_baseline render render-compare
+	@! cmake --build $(BUILD) --target help | grep -qw gpu_check_fast || cmake --build $(BUILD) --target gpu_check_fast
+	bench/gpu-check $(BUILD)
 
 golden: ## render the golden images again and say what changed
 	$(call setup,packages.txt)

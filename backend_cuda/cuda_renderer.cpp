@@ -22,7 +22,8 @@ bool fits_plain_loop(const SceneView<Real>& scene) {
     if (scene.convex.size + scene.clusters.size > plain_loop_primitives) return false;
     for (const Solid& solid : scene.solids)
         if (solid.kind == SolidKind::mesh || solid.touched) return false;
-    return true;
+    const auto small = std::make_unique<SmallScene<Real>>();
+    return small->assign(scene, scene);
 }
 
 bool same(const CameraFrame& a, const CameraFrame& b) {
@@ -47,15 +48,14 @@ class CudaRenderer : public Renderer {
         for (const int index : options_.devices) require(known, index);
         path_ = !options_.always_tree && fits_plain_loop(view_) ? DevicePath::plain_loop : DevicePath::tree;
         if (path_ == DevicePath::tree) {
-            tree_ = primitive_tree(view_);
-            view_.tree = {tree_.nodes.data(), uint32_t(tree_.nodes.size())};
-            view_.tree_items = {tree_.items.data(), uint32_t(tree_.items.size())};
+            tree_ = facet_tree(view_);
+            tree_.put_into(view_);
         }
         const SceneArena<Real> arena(view_);
         bytes_ = arena.bytes().size();
         for (const int index : options_.devices) {
             use_device(index);
-            workers_.push_back(std::make_unique<DeviceWorker<Real>>(index, arena, path_, options_.split));
+            workers_.push_back(std::make_unique<DeviceWorker<Real>>(index, arena, view_, path_, options_.split));
         }
     }
 
@@ -223,7 +223,7 @@ class CudaRenderer : public Renderer {
     std::shared_ptr<const CompiledScene<Real>> scene_;
     const CudaOptions options_;
     SceneView<Real> view_;
-    PrimitiveTree tree_;
+    FacetTree<Real> tree_;
     DevicePath path_;
     std::vector<std::unique_ptr<DeviceWorker<Real>>> workers_;
     std::optional<Request> expected_;

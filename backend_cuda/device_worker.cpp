@@ -24,7 +24,8 @@ void use_device(int device) {
 }
 
 template <class Real>
-DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, DevicePath path, int split)
+DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path,
+                                 int split)
     : device_(device), path_(path), split_(split) {
     arena_.reserve(std::max<size_t>(scene.bytes().size(), 1));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(),
@@ -35,7 +36,8 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, Devi
         slot.tally_copy.reserve(sizeof(DeviceTally));
     }
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
-    scene_ = scene.at(arena_.as<void>());
+    scene_.view = scene.at(arena_.as<void>());
+    if (path_ == DevicePath::plain_loop) scene_.small.assign(here, scene_.view);
 }
 
 template <class Real>
@@ -57,8 +59,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
-    FrameJob<Real> job;
-    job.scene = scene_;
+    FrameJob job;
     job.frame = part.frame;
     job.records = slot.records.as<PixelRecord>();
     job.x = part.rect.x;
@@ -84,11 +85,11 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     };
     job.surfaces = split_;
     if (splits) job.to = queue(0);
-    launch_pixels(part.mask, path_, job, compute_);
+    launch_pixels(part.mask, path_, scene_, job, compute_);
     for (int pass = 1; splits && pass < passes; ++pass) {
         job.from = queue(pass - 1);
         job.to = pass + 1 < passes ? queue(pass) : BranchQueue();
-        launch_branches(part.mask, path_, job, compute_);
+        launch_branches(part.mask, path_, scene_, job, compute_);
     }
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.end, compute_));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.tally_copy.as<void>(), job.tally, sizeof(DeviceTally),

@@ -39,7 +39,8 @@ class DeviceWorker {
   public:
     static constexpr int slots = 2;  // parts on their way at once
 
-    DeviceWorker(int device, const SceneArena<Real>& scene, DevicePath path, int split);
+    /// `here`: the scene of the arena, where this program can read it.
+    DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path, int split);
 
     /// Room for parts of that many pixels in both slots. False where there is none.
     bool reserve(size_t pixels, size_t memory_limit);
@@ -59,7 +60,7 @@ class DeviceWorker {
     uint32_t flags = 0;
 
   private:
-    static constexpr int passes = 4;  // over pixels, then over queues
+    static constexpr int passes = 6;  // over pixels, then over queues
 
     void copy_rows(const PartSlot& slot, Film& film);
 
@@ -71,7 +72,7 @@ class DeviceWorker {
     PinnedMemory staging_[2];
     CudaEvent staged_[2];
     size_t queue_capacity_ = 0;
-    SceneView<Real> scene_;
+    DeviceScene<Real> scene_;
     PartSlot slots_[slots];
 };
 

@@ -4,6 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include "cistula/pixel.h"
+#include "cistula/small_scene.h"
 
 namespace cistula {
 
@@ -25,9 +26,7 @@ struct BranchQueue {
 };
 
 /// Rows of the frame's rectangle: strip s of the job is strip first_strip + s * strip_step of the rectangle.
-template <class Real>
 struct FrameJob {
-    SceneView<Real> scene;  // in device memory
     FrameView frame;
     PixelRecord* records = nullptr;  // rows x width, row by row
     int x = 0, y = 0;                // of the rectangle in the frame
@@ -41,10 +40,17 @@ struct FrameJob {
 
 /// Which intersector and which form of media the kernels use. Never changes the image.
 enum class DevicePath {
-    plain_loop,  // few primitives, closed solids all convex and apart
+    plain_loop,  // a SmallScene of few primitives, closed solids all convex and apart
     tree,        // any scene
 };
 inline constexpr int device_path_count = 2;
+
+/// The scene in both forms; `small` is set for the plain loop only.
+template <class Real>
+struct DeviceScene {
+    SceneView<Real> view;  // in device memory
+    SmallScene<Real> small;
+};
 
 /// Bytes of a queued branch.
 template <class Real>
@@ -53,8 +59,8 @@ size_t queued_branch_bytes(DevicePath path);
 /// Enqueues a pass over all pixels of the job, or over the branches of job.from. `mask` is an index of effect_masks.
 /// Throws Error (device).
 template <class Real>
-void launch_pixels(int mask, DevicePath path, const FrameJob<Real>& job, cudaStream_t stream);
+void launch_pixels(int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream);
 template <class Real>
-void launch_branches(int mask, DevicePath path, const FrameJob<Real>& job, cudaStream_t stream);
+void launch_branches(int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream);
 
 }  // namespace cistula

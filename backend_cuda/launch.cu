@@ -6,8 +6,8 @@
 namespace cistula {
 
 #define CISTULA_ELSEWHERE(mask)                                                                   \
-    extern template void launch_mask<float, mask>(DevicePath, bool, const FrameJob<float>&, cudaStream_t); \
-    extern template void launch_mask<double, mask>(DevicePath, bool, const FrameJob<double>&, cudaStream_t);
+    extern template void launch_mask<float, mask>(DevicePath, bool, const DeviceScene<float>&, const FrameJob&, cudaStream_t); \
+    extern template void launch_mask<double, mask>(DevicePath, bool, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
 CISTULA_ELSEWHERE(0)
 CISTULA_ELSEWHERE(1)
 CISTULA_ELSEWHERE(2)
@@ -18,11 +18,11 @@ static_assert(effect_mask_count == 4, "name the new masks above and in CMakeList
 namespace {
 
 template <class Real>
-void launch(int mask, DevicePath path, bool branches, const FrameJob<Real>& job, cudaStream_t stream) {
-    using Launch = void (*)(DevicePath, bool, const FrameJob<Real>&, cudaStream_t);
+void launch(int mask, DevicePath path, bool branches, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
+    using Launch = void (*)(DevicePath, bool, const DeviceScene<Real>&, const FrameJob&, cudaStream_t);
     static constexpr Launch table[effect_mask_count] = {launch_mask<Real, 0>, launch_mask<Real, 1>, launch_mask<Real, 2>,
                                                         launch_mask<Real, 3>};
-    table[mask](path, branches, job, stream);
+    table[mask](path, branches, scene, job, stream);
 }
 
 }  // namespace
@@ -35,19 +35,19 @@ size_t queued_branch_bytes(DevicePath path) {
 }
 
 template <class Real>
-void launch_pixels(int mask, DevicePath path, const FrameJob<Real>& job, cudaStream_t stream) {
-    launch(mask, path, false, job, stream);
+void launch_pixels(int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
+    launch(mask, path, false, scene, job, stream);
 }
 template <class Real>
-void launch_branches(int mask, DevicePath path, const FrameJob<Real>& job, cudaStream_t stream) {
-    launch(mask, path, true, job, stream);
+void launch_branches(int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
+    launch(mask, path, true, scene, job, stream);
 }
 
 template size_t queued_branch_bytes<float>(DevicePath);
 template size_t queued_branch_bytes<double>(DevicePath);
-template void launch_pixels(int, DevicePath, const FrameJob<float>&, cudaStream_t);
-template void launch_pixels(int, DevicePath, const FrameJob<double>&, cudaStream_t);
-template void launch_branches(int, DevicePath, const FrameJob<float>&, cudaStream_t);
-template void launch_branches(int, DevicePath, const FrameJob<double>&, cudaStream_t);
+template void launch_pixels(int, DevicePath, const DeviceScene<float>&, const FrameJob&, cudaStream_t);
+template void launch_pixels(int, DevicePath, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
+template void launch_branches(int, DevicePath, const DeviceScene<float>&, const FrameJob&, cudaStream_t);
+template void launch_branches(int, DevicePath, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
 
 }  // namespace cistula

@@ -30,6 +30,7 @@ struct ShadowQuery {
 template <class Real>
 struct EmbreeIntersector {
     using Media = MediaList;
+    using Scene = SceneView<Real>;
     const SceneView<Real>& scene;
     RTCScene tree;
 

@@ -1,4 +1,5 @@
-# make install: programs, libraries, headers, and a CMake package: find_package(cistula), cistula::cistula | scene | embree.
+# make install: programs, libraries, headers, and a CMake package: find_package(cistula), cistula::cistula | scene | embree |
+# cuda.
 include(CMakePackageConfigHelpers)
 
 install(DIRECTORY libcore/cistula libcore/scene DESTINATION "${CISTULA_INSTALL_HEADERS}" FILES_MATCHING PATTERN "*.h")
@@ -8,7 +9,7 @@ install(TARGETS cistula_contract cistula EXPORT cistulaCore)
 install(EXPORT cistulaCore NAMESPACE cistula:: DESTINATION "${CISTULA_INSTALL_CMAKE}")
 
 set(CISTULA_COMPONENTS cistula)
-foreach(_component scene embree)
+foreach(_component scene embree cuda)  # cuda: whoever links it brings the language CUDA, and with that the static runtime
     if(TARGET cistula_${_component})
         install(TARGETS cistula_${_component} EXPORT cistula_${_component}
             ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
@@ -19,6 +20,9 @@ foreach(_component scene embree)
 endforeach()
 if(TARGET cistula_embree)
     install(FILES backend_embree/embree_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_embree")
+endif()
+if(TARGET cistula_cuda)
+    install(FILES backend_cuda/cuda_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_cuda")
 endif()
 
 set(CISTULA_OIIO_MODULE "")

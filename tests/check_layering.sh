@@ -23,7 +23,7 @@ includes() { code '^[ \t]*#[ \t]*include' "$@"; }
 
 check() {
     cd "$1"
-    local core=(libcore/cistula/*) scene=(libcore/scene/*) embree=(backend_embree/*.{h,cpp}) cuda=(backend_cuda/*.{h,cuh,cpp,cu})
+    local core=(libcore/cistula/*) scene=(libcore/scene/*) embree=(backend_embree/*.{h,cpp}) cuda=(backend_cuda/*.{h,cuh,cpp,cu,cu.in})
     local headers=({libcore/cistula,libcore/scene,backend_embree,backend_cuda,apps/*}/*.h)
     if [ ${#core[@]} -eq 0 ] || [ ! -e libcore/cistula/portable.h ]; then
         echo "no libcore/cistula/portable.h under $1" >&2
@@ -37,8 +37,11 @@ check() {
         fail 'libcore/scene knows neither backends nor programs'
     includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|["<]cuda' || true; } |
         fail 'backend_embree knows neither backend_cuda nor programs'
-    includes "${cuda[@]}" | { grep -E 'backend_embree|apps/|embree[34]/' || true; } |
+    includes "${cuda[@]}" | { grep -E 'backend_embree|apps/|bench/|embree[34]/' || true; } |
         fail 'backend_cuda knows neither backend_embree nor programs'
+    # Quoted are cistula, scene and itself.
+    includes "${cuda[@]}" | { grep -E '#[ \t]*include[ \t]*"' || true; } | { grep -vE '"(cistula|scene|backend_cuda)/[a-z0-9_]+\.(h|cuh)"' || true; } |
+        fail 'backend_cuda includes "cistula/...", "scene/...", "backend_cuda/..." and installed libraries'
 
     for header in "${headers[@]}"; do
         if [ "$header" != libcore/cistula/portable.h ]; then
@@ -61,8 +64,14 @@ check() {
         $(for path in libcore backend_embree backend_cuda apps tests bench cmake CMakeLists.txt CMakePresets.json Makefile; do
             [ -e "$path" ] && echo "$path"
         done) || true; } |
-        { grep -vE '^(libcore/cistula/portable\.h|cmake/CistulaContract\.cmake|tests/check_layering\.sh):' || true; } |
+        { grep -vE '^(libcore/cistula/portable\.h|cmake/CistulaContract\.cmake|tests/check_layering\.sh|bench/gpu/CMakeLists\.txt):' || true; } |
         fail 'fast-math flags break the floating-point contract'
+    # What exactness costs is measured by a program that nothing else builds, links or installs.
+    local fast=bench/gpu/CMakeLists.txt
+    if [ -e "$fast" ] && grep -q 'use_fast_math' "$fast"; then
+        grep -qE 'add_executable\( *gpu_check_fast +EXCLUDE_FROM_ALL' "$fast" || echo "$fast" | fail 'fast-math is for gpu_check_fast alone, outside of `all`'
+        { grep -HnE '^[^#]*(install *\(|add_dependencies *\( *installed)' "$fast" || true; } | fail 'what is built with fast-math is never installed'
+    fi
     { grep -rnE 'optimize *\( *"[^"]*(fast|unsafe)|#pragma +(GCC +optimize|STDC +FP_CONTRACT +ON|clang +fp)' \
         libcore $(for path in backend_embree backend_cuda apps; do [ -e "$path" ] && echo "$path"; done) || true; } |
         fail 'floating-point rules are set in cmake/CistulaContract.cmake alone'
@@ -75,8 +84,9 @@ self_test() {
     trap 'rm -rf "$tree"' EXIT
     fresh() {
         rm -rf "${tree:?}/t"
-        mkdir -p "$tree"/t/{libcore/cistula,libcore/scene,backend_embree,backend_cuda,apps/render,cmake}
+        mkdir -p "$tree"/t/{libcore/cistula,libcore/scene,backend_embree,backend_cuda,apps/render,bench/gpu,cmake}
         printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$tree/t/libcore/cistula/portable.h"
+        printf 'add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu)\ntarget_compile_options(gpu_check_fast PRIVATE --use_fast_math)\n' >"$tree/t/bench/gpu/CMakeLists.txt"
         printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/portable.h"\n// not std::pow(x)\n' >"$tree/t/libcore/cistula/good.h"
     }
     breaks() {  # breaks FILE TEXT
@@ -99,6 +109,9 @@ self_test() {
     breaks backend_embree/a.cpp '#include "backend_cuda/cuda_renderer.h"'
     breaks backend_embree/a.h '#include "apps/render/options.h"'
     breaks backend_cuda/a.cu '#include "backend_embree/embree_renderer.h"'
+    breaks backend_cuda/a.cuh '#include "embree_renderer.h"'
+    breaks backend_cuda/a.cu.in '#include "bench/gpu/record.h"'
+    breaks backend_cuda/a.h '#include <embree3/rtcore.h>'
     breaks libcore/cistula/a.h '#ifdef __CUDA_ARCH__'
     breaks apps/render/a.h '#ifdef __CUDACC__'
     breaks libcore/cistula/a.h 'inline float f(float x) { return std::sin(x); }'
@@ -107,6 +120,9 @@ self_test() {
     breaks libcore/cistula/a.h 'float f(float x) { return std::max(x, 0.0f); }'
     breaks cmake/a.cmake 'add_compile_options(-ffast-math)'
     breaks backend_cuda/CMakeLists.txt 'target_compile_options(x PRIVATE --use_fast_math)'
+    breaks bench/gpu/CMakeLists.txt 'target_compile_options(gpu_check PRIVATE --use_fast_math)'
+    breaks bench/gpu/CMakeLists.txt "add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu --use_fast_math)
+install(TARGETS gpu_check_fast)"
     breaks backend_embree/a.cpp '__attribute__((optimize("fast-math"))) void f();'
     fresh
     printf 'int x;\n' >"$tree/t/libcore/scene/a.h"

@@ -1,4 +1,4 @@
-// The golden images: what they are rendered with, and where they lie. Shared by make_golden and the tests.
+// The golden images: which there are, and how make_golden and the tests render and compare them.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/common/golden.h"
 #include "backend_embree/embree_renderer.h"
-#include "scene/camera_path.h"
 #include "scene/film_picture.h"
 #include "scene/read_scene.h"
 
 namespace cistula::golden {
-
-inline constexpr int width = 320, height = 180;
 
 /// The names of all scenes in a folder, sorted: "benchmark" for benchmark.json.
 inline std::vector<std::string> scene_names(const std::filesystem::path& scenes) {
@@ -26,29 +24,6 @@ inline std::vector<std::string> scene_names(const std::filesystem::path& scenes)
         if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
     std::sort(names.begin(), names.end());
     return names;
-}
-
-inline FrameSettings settings_for(const SceneDescription& scene) {
-    FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
-    settings.depth = scene.depth;
-    settings.cutoff = scene.cutoff;
-    return settings;
-}
-
-inline OutputChannels channels() {
-    OutputChannels channels;
-    channels.error = channels.id = channels.z = channels.normal = true;
-    return channels;
-}
-
-inline Film render_with(Renderer& renderer, const SceneDescription& description, const FrameSettings& settings) {
-    Film film;
-    RenderProgress progress;
-    renderer.render(camera_at(description.camera, 0), settings, film, progress);
-    return film;
 }
 
 template <class Real>
@@ -75,8 +50,8 @@ inline Difference compare(const LayeredPicture& a, const LayeredPicture& b, bool
     Difference result;
     for (const auto& channel : a.channels) {
         if (colors_only && channel.name != "R" && channel.name != "G" && channel.name != "B") continue;
-        const auto other = std::find_if(b.channels.begin(), b.channels.end(),
-                                        [&](const auto& c) { return c.name == channel.name; });
+        const auto other =
+            std::find_if(b.channels.begin(), b.channels.end(), [&](const auto& c) { return c.name == channel.name; });
         if (other == b.channels.end() || other->values.size() != channel.values.size()) {
             result.differing += channel.values.size();
             continue;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "apps/render/explain.h"
 #include "apps/render/film_loop.h"
@@ -29,6 +30,8 @@ TEST(RenderOptions, Defaults) {
     EXPECT_EQ(options.action, Action::render);
     EXPECT_EQ(options.scene, "s.json");
     EXPECT_EQ(options.backend, Backend::embree);
+    EXPECT_FALSE(options.devices.all);
+    EXPECT_EQ(options.devices.indices, (std::vector<int>{0}));
     EXPECT_EQ(options.precision, Precision::single_);
     EXPECT_EQ(options.progress, ProgressStyle::automatic);
     EXPECT_TRUE(options.output.empty() && options.frames.empty() && options.preview.empty() && options.stats.empty());
@@ -44,6 +47,8 @@ TEST(RenderOptions, AllTogether) {
                                          "0-10x5,7",
                                          "--backend",
                                          "cuda",
+                                         "--device",
+                                         "2,0",
                                          "--res",
                                          "320x180",
                                          "--crop=8x4+16+2",
@@ -74,6 +79,7 @@ TEST(RenderOptions, AllTogether) {
     EXPECT_EQ(options.output, "b.####.exr");
     EXPECT_EQ(options.frames, (std::vector<int>{0, 5, 10, 7}));
     EXPECT_EQ(options.backend, Backend::cuda);
+    EXPECT_EQ(options.devices.indices, (std::vector<int>{2, 0}));
     EXPECT_EQ(options.resolution->width, 320);
     EXPECT_EQ(options.resolution->height, 180);
     EXPECT_EQ(options.crop->x, 16);
@@ -98,17 +104,25 @@ TEST(RenderOptions, Actions) {
     EXPECT_EQ(parse({"-h", "s.json", "-o", "a.exr"}).action, Action::print_help);
     EXPECT_EQ(parse({"--version"}).action, Action::print_version);
     EXPECT_EQ(parse({"--print-template"}).action, Action::print_template);
+    EXPECT_EQ(parse({"--list-devices"}).action, Action::list_devices);
     EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
 }
 
 TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
     const std::string help = help_text();
-    for (const char* part : {"--output",       "--frames",         "--backend", "--res",
-                             "--crop",         "--supersample",    "--depth",   "--cutoff",
-                             "--precision",    "--threads",        "--bits",    "--preview",
-                             "--aov",          "--explain",        "--stats",   "--resume",
-                             "--progress",     "--quiet",          "--verbose", "--help",
-                             "--version",      "--print-template", "Examples:", "Exit codes: 0 done",
+    for (const char* part : {"--output",       "--frames",
+                             "--backend",      "--res",
+                             "--crop",         "--supersample",
+                             "--depth",        "--cutoff",
+                             "--precision",    "--threads",
+                             "--bits",         "--preview",
+                             "--aov",          "--explain",
+                             "--stats",        "--resume",
+                             "--progress",     "--quiet",
+                             "--verbose",      "--help",
+                             "--device ",      "--list-devices",
+                             "--version",      "--print-template",
+                             "Examples:",      "Exit codes: 0 done",
                              "130 interrupted"})
         EXPECT_NE(help.find(part), std::string::npos) << part;
 }
@@ -138,6 +152,74 @@ TEST(RenderOptions, Errors) {
     EXPECT_THROW(parse({"s", "-o"}), Error);
     EXPECT_THROW(parse({"s", "-o", ""}), Error);
     EXPECT_THROW(parse({"s", "--depth", "3", "--depth", "4"}), Error);
+}
+
+TEST(RenderOptions, Devices) {
+    EXPECT_TRUE(parse({"s", "--backend", "cuda", "--device", "all"}).devices.all);
+    for (const char* device : {"x", "-1", "0,", ",1", "0;1", "0, 1", "ALL", "all,0", "99999999999"})
+        expect_refused({"s", "--backend", "cuda", "--device", device},
+                       std::string("--device ") + device +
+                           ": must be numbers of GPUs, as in 0 or 0,2, or all; render --list-devices shows them");
+    expect_refused({"s", "--backend", "cuda", "--device", "1,0,1"},
+                   "--device 1,0,1: names GPU 1 twice; once is enough");
+    for (const char* device : {"0", "all", "x"})
+        expect_refused({"s", "--device", device},
+                       std::string("--device ") + device +
+                           ": chooses GPUs, and --backend is embree; add --backend cuda or leave it out");
+}
+
+std::vector<int> picked(const DeviceChoice& choice, const std::vector<CudaDevice>& present) {
+    std::vector<int> indices;
+    for (const CudaDevice& device : pick_devices(choice, present)) indices.push_back(device.index);
+    return indices;
+}
+
+TEST(Backends, DevicesAreThoseThatWereChosenAndCanBeUsed) {
+    const std::vector<CudaDevice> present = {{0, "Old", 6, 1, size_t{1} << 30, 8, "capability 6.1 is below 7.5"},
+                                             {1, "New", 9, 0, size_t{3} << 29, 132, ""},
+                                             {2, "New", 9, 0, size_t{3} << 29, 132, ""}};
+    EXPECT_EQ(picked({true, {}}, present), (std::vector<int>{1, 2}));
+    EXPECT_EQ(picked({false, {2, 1}}, present), (std::vector<int>{2, 1}));
+    EXPECT_ERROR(picked({false, {1, 3}}, present), ExitCode::device,
+                 "--device 3: there is no such GPU; this machine has 0, 1, 2");
+    EXPECT_ERROR(picked({}, present), ExitCode::device, "--device 0: Old cannot be used: capability 6.1 is below 7.5");
+    EXPECT_ERROR(picked({true, {}}, {present[0]}), ExitCode::device,
+                 "--device all: no GPU can be used; 0: Old: capability 6.1 is below 7.5");
+    EXPECT_ERROR(picked({true, {}}, {}), ExitCode::device, "--device all: this machine has no GPU");
+    EXPECT_ERROR(picked({}, {}), ExitCode::device, "--device 0: there is no such GPU; this machine has none");
+    EXPECT_EQ(list_devices_text(present),
+              "0: Old, capability 6.1, 1.0 GiB, 8 multiprocessors; cannot be used: capability 6.1 is below 7.5\n"
+              "1: New, capability 9.0, 1.5 GiB, 132 multiprocessors\n"
+              "2: New, capability 9.0, 1.5 GiB, 132 multiprocessors\n");
+    EXPECT_EQ(list_devices_text({}), "no GPU\n");
+}
+
+TEST(Backends, EmbreeUsesNoDevice) {
+    const ChosenDevices none = choose_devices(Backend::embree, {true, {}});
+    EXPECT_TRUE(none.options.devices.empty() && none.names.empty() && none.driver.empty());
+}
+
+TEST(Backends, WithoutCudaThereIsNothingInstead) {
+    if (has_cuda_backend()) GTEST_SKIP() << "this build has the CUDA backend";
+    const std::string message = "--backend cuda: this build has no CUDA backend; --backend embree renders on the CPU";
+    EXPECT_ERROR(choose_devices(Backend::cuda, {}), ExitCode::device, message);
+    EXPECT_ERROR(make_renderer<float>(Backend::cuda, nullptr, {}), ExitCode::device, message);
+    EXPECT_ERROR(make_renderer<double>(Backend::cuda, nullptr, {}), ExitCode::device, message);
+    EXPECT_EQ(list_devices_text(), "no GPU: this build has no CUDA backend\n");
+}
+
+TEST(Stats, NameTheGpusWhereOnesRan) {
+    RunStats stats;
+    RenderOptions options;
+    const auto context = [&] { return nlohmann::json::parse(stats_json(stats, {}, options)).at("context"); };
+    EXPECT_EQ(context().at("backend"), "embree");
+    EXPECT_FALSE(context().contains("devices") || context().contains("driver"));
+    options.backend = Backend::cuda;
+    stats.devices = {"New", "Newer"};
+    stats.driver = "13.0";
+    EXPECT_EQ(context().at("backend"), "cuda");
+    EXPECT_EQ(context().at("devices"), nlohmann::json({"New", "Newer"}));
+    EXPECT_EQ(context().at("driver"), "13.0");
 }
 
 TEST(RenderOptions, Sizes) {

@@ -4,6 +4,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "apps/common/backends.h"
+#include "gpu.h"
 #include "render_program.h"
 #include "scene/exr.h"
 #include "scene/seed_data.h"
@@ -100,9 +102,40 @@ TEST_F(RenderProgram, RefusesNamesThatMeet) {
     expect_done({"s.json", "-q", "-o", "x.#.exr", "--stats", "x.3.exr", "-f", "1"});  // frame 3 is not rendered
 }
 
+TEST_F(RenderProgram, CudaRendersTheSameFile) {
+    CISTULA_NEEDS_GPU();
+    expect_done({"s.json", "-q", "-o", "a.exr", "--backend", "cuda", "--stats", "a.json"});
+    expect_done({"s.json", "-q", "-o", "b.exr"});
+    EXPECT_EQ(bytes_of(file("a.exr")), bytes_of(file("b.exr")));
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(file("a.json"))).at("context").at("devices").size(), 1u);
+    expect_refused({"s.json", "-o", "c.exr", "--backend", "cuda", "--device", "4096"}, ExitCode::device,
+                   "--device 4096: there is no such GPU");
+    EXPECT_FALSE(exists("c.exr"));
+}
+
 TEST_F(RenderProgram, CudaIsRefusedAndNeverReplaced) {
-    expect_refused({"s.json", "-o", "a.exr", "--backend", "cuda"}, ExitCode::device, "no CUDA backend");
-    EXPECT_FALSE(exists("a.exr"));
+    if (!test::missing_gpu().empty()) {
+        for (const char* device : {"0", "4096"}) {
+            expect_refused({"s.json", "-q", "-o", "a.exr", "--backend", "cuda", "--device", device}, ExitCode::device,
+                           has_cuda_backend() ? "" : "no CUDA backend");
+            EXPECT_FALSE(exists("a.exr"));
+        }
+    }
+    expect_refused({"s.json", "-o", "c.exr", "--device", "0"}, ExitCode::usage, "add --backend cuda");
+    EXPECT_FALSE(exists("c.exr"));
+    // What the scene calls for does not depend on the backend.
+    expect_done({"s.json", "--explain", "--backend", "cuda"});
+}
+
+TEST_F(RenderProgram, ListsDevices) {
+    const ProgramResult result = run({"--list-devices"});
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(result.out, list_devices_text());
+    if (test::missing_gpu().empty()) {
+        EXPECT_EQ(result.out.rfind("0: ", 0), 0u) << result.out;
+    } else {
+        EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1) << result.out;
+    }
 }
 
 TEST_F(RenderProgram, OneFrameOrAllOrSome) {

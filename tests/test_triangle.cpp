@@ -347,7 +347,7 @@ TYPED_TEST(TriangleTest, ClusterPathEqualsTheOneLanePath) {
             const bool crossed = cross_triangle(cluster, lanes, lane, ray, a);
             ASSERT_EQ(crossed, cross_triangle(alone, alone_lanes, 0, ray, b));
             if (!crossed) continue;
-            ASSERT_TRUE(a.t == b.t && a.u == b.u && a.v == b.v && a.enters == b.enters);
+            ASSERT_TRUE(a.t == b.t && a.u() == b.u() && a.v() == b.v() && a.enters() == b.enters());
         }
     }
     EXPECT_GT(candidates, 20000);

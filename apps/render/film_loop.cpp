@@ -1,11 +1,15 @@
 #include "film_loop.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
+#include <sys/mman.h>
+
+#include <cstdint>
 #include <filesystem>
+#include <set>
 
 #include "frame_list.h"
-#include "frame_writer.h"
 #include "progress.h"
 #include "scene/error.h"
 #include "scene/exr.h"
@@ -57,18 +61,38 @@ bool is_finished(const FilmJob& job, const CameraFrame& camera) {
                             raw ? "--frames " + format_frames(left) : std::string("--resume")));
 }
 
-FrameStats stats_of(const Film& film, int frame, const std::string& path, double seconds) {
+/// Memory in large pages, where the system has them: the faults of small ones take a GPU's film longer than its pixels.
+void reserve(Film& film, uint64_t pixels) {
+    if (film.pixels.capacity() >= pixels) return;
+    film.pixels.reserve(pixels);
+    constexpr uintptr_t large_page = uintptr_t{2} << 20;
+    const auto place = reinterpret_cast<uintptr_t>(film.pixels.data());
+    const uintptr_t begin = (place + large_page - 1) / large_page * large_page;
+    const uintptr_t end = (place + pixels * sizeof(PixelRecord)) / large_page * large_page;
+    if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
+
+FrameStats stats_of(const Film& film, int frame, const std::string& path, double seconds, const RenderTimes& device) {
     FrameStats stats;
     stats.frame = frame;
     stats.file = path;
     stats.width = film.rect.width;
     stats.height = film.rect.height;
     stats.render_seconds = seconds;
+    stats.device = device;
     stats.rays = film.rays;
     return stats;
 }
 
 }  // namespace
+
+// A GPU is so much faster than the compression of its frames that every core should compress one. The CPU backend
+// needs the cores itself, and memory for no more than two films.
+WriterLimits writer_limits(const RenderOptions& options) {
+    WriterLimits limits;
+    if (options.backend == Backend::cuda) limits.frames = tbb::this_task_arena::max_concurrency();
+    return limits;
+}
 
 std::string describe_flags(uint32_t flags) {
     std::vector<std::string> parts;
@@ -93,7 +117,8 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
         fmt::print(stderr, "render: {} of {} frames are complete and stay as they are\n", stats.resumed.size(),
                    job.frames.size());
 
-    FrameWriter writer(options.channels, !options.stats.empty() || options.verbose, progress.stop, stats.frames);
+    std::set<std::string> notes;  // said so far
+    FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options), progress.stop, stats.frames);
     {
         ProgressReport report(options.quiet ? ProgressStyle::none : options.progress, cameras.size(), progress);
         for (size_t i = 0; i < cameras.size() && !progress.stop; ++i) {
@@ -101,11 +126,17 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             progress.pixels_done = 0;
             progress.rays = 0;
             const PixelRect& crop = job.settings.crop;
-            report.begin_frame(frame, i, static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height));
+            const uint64_t pixels = static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height);
+            report.begin_frame(frame, i, pixels);
             FinishedFrame finished;
+            finished.film = writer.take_spare();
+            reserve(finished.film, pixels);
+            if (i + 1 < cameras.size()) renderer.expect(cameras[i + 1], job.settings);
             bool whole = false;
             const double seconds =
                 seconds_of([&] { whole = renderer.render(cameras[i], job.settings, finished.film, progress); });
+            for (const std::string& note : renderer.notes())
+                if (!options.quiet && notes.insert(note).second) report.say("render: " + note);
             if (!whole) break;
             report.end_frame();
             if (finished.film.flags != 0) {
@@ -117,7 +148,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             finished.path = job.output.for_frame(frame);
             finished.preview = job.preview.for_frame(frame);
             finished.attributes = header_attributes(job.scene_hash, job.settings, options.precision, cameras[i]);
-            finished.stats = stats_of(finished.film, frame, finished.path, seconds);
+            finished.stats = stats_of(finished.film, frame, finished.path, seconds, renderer.times());
             if (options.verbose)
                 report.say(fmt::format("render: frame {}: {:.3f} s, {} rays, {}", frame, seconds,
                                        finished.film.rays.total(),

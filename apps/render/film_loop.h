@@ -1,9 +1,10 @@
-// The frames of a film: rendered one after the other, each written while the next one renders.
+// The frames of a film: rendered one after the other, each written while the next ones render.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "frame_writer.h"
 #include "options.h"
 #include "output_name.h"
 #include "scene/renderer.h"
@@ -26,6 +27,9 @@ struct FilmJob {
 /// (its file is not written), file where one cannot be written, interrupted where progress.stop was set from outside
 /// (frames finished by then are whole).
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats);
+
+/// What may be on its way to files while frames render.
+WriterLimits writer_limits(const RenderOptions& options);
 
 /// What the flags of a film mean, for a message.
 std::string describe_flags(uint32_t flags);

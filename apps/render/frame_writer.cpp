@@ -1,63 +1,130 @@
 #include "frame_writer.h"
 
+#include <algorithm>
+
 #include "scene/exr.h"
 #include "scene/picture_io.h"
 #include "scene/seed_data.h"
 
 namespace cistula {
+namespace {
 
-FrameWriter::FrameWriter(const OutputChannels& channels, bool measure, std::atomic<bool>& stop,
-                         std::vector<FrameStats>& written)
-    : channels_(channels), measure_(measure), stop_(stop), written_(written), thread_([this] { work(); }) {}
+size_t bytes_of(const Film& film) {
+    return film.pixels.size() * sizeof(PixelRecord);
+}
+
+size_t bytes_of(const LayeredPicture& layers, const ColorPicture& color) {
+    size_t bytes = color.texels.size() * sizeof(glm::vec3);
+    for (const LayeredPicture::Channel& channel : layers.channels) bytes += channel.values.size() * sizeof(float);
+    return bytes;
+}
+
+}  // namespace
+
+FrameWriter::FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits,
+                         std::atomic<bool>& stop, std::vector<FrameStats>& written)
+    : channels_(channels), measure_(measure), limits_(limits), stop_(stop), written_(written) {}
 
 FrameWriter::~FrameWriter() {
     {
-        const std::lock_guard lock(mutex_);
+        std::unique_lock lock(mutex_);
+        wait_for_all(lock);
         closing_ = true;
     }
     changed_.notify_all();
-    thread_.join();
+    for (std::thread& thread : threads_) thread.join();
+}
+
+bool FrameWriter::has_room(size_t bytes) const {
+    if (in_work_ >= std::max(limits_.frames, 1)) return false;
+    return in_work_ == 0 || bytes_ + bytes <= limits_.bytes || (in_work_ == 1 && films_ == 0);
 }
 
 void FrameWriter::put(FinishedFrame frame) {
-    finish();
-    {
-        const std::lock_guard lock(mutex_);
-        frame_ = std::move(frame);
+    const size_t bytes = bytes_of(frame.film);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return failure_ || has_room(bytes); });
+    if (failure_) std::rethrow_exception(failure_);
+    if (idle_ == waiting_.size()) {
+        threads_.emplace_back([this] { work(); });
+        ++idle_;
     }
+    waiting_.push({next_index_++, bytes, true, std::move(frame)});
+    bytes_ += bytes;
+    ++in_work_;
+    ++films_;
+    lock.unlock();
     changed_.notify_all();
+}
+
+Film FrameWriter::take_spare() {
+    const std::lock_guard lock(mutex_);
+    if (spares_.empty()) return {};
+    Film film = std::move(spares_.back());
+    spares_.pop_back();
+    return film;
 }
 
 void FrameWriter::finish() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return !frame_; });
+    wait_for_all(lock);
     if (failure_) std::rethrow_exception(failure_);
+}
+
+void FrameWriter::wait_for_all(std::unique_lock<std::mutex>& lock) {
+    changed_.wait(lock, [this] { return in_work_ == 0; });
+    for (auto& [index, stats] : done_) written_.push_back(std::move(stats));
+    done_.clear();
 }
 
 void FrameWriter::work() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [this] { return frame_ || closing_; });
-        if (!frame_) return;
+        changed_.wait(lock, [this] { return !waiting_.empty() || closing_; });
+        if (waiting_.empty()) return;
+        --idle_;
+        Task task = std::move(waiting_.front());
+        waiting_.pop();
         lock.unlock();
         std::exception_ptr failure;
         try {
-            write(*frame_);  // nobody else touches it before it is reset below
+            write(task);
         } catch (...) {
             failure = std::current_exception();
             stop_ = true;
         }
+        task.frame.film = Film();
         lock.lock();
-        if (failure)
+        if (!failure)
+            done_.emplace(task.index, std::move(task.frame.stats));
+        else if (!failure_)
             failure_ = failure;
-        else
-            written_.push_back(std::move(frame_->stats));
-        frame_.reset();
+        bytes_ -= task.bytes;
+        films_ -= task.has_film;
+        --in_work_;
+        ++idle_;
         changed_.notify_all();
     }
 }
 
-void FrameWriter::write(FinishedFrame& frame) const {
+/// Encoded frames are small beside their films: there may soon be room for another.
+void FrameWriter::give_film_back(Task& task, size_t bytes_of_layers) {
+    Film film = std::move(task.frame.film);
+    const size_t bytes = bytes_of(film);
+    {
+        const std::lock_guard lock(mutex_);
+        bytes_ += bytes_of_layers;
+        bytes_ -= task.bytes;
+        task.bytes = bytes_of_layers;
+        task.has_film = false;
+        --films_;
+        if (bytes_ + (spares_.size() + 1) * bytes <= limits_.bytes) spares_.push_back(std::move(film));
+    }
+    changed_.notify_all();
+}
+
+void FrameWriter::write(Task& task) {
+    FinishedFrame& frame = task.frame;
     FrameStats& stats = frame.stats;
     const bool raw = file_kind(frame.path) == FileKind::raw;
     LayeredPicture layers;
@@ -72,7 +139,7 @@ void FrameWriter::write(FinishedFrame& frame) const {
         stats.pruned = ledger_totals(frame.film, &PixelRecord::pruned);
         stats.cut = ledger_totals(frame.film, &PixelRecord::cut);
     }
-    frame.film = Film();
+    give_film_back(task, bytes_of(layers, color));
     stats.write_seconds = seconds_of([&] {
         // The preview first: where the image is complete, --resume may rely on both.
         if (!frame.preview.empty()) write_preview(frame.preview, color);

@@ -3,12 +3,11 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <new>
 
-#include "backend_embree/embree_renderer.h"
+#include "apps/common/backends.h"
+#include "apps/common/command_line.h"
 #include "explain.h"
 #include "film_loop.h"
 #include "interrupt.h"
@@ -23,22 +22,18 @@
 namespace cistula {
 namespace {
 
-void print(const std::string& text) {
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-        throw Error(ExitCode::file, "standard output: cannot be written");
-}
-
 template <class Real>
-std::unique_ptr<Renderer> prepare(const SceneDescription& scene, bool quiet, RunStats& stats) {
+std::unique_ptr<Renderer> prepare(const SceneDescription& scene, const RenderOptions& options, const CudaOptions& cuda,
+                                  RunStats& stats) {
     std::shared_ptr<const CompiledScene<Real>> compiled;
     stats.compile_seconds = seconds_of([&] { compiled = compile_scene<Real>(scene); });
     stats.scene_hash = compiled->hash;
     stats.required_effects = compiled->effects;
-    if (!quiet)
+    if (!options.quiet)
         for (const std::string& warning : compiled->warnings)
             fmt::print(stderr, "render: warning: {}\n", one_line(warning));
     std::unique_ptr<Renderer> renderer;
-    stats.tree_seconds = seconds_of([&] { renderer = make_embree_renderer<Real>(compiled); });
+    stats.tree_seconds = seconds_of([&] { renderer = make_renderer<Real>(options.backend, compiled, cuda); });
     return renderer;
 }
 
@@ -93,13 +88,14 @@ void print_summary(const RunStats& stats, const OutputName& image, double second
 }
 
 void render_scene(const RenderOptions& options) {
-    if (options.backend == Backend::cuda)
-        throw Error(ExitCode::device,
-                    "--backend cuda: this build has no CUDA backend; --backend embree renders on the CPU");
+    const bool explain = options.action == Action::explain;
+    const ChosenDevices devices = explain ? ChosenDevices() : choose_devices(options.backend, options.devices);
     RunStats stats;
+    stats.devices = devices.names;
+    stats.driver = devices.driver;
     SceneDescription scene;
     stats.read_seconds = seconds_of([&] { scene = read_scene(options.scene); });
-    if (options.action == Action::explain) return print(explain_table(scene.source, explain_effects(scene)));
+    if (explain) return print(explain_table(scene.source, explain_effects(scene)));
 
     const FrameSettings settings = frame_settings(options, scene);
     const Outputs outputs = plan_outputs(options, scene);
@@ -113,8 +109,8 @@ void render_scene(const RenderOptions& options) {
         stats.scene = options.scene;
         stats.threads = threads;
         const std::unique_ptr<Renderer> renderer = options.precision == Precision::double_
-                                                       ? prepare<double>(scene, options.quiet, stats)
-                                                       : prepare<float>(scene, options.quiet, stats);
+                                                       ? prepare<double>(scene, options, devices.options, stats)
+                                                       : prepare<float>(scene, options, devices.options, stats);
         const auto write_stats = [&] {
             stats.intersector = renderer->intersector();
             stats.effects = renderer->effects();
@@ -152,15 +148,12 @@ void run(const RenderOptions& options) {
             return print("render (Cistula) " CISTULA_VERSION "\n");
         case Action::print_template:
             return print(seed_template());
+        case Action::list_devices:
+            return print(list_devices_text());
         case Action::explain:
         case Action::render:
             return render_scene(options);
     }
-}
-
-int fail(const std::string& message, ExitCode code) {
-    fmt::print(stderr, "render: {}\n", one_line(message));
-    return static_cast<int>(code);
 }
 
 }  // namespace
@@ -168,15 +161,8 @@ int fail(const std::string& message, ExitCode code) {
 
 int main(int argc, char** argv) {
     using namespace cistula;
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is then an error of its write
-    try {
+    return run_program("render", "a smaller --res or --crop needs less", [&] {
         run(parse_options(argc, argv));
         return static_cast<int>(ExitCode::done);
-    } catch (const Error& error) {
-        return fail(error.what(), error.code());
-    } catch (const std::bad_alloc&) {
-        return fail("out of memory; a smaller --res or --crop needs less", ExitCode::failed);
-    } catch (const std::exception& error) {
-        return fail(error.what(), ExitCode::failed);
-    }
+    });
 }

@@ -4,53 +4,21 @@
 
 #include <CLI/CLI.hpp>
 
-#include <charconv>
 #include <cmath>
 
+#include "apps/common/command_line.h"
 #include "frame_list.h"
-#include "scene/error.h"
 #include "scene/suggest.h"
 
 namespace cistula {
 namespace {
 
-[[noreturn]] void fail(const std::string& message) {
-    throw Error(ExitCode::usage, message);
-}
-
-/// The whole of `text` as a number of type T; nothing where it is none.
-template <class T>
-std::optional<T> whole_number(std::string_view text) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
-int integer_option(const char* option, const std::string& text, int low, int high) {
-    const std::optional<int> value = whole_number<int>(text);
-    if (!value || *value < low || *value > high)
-        fail(fmt::format("{} {}: must be a whole number from {} to {}", option, text, low, high));
-    return *value;
-}
-
-template <class T>
-T chosen(const char* option, const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
-    std::vector<std::string_view> names;
-    for (const auto& [name, value] : choices) {
-        if (name == text) return value;
-        names.push_back(name);
-    }
-    fail(fmt::format("{} {}: must be {}; {}", option, one_line(text), fmt::join(names, " or "),
-                     suggestion(text, names, "names")));
-}
-
 /// The options' texts as CLI11 leaves them.
 struct Texts {
-    std::string scene, output, preview, stats, frames, backend = "embree", resolution, crop, supersample, depth, cutoff,
-                                                       precision = "float", threads, bits = "float", layers,
-                                                       progress = "auto";
-    bool explain = false, resume = false, quiet = false, verbose = false, version = false, print_template = false;
+    std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, threads, layers,
+        device, backend = "embree", precision = "float", bits = "float", progress = "auto";
+    bool explain = false, resume = false, quiet = false, verbose = false, version = false, print_template = false,
+         list_devices = false;
 };
 
 void declare(CLI::App& app, Texts& texts) {
@@ -60,6 +28,9 @@ void declare(CLI::App& app, Texts& texts) {
         ->type_name("FILE");
     app.add_option("-f,--frames", texts.frames, "frames to render, e.g. 0-299x5,7")->type_name("LIST");
     app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU)")->type_name("NAME");
+    app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
+        ->type_name("LIST");
+    app.add_flag("--list-devices", texts.list_devices, "print the GPUs, or why there is none, and exit");
     app.add_option("--res", texts.resolution, "full frame in pixels")->type_name("WxH");
     app.add_option("--crop", texts.crop, "render these pixels only; the file's data window")->type_name("WxH+X+Y");
     app.add_option("--supersample", texts.supersample, "k: a k x k grid of samples per pixel")->type_name("K");
@@ -82,28 +53,11 @@ void declare(CLI::App& app, Texts& texts) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
-std::vector<std::string> long_names(const CLI::App& app) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : app.get_options())
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    return names;
-}
-
-[[noreturn]] void fail_unexpected(const CLI::App& app, const Texts& texts) {
-    for (const std::string& extra : app.remaining()) {
-        if (extra.size() < 2 || extra[0] != '-')
-            fail(fmt::format("{}: one scene at a time, and {} is it already", extra, texts.scene));
-        const std::vector<std::string> names = long_names(app);
-        fail(fmt::format("{}: no such option; {}; --help lists them", one_line(extra),
-                         suggestion(extra.substr(0, extra.find('=')), {names.begin(), names.end()}, "options")));
-    }
-    fail("the command line cannot be read; --help shows its form");
-}
-
 RenderOptions checked(const Texts& texts) {
     RenderOptions options;
     if (texts.version) options.action = Action::print_version;
     if (texts.print_template) options.action = Action::print_template;
+    if (texts.list_devices) options.action = Action::list_devices;
     if (options.action != Action::render) return options;
     if (texts.explain) options.action = Action::explain;
 
@@ -114,8 +68,8 @@ RenderOptions checked(const Texts& texts) {
     options.resume = texts.resume;
     options.quiet = texts.quiet;
     options.verbose = texts.verbose;
-    options.backend =
-        chosen<Backend>("--backend", texts.backend, {{"embree", Backend::embree}, {"cuda", Backend::cuda}});
+    options.backend = parse_backend(texts.backend);
+    options.devices = parse_devices(texts.device, options.backend);
     options.precision = chosen<Precision>("--precision", texts.precision,
                                           {{"float", Precision::single_}, {"double", Precision::double_}});
     options.progress = chosen<ProgressStyle>(
@@ -133,12 +87,12 @@ RenderOptions checked(const Texts& texts) {
     if (!texts.cutoff.empty()) {
         options.cutoff = whole_number<double>(texts.cutoff);
         if (!options.cutoff || !std::isfinite(*options.cutoff) || *options.cutoff < 0)
-            fail(fmt::format("--cutoff {}: must be a number, 0 or above, in the scene's units of radiance",
-                             texts.cutoff));
+            fail_usage(fmt::format("--cutoff {}: must be a number, 0 or above, in the scene's units of radiance",
+                                   texts.cutoff));
     }
     if (options.scene.empty())
-        fail("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
-    if (options.quiet && options.verbose) fail("-q and -v exclude each other; give one");
+        fail_usage("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
+    if (options.quiet && options.verbose) fail_usage("-q and -v exclude each other; give one");
     return options;
 }
 
@@ -161,20 +115,14 @@ RenderOptions parse_options(int argc, const char* const* argv) {
     CLI::App app;
     Texts texts;
     declare(app, texts);
-    app.allow_extras();
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
+    const bool whole = parse_command_line(app, argc, argv, [&](const std::string& extra) {
+        return fmt::format("{}: one scene at a time, and {} is it already", extra, texts.scene);
+    });
+    if (!whole) {
         RenderOptions options;
         options.action = Action::print_help;
         return options;
-    } catch (const CLI::ParseError& error) {
-        fail(fmt::format("{}; --help shows the options", error.what()));
     }
-    if (!app.remaining().empty()) fail_unexpected(app, texts);
-    for (const CLI::Option* option : app.get_options())
-        if (option->count() > 0 && option->get_type_size() > 0 && option->results().front().empty())
-            fail(fmt::format("{}: the value is empty; --help shows what it takes", option->get_name()));
     return checked(texts);
 }
 
@@ -191,6 +139,7 @@ Examples:
   render scenes/seed.json -o out/f%04d.exr -f 0-299x30,7 --res 320x180
   render scenes/glass.json -o g.exr --precision double --supersample 4 --aov error,id,Z,N
   render scenes/infinity.json -o corner.exr --crop 64x64+128+96 --cutoff 0.001 --stats corner.json
+  render scenes/seed.json -o out/beauty.####.exr --backend cuda --device all
   render - -o frame%d.out < input.txt                              the seed's input and frames
   render --print-template > input.txt
 
@@ -205,7 +154,8 @@ PictureSize parse_size(std::string_view text) {
     std::string_view rest = text;
     const std::optional<PictureSize> size = take_size(rest);
     if (!size || !rest.empty())
-        fail(fmt::format("--res {}: must be WIDTHxHEIGHT, each from 1 to {}, as in 1280x720", text, largest_side));
+        fail_usage(
+            fmt::format("--res {}: must be WIDTHxHEIGHT, each from 1 to {}, as in 1280x720", text, largest_side));
     return *size;
 }
 
@@ -220,7 +170,8 @@ PixelRect parse_crop(std::string_view text) {
             if (x && y && *x >= 0 && *y >= 0) return {*x, *y, size->width, size->height};
         }
     }
-    fail(fmt::format("--crop {}: must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96", text));
+    fail_usage(
+        fmt::format("--crop {}: must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96", text));
 }
 
 OutputChannels parse_layers(std::string_view text) {
@@ -237,8 +188,8 @@ OutputChannels parse_layers(std::string_view text) {
         for (const auto& [known_name, member] : known)
             if (known_name == name) layers.*member = found = true;
         if (!found)
-            fail(fmt::format("--aov {}: there is no layer '{}'; {}", one_line(text), one_line(name),
-                             suggestion(name, names, "layers")));
+            fail_usage(fmt::format("--aov {}: there is no layer '{}'; {}", one_line(text), one_line(name),
+                                   suggestion(name, names, "layers")));
         begin = comma + 1;
     }
     return layers;
@@ -254,8 +205,8 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     settings.crop = options.crop.value_or(PixelRect{0, 0, settings.full_width, settings.full_height});
     const PixelRect& crop = settings.crop;
     if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)
-        fail(fmt::format("--crop {}x{}+{}+{}: leaves the frame, which is {}x{}", crop.width, crop.height, crop.x,
-                         crop.y, settings.full_width, settings.full_height));
+        fail_usage(fmt::format("--crop {}x{}+{}+{}: leaves the frame, which is {}x{}", crop.width, crop.height, crop.x,
+                               crop.y, settings.full_width, settings.full_height));
     return settings;
 }
 

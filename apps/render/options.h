@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/common/backends.h"
 #include "output_name.h"
 #include "scene/film_picture.h"
 #include "scene/renderer.h"
@@ -17,8 +18,7 @@ struct PictureSize {
 };
 
 enum class ProgressStyle { automatic, plain, none };
-enum class Backend { embree, cuda };
-enum class Action { render, explain, print_help, print_version, print_template };
+enum class Action { render, explain, print_help, print_version, print_template, list_devices };
 
 struct RenderOptions {
     Action action = Action::render;
@@ -27,6 +27,7 @@ struct RenderOptions {
     std::string preview, stats;  // as given; empty: none
     std::vector<int> frames;     // empty: none given
     Backend backend = Backend::embree;
+    DeviceChoice devices;  // of the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
     std::optional<int> supersample, depth;

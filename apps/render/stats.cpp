@@ -53,13 +53,17 @@ Json ledger(const LedgerTotals& totals) {
     return {{"mean", totals.mean}, {"worst", totals.worst}};
 }
 
-Json frame_entry(const FrameStats& frame) {
+Json frame_entry(const FrameStats& frame, bool has_device) {
     Json entry = phase(fmt::format("frame/{}", frame.frame), frame.render_seconds);
     entry["frame"] = frame.frame;
     entry["file"] = frame.file;
     entry["film_hash"] = frame.hash;
     entry["pixels"] = static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
     entry["render_ms"] = frame.render_seconds * 1e3;
+    if (has_device) {
+        entry["kernel_ms"] = frame.device.kernel * 1e3;
+        entry["transfer_ms"] = frame.device.transfer * 1e3;
+    }
     entry["encode_ms"] = frame.encode_seconds * 1e3;
     entry["write_ms"] = frame.write_seconds * 1e3;
     entry["rays"] = {{"primary", frame.rays.primary},
@@ -105,7 +109,7 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
         {"cistula_version", CISTULA_VERSION},
         {"scene", stats.scene},
         {"scene_hash", stats.scene_hash},
-        {"backend", options.backend == Backend::cuda ? "cuda" : "embree"},
+        {"backend", backend_name(options.backend)},
         {"intersector", stats.intersector},
         {"precision", options.precision == Precision::double_ ? "double" : "float"},
         {"threads", stats.threads},
@@ -121,11 +125,16 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
         {"peak_rss_bytes", peak_memory()},
         {"frames_resumed", stats.resumed},
     };
+    const bool has_device = !stats.devices.empty();
+    if (has_device) {
+        context["devices"] = stats.devices;
+        context["driver"] = stats.driver;
+    }
     Json benchmarks = Json::array();
     benchmarks.push_back(phase("read", stats.read_seconds));
     benchmarks.push_back(phase("compile", stats.compile_seconds));
     benchmarks.push_back(phase("tree", stats.tree_seconds));
-    for (const FrameStats& frame : stats.frames) benchmarks.push_back(frame_entry(frame));
+    for (const FrameStats& frame : stats.frames) benchmarks.push_back(frame_entry(frame, has_device));
     const Json all = {{"context", context}, {"benchmarks", benchmarks}};
     return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -9,6 +9,7 @@
 
 #include "options.h"
 #include "scene/film.h"
+#include "scene/renderer.h"
 
 namespace cistula {
 
@@ -22,13 +23,15 @@ struct FrameStats {
     std::string file, hash;  // hash: of the film's integers
     int width = 0, height = 0;
     double render_seconds = 0, encode_seconds = 0, write_seconds = 0;
+    RenderTimes device;  // of a backend that has them
     RayCounts rays;
     LedgerTotals pruned, cut;  // by the cutoff, by the depth limit
 };
 
 struct RunStats {
     double read_seconds = 0, compile_seconds = 0, tree_seconds = 0;
-    std::string scene, scene_hash, intersector;
+    std::string scene, scene_hash, intersector, driver;
+    std::vector<std::string> devices;            // GPUs; empty, as the driver, where none is used
     uint32_t required_effects = 0, effects = 0;  // masks
     size_t scene_bytes = 0;                      // geometry, trees and shading data
     int threads = 0;

@@ -6,8 +6,8 @@
 namespace cistula {
 
 /// The exact test of one primitive against one ray; trees and Embree only choose which ones to call it on.
-template <class Real, class Media>
-CISTULA_INLINE void closest_primitive(const SceneView<Real>& scene, uint32_t primitive, const Ray<Real, Media>& ray,
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_primitive(const Scene& scene, uint32_t primitive, const Ray<Real, Media>& ray,
                                       const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     if (primitive < scene.convex.size)
         closest_convex(scene, scene.convex[primitive], ray, best);
@@ -15,8 +15,8 @@ CISTULA_INLINE void closest_primitive(const SceneView<Real>& scene, uint32_t pri
         closest_cluster(scene, primitive - scene.convex.size, ray, triangle_ray, best);
 }
 
-template <class Real, class E, class Media>
-CISTULA_INLINE void shadow_primitive(const SceneView<Real>& scene, uint32_t primitive, const ShadowRay<Real, Media>& shadow,
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_primitive(const Scene& scene, uint32_t primitive, const ShadowRay<Real, Media>& shadow,
                                      const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
     if (primitive < scene.convex.size)
         shadow_convex<Real, E>(scene, scene.convex[primitive], shadow, sum);
@@ -24,19 +24,28 @@ CISTULA_INLINE void shadow_primitive(const SceneView<Real>& scene, uint32_t prim
         shadow_cluster<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, sum);
 }
 
-template <class Real, class MediaKind = MediaList>
+template <class Real, class MediaKind = MediaList, class SceneKind = SceneView<Real>>
 struct BruteIntersector {
     using Media = MediaKind;
-    const SceneView<Real>& scene;
+    using Scene = SceneKind;
+    const Scene& scene;
 
     /// The least (t, key) after ray.after that the primitive tests accept.
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
-        if (!is_finite(ray) || closest_enclosed(scene, ray, best)) return best;
-        for (uint32_t i = 0; i < scene.convex.size; ++i) closest_convex(scene, scene.convex[i], ray, best);
-        if (scene.clusters.size > 1 || (scene.clusters.size == 1 && !leaves_flat(scene, 0, ray))) {
-            const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
-            for (uint32_t i = 0; i < scene.clusters.size; ++i) closest_cluster(scene, i, ray, triangle_ray, best);
+        if (!is_finite(ray)) return best;
+        // One loop for rays in the open and enclosed ones, for the sake of the device's code size.
+        const uint32_t around = enclosing(scene, ray);
+        const bool enclosed = around != no_solid;
+        for (uint32_t i = 0; i < (enclosed ? 1 : scene.convex.size); ++i)
+            closest_convex(scene, enclosed ? around : scene.convex[i], ray, best);
+        if (enclosed) return best;
+        TriangleRay<Real> triangle_ray;
+        bool sheared = false;
+        for (uint32_t i = 0; i < scene.clusters.size; ++i) {
+            if (misses_flat(scene, i, ray, best.t)) continue;
+            if (!sheared) triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction), sheared = true;
+            closest_cluster(scene, i, ray, triangle_ray, best);
         }
         return best;
     }
@@ -49,10 +58,12 @@ struct BruteIntersector {
         shadow_start<Real, E>(scene, shadow, sum);
         for (uint32_t i = 0; i < scene.convex.size && !sum.dark(); ++i)
             shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
-        if (!scene.clusters.empty() && !sum.dark()) {
-            const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
-            for (uint32_t i = 0; i < scene.clusters.size && !sum.dark(); ++i)
-                shadow_cluster<Real, E>(scene, i, shadow, triangle_ray, sum);
+        TriangleRay<Real> triangle_ray;
+        bool sheared = false;
+        for (uint32_t i = 0; i < scene.clusters.size && !sum.dark(); ++i) {
+            if (misses_flat(scene, i, shadow.ray, shadow.distance)) continue;
+            if (!sheared) triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sheared = true;
+            shadow_cluster<Real, E>(scene, i, shadow, triangle_ray, sum);
         }
         return sum.template share<E, Real>();
     }

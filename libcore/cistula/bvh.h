@@ -54,43 +54,41 @@ CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>&
                               const Visit& visit) {
     if (nodes.empty()) return;
     int32_t pending[max_tree_depth + 1];
-    float pending_t[max_tree_depth + 1];
     int depth = 0;
     int32_t node = 0;
     for (;;) {
-        const TreeNode& n = nodes[uint32_t(node)];
-        const float t[2] = {box_ray.enter(n.low[0], n.high[0]), box_ray.enter(n.low[1], n.high[1])};
-        const int first = t[1] < t[0] ? 1 : 0;
+        const TreeNode n = nodes[uint32_t(node)];  // whole: wide loads
+        const float t0 = box_ray.enter(n.low[0], n.high[0]), t1 = box_ray.enter(n.low[1], n.high[1]);
+        const bool swap = t1 < t0;
         int32_t next = -1, later = -1;
-        float later_t = 0.0f;
+        // The nearer first, by selects: an index would put the node into memory.
         for (int i = 0; i < 2; ++i) {
-            const int side = i == 0 ? first : 1 - first;
-            if (!(t[side] <= box_ray.far_limit) || t[side] == RealTraits<float>::infinity) continue;
-            const int32_t child = n.child[side];
+            const bool second = (i == 1) != swap;
+            const float t = second ? t1 : t0;
+            if (!(t <= box_ray.far_limit) || t == RealTraits<float>::infinity) continue;
+            const int32_t child = second ? n.child[1] : n.child[0];
             if (child >= 0) {
                 if (next < 0) next = child;
-                else later = child, later_t = t[side];
+                else later = child;
                 continue;
             }
-            for (uint32_t k = 0; k < n.count[side]; ++k) box_ray.far_limit = visit(items[uint32_t(~child) + k]);
+            const uint32_t count = second ? n.count[1] : n.count[0];
+            for (uint32_t k = 0; k < count; ++k) box_ray.far_limit = visit(items[uint32_t(~child) + k]);
         }
-        if (later >= 0) {
-            pending[depth] = later;
-            pending_t[depth++] = later_t;
+        if (later >= 0) pending[depth++] = later;
+        if (next < 0) {
+            if (depth == 0) return;
+            next = pending[--depth];
         }
-        while (next < 0 && depth > 0) {
-            --depth;
-            if (pending_t[depth] <= box_ray.far_limit) next = pending[depth];
-        }
-        if (next < 0) return;
         node = next;
     }
 }
 
-template <class Real, class MediaKind = MediaList>
+template <class Real, class MediaKind = MediaList, class SceneKind = SceneView<Real>>
 struct BvhIntersector {
     using Media = MediaKind;
-    const SceneView<Real>& scene;
+    using Scene = SceneKind;
+    const Scene& scene;
 
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
@@ -99,8 +97,12 @@ struct BvhIntersector {
         BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
         box_ray.near_limit = tree_near(ray.after.t);
         box_ray.far_limit = RealTraits<float>::infinity;
+        const uint32_t left = flat_start(scene, ray);
         walk_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
-            closest_primitive(scene, primitive, ray, triangle_ray, best);
+            if (primitive >= scene.convex.size && !scene.facets.empty())
+                closest_facet(scene, primitive - scene.convex.size, ray, triangle_ray, left, best);
+            else
+                closest_primitive(scene, primitive, ray, triangle_ray, best);
             return tree_far(best.t);
         });
         return best;
@@ -115,8 +117,12 @@ struct BvhIntersector {
         BoxRay box_ray = BoxRay::of(shadow.ray.origin, shadow.ray.direction);
         box_ray.near_limit = 0.0f;
         box_ray.far_limit = tree_far(shadow.distance);
+        const uint32_t left = flat_start(scene, shadow.ray);
         walk_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
-            shadow_primitive<Real, E>(scene, primitive, shadow, triangle_ray, sum);
+            if (primitive >= scene.convex.size && !scene.facets.empty())
+                shadow_facet<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, left, sum);
+            else
+                shadow_primitive<Real, E>(scene, primitive, shadow, triangle_ray, sum);
             return sum.dark() ? -1.0f : tree_far(shadow.distance);
         });
         return sum.template share<E, Real>();

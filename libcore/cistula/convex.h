@@ -11,6 +11,9 @@ namespace cistula {
 template <class Real>
 struct ConvexInterval {
     Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
+#if CISTULA_ON_DEVICE
+    uint32_t enter_slab = 0, leave_slab = 0;  // the first with these values; the host looks them up where they count
+#endif
 
     /// For an origin outside. A solid that ends where the line starts, give or take the rounding of a point on a shared
     /// face, is behind it.
@@ -19,18 +22,21 @@ struct ConvexInterval {
 
 inline constexpr uint32_t no_face = 0xffffffffu;
 
+/// A line at less of a slope counts as parallel to a slab: times stay finite.
+template <class Real>
+inline constexpr Real least_slope = Real(0x1p-100);
+
 /// Where a line crosses one slab. Selects only, since which slab decides is unpredictable; all callers use the same
 /// operations, so that the face of a value can be looked up afterwards.
 template <class Real>
 CISTULA_INLINE void cross_slab(const Vec3<Real>& normal, Real low, Real high, const Vec3<Real>& origin,
                                const Vec3<Real>& direction, Real& enter, Real& leave) {
     const Real nd = dot(normal, direction), no = dot(normal, origin);
-    const Real inverse = Real(1) / nd;
+    const bool parallel = magnitude(nd) < least_slope<Real>;
+    const Real inverse = reciprocal(parallel ? Real(1) : nd);
     const Real at_low = (low - no) * inverse, at_high = (high - no) * inverse;
-    // Subnormal counts as parallel: its inverse overflows, and where the origin lies in the plane 0 * inf is NaN.
-    const bool parallel = magnitude(nd) < RealTraits<Real>::least_normal;
     const Real beside = no >= high || no <= low ? RealTraits<Real>::infinity : -RealTraits<Real>::infinity;
-    const Real first = at_low < at_high ? at_low : at_high, last = at_low < at_high ? at_high : at_low;
+    const Real first = lesser(at_low, at_high), last = greater(at_low, at_high);
     enter = parallel ? beside : first;
     leave = parallel ? RealTraits<Real>::infinity : last;
 }
@@ -54,22 +60,26 @@ CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
     return least(least(least(a[0], a[4]), least(a[2], a[6])), least(least(a[1], a[5]), least(a[3], a[7])));
 }
 
-/// `skipped` is a face that cannot be the one to leave by.
-template <class Real>
-CISTULA_INLINE ConvexInterval<Real> convex_interval(const SceneView<Real>& scene, const Solid& solid,
+/// For an origin outside only whether it is met is sure where it is not. `skipped` is a face that cannot be the one to leave by.
+template <class Real, class Scene>
+CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Solid& solid,
                                                     const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                                    uint32_t skipped = no_face) {
+                                                    [[maybe_unused]] bool outside, uint32_t skipped = no_face) {
     ConvexInterval<Real> interval;
     const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
     const auto leaves_by_skipped = [&] {
         return (dot(slabs[skipped / 2].normal, direction) > Real(0)) == ((skipped & 1u) != 0);
     };
 #if CISTULA_ON_DEVICE
+#pragma unroll 1  // code that fits the instruction cache is worth more
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         Real enter, leave;
         cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
-        interval.enter = greatest(enter, interval.enter);
-        if (skipped / 2 != i || !leaves_by_skipped()) interval.leave = least(leave, interval.leave);
+        if (skipped / 2 == i && leaves_by_skipped()) leave = RealTraits<Real>::infinity;
+        if (enter > interval.enter) interval.enter = enter, interval.enter_slab = i;
+        if (leave < interval.leave) interval.leave = leave, interval.leave_slab = i;
+        // A miss stays one; a ray that is inside leaves whatever rounding says.
+        if (outside && interval.enter > interval.leave) break;
     }
 #else
     for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
@@ -84,11 +94,17 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const SceneView<Real>& scene
     return interval;
 }
 
-/// The first face by which the line enters or leaves at t, as convex_interval found it.
-template <class Real>
-CISTULA_INLINE uint32_t convex_face(const SceneView<Real>& scene, const Solid& solid, const Vec3<Real>& origin,
-                                    const Vec3<Real>& direction, Real t, bool leaves, uint32_t skipped = no_face) {
+/// The first face by which the line enters or leaves, as convex_interval found it.
+template <class Real, class Scene>
+CISTULA_INLINE uint32_t convex_face(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
+                                    const Vec3<Real>& direction, const ConvexInterval<Real>& interval, bool leaves,
+                                    uint32_t skipped = no_face) {
     const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
+#if CISTULA_ON_DEVICE
+    const uint32_t slab = leaves ? interval.leave_slab : interval.enter_slab;
+    return 2 * slab + ((dot(slabs[slab].normal, direction) > Real(0)) == leaves ? 1 : 0);
+#else
+    const Real t = leaves ? interval.leave : interval.enter;
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         Real enter, leave;
         cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
@@ -96,48 +112,58 @@ CISTULA_INLINE uint32_t convex_face(const SceneView<Real>& scene, const Solid& s
         if ((leaves ? leave : enter) == t && face != skipped) return face;
     }
     return 0;
+#endif
 }
 
-/// Whether a ray that starts outside surely misses: spares most rays the slabs, decides no hit.
+/// Whether a ray that starts outside surely misses, or meets the solid only beyond `limit`: spares most rays the slabs,
+/// decides no hit.
 template <class Real>
-CISTULA_INLINE bool passes_by(const Solid& solid, const Vec3<Real>& origin, const Vec3<Real>& direction) {
+CISTULA_INLINE bool passes_by(const Solid& solid, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
     const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
     const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - Real(solid.padded_square);
+    if (ahead > limit) return rest > limit * (Real(2) * ahead - limit);
     return rest > Real(0) && (ahead < Real(0) || rest > ahead * ahead);
 }
 
 /// The ray's next crossing of a convex solid, if it is less than `best`.
-template <class Real, class Media>
-CISTULA_CALLED void closest_convex(const SceneView<Real>& scene, uint32_t index, const Ray<Real, Media>& ray,
+template <class Real, class Media, class Scene>
+CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                    Hit<Real>& best) {
     const bool inside = ray.media.contains(index), own = ray.from_solid == index;
     if (own && !inside) return;
     const Solid& solid = scene.solids[index];
-    if (!inside && passes_by(solid, ray.origin, ray.direction)) return;
+    if (!inside && passes_by(solid, ray.origin, ray.direction, best.t)) return;
     const uint32_t skipped = own ? ray.from_face : no_face;
-    const ConvexInterval<Real> interval = convex_interval(scene, solid, ray.origin, ray.direction, skipped);
+    const ConvexInterval<Real> interval = convex_interval(scene, solid, ray.origin, ray.direction, !inside, skipped);
     if (!inside && !interval.met(scene.extent)) return;
     // Before the face, which takes a look at every slab, what the time alone decides.
     const Real found = inside ? interval.leave : interval.enter, t = greatest(found, Real(0));
     if (!(t <= best.t && t < RealTraits<Real>::infinity) || (!inside && t < ray.after.t)) return;
-    const uint32_t face = convex_face(scene, solid, ray.origin, ray.direction, found, inside, skipped);
+    const uint32_t face = convex_face(scene, solid, ray.origin, ray.direction, interval, inside, skipped);
     const uint64_t key = make_key(inside ? CrossingKind::leave : CrossingKind::enter, index, face);
     if (!inside && !ray.after.before(t, key)) return;
     if (best.improves(t, key)) best = {t, key, Real(0), Real(0), 0, !inside};
 }
 
-/// The next crossing of a ray inside a solid that stands alone, which is the way out of it; false for any other ray.
-template <class Real, class Media>
-CISTULA_INLINE bool closest_enclosed(const SceneView<Real>& scene, const Ray<Real, Media>& ray, Hit<Real>& best) {
+/// The solid around a ray that meets its own way out next, since it stands alone; no_solid for any other ray.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE uint32_t enclosing(const Scene& scene, const Ray<Real, Media>& ray) {
     const uint32_t solid = ray.media.only();
-    if (solid == no_solid || !scene.solids[solid].alone) return false;
+    return solid != no_solid && scene.solids[solid].alone ? solid : no_solid;
+}
+
+/// The next crossing of a ray inside such a solid; false for any other ray.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool closest_enclosed(const Scene& scene, const Ray<Real, Media>& ray, Hit<Real>& best) {
+    const uint32_t solid = enclosing(scene, ray);
+    if (solid == no_solid) return false;
     closest_convex(scene, solid, ray, best);
     return true;
 }
 
 /// Strictly inside all planes.
-template <class Real>
-CISTULA_HD inline bool inside_convex(const SceneView<Real>& scene, const Solid& solid, const Vec3<Real>& point) {
+template <class Real, class Scene>
+CISTULA_HD inline bool inside_convex(const Scene& scene, const Solid& solid, const Vec3<Real>& point) {
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
         const Real n = dot(slab.normal, point);

@@ -17,8 +17,8 @@ struct Shares {
 };
 
 /// Index of refraction of the medium around a point: that of the solid of highest priority, or 1.
-template <class Real, class Media>
-CISTULA_INLINE double index_of(const SceneView<Real>& scene, const Media& media) {
+template <class Scene, class Media>
+CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
     const uint32_t solid = media.medium();
     return solid == no_solid ? 1.0 : scene.materials[scene.solids[solid].material].index;
 }
@@ -26,8 +26,8 @@ CISTULA_INLINE double index_of(const SceneView<Real>& scene, const Media& media)
 /// Total internal reflection sends the transmitted share into the mirrored ray; `fresnel` splits kr + kt by the exact
 /// dielectric terms, of which nothing is reflected between equal indices. A sheet has no other side to bend into: kr and
 /// kt stand as they are.
-template <class Real, class E, class Media>
-CISTULA_INLINE Shares<Real> split_at(const SceneView<Real>& scene, const Material<Real>& m, const Vec3<Real>& direction,
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE Shares<Real> split_at(const Scene& scene, const Material<Real>& m, const Vec3<Real>& direction,
                                      const Vec3<Real>& normal, const Media& before, const Media& beyond,
                                      bool sheet) {
     Shares<Real> shares{m.reflection, m.filter, false, direction};

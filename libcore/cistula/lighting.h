@@ -22,8 +22,8 @@ CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Rea
 }
 
 /// Adds `weight` times the local term (DESIGN, Light), seen along `ray`.
-template <class Real, class E, class Intersector, class Media>
-CISTULA_INLINE void add_local_light(const SceneView<Real>& scene, const Intersector& intersector,
+template <class Real, class E, class Intersector, class Media, class Scene>
+CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector,
                                     const Ray<Real, Media>& ray, const Hit<Real>& hit, const Surface<Real>& s,
                                     const Vec3<Real>& weight, PixelSums<Real>& sums, TreeRays& rays) {
     const Material<Real>& m = *s.material;
@@ -35,7 +35,7 @@ CISTULA_INLINE void add_local_light(const SceneView<Real>& scene, const Intersec
             // A light in the plane of the face lights it at no angle; rounding must not decide on which side it is.
             if (!(dot(s.normal, to_light) > incidence<Real> * scene.extent)) continue;
             const Real distance = length(to_light);
-            to_light /= distance;
+            to_light *= Real(1) / distance;
             const Real n_l = dot(s.normal, to_light);
             if (!(n_l > Real(0))) continue;
             const Vec3<Real> lit = phong<Real, E>(m, s.color, light, s.normal, to_light, -ray.direction, n_l, distance);

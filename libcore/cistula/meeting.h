@@ -35,8 +35,8 @@ struct Meeting {
 
 /// `hit` is the ray's next crossing. A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so
 /// crossings of other solids within twice that of the face belong to the same meeting.
-template <class Real, class Intersector, class Media>
-CISTULA_INLINE void meet(const SceneView<Real>& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
+template <class Real, class Intersector, class Media, class Scene>
+CISTULA_INLINE void meet(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                          const Hit<Real>& hit, Meeting<Real, Media>& meeting) {
     meeting.begin(ray, hit);
     if (!Media::contacts || !scene.solids[key_solid(hit.key)].touched) return;

@@ -7,13 +7,17 @@
 
 namespace cistula {
 
+CISTULA_SELDOM inline double fractional_power(double base, double exponent) {
+    return elementary::pow(base, exponent);
+}
+
 /// max(0, cosine)^n.
 template <class Real>
 CISTULA_INLINE Real highlight(const Material<Real>& material, Real cosine) {
     if (!(cosine > Real(0))) return material.integer_exponent == 0 ? Real(1) : Real(0);
     const Real base = least(cosine, Real(1));
     if (material.integer_exponent >= 0) return elementary::power_by_squaring(base, material.integer_exponent);
-    return Real(elementary::pow(double(base), double(material.exponent)));
+    return Real(fractional_power(double(base), double(material.exponent)));
 }
 
 /// What a light of unit transmittance adds, before the local share: I a(r) (C kd N.L + ks S (R.V)^n). n_l = N.L > 0.

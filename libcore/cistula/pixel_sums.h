@@ -11,6 +11,7 @@ namespace cistula {
 struct TreeSettings {
     int depth = 4;           // surfaces shaded along a path, the first included
     double fixed_scale = 1;  // 2^s of the sums
+    double fixed_unit = 1;   // 2^-s
     int64_t budget = 0;      // truncation allowed per sample, in units of the sums
 };
 
@@ -32,6 +33,7 @@ class PixelSums {
     /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of the
     /// budget that is left, and what could add one unit of the sums at most.
     CISTULA_INLINE bool afford(const Vec3<Real>& weight) {
+        if (left_ == 0 && clearly_counts(weight)) return true;
         int64_t most[3];
         const int64_t worst = most_of(weight, most);
         if (worst > 1 && worst > left_ / 10) return true;
@@ -50,6 +52,18 @@ class PixelSums {
     CISTULA_INLINE void flag(uint32_t bits) { flags_ |= bits; }
 
   private:
+    /// Whether the branch could add more than one unit of the sums; what is not finite or beyond the bound is left to
+    /// most_of.
+    CISTULA_INLINE bool clearly_counts(const Vec3<Real>& weight) const {
+        bool counts = false, legal = true;
+        for (int c = 0; c < 3; ++c) {
+            const Real most = weight[c] * bound_[c];
+            counts |= most > Real(settings_.fixed_unit);
+            legal &= most >= Real(0) && most <= Real(1);
+        }
+        return counts && legal;
+    }
+
     /// The most a branch can add, rounded up; B's slack of 2^-10 covers the rounding of all weights below it.
     CISTULA_INLINE int64_t most_of(const Vec3<Real>& weight, int64_t most[3]) {
         int64_t worst = 0;

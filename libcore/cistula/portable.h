@@ -36,6 +36,9 @@
 #define CISTULA_CALLED CISTULA_HD inline
 #endif
 
+// Called rarely: out of the way of the instruction caches.
+#define CISTULA_SELDOM CISTULA_HD __attribute__((noinline))
+
 namespace cistula {
 
 /// a * b + c with one rounding, on both sides. Contraction is off everywhere, so this is the only way to get one.
@@ -52,6 +55,43 @@ CISTULA_INLINE float square_root(float a) {
 }
 CISTULA_INLINE double square_root(double a) {
     return ::sqrt(a);
+}
+
+/// 1 / a, correctly rounded, for |a| in [2^-120, 2^120]. On the device without the branches that other values need: one
+/// Newton step from the hardware's estimate is exact there (bench/gpu checks every significand).
+CISTULA_INLINE float reciprocal(float a) {
+#if CISTULA_ON_DEVICE
+    float r;
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(a));
+    return fmaf(r, fmaf(-a, r, 1.0f), r);
+#else
+    return 1.0f / a;
+#endif
+}
+CISTULA_INLINE double reciprocal(double a) {
+    return 1.0 / a;
+}
+
+/// The lesser and the greater of two numbers that are not NaN and not both zero: one instruction on the device.
+CISTULA_INLINE float lesser(float a, float b) {
+#if CISTULA_ON_DEVICE
+    return fminf(a, b);
+#else
+    return a < b ? a : b;
+#endif
+}
+CISTULA_INLINE float greater(float a, float b) {
+#if CISTULA_ON_DEVICE
+    return fmaxf(a, b);
+#else
+    return a < b ? b : a;
+#endif
+}
+CISTULA_INLINE double lesser(double a, double b) {
+    return a < b ? a : b;
+}
+CISTULA_INLINE double greater(double a, double b) {
+    return a < b ? b : a;
 }
 
 CISTULA_INLINE float floor_of(float a) {

@@ -21,82 +21,89 @@ template <class Real, class Media = MediaList>
 struct Branch {
     Ray<Real, Media> ray;
     Vec3<Real> weight;
-    int depth = 0;  // surfaces above it
-    bool mirrored = false;
+    uint32_t depth : 31 = 0;  // surfaces above it
+    uint32_t mirrored : 1 = 0;
 };
 
-/// What the primary ray met first.
-template <class Real>
-struct FirstHit {
-    bool anything = false;  // a surface or a seen light
-    Hit<Real> hit;          // the surface, if it was one
-    Vec3<Real> normal{Real(0)};
-};
-
-/// What a RayTree asks about branches that wait: whether somebody else takes them. Here nobody does.
-struct KeepBranches {
-    CISTULA_INLINE void shaded() {}
-    template <class Branch>
-    CISTULA_INLINE bool take(const Branch&) {
-        return false;
-    }
-};
-
-template <class Real, class E, class Intersector, class Taker = KeepBranches>
-class RayTree {
+/// Room for branches, unset: a Branch sets itself, and most trees need a few.
+template <class Real, class Media, int size>
+class BranchRoom {
   public:
-    using Media = typename Intersector::Media;
+    CISTULA_INLINE void put(int i, const Branch<Real, Media>& branch) { memcpy(bytes_[i], &branch, sizeof branch); }
+    CISTULA_INLINE void get(int i, Branch<Real, Media>& branch) const { memcpy(&branch, bytes_[i], sizeof branch); }
 
-    CISTULA_INLINE RayTree(const SceneView<Real>& scene, const Intersector& intersector, int depth,
-                           PixelSums<Real>& sums, TreeRays& rays, Taker taker = {})
-        : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums), rays_(rays), taker_(taker) {}
+  private:
+    alignas(Branch<Real, Media>) unsigned char bytes_[size][sizeof(Branch<Real, Media>)];
+};
 
-    /// Adds all that the primary ray sees to the sums.
-    CISTULA_INLINE FirstHit<Real> trace(const Ray<Real, Media>& primary) {
-        Branch<Real, Media> branch{primary, Vec3<Real>(Real(1))};
-        return walk(branch);
+/// The branches that wait, in the thread's own memory. A RayTree tells it of every surface that it shades.
+template <class Real, class Media>
+class BranchStack {
+  public:
+    CISTULA_INLINE void shaded() {}
+    /// False if there is no room.
+    CISTULA_INLINE bool push(const Branch<Real, Media>& branch) {
+        if (count_ == branch_stack) return false;
+        pending_.put(count_++, branch);
+        return true;
     }
-
-    /// Goes on with a branch that another tree's taker took. What is taken depends on no order only where the budget of
-    /// truncation is 0.
-    CISTULA_INLINE void resume(Branch<Real, Media>& branch) {
-        if (follow(branch)) walk(branch);
+    /// The latest; false if there is none.
+    CISTULA_INLINE bool pop(Branch<Real, Media>& branch) {
+        if (count_ == 0) return false;
+        pending_.get(--count_, branch);
+        return true;
     }
 
   private:
-    CISTULA_INLINE FirstHit<Real> walk(Branch<Real, Media>& branch) {
-        FirstHit<Real> first;
+    BranchRoom<Real, Media, branch_stack> pending_;
+    int count_ = 0;
+};
+
+template <class Real, class E, class Intersector, class Stack>
+class RayTree {
+  public:
+    using Media = typename Intersector::Media;
+    using Scene = typename Intersector::Scene;
+
+    CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth,
+                           PixelSums<Real>& sums, TreeRays& rays, Stack& stack)
+        : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums), rays_(rays), stack_(stack) {}
+
+    /// Adds all that the primary ray sees to the sums. first(anything, surface) is told what it meets first: whether a
+    /// surface or a seen light, and the surface, or null.
+    template <class First>
+    CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
+        Branch<Real, Media> branch{primary, Vec3<Real>(Real(1))};
+        walk(branch, first);
+    }
+
+    /// Goes on with a branch of another tree, which that one left. In any order only where the budget of truncation is 0.
+    CISTULA_INLINE void resume(Branch<Real, Media>& branch) {
+        if (follow(branch)) walk(branch, [](bool, const Hit<Real>*) {});
+    }
+
+  private:
+    template <class First>
+    CISTULA_INLINE void walk(Branch<Real, Media>& branch, const First& first) {
         Meeting<Real, Media> meeting;
-        Branch<Real, Media> pending[branch_stack];
-        int count = 0;
         for (bool at_first = true;; at_first = false) {
             bool light = false;
             const bool surface = next_surface(branch, meeting, light);
-            if (at_first) {
-                first.anything = surface || light;
-                if (surface) first.hit = meeting.hit, first.normal = normal_at(scene_, meeting.hit);
-            }
+            if (at_first) first(surface || light, surface ? &meeting.hit : nullptr);
             if (surface) {
-                taker_.shaded();
-                if (shade(branch, meeting, pending, count)) continue;
+                stack_.shaded();
+                if (shade(branch, meeting)) continue;
             }
-            if (!pop(branch, pending, count)) return first;
+            do {
+                if (!stack_.pop(branch)) return;
+            } while (!follow(branch));
         }
-    }
-
-    CISTULA_INLINE bool pop(Branch<Real, Media>& branch, const Branch<Real, Media>* pending, int& count) {
-        while (count > 0) {
-            --count;
-            if (taker_.take(pending[count]) || !follow(pending[count])) continue;
-            branch = pending[count];
-            return true;
-        }
-        return false;
     }
 
     CISTULA_INLINE bool follow(const Branch<Real, Media>& branch) {
         if (!sums_.afford(branch.weight)) return false;
-        ++(branch.mirrored ? rays_.reflected : rays_.transmitted);
+        rays_.reflected += branch.mirrored;
+        rays_.transmitted += 1 - branch.mirrored;
         return true;
     }
 
@@ -173,7 +180,7 @@ class RayTree {
 
     /// Adds a face's local light and replaces the branch by the lighter of its children; the heavier one is pushed. False
     /// if there is none to go on with.
-    CISTULA_INLINE bool shade(Branch<Real, Media>& branch, const Meeting<Real, Media>& meeting, Branch<Real, Media>* pending, int& count) {
+    CISTULA_INLINE bool shade(Branch<Real, Media>& branch, const Meeting<Real, Media>& meeting) {
         const Hit<Real>& hit = meeting.hit;
         const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, hit);
         if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
@@ -187,8 +194,7 @@ class RayTree {
         const Vec3<Real> mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
         // Sums over channels, so that a child that is not the heavier is at most half its parent.
         const Real mirrored_size = mirrored.x + mirrored.y + mirrored.z, through_size = through.x + through.y + through.z;
-        const int depth = branch.depth + 1;
-        if (depth >= depth_) {
+        if (int(branch.depth) + 1 >= depth_) {
             if (mirrored_size > Real(0)) sums_.cut(mirrored);
             if (through_size > Real(0)) sums_.cut(through);
             return false;
@@ -196,10 +202,9 @@ class RayTree {
         const bool both = mirrored_size > Real(0) && through_size > Real(0);
         const bool through_first = !(mirrored_size > Real(0)) || (both && through_size < mirrored_size);
         if (both) {
-            if (count == branch_stack)
-                sums_.flag(flag_stack_overflow);
-            else
-                become(pending[count++], branch, meeting, s, shares, !through_first, through_first ? mirrored : through);
+            Branch<Real, Media> heavier;
+            become(heavier, branch, meeting, s, shares, !through_first, through_first ? mirrored : through);
+            if (!stack_.push(heavier)) sums_.flag(flag_stack_overflow);
         } else if (!(mirrored_size > Real(0)) && !(through_size > Real(0))) {
             return false;
         }
@@ -218,19 +223,19 @@ class RayTree {
             child.ray =
                 spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
         } else if (shares.bends) {
-            child.ray = spawned(s.far_side, shares.through, meeting.hit, meeting.beyond);
+            child.ray = spawned(far_side(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
         } else {
             child.ray = parent.ray;
             pass(child.ray, meeting);
         }
     }
 
-    const SceneView<Real>& scene_;
+    const Scene& scene_;
     const Intersector& intersector_;
     const int depth_;
     PixelSums<Real>& sums_;
     TreeRays& rays_;
-    Taker taker_;
+    Stack& stack_;
 };
 
 }  // namespace cistula

@@ -30,15 +30,17 @@ struct alignas(32) SlabGroup {
 };
 
 /// Solids are numbered in file order, which is also the priority of their media: later wins.
-struct Solid {
+struct alignas(16) Solid {
+    Vec3<float> center;               // convex: of a sphere around it,
+    float padded_square;              // ... and the square of its radius plus sphere_padding
+    Vec3<float> plane_normal;         // flat sheet: unit normal of its plane,
+    float plane_offset;               // ... and normal.x on it
     SolidKind kind;
     uint32_t material;
     uint32_t first_slab, slab_count;  // convex: its slabs
     uint32_t first_group;             // convex: the same slabs, ceil(slab_count / 8) groups
     uint32_t first_triangle;          // mesh, sheet: scene-wide number of its first triangle
     uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
-    Vec3<float> center;               // convex: of a sphere around it,
-    float padded_square;              // ... and the square of its radius plus sphere_padding
     uint32_t flat;                    // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
                                       // on it does not meet it again
     uint32_t touched;                 // convex, mesh: 1 if its padded box meets that of another such solid
@@ -50,6 +52,9 @@ struct Solid {
 /// test are at most 64 for lengths within 4 M, and carry an error of a few u of float each.
 inline constexpr float sphere_padding = 0x1p-11f;
 
+/// Far above the rounding of a distance from a sheet's plane, of the sheet's own corners from it, and of a shear.
+inline constexpr float plane_padding = 0x1p-10f;
+
 inline constexpr int cluster_lanes = 8;
 
 /// Up to eight neighbouring triangles of one solid, corner by corner and axis by axis, so that eight are tested at once.
@@ -60,6 +65,14 @@ struct alignas(32) Cluster {
     uint32_t count;                    // beside the corners, as every test reads it
     uint32_t triangle[cluster_lanes];  // scene-wide triangle numbers
     Real height[2][cluster_lanes];     // apex height h, [0] on the side normals point away from (inside), [1] outside
+};
+
+/// A triangle by itself, in whole words: what a tree of the device has in its leaves, since a thread there tests one at a
+/// time and reads no more than it tests. The same triangle as lane slot % 8 of cluster slot / 8.
+template <class Real>
+struct alignas(16) Facet {
+    Real corner[3][3];  // [corner][axis]
+    uint32_t solid, triangle, slot;
 };
 
 /// What a face is made of. Shares: local 1 - kr - kt, reflected kr, transmitted kt * tint.
@@ -128,7 +141,7 @@ inline constexpr int max_tree_depth = 48;
 
 /// A node of a binary tree over primitives or seen lights: the boxes of both children, already padded.
 /// A child >= 0 is a node; a child < 0 is a leaf that holds items [~child, ~child + count).
-struct TreeNode {
+struct alignas(16) TreeNode {
     float low[2][3], high[2][3];
     int32_t child[2];
     uint32_t count[2];
@@ -136,11 +149,13 @@ struct TreeNode {
 
 template <class Real>
 struct SceneView {
+    using Scalar = Real;
     Span<Solid> solids;
     Span<Slab<Real>> slabs;
     Span<SlabGroup<Real>> slab_groups;
     Span<uint32_t> convex;              // the convex solids; primitive p < convex.size is convex[p]
     Span<Cluster<Real>> clusters;       // primitive p >= convex.size is clusters[p - convex.size]
+    Span<Facet<Real>> facets;           // or, where there are any, facets[p - convex.size]
     Span<Vec2<Real>> uvs;
     Span<Material<Real>> materials;
     Span<Light<Real>> lights;

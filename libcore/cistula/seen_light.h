@@ -14,8 +14,8 @@ struct SeenHit {
 };
 
 /// The front of one sphere, by the ray's closest approach (Haines et al., Ray Tracing Gems, ch. 7). From inside: nothing.
-template <class Real, class Media>
-CISTULA_INLINE void see_light(const SceneView<Real>& scene, uint32_t index, const Ray<Real, Media>& ray, SeenHit<Real>& best) {
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, SeenHit<Real>& best) {
     const SeenLight<Real>& light = scene.seen_lights[index];
     const Vec3<Real> to_center = light.center - ray.origin;
     const Real b = dot(to_center, ray.direction);
@@ -28,8 +28,8 @@ CISTULA_INLINE void see_light(const SceneView<Real>& scene, uint32_t index, cons
 }
 
 /// The nearest seen light at or after ray.after and before t_limit.
-template <class Real, class Media>
-CISTULA_INLINE SeenHit<Real> closest_seen_light(const SceneView<Real>& scene, const Ray<Real, Media>& ray, Real t_limit) {
+template <class Real, class Media, class Scene>
+CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit) {
     SeenHit<Real> best;
     best.t = t_limit;
     if (!is_finite(ray)) return best;

@@ -68,8 +68,8 @@ struct ShadowSum {
 };
 
 /// Whether the light lies on faces of a solid, and whether `point` is outside one of those planes.
-template <class Real>
-CISTULA_INLINE bool light_on_convex(const SceneView<Real>& scene, const Light<Real>& light, uint32_t index,
+template <class Real, class Scene>
+CISTULA_SELDOM bool light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index,
                                     const Vec3<Real>& point, bool& outside) {
     bool incident = false;
     outside = false;
@@ -84,17 +84,18 @@ CISTULA_INLINE bool light_on_convex(const SceneView<Real>& scene, const Light<Re
     return incident;
 }
 
-template <class Real, class E, class Media>
-CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+template <class Real, class E, class Media, class Scene>
+CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                   ShadowSum& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
     const bool inside = ray.media.contains(index), own = ray.from_solid == index;
     if (own && !inside) return;
     const Solid& solid = scene.solids[index];
-    if (!inside && passes_by(solid, ray.origin, ray.direction)) return;
+    if (!inside && passes_by(solid, ray.origin, ray.direction, shadow.distance)) return;
     const Material<Real>& material = scene.materials[solid.material];
     const ConvexInterval<Real> interval =
-        convex_interval(scene, solid, ray.origin, ray.direction, own ? ray.from_face : no_face);
+        convex_interval(scene, solid, ray.origin, ray.direction, !inside && shadow.light->incident_count == 0,
+                        own ? ray.from_face : no_face);
     const Real enter = inside ? Real(0) : greatest(interval.enter, Real(0));
     const Real leave = least(greatest(interval.leave, Real(0)), shadow.distance);
     bool outside = false;
@@ -114,32 +115,49 @@ CISTULA_CALLED void shadow_convex(const SceneView<Real>& scene, uint32_t index, 
     if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(leave - enter, Real(0)));
 }
 
-template <class Real, class E, class Media>
-CISTULA_CALLED void shadow_cluster(const SceneView<Real>& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+/// Takes an accepted crossing of a triangle into the sum if it lies before the light.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle,
+                                    const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
+    if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
+    if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
+    bool holds_light = false;
+    for (uint32_t i = 0; i < shadow.light->incident_count; ++i) {
+        const Incident& face = scene.incidents[shadow.light->first_incident + i];
+        holds_light |= face.solid == index && face.face == triangle;
+    }
+    if (holds_light) return;
+    const Solid& solid = scene.solids[index];
+    const Material<Real>& material = scene.materials[solid.material];
+    sum.cross<E>(material);
+    if constexpr (E::has(effect_absorption))
+        if (solid.kind == SolidKind::mesh)
+            sum.absorb_rest(material, shadow.distance - c.t, c.enters() ? 1 : -1, scene.extent);
+}
+
+template <class Real, class E, class Media, class Scene>
+CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                    const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
     if (leaves_flat(scene, index, shadow.ray)) return;
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
-        if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
-        const uint32_t triangle = cluster.triangle[lane];
-        if (shadow.ray.from_solid == cluster.solid && shadow.ray.from_face == triangle) return;
-        bool holds_light = false;
-        for (uint32_t i = 0; i < shadow.light->incident_count; ++i) {
-            const Incident& face = scene.incidents[shadow.light->first_incident + i];
-            holds_light |= face.solid == cluster.solid && face.face == triangle;
-        }
-        if (holds_light) return;
-        const Solid& solid = scene.solids[cluster.solid];
-        const Material<Real>& material = scene.materials[solid.material];
-        sum.cross<E>(material);
-        if constexpr (E::has(effect_absorption))
-            if (solid.kind == SolidKind::mesh) sum.absorb_rest(material, shadow.distance - c.t, c.enters ? 1 : -1, scene.extent);
+        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], c, shadow, sum);
     });
 }
 
+/// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                 const TriangleRay<Real>& triangle_ray, uint32_t left, ShadowSum& sum) {
+    const Facet<Real>& facet = scene.facets[index];
+    TriangleCrossing<Real> c;
+    if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
+        shadow_crossing<Real, E>(scene, facet.solid, facet.triangle, c, shadow, sum);
+}
+
 /// What meshes that contain the start of the ray add.
-template <class Real, class E, class Media>
-CISTULA_INLINE void shadow_start(const SceneView<Real>& scene, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
     if constexpr (E::has(effect_absorption)) {
         shadow.ray.media.for_each([&](uint32_t index, int count) {
             const Solid& solid = scene.solids[index];

@@ -12,7 +12,6 @@ struct Surface {
     Vec3<Real> point;
     Vec3<Real> normal;             // geometric, unit, toward the viewer
     Vec3<Real> viewer_side;        // where rays that stay on the viewer's side start
-    Vec3<Real> far_side;           // where rays that bend into the other side start
     Vec3<Real> color;              // the material's, times its texture
     const Material<Real>* material;
 };
@@ -46,17 +45,37 @@ CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>
 }
 
 /// The corners of the triangle that was hit.
-template <class Real>
-CISTULA_INLINE void triangle_corners(const SceneView<Real>& scene, const Hit<Real>& hit, Vec3<Real> (&corner)[3]) {
+template <class Real, class Scene>
+CISTULA_INLINE void triangle_corners(const Scene& scene, const Hit<Real>& hit, Vec3<Real> (&corner)[3]) {
     const Cluster<Real>& cluster = scene.clusters[hit.slot / cluster_lanes];
     const uint32_t lane = hit.slot % cluster_lanes;
     for (int c = 0; c < 3; ++c)
         corner[c] = {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
 }
 
+/// Where a line starts that leaves a point of a triangle along `normal`; outside: on the side its corners turn
+/// counter-clockwise on.
+template <class Real, class Scene>
+CISTULA_INLINE Vec3<Real> off_triangle(const Scene& scene, const Hit<Real>& hit, const Vec3<Real>& point,
+                                       const Vec3<Real> (&corner)[3], const Vec3<Real>& normal, bool outside) {
+    const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);
+    const Real height = scene.clusters[hit.slot / cluster_lanes].height[outside][hit.slot % cluster_lanes];
+    return toward_apex(point, centroid, normal, height, scene.extent);
+}
+
+/// Where rays that bend into the other side of a face start.
+template <class Real, class Scene>
+CISTULA_INLINE Vec3<Real> far_side(const Scene& scene, const Hit<Real>& hit, const Vec3<Real>& point,
+                                   const Vec3<Real>& normal) {
+    if (scene.solids[key_solid(hit.key)].kind == SolidKind::convex) return point;
+    Vec3<Real> corner[3];
+    triangle_corners(scene, hit, corner);
+    return off_triangle(scene, hit, point, corner, -normal, !hit.enters);
+}
+
 /// The unit normal on the viewer's side.
-template <class Real>
-CISTULA_INLINE Vec3<Real> normal_at(const SceneView<Real>& scene, const Hit<Real>& hit) {
+template <class Real, class Scene>
+CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     const uint32_t face = key_face(hit.key);
     if (solid.kind == SolidKind::convex) {
@@ -70,8 +89,8 @@ CISTULA_INLINE Vec3<Real> normal_at(const SceneView<Real>& scene, const Hit<Real
     return hit.enters ? normal : -normal;
 }
 
-template <class Real, class E, class Media>
-CISTULA_INLINE Surface<Real> surface_at(const SceneView<Real>& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     const uint32_t face = key_face(hit.key);
     Surface<Real> s;
@@ -80,17 +99,13 @@ CISTULA_INLINE Surface<Real> surface_at(const SceneView<Real>& scene, const Ray<
     s.normal = normal_at(scene, hit);
     if (solid.kind == SolidKind::convex) {
         s.point = along(ray.origin, hit.t, ray.direction);
-        s.viewer_side = s.far_side = s.point;
+        s.viewer_side = s.point;
         return s;
     }
-    const Cluster<Real>& cluster = scene.clusters[hit.slot / cluster_lanes];
-    const uint32_t lane = hit.slot % cluster_lanes;
     Vec3<Real> corner[3];
     triangle_corners(scene, hit, corner);
     s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
-    const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);
-    s.viewer_side = toward_apex(s.point, centroid, s.normal, cluster.height[hit.enters][lane], scene.extent);
-    s.far_side = toward_apex(s.point, centroid, -s.normal, cluster.height[!hit.enters][lane], scene.extent);
+    s.viewer_side = off_triangle(scene, hit, s.point, corner, s.normal, hit.enters);
     if constexpr (E::has(effect_texture)) {
         if (s.material->texture >= 0) {
             const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (face - solid.first_triangle);

@@ -12,9 +12,19 @@ CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
     return uint32_t(clamped(r, Real(0), Real(n - 1)));
 }
 
+/// Between the four texels around (x, y); texel(i, j) are their colors.
+template <class Real, class Texel>
+CISTULA_SELDOM Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
+    const Real left = floor_of(x - Real(0.5)), top = floor_of(y - Real(0.5));
+    const Real fx = (x - Real(0.5)) - left, fy = (y - Real(0.5)) - top;
+    const Vec3<Real> upper = texel(left, top) * (Real(1) - fx) + texel(left + Real(1), top) * fx;
+    const Vec3<Real> lower = texel(left, top + Real(1)) * (Real(1) - fx) + texel(left + Real(1), top + Real(1)) * fx;
+    return upper * (Real(1) - fy) + lower * fy;
+}
+
 /// uv as on the object; Texture::repeat applies. Texel centers lie at half-integers.
-template <class Real>
-CISTULA_HD inline Vec3<Real> texture_at(const SceneView<Real>& scene, const Texture& texture, const Vec2<Real>& uv) {
+template <class Real, class Scene>
+CISTULA_HD inline Vec3<Real> texture_at(const Scene& scene, const Texture& texture, const Vec2<Real>& uv) {
     const Vec3<float>* texels = scene.texels.data + texture.first_texel;
     const Real x = uv.x * Real(texture.repeat[0]) * Real(texture.width);
     const Real y = uv.y * Real(texture.repeat[1]) * Real(texture.height);
@@ -22,11 +32,7 @@ CISTULA_HD inline Vec3<Real> texture_at(const SceneView<Real>& scene, const Text
         return Vec3<Real>(texels[repeated(j, texture.height) * texture.width + repeated(i, texture.width)]);
     };
     if (texture.filter == TextureFilter::nearest) return texel(floor_of(x), floor_of(y));
-    const Real left = floor_of(x - Real(0.5)), top = floor_of(y - Real(0.5));
-    const Real fx = (x - Real(0.5)) - left, fy = (y - Real(0.5)) - top;
-    const Vec3<Real> upper = texel(left, top) * (Real(1) - fx) + texel(left + Real(1), top) * fx;
-    const Vec3<Real> lower = texel(left, top + Real(1)) * (Real(1) - fx) + texel(left + Real(1), top + Real(1)) * fx;
-    return upper * (Real(1) - fy) + lower * fy;
+    return bilinear(x, y, texel);
 }
 
 }  // namespace cistula

@@ -7,6 +7,12 @@
 
 namespace cistula {
 
+/// a[k] by selects: an index would put `a` into memory.
+template <class Real>
+CISTULA_INLINE Real component(const Vec3<Real>& a, int k) {
+    return k == 0 ? a.x : k == 1 ? a.y : a.z;
+}
+
 /// A ray's shear. Axes are permuted so that the direction is longest along kz and winding is kept: det > 0 enters.
 template <class Real>
 struct TriangleRay {
@@ -20,17 +26,18 @@ struct TriangleRay {
         r.kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
         r.kx = r.kz == 2 ? 0 : r.kz + 1;
         r.ky = r.kx == 2 ? 0 : r.kx + 1;
-        if (direction[r.kz] < Real(0)) {
+        const Real along_z = component(direction, r.kz);
+        if (along_z < Real(0)) {
             const int k = r.kx;
             r.kx = r.ky;
             r.ky = k;
         }
-        r.sz = Real(1) / direction[r.kz];
-        r.sx = direction[r.kx] / direction[r.kz];
-        r.sy = direction[r.ky] / direction[r.kz];
-        r.ox = origin[r.kx];
-        r.oy = origin[r.ky];
-        r.oz = origin[r.kz];
+        r.sz = Real(1) / along_z;
+        r.sx = component(direction, r.kx) * r.sz;
+        r.sy = component(direction, r.ky) * r.sz;
+        r.ox = component(origin, r.kx);
+        r.oy = component(origin, r.ky);
+        r.oz = component(origin, r.kz);
         return r;
     }
 };
@@ -46,11 +53,14 @@ CISTULA_INLINE Real sheared(Real across, Real shear, Real depth) {
     return magnitude(s) < least_sheared<Real> ? Real(0) : s;
 }
 
-/// An accepted crossing of one triangle.
+/// An accepted crossing of one triangle. The weights of the corners are edge functions over their sum.
 template <class Real>
 struct TriangleCrossing {
-    Real t, u, v;
-    bool enters;  // against the normal
+    Real t, edge_u, edge_v, det;
+
+    CISTULA_INLINE bool enters() const { return det > Real(0); }  // against the normal
+    CISTULA_INLINE Real u() const { return edge_u / det; }
+    CISTULA_INLINE Real v() const { return edge_v / det; }
 };
 
 /// Corners relative to the ray and sheared along it, and edge functions opposite to each.
@@ -60,16 +70,32 @@ struct ShearedTriangle {
 
     CISTULA_INLINE static ShearedTriangle of(const Cluster<Real>& cluster, int lane, const TriangleRay<Real>& ray) {
         ShearedTriangle s;
+        for (int c = 0; c < 3; ++c)
+            s.shear(c, cluster.corner[c][ray.kx][lane], cluster.corner[c][ray.ky][lane], cluster.corner[c][ray.kz][lane],
+                    ray);
+        s.find_edges();
+        return s;
+    }
+    CISTULA_INLINE static ShearedTriangle of(const Facet<Real>& facet, const TriangleRay<Real>& ray) {
+        ShearedTriangle s;
         for (int c = 0; c < 3; ++c) {
-            s.z[c] = cluster.corner[c][ray.kz][lane] - ray.oz;
-            s.x[c] = sheared(cluster.corner[c][ray.kx][lane] - ray.ox, ray.sx, s.z[c]);
-            s.y[c] = sheared(cluster.corner[c][ray.ky][lane] - ray.oy, ray.sy, s.z[c]);
+            const Vec3<Real> p(facet.corner[c][0], facet.corner[c][1], facet.corner[c][2]);
+            s.shear(c, component(p, ray.kx), component(p, ray.ky), component(p, ray.kz), ray);
         }
+        s.find_edges();
+        return s;
+    }
+
+    CISTULA_INLINE void shear(int c, Real along_x, Real along_y, Real along_z, const TriangleRay<Real>& ray) {
+        z[c] = along_z - ray.oz;
+        x[c] = sheared(along_x - ray.ox, ray.sx, z[c]);
+        y[c] = sheared(along_y - ray.oy, ray.sy, z[c]);
+    }
+    CISTULA_INLINE void find_edges() {
         for (int c = 0; c < 3; ++c) {
             const int a = c == 2 ? 0 : c + 1, b = a == 2 ? 0 : a + 1;
-            s.edge[c] = difference_of_products(s.x[b], s.y[a], s.y[b], s.x[a]);
+            edge[c] = difference_of_products(x[b], y[a], y[b], x[a]);
         }
-        return s;
     }
 
     CISTULA_INLINE bool within() const {
@@ -138,18 +164,15 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
 }
 
 /// The exact test of one candidate, given its edge functions and its corners' distances along kz; t is not yet compared
-/// with anything.
-template <class Real>
-CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, uint32_t lane, const TriangleRay<Real>& ray,
-                                   const Real (&edge)[3], const Real (&z)[3], TriangleCrossing<Real>& crossing) {
+/// with anything. shear() gives the whole of it, which zero edges need.
+template <class Real, class Shear>
+CISTULA_INLINE bool cross_triangle(const TriangleRay<Real>& ray, const Real (&edge)[3], const Real (&z)[3],
+                                   const Shear& shear, TriangleCrossing<Real>& crossing) {
     const Real u = edge[0], v = edge[1], w = edge[2], det = u + v + w;
-    if (u == Real(0) || v == Real(0) || w == Real(0)) {
-        if (det == Real(0)) return false;
-        const ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, int(lane), ray);
-        if (!s.owns_zero_edges(det > Real(0) ? Real(1) : Real(-1))) return false;
-    }
+    if (u == Real(0) || v == Real(0) || w == Real(0))
+        if (det == Real(0) || !shear().owns_zero_edges(det > Real(0) ? Real(1) : Real(-1))) return false;
     const Real depth = u * (ray.sz * z[0]) + v * (ray.sz * z[1]) + w * (ray.sz * z[2]);
-    crossing = {depth / det, v / det, w / det, det > Real(0)};
+    crossing = {depth / det, v, w, det};
     return true;
 }
 
@@ -158,7 +181,15 @@ CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, const Candidate
                                    const TriangleRay<Real>& ray, TriangleCrossing<Real>& crossing) {
     const Real edge[3] = {lanes.edge[0][lane], lanes.edge[1][lane], lanes.edge[2][lane]};
     const Real z[3] = {lanes.z[0][lane], lanes.z[1][lane], lanes.z[2][lane]};
-    return cross_triangle(cluster, lane, ray, edge, z, crossing);
+    return cross_triangle(
+        ray, edge, z, [&] { return ShearedTriangle<Real>::of(cluster, int(lane), ray); }, crossing);
+}
+
+template <class Real>
+CISTULA_INLINE bool cross_triangle(const ShearedTriangle<Real>& s, const TriangleRay<Real>& ray,
+                                   TriangleCrossing<Real>& crossing) {
+    return s.within() && cross_triangle(
+                             ray, s.edge, s.z, [&]() -> const ShearedTriangle<Real>& { return s; }, crossing);
 }
 
 /// Calls visit(lane, crossing) for every triangle of a cluster that the ray's line crosses, wherever.
@@ -167,9 +198,8 @@ CISTULA_INLINE void for_each_crossing(const Cluster<Real>& cluster, const Triang
 #if CISTULA_ON_DEVICE
     // One after the other in registers: a buffer of lanes would be memory here.
     for (uint32_t lane = 0; lane < cluster.count; ++lane) {
-        const ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, int(lane), ray);
         TriangleCrossing<Real> c;
-        if (s.within() && cross_triangle(cluster, lane, ray, s.edge, s.z, c)) visit(lane, c);
+        if (cross_triangle(ShearedTriangle<Real>::of(cluster, int(lane), ray), ray, c)) visit(lane, c);
     }
 #else
     CandidateLanes<Real> lanes;
@@ -182,31 +212,71 @@ CISTULA_INLINE void for_each_crossing(const Cluster<Real>& cluster, const Triang
 }
 
 /// Whether a line starts on the flat sheet to which a cluster belongs.
-template <class Real, class Media>
-CISTULA_INLINE bool leaves_flat(const SceneView<Real>& scene, uint32_t cluster, const Ray<Real, Media>& ray) {
-    return ray.from_solid != no_solid && scene.clusters[cluster].solid == ray.from_solid &&
-           scene.solids[ray.from_solid].flat != 0;
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool leaves_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray) {
+    const uint32_t solid = scene.clusters[cluster].solid;
+    return solid == ray.from_solid && scene.solids[solid].flat != 0;
+}
+
+/// Whether a line from a place well off the plane of a flat sheet surely stays off it up to `limit`: spares most rays the
+/// triangles, decides no hit. Lines that stay so far off at a slant below plane_padding / 4 M have all of the sheet far
+/// beside them.
+template <class Real>
+CISTULA_INLINE bool stays_off(const Solid& solid, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
+    const Vec3<Real> normal(solid.plane_normal);
+    const Real off = dot(normal, origin) - Real(solid.plane_offset), slant = dot(normal, direction);
+    const Real ahead = off < Real(0) ? -slant : slant, far_off = magnitude(off);
+    return far_off > Real(plane_padding) && far_off + ahead * limit > Real(plane_padding);
+}
+
+/// Whether a line surely meets nothing of a cluster up to `limit` because that belongs to a flat sheet.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
+    const uint32_t index = scene.clusters[cluster].solid;
+    const Solid& solid = scene.solids[index];
+    return solid.flat != 0 && (ray.from_solid == index || stays_off(solid, ray.origin, ray.direction, limit));
+}
+
+/// Takes an accepted crossing if it is the ray's next.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_t triangle, uint32_t slot,
+                                     const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray, Hit<Real>& best) {
+    const bool own = ray.from_solid == solid;
+    if (!(c.t >= Real(0)) || (own && ray.from_face == triangle)) return;
+    CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
+    if (scene.solids[solid].kind == SolidKind::sheet)
+        kind = CrossingKind::sheet;
+    else if (own && ray.fresh() && c.enters() == ray.media.contains(solid))
+        return;  // a line that starts on this mesh first crosses it from the side on which it starts
+    const uint64_t key = make_key(kind, solid, triangle);
+    if (ray.after.before(c.t, key) && best.improves(c.t, key)) best = {c.t, key, c.u(), c.v(), slot, c.enters()};
 }
 
 /// The ray's next crossing of a cluster's triangles, if it is less than `best`.
-template <class Real, class Media>
-CISTULA_INLINE void closest_cluster(const SceneView<Real>& scene, uint32_t index, const Ray<Real, Media>& ray,
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_cluster(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                     const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
-    if (leaves_flat(scene, index, ray)) return;
     const Cluster<Real>& cluster = scene.clusters[index];
+    if (leaves_flat(scene, index, ray)) return;
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
-        const uint32_t triangle = cluster.triangle[lane];
-        const bool own = ray.from_solid == cluster.solid;
-        if (!(c.t >= Real(0)) || (own && ray.from_face == triangle)) return;
-        CrossingKind kind = c.enters ? CrossingKind::enter : CrossingKind::leave;
-        if (scene.solids[cluster.solid].kind == SolidKind::sheet)
-            kind = CrossingKind::sheet;
-        else if (own && ray.fresh() && c.enters == ray.media.contains(cluster.solid))
-            return;  // a line that starts on this mesh first crosses it from the side on which it starts
-        const uint64_t key = make_key(kind, cluster.solid, triangle);
-        if (ray.after.before(c.t, key) && best.improves(c.t, key))
-            best = {c.t, key, c.u, c.v, index * uint32_t(cluster_lanes) + lane, c.enters};
+        closest_crossing(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, ray, best);
     });
+}
+
+/// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_facet(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
+                                  const TriangleRay<Real>& triangle_ray, uint32_t left, Hit<Real>& best) {
+    const Facet<Real>& facet = scene.facets[index];
+    TriangleCrossing<Real> c;
+    if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
+        closest_crossing(scene, facet.solid, facet.triangle, facet.slot, c, ray, best);
+}
+
+/// The flat sheet on which a line starts, or no_solid.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE uint32_t flat_start(const Scene& scene, const Ray<Real, Media>& ray) {
+    return ray.from_solid != no_solid && scene.solids[ray.from_solid].flat != 0 ? ray.from_solid : no_solid;
 }
 
 }  // namespace cistula

@@ -178,7 +178,7 @@ class Compiler {
         solid.kind = topology.closed ? SolidKind::mesh : SolidKind::sheet;
         closed_[number] = topology.closed;
         solid.first_slab = solid.slab_count = 0;
-        solid.flat = !topology.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * frame_.extent) ? 1 : 0;
+        solid.flat = !topology.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * frame_.extent, solid) ? 1 : 0;
         solid.first_triangle = triangle_count_;
         solid.first_uv = static_cast<uint32_t>(scene_.uvs.size());
         append_clusters(mesh, groups, heights, number, triangle_count_, scene_.clusters);
@@ -192,8 +192,8 @@ class Compiler {
         from.mesh = {};  // its triangles are in the clusters now
     }
 
-    /// Whether all corners lie within `tolerance` of the plane of the largest triangle.
-    static bool is_flat(const FramedMesh& mesh, double tolerance) {
+    /// Whether all corners lie within `tolerance` of the plane of the largest triangle, which the solid then gets.
+    static bool is_flat(const FramedMesh& mesh, double tolerance, Solid& solid) {
         dvec3 normal(0), on(0);
         for (uint32_t t = 0; t < mesh.size(); ++t) {
             const auto corners = mesh.corners(t);
@@ -206,6 +206,8 @@ class Compiler {
         for (uint32_t t = 0; t < mesh.size(); ++t)
             for (const uint32_t corner : mesh.corners(t))
                 if (magnitude(dot(normal, mesh.vertex(corner) - on)) > tolerance) return false;
+        solid.plane_normal = Vec3<float>(normal);
+        solid.plane_offset = float(dot(normal, on));
         return true;
     }
 

@@ -124,6 +124,41 @@ PrimitiveTree primitive_tree(const SceneView<Real>& scene, int quality) {
 }
 
 template <class Real>
+FacetTree<Real> facet_tree(const SceneView<Real>& scene, int quality) {
+    const double pad = 0x1p-18 * static_cast<double>(scene.extent);
+    std::vector<RTCBuildPrimitive> primitives;
+    std::vector<Facet<Real>> facets;
+    for (uint32_t i = 0; i < scene.convex.size; ++i) primitives.push_back(boxed_primitive(scene, i));
+    for (uint32_t i = 0; i < scene.clusters.size; ++i) {
+        const Cluster<Real>& cluster = scene.clusters[i];
+        for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+            Facet<Real> facet{};
+            Box box;
+            for (int c = 0; c < 3; ++c) {
+                for (int axis = 0; axis < 3; ++axis) facet.corner[c][axis] = cluster.corner[c][axis][lane];
+                box.add({facet.corner[c][0], facet.corner[c][1], facet.corner[c][2]});
+            }
+            facet.solid = cluster.solid;
+            facet.triangle = cluster.triangle[lane];
+            facet.slot = i * uint32_t(cluster_lanes) + lane;
+            primitives.push_back(padded_primitive(box, pad, scene.convex.size + uint32_t(facets.size())));
+            facets.push_back(facet);
+        }
+    }
+    Tree built = build_tree(primitives, quality);
+    FacetTree<Real> tree;
+    tree.nodes = std::move(built.nodes);
+    tree.items = std::move(built.items);
+    tree.facets.reserve(facets.size());
+    for (uint32_t& item : tree.items) {
+        if (item < scene.convex.size) continue;
+        tree.facets.push_back(facets[item - scene.convex.size]);
+        item = scene.convex.size + uint32_t(tree.facets.size()) - 1;
+    }
+    return tree;
+}
+
+template <class Real>
 void build_primitive_tree(CompiledScene<Real>& scene, int quality) {
     PrimitiveTree tree = primitive_tree(scene.view(), quality);
     scene.tree = std::move(tree.nodes);
@@ -134,6 +169,8 @@ template struct CompiledScene<float>;
 template struct CompiledScene<double>;
 template PaddedBox primitive_box(const SceneView<float>&, uint32_t);
 template PaddedBox primitive_box(const SceneView<double>&, uint32_t);
+template FacetTree<float> facet_tree(const SceneView<float>&, int);
+template FacetTree<double> facet_tree(const SceneView<double>&, int);
 template PrimitiveTree primitive_tree(const SceneView<float>&, int);
 template PrimitiveTree primitive_tree(const SceneView<double>&, int);
 template void build_primitive_tree(CompiledScene<float>&, int);

@@ -58,7 +58,22 @@ struct PrimitiveTree {
 template <class Real>
 PrimitiveTree primitive_tree(const SceneView<Real>& scene, int quality = 1);
 
-/// Adds that tree to the scene.
+/// The tree that devices walk: over convex solids and single triangles, which lie in the order of its leaves.
+template <class Real>
+struct FacetTree : PrimitiveTree {
+    std::vector<Facet<Real>> facets;
+
+    /// Makes the scene's tree this one.
+    void put_into(SceneView<Real>& scene) const {
+        scene.facets = {facets.data(), static_cast<uint32_t>(facets.size())};
+        scene.tree = {nodes.data(), static_cast<uint32_t>(nodes.size())};
+        scene.tree_items = {items.data(), static_cast<uint32_t>(items.size())};
+    }
+};
+template <class Real>
+FacetTree<Real> facet_tree(const SceneView<Real>& scene, int quality = 1);
+
+/// Adds primitive_tree to the scene.
 template <class Real>
 void build_primitive_tree(CompiledScene<Real>& scene, int quality = 1);
 

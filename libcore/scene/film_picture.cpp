@@ -2,8 +2,8 @@
 
 #include <Imath/half.h>
 
+#include <algorithm>
 #include <bit>
-#include <functional>
 #include <stdexcept>
 
 #include "cistula/elementary.h"
@@ -56,31 +56,45 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
     picture.y = film.rect.y;
     picture.display_width = film.full_width;
     picture.display_height = film.full_height;
-    const auto add = [&](const char* name, bool half, const std::function<float(const PixelRecord&)>& value) {
-        LayeredPicture::Channel channel{name, half, {}};
-        channel.values.reserve(film.pixels.size());
-        for (const PixelRecord& pixel : film.pixels) channel.values.push_back(value(pixel));
-        picture.channels.push_back(std::move(channel));
-    };
-    const char* const colors[] = {"R", "G", "B"};
-    const char* const errors[] = {"error.R", "error.G", "error.B"};
-    const char* const normals[] = {"N.X", "N.Y", "N.Z"};
     const bool half = channels.half;
-    for (int c = 0; c < 3; ++c)
-        add(colors[c], half, [&film, c](const PixelRecord& pixel) { return radiance(film, pixel, c); });
-    add("A", half,
-        [&](const PixelRecord& pixel) { return static_cast<float>(static_cast<double>(pixel.hits) / film.samples); });
-    for (int c = 0; c < 3 && channels.error; ++c)
-        add(errors[c], half, [&film, c, half](const PixelRecord& pixel) {
-            const float bound = ledger_bound(film, pixel, c);
-            return half ? rounded_up_to_half(bound) : bound;
+    const auto add = [&](const char* name, bool as_half) { picture.channels.push_back({name, as_half, {}}); };
+    for (const char* name : {"R", "G", "B", "A"}) add(name, half);
+    for (const char* name : {"error.R", "error.G", "error.B"})
+        if (channels.error) add(name, half);
+    if (channels.id) add("id", false);
+    if (channels.samples) add("samples", false);
+    if (channels.cost) add("cost", false);
+    if (channels.z) add("Z", false);
+    for (const char* name : {"N.X", "N.Y", "N.Z"})
+        if (channels.normal) add(name, half);
+    for (LayeredPicture::Channel& channel : picture.channels) channel.values.resize(film.pixels.size());
+
+    // Every channel of some pixels before the next ones: those are then still in a cache.
+    constexpr size_t block = 1024;
+    for (size_t begin = 0; begin < film.pixels.size(); begin += block) {
+        const PixelRecord* first = film.pixels.data() + begin;
+        const PixelRecord* last = first + std::min(block, film.pixels.size() - begin);
+        size_t next = 0;
+        const auto fill = [&](const auto& value) {
+            float* to = picture.channels[next++].values.data() + begin;
+            for (const PixelRecord* pixel = first; pixel != last; ++pixel) *to++ = value(*pixel);
+        };
+        for (int c = 0; c < 3; ++c) fill([&film, c](const PixelRecord& pixel) { return radiance(film, pixel, c); });
+        fill([&film](const PixelRecord& pixel) {
+            return static_cast<float>(static_cast<double>(pixel.hits) / film.samples);
         });
-    if (channels.id) add("id", false, [](const PixelRecord& pixel) { return static_cast<float>(pixel.id); });
-    if (channels.samples) add("samples", false, [&](const PixelRecord&) { return static_cast<float>(film.samples); });
-    if (channels.cost) add("cost", false, [](const PixelRecord& pixel) { return static_cast<float>(pixel.rays); });
-    if (channels.z) add("Z", false, [](const PixelRecord& pixel) { return pixel.z; });
-    for (int c = 0; c < 3 && channels.normal; ++c)
-        add(normals[c], half, [c](const PixelRecord& pixel) { return pixel.normal[c]; });
+        for (int c = 0; c < 3 && channels.error; ++c)
+            fill([&film, c, half](const PixelRecord& pixel) {
+                const float bound = ledger_bound(film, pixel, c);
+                return half ? rounded_up_to_half(bound) : bound;
+            });
+        if (channels.id) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.id); });
+        if (channels.samples) fill([&film](const PixelRecord&) { return static_cast<float>(film.samples); });
+        if (channels.cost) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.rays); });
+        if (channels.z) fill([](const PixelRecord& pixel) { return pixel.z; });
+        for (int c = 0; c < 3 && channels.normal; ++c)
+            fill([c](const PixelRecord& pixel) { return pixel.normal[c]; });
+    }
     return picture;
 }
 

@@ -14,6 +14,7 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
     visit(view.slab_groups);
     visit(view.convex);
     visit(view.clusters);
+    visit(view.facets);
     visit(view.uvs);
     visit(view.materials);
     visit(view.lights);

@@ -1,0 +1,93 @@
+#include "apps/common/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "scene/error.h"
+#include "scene/suggest.h"
+
+namespace cistula {
+namespace {
+
+std::vector<std::string> long_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+[[noreturn]] void fail_unexpected(const CLI::App& app,
+                                  const std::function<std::string(const std::string&)>& extra_positional) {
+    for (const std::string& extra : app.remaining()) {
+        if (extra.size() < 2 || extra[0] != '-') fail_usage(extra_positional(extra));
+        const std::vector<std::string> names = long_names(app);
+        fail_usage(fmt::format("{}: no such option; {}; --help lists them", one_line(extra),
+                               suggestion(extra.substr(0, extra.find('=')), {names.begin(), names.end()}, "options")));
+    }
+    fail_usage("the command line cannot be read; --help shows its form");
+}
+
+}  // namespace
+
+void fail_usage(const std::string& message) {
+    throw Error(ExitCode::usage, message);
+}
+
+int integer_option(const char* option, const std::string& text, int low, int high) {
+    const std::optional<int> value = whole_number<int>(text);
+    if (!value || *value < low || *value > high)
+        fail_usage(fmt::format("{} {}: must be a whole number from {} to {}", option, text, low, high));
+    return *value;
+}
+
+void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names) {
+    fail_usage(fmt::format("{} {}: must be {}; {}", option, one_line(text), fmt::join(names, " or "),
+                           suggestion(text, names, "names")));
+}
+
+bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
+                        const std::function<std::string(const std::string&)>& extra_positional) {
+    app.allow_extras();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        return false;
+    } catch (const CLI::ParseError& error) {
+        fail_usage(fmt::format("{}; --help shows the options", error.what()));
+    }
+    if (!app.remaining().empty()) fail_unexpected(app, extra_positional);
+    for (const CLI::Option* option : app.get_options())
+        if (option->count() > 0 && option->get_items_expected_min() > 0 && option->get_type_size() > 0 &&
+            option->results().front().empty())
+            fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", option->get_name()));
+    return true;
+}
+
+void print(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        throw Error(ExitCode::file, "standard output: cannot be written");
+}
+
+int run_program(const char* name, const char* memory_advice, const std::function<int()>& work) {
+    const auto fail = [name](const std::string& message, ExitCode code) {
+        fmt::print(stderr, "{}: {}\n", name, one_line(message));
+        return static_cast<int>(code);
+    };
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is then an error of its write
+    try {
+        return work();
+    } catch (const Error& error) {
+        return fail(error.what(), error.code());
+    } catch (const std::bad_alloc&) {
+        return fail(fmt::format("out of memory; {}", memory_advice), ExitCode::failed);
+    } catch (const std::exception& error) {
+        return fail(error.what(), ExitCode::failed);
+    }
+}
+
+}  // namespace cistula

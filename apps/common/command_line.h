@@ -1,0 +1,59 @@
+// What the command lines of all programs have in common: numbers, names, unknown options, the end of main.
+#pragma once
+
+#include <charconv>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace cistula {
+
+/// Throws Error (usage).
+[[noreturn]] void fail_usage(const std::string& message);
+
+/// The whole of `text` as a number of type T; nothing where it is none.
+template <class T>
+std::optional<T> whole_number(std::string_view text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+/// Throws Error (usage): "OPTION TEXT: must be a whole number from LOW to HIGH".
+int integer_option(const char* option, const std::string& text, int low, int high);
+
+/// Throws Error (usage): "OPTION TEXT: must be a or b; did you mean 'a'?".
+[[noreturn]] void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names);
+
+/// The value that goes by the name `text`. Throws Error (usage).
+template <class T>
+T chosen(const char* option, const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, value] : choices) {
+        if (name == text) return value;
+        names.push_back(name);
+    }
+    fail_choice(option, text, names);
+}
+
+/// Fills the variables that the options of `app` are bound to; false where --help was asked for. Throws Error (usage)
+/// for unknown options and empty values; `extra_positional` makes the message for a word that has no place.
+bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
+                        const std::function<std::string(const std::string&)>& extra_positional);
+
+/// Writes to standard output. Throws Error (file).
+void print(const std::string& text);
+
+/// Runs a program's work; what it throws becomes a line on standard error that begins with `name`. Returns the exit
+/// code. `memory_advice`: what needs less memory.
+int run_program(const char* name, const char* memory_advice, const std::function<int()>& work);
+
+}  // namespace cistula

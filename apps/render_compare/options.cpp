@@ -1,0 +1,167 @@
+#include "options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <filesystem>
+
+#include "apps/common/command_line.h"
+#include "scene/file_bytes.h"
+
+namespace cistula {
+namespace {
+
+constexpr const char* default_golden = "golden";
+
+/// The options' texts as CLI11 leaves them.
+struct Texts {
+    std::string a, b, fail, failpercent, hardfail, diff, json, golden, backend, device, precision;
+    bool quiet = false, version = false;
+};
+
+void declare(CLI::App& app, Texts& texts) {
+    app.add_option("A", texts.a, "an EXR image")->type_name("");
+    app.add_option("B", texts.b, "another")->type_name("");
+    app.add_option("--fail", texts.fail, "a pixel fails where a channel differs by more than E")->type_name("E");
+    app.add_option("--failpercent", texts.failpercent, "with --fail: P % of the pixels may fail; 0")->type_name("P");
+    app.add_option("--hardfail", texts.hardfail, "no pixel may differ by more than E")->type_name("E");
+    app.add_option("--diff", texts.diff, "write the absolute differences as an image")->type_name("FILE.exr");
+    app.add_option("--json", texts.json, "write the result as JSON")->type_name("FILE");
+    app.add_option("--golden", texts.golden,
+                   "render the golden images in DIR again, of the scenes in DIR/../scenes, and compare; golden")
+        ->type_name("[DIR]")
+        ->expected(0, 1);
+    app.add_option("--backend", texts.backend, "with --golden: embree (CPU) or cuda (GPU); embree")->type_name("NAME");
+    app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
+        ->type_name("LIST");
+    app.add_option("--precision", texts.precision, "with --golden: float, double or both; both")->type_name("NAME");
+    app.add_flag("-q,--quiet", texts.quiet, "errors only; the exit code tells");
+    app.add_flag("--version", texts.version, "print the version and exit");
+    app.set_help_flag("-h,--help", "print this and exit");
+}
+
+double number_option(const char* option, const std::string& text, double high, const char* what) {
+    const std::optional<double> value = whole_number<double>(text);
+    if (!value || !std::isfinite(*value) || *value < 0 || *value > high)
+        fail_usage(fmt::format("{} {}: must be {}", option, text, what));
+    return *value;
+}
+
+void refuse(bool given, const char* option, const char* why) {
+    if (given) fail_usage(fmt::format("{}: {}", option, why));
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    const auto real = [&](const std::string& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
+    };
+    return real(a) == real(b) || std::filesystem::equivalent(a, b, error);
+}
+
+/// What is written must not replace what is read, nor each other.
+void require_different_files(const CompareOptions& options) {
+    const std::pair<const char*, const std::string*> read[] = {{"the first image", &options.a},
+                                                               {"the second image", &options.b}};
+    const std::pair<const char*, const std::string*> written[] = {{"--diff", &options.diff}, {"--json", &options.json}};
+    const auto check = [](const auto& one, const auto& other) {
+        if (!one.second->empty() && !other.second->empty() && is_same_file(*one.second, *other.second))
+            fail_usage(fmt::format("{}: would be both {} and {}; give each a file of its own", *one.second, other.first,
+                                   one.first));
+    };
+    for (const auto& output : written)
+        for (const auto& input : read) check(output, input);
+    check(written[1], written[0]);
+}
+
+void check_golden(const Texts& texts, CompareOptions& options) {
+    constexpr const char* bits = "golden images are equal in every bit or not; leave it out";
+    refuse(!texts.fail.empty(), "--fail", bits);
+    refuse(!texts.failpercent.empty(), "--failpercent", bits);
+    refuse(!texts.hardfail.empty(), "--hardfail", bits);
+    refuse(!texts.diff.empty(), "--diff",
+           "belongs to two images; render one of the scenes and compare it with its "
+           "golden image");
+    options.action = CompareAction::golden;
+    options.golden = texts.golden.empty() ? default_golden : texts.golden;
+    if (!texts.backend.empty()) options.backend = parse_backend(texts.backend);
+    options.devices = parse_devices(texts.device, options.backend);
+    options.precisions =
+        chosen<std::vector<Precision>>("--precision", texts.precision.empty() ? "both" : texts.precision,
+                                       {{"float", {Precision::single_}},
+                                        {"double", {Precision::double_}},
+                                        {"both", {Precision::single_, Precision::double_}}});
+}
+
+void check_images(const Texts& texts, CompareOptions& options) {
+    constexpr const char* golden = "belongs to --golden; two images are compared as they are";
+    if (texts.a.empty() || texts.b.empty())
+        fail_usage(fmt::format("{}; render-compare A.exr B.exr, or --golden; --help tells more",
+                               texts.a.empty() ? "no images are given" : "only one image is given"));
+    refuse(!texts.backend.empty(), "--backend", golden);
+    refuse(!texts.device.empty(), "--device", golden);
+    refuse(!texts.precision.empty(), "--precision", golden);
+    if (texts.fail.empty())
+        refuse(!texts.failpercent.empty(), "--failpercent", "needs to know when a pixel fails; add --fail E");
+    constexpr const char* amount = "a number, 0 or above, in the units of the channels";
+    if (!texts.fail.empty()) options.thresholds.fail = number_option("--fail", texts.fail, INFINITY, amount);
+    if (!texts.hardfail.empty())
+        options.thresholds.hardfail = number_option("--hardfail", texts.hardfail, INFINITY, amount);
+    if (!texts.failpercent.empty())
+        options.thresholds.failpercent =
+            number_option("--failpercent", texts.failpercent, 100, "a number from 0 to 100, as in 0.5");
+    options.a = texts.a;
+    options.b = texts.b;
+    options.diff = texts.diff;
+    if (!options.diff.empty() && lower_extension(options.diff) != ".exr")
+        fail_usage(fmt::format("--diff {}: differences are written as an EXR; name it *.exr", options.diff));
+}
+
+}  // namespace
+
+CompareOptions parse_compare_options(int argc, const char* const* argv) {
+    CLI::App app;
+    Texts texts;
+    declare(app, texts);
+    CompareOptions options;
+    const bool whole = parse_command_line(app, argc, argv, [](const std::string& extra) {
+        return fmt::format("{}: one image too many; two are compared at a time", extra);
+    });
+    if (!whole || texts.version) {
+        options.action = whole ? CompareAction::print_version : CompareAction::print_help;
+        return options;
+    }
+    options.quiet = texts.quiet;
+    options.json = texts.json;
+    if (app.count("--golden") > 0) {
+        const std::string& extra = texts.b.empty() ? texts.a : texts.b;
+        if (!extra.empty()) fail_usage(fmt::format("{}: --golden takes one folder and no images", extra));
+        check_golden(texts, options);
+    } else {
+        check_images(texts, options);
+    }
+    require_different_files(options);
+    return options;
+}
+
+std::string compare_help_text() {
+    CLI::App app(
+        "Compares two EXR images channel by channel. Without thresholds they must be equal in every bit, header "
+        "included.",
+        "render-compare");
+    Texts texts;
+    declare(app, texts);
+    app.footer(R"(
+Examples:
+  render-compare a.exr b.exr
+  render-compare float.exr double.exr --fail 0.002 --failpercent 0.1 --hardfail 0.5 --diff differences.exr
+  render-compare --golden                                  in the source tree: every golden image, on the CPU
+  render-compare --golden --backend cuda --device all      the same on the GPUs
+
+Exit codes: 0 the comparison holds, 1 it does not, 2 command line, 3 file, 4 device.)");
+    return app.help();
+}
+
+}  // namespace cistula

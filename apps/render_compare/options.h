@@ -1,0 +1,33 @@
+// The command line of `render-compare`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/common/backends.h"
+#include "compare.h"
+
+namespace cistula {
+
+enum class CompareAction { compare, golden, print_help, print_version };
+
+struct CompareOptions {
+    CompareAction action = CompareAction::compare;
+    std::string a, b;
+    Thresholds thresholds;
+    std::string diff, json;  // files; empty: none
+    bool quiet = false;
+    // Of --golden:
+    std::string golden;  // the folder
+    Backend backend = Backend::embree;
+    DeviceChoice devices;
+    std::vector<Precision> precisions;
+};
+
+/// Throws Error (usage).
+CompareOptions parse_compare_options(int argc, const char* const* argv);
+
+/// What --help prints.
+std::string compare_help_text();
+
+}  // namespace cistula

@@ -1,0 +1,14 @@
+// Kernel times of whole frames.
+#pragma once
+
+#include <string>
+
+#include "bench/gpu/record.h"
+
+namespace cistula::bench {
+
+/// FOLDER/scenes/benchmark.json at 3840x2160 in depth 4 and 8, at 640x480 in depth 8, in both precisions: medians of
+/// `runs` after warm-up, with the rays that they took.
+void time_frames(GpuRecord& record, const std::string& folder, int runs, int split);
+
+}  // namespace cistula::bench

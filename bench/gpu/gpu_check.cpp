@@ -1,0 +1,73 @@
+// gpu_check: whether the GPU computes the same bits as the CPU, and how fast. `make gpu-check` runs it.
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "backend_cuda/cuda_renderer.h"
+#include "bench/gpu/film_times.h"
+#include "bench/gpu/frame_times.h"
+#include "bench/gpu/function_parity.h"
+#include "bench/gpu/image_parity.h"
+#include "bench/gpu/ray_times.h"
+#include "bench/gpu/record.h"
+#include "scene/error.h"
+
+namespace cistula::bench {
+namespace {
+
+struct Options {
+    std::string folder = ".", json;
+    uint64_t functions = 0, generated = 0;
+    bool scenes = false, times = false, rays = false;
+    int runs = 20, split = CudaOptions().split, film = 0;
+};
+
+int run(const Options& options) {
+    GpuRecord record;
+    if (options.times) time_frames(record, options.folder, options.runs, options.split);
+    if (options.rays) time_rays(record, options.runs);
+    if (options.film > 0) time_film(record, options.folder, options.film);
+    if (options.functions > 0)
+        for (const FunctionParity& f : check_functions(options.functions, 1))
+            record.add_parity(fmt::format("functions/{}/{}", f.name, f.precision), f.compared, f.differing,
+                              {{"first", f.first_difference}});
+    if (options.scenes) check_scenes(record, options.folder);
+    if (options.generated > 0) check_generated(record, options.folder, options.generated);
+    if (!options.json.empty()) record.write(options.json);
+    fmt::print("{} values compared, {}\n", record.compared(), record.equal() ? "all equal" : "NOT ALL EQUAL");
+    return int(record.equal() ? ExitCode::done : ExitCode::failed);
+}
+
+}  // namespace
+}  // namespace cistula::bench
+
+int main(int argc, char** argv) {
+    using namespace cistula;
+    bench::Options options;
+    CLI::App app("Compares the GPU with the CPU, bit for bit, and times it.", "gpu_check");
+    app.add_option("--folder", options.folder, "where scenes/ and golden/ lie");
+    app.add_option("--functions", options.functions, "inputs of each function's comparison");
+    app.add_flag("--scenes", options.scenes, "compare all of scenes/, and with golden/");
+    app.add_option("--generated", options.generated, "generated scenes to compare");
+    app.add_flag("--times", options.times, "time frames");
+    app.add_flag("--rays", options.rays, "time rays on a mesh, and compare their hits");
+    app.add_option("--film", options.film, "frames of a film to time, rendered and written");
+    app.add_option("--runs", options.runs, "runs of each, after warm-up")->check(CLI::Range(1, 10000));
+    app.add_option("--split", options.split, "surfaces a thread shades before its tree is split; 0: never");
+    app.add_option("--json", options.json, "where the record goes");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : int(ExitCode::usage);
+    }
+    try {
+        return bench::run(options);
+    } catch (const Error& error) {
+        std::fprintf(stderr, "gpu_check: %s\n", error.what());
+        return int(error.code());
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "gpu_check: %s\n", error.what());
+        return int(ExitCode::failed);
+    }
+}

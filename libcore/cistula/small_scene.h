@@ -1,0 +1,78 @@
+// A scene small enough to travel with a kernel's parameters: its arrays lie in constant memory, which all threads of a
+// warp read at once. The same names as in SceneView, so that the same code reads either.
+#pragma once
+
+#include "cistula/scene_view.h"
+
+namespace cistula {
+
+/// Up to `capacity` elements in place.
+template <class T, uint32_t capacity>
+struct InlineSpan {
+    T data[capacity];
+    uint32_t size;
+
+    CISTULA_INLINE const T& operator[](uint32_t i) const { return data[i]; }
+    CISTULA_INLINE const T* begin() const { return data; }
+    CISTULA_INLINE const T* end() const { return data + size; }
+    CISTULA_INLINE bool empty() const { return size == 0; }
+
+    /// False if they do not fit. `from` must be readable here.
+    bool assign(const Span<T>& from) {
+        if (from.size > capacity) return false;
+        size = from.size;
+        for (uint32_t i = 0; i < size; ++i) data[i] = from[i];
+        return true;
+    }
+};
+
+template <class Real>
+struct SmallScene {
+    using Scalar = Real;
+
+    InlineSpan<Solid, 24> solids;
+    InlineSpan<Slab<Real>, 96> slabs;
+    InlineSpan<uint32_t, 16> convex;
+    InlineSpan<Cluster<Real>, 4> clusters;
+    InlineSpan<Material<Real>, 16> materials;
+    InlineSpan<Light<Real>, 8> lights;
+    InlineSpan<Texture, 8> textures;
+    // Elsewhere, as in the view that it was made of:
+    Span<SlabGroup<Real>> slab_groups;
+    Span<Facet<Real>> facets;
+    Span<Vec2<Real>> uvs;
+    Span<Incident> incidents;
+    Span<SeenLight<Real>> seen_lights;
+    Span<Vec3<float>> texels;
+    Span<TreeNode> tree;
+    Span<uint32_t> tree_items;
+    Span<TreeNode> seen_tree;
+    Span<uint32_t> seen_items;
+    Vec3<Real> background;
+    Vec3<Real> bound;
+    Real extent;
+
+    /// False if `here`, a view that can be read, is too large. `there`: the same scene where kernels read it.
+    bool assign(const SceneView<Real>& here, const SceneView<Real>& there) {
+        if (!solids.assign(here.solids) || !slabs.assign(here.slabs) || !convex.assign(here.convex) ||
+            !clusters.assign(here.clusters) || !materials.assign(here.materials) || !lights.assign(here.lights) ||
+            !textures.assign(here.textures))
+            return false;
+        slab_groups = there.slab_groups;
+        facets = there.facets;
+        uvs = there.uvs;
+        incidents = there.incidents;
+        seen_lights = there.seen_lights;
+        texels = there.texels;
+        tree = there.tree;
+        tree_items = there.tree_items;
+        seen_tree = there.seen_tree;
+        seen_items = there.seen_items;
+        background = here.background;
+        bound = here.bound;
+        extent = here.extent;
+        return true;
+    }
+};
+
+}  // namespace cistula

@@ -1,0 +1,228 @@
+// The CUDA backend against the CPU's: the same integers, however a frame is cut into parts, devices and split trees.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "backend_cuda/cuda_renderer.h"
+#include "expect_error.h"
+#include "golden.h"
+#include "gpu.h"
+#include "scene/generated_scene.h"
+
+using namespace cistula;
+
+namespace {
+
+const std::string source = CISTULA_SOURCE_DIR;
+
+SceneDescription scene_of(const std::string& name) {
+    return read_scene(source + "/scenes/" + name + ".json");
+}
+
+/// What must be equal; the rays too, which no pixel's hash has by kind.
+struct Image {
+    std::string hash;
+    uint64_t primary, reflected, transmitted, shadow;
+    uint32_t flags;
+    bool operator==(const Image&) const = default;
+};
+void PrintTo(const Image& image, std::ostream* out) {
+    *out << image.hash << ", rays " << image.primary << " " << image.reflected << " " << image.transmitted << " "
+         << image.shadow << ", flags " << image.flags;
+}
+Image image_of(const Film& film) {
+    return {film_hash(film),       film.rays.primary, film.rays.reflected,
+            film.rays.transmitted, film.rays.shadow,  film.flags};
+}
+Image render(Renderer& renderer, const SceneDescription& scene, const FrameSettings& settings, int frame = 0) {
+    Film film;
+    RenderProgress progress;
+    EXPECT_TRUE(renderer.render(camera_at(scene.camera, frame), settings, film, progress));
+    EXPECT_EQ(progress.pixels_done, film.pixels.size());
+    EXPECT_EQ(progress.rays, film.rays.total());
+    return image_of(film);
+}
+
+template <class Real>
+class Cuda : public ::testing::Test {
+  protected:
+    static std::shared_ptr<const CompiledScene<Real>> compiled(const SceneDescription& scene) {
+        return compile_scene<Real>(scene);
+    }
+    /// On the CPU.
+    static Image expected(const SceneDescription& scene, const FrameSettings& settings, int frame = 0) {
+        return render(*make_embree_renderer<Real>(compiled(scene)), scene, settings, frame);
+    }
+    static std::unique_ptr<Renderer> gpu(const SceneDescription& scene, const CudaOptions& options = {}) {
+        return make_cuda_renderer<Real>(compiled(scene), options);
+    }
+};
+using Reals = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(Cuda, Reals);
+
+TYPED_TEST(Cuda, GoldenScenesAreEqual) {
+    CISTULA_NEEDS_GPU();
+    for (const std::string& name : golden::scene_names(source + "/scenes")) {
+        const SceneDescription scene = scene_of(name);
+        const FrameSettings settings = golden::settings_for(scene);
+        EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << name;
+    }
+}
+
+TYPED_TEST(Cuda, GeneratedScenesAreEqualWhateverThePath) {
+    CISTULA_NEEDS_GPU();
+    for (uint64_t seed = 5; seed < generated_scene_count; seed += 16) {
+        const SceneDescription scene = generated_scene(seed, source + "/scenes");
+        FrameSettings settings = generated_settings(scene);
+        const Image expected = this->expected(scene, settings);
+        for (const int split : {0, 1, 16})
+            for (const bool always_tree : {false, true}) {
+                CudaOptions options;
+                options.split = split;
+                options.always_tree = always_tree;
+                EXPECT_EQ(render(*this->gpu(scene, options), scene, settings), expected)
+                    << "seed " << seed << ", split " << split << (always_tree ? ", tree" : "");
+            }
+        settings.effects = all_effects;
+        EXPECT_EQ(render(*this->gpu(scene), scene, settings), expected) << "seed " << seed << " with all effects";
+    }
+}
+
+TYPED_TEST(Cuda, AFrameInPartsIsTheSame) {
+    CISTULA_NEEDS_GPU();
+    for (const char* name : {"benchmark", "glass"}) {
+        const SceneDescription scene = scene_of(name);
+        const FrameSettings settings = golden::settings_for(scene);
+        CudaOptions options;
+        options.memory_limit = size_t{4} << 20;
+        const auto parts = this->gpu(scene, options), whole = this->gpu(scene);
+        EXPECT_EQ(render(*parts, scene, settings), this->expected(scene, settings)) << name;
+        ASSERT_EQ(parts->notes().size(), 1u) << name;
+        EXPECT_NE(parts->notes()[0].find("memory is short"), std::string::npos) << parts->notes()[0];
+        render(*whole, scene, settings);
+        EXPECT_TRUE(whole->notes().empty()) << name;
+        options.memory_limit = 1000;
+        try {
+            render(*this->gpu(scene, options), scene, settings);
+            ADD_FAILURE() << "a row fits into 1000 bytes";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::device) << error.what();
+        }
+    }
+}
+
+TYPED_TEST(Cuda, ACropIsTheSame) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = scene_of("platonic");
+    FrameSettings settings = golden::settings_for(scene);
+    for (const PixelRect crop : {PixelRect{37, 21, 101, 59}, {0, 179, 320, 1}, {319, 0, 1, 180}, {160, 90, 1, 1}}) {
+        settings.crop = crop;
+        EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings))
+            << crop.width << "x" << crop.height << "+" << crop.x << "+" << crop.y;
+    }
+}
+
+TYPED_TEST(Cuda, SeveralSharesOfOneFrameAreTheSame) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = scene_of("platonic");
+    const FrameSettings settings = golden::settings_for(scene);
+    const Image expected = this->expected(scene, settings);
+    // One GPU may have several shares, so the interleaving is tested where there is only one.
+    std::vector<std::vector<int>> choices = {{0, 0}, {0, 0, 0}};
+    std::vector<int> all;
+    for (const CudaDevice& device : list_cuda_devices())
+        if (device.obstacle.empty()) all.push_back(device.index);
+    if (all.size() > 1) choices.push_back(all);
+    for (const std::vector<int>& devices : choices)
+        for (const size_t limit : {size_t{0}, size_t{2} << 20}) {
+            CudaOptions options;
+            options.devices = devices;
+            options.memory_limit = limit;
+            EXPECT_EQ(render(*this->gpu(scene, options), scene, settings), expected)
+                << devices.size() << " shares, limit " << limit;
+        }
+}
+
+TYPED_TEST(Cuda, WhatWasAnnouncedNeverShows) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = scene_of("seed");
+    FrameSettings settings = golden::settings_for(scene), other = settings;
+    other.depth = 2;
+    const auto renderer = this->gpu(scene);
+    const auto announce = [&](int frame, const FrameSettings& s) {
+        renderer->expect(camera_at(scene.camera, frame), s);
+    };
+    const auto check = [&](int frame, const FrameSettings& s) {
+        EXPECT_EQ(render(*renderer, scene, s, frame), this->expected(scene, s, frame)) << "frame " << frame;
+    };
+    announce(1, settings);
+    check(0, settings);
+    announce(2, settings);
+    check(1, settings);  // as announced
+    announce(4, other);
+    check(9, settings);  // another frame than announced
+    check(4, settings);  // other settings than announced
+    announce(5, settings);
+    check(4, other);
+    settings.crop = {10, 10, 50, 40};
+    check(5, settings);  // another crop
+}
+
+TYPED_TEST(Cuda, StopsInTheMiddleAndGoesOnAfterwards) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = scene_of("benchmark");
+    FrameSettings large = golden::settings_for(scene);
+    large.full_width = 1920;
+    large.full_height = 1080;
+    large.crop = {0, 0, 1920, 1080};
+    large.supersample = 8;
+    CudaOptions options;
+    options.memory_limit = size_t{16} << 20;  // many parts
+    const auto renderer = this->gpu(scene, options);
+    Film film;
+    RenderProgress progress;
+    std::atomic<bool> done{false};
+    std::thread watcher([&] {
+        while (progress.pixels_done == 0 && !done) std::this_thread::yield();
+        progress.stop = true;
+    });
+    renderer->expect(camera_at(scene.camera, 0), large);  // begun or not, it must not get into the way
+    EXPECT_FALSE(renderer->render(camera_at(scene.camera, 0), large, film, progress));
+    done = true;
+    watcher.join();
+    EXPECT_GT(progress.pixels_done, 0u);
+    EXPECT_LT(progress.pixels_done, 1920u * 1080u);
+    const FrameSettings settings = golden::settings_for(scene);
+    EXPECT_EQ(render(*renderer, scene, settings), this->expected(scene, settings));
+
+    RenderProgress stopped;
+    stopped.stop = true;
+    EXPECT_FALSE(renderer->render(camera_at(scene.camera, 0), settings, film, stopped));
+    EXPECT_EQ(render(*renderer, scene, settings), this->expected(scene, settings));
+}
+
+TYPED_TEST(Cuda, RefusesDevicesThatAreNotThere) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = scene_of("benchmark");
+    const std::string last = std::to_string(list_cuda_devices().size() - 1);
+    for (const int index : {4096, -1}) {
+        CudaOptions options;
+        options.devices = {0, index};
+        EXPECT_ERROR(this->gpu(scene, options), ExitCode::device,
+                     "--device " + std::to_string(index) + ": there is no such GPU; this machine has 0 to " + last);
+    }
+}
+
+TYPED_TEST(Cuda, SaysWhereTheTimeWent) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = scene_of("benchmark");
+    const auto renderer = this->gpu(scene);
+    render(*renderer, scene, golden::settings_for(scene));
+    EXPECT_GT(renderer->times().kernel, 0);
+    EXPECT_GT(renderer->times().transfer, 0);
+    EXPECT_GT(renderer->memory(), 0u);
+    EXPECT_EQ(renderer->intersector(), "cuda");
+}
+
+}  // namespace

@@ -1,0 +1,204 @@
+// The GPU's path on the host: the intersectors and forms of media that its kernels use, through render_pixel in a plain
+// loop, and trees split over a queue as backend_cuda splits them. The integers are those of the CPU backend.
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "cistula/bvh.h"
+#include "cistula/small_scene.h"
+#include "golden.h"
+#include "scene/frame_view.h"
+#include "scene/generated_scene.h"
+
+using namespace cistula;
+
+namespace {
+
+const std::string source = CISTULA_SOURCE_DIR;
+
+template <class Real, class Media>
+struct Waiting {
+    Branch<Real, Media> branch;
+    size_t record;
+};
+
+/// What backend_cuda's SharedBranchStack does: after `surfaces` surfaces of a tree, whatever waits goes to the queue while
+/// that has room. 0: nothing does.
+template <class Real, class Media>
+class GivingStack {
+  public:
+    using Entry = Branch<Real, Media>;
+    using Queue = std::vector<Waiting<Real, Media>>;
+
+    GivingStack(int surfaces, Queue& queue, size_t capacity, size_t record)
+        : queue_(queue), capacity_(surfaces > 0 ? capacity : 0), record_(record), left_(surfaces) {}
+
+    void shaded() { --left_; }
+    bool push(const Entry& branch) {
+        if (pending_.size() == size_t(branch_stack)) return false;
+        pending_.push_back(branch);
+        return true;
+    }
+    bool pop(Entry& branch) {
+        while (!pending_.empty()) {
+            branch = pending_.back();
+            pending_.pop_back();
+            if (left_ > 0 || queue_.size() >= capacity_) return true;
+            queue_.push_back({branch, record_});
+        }
+        return false;
+    }
+
+  private:
+    Queue& queue_;
+    std::vector<Entry> pending_;
+    size_t capacity_, record_;
+    int left_;
+};
+
+struct Split {
+    int surfaces = 0;
+    size_t capacity = ~size_t{0};
+};
+
+/// A frame as a device renders it: a pass over pixels, then passes over what waits, here until nothing does and from the
+/// last to the first. `given` counts the branches that went through a queue.
+template <class Real, class E, class Scene, class Intersector>
+void render_split(const Scene& scene, const FrameView& frame, const Intersector& intersector, Split split, Film& film,
+                  uint64_t& given) {
+    using Stack = GivingStack<Real, typename Intersector::Media>;
+    typename Stack::Queue queue, next;
+    const size_t width = size_t(film.rect.width);
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        Stack stack(split.surfaces, queue, split.capacity, i);
+        film.flags |= render_pixel<Real, E>(scene, frame, intersector, film.rect.x + int(i % width),
+                                            film.rect.y + int(i / width), film.pixels[i], film.rays, stack);
+    }
+    for (; !queue.empty(); queue = std::exchange(next, {})) {
+        given += queue.size();
+        for (size_t i = queue.size(); i-- > 0;) {
+            PixelRecord part, &record = film.pixels[queue[i].record];
+            Stack stack(split.surfaces, next, split.capacity, queue[i].record);
+            film.flags |= resume_branch<Real, E>(scene, frame, intersector, queue[i].branch, part, film.rays, stack);
+            for (int c = 0; c < 3; ++c) {
+                record.radiance[c] += part.radiance[c];
+                record.pruned[c] += part.pruned[c];
+                record.cut[c] += part.cut[c];
+            }
+            record.rays += part.rays;
+        }
+    }
+}
+
+template <class Real, class Intersector>
+Film render_as_device(const CompiledScene<Real>& compiled, const typename Intersector::Scene& scene,
+                      const SceneDescription& description, const FrameSettings& settings, Split split,
+                      uint64_t& given) {
+    const SceneView<Real> view = compiled.view();
+    FrameView frame = frame_view(compiled, camera_at(description.camera, 0), settings);
+    Film film;
+    prepare_film(film, settings, compiled.radiance_exponent);
+    if (!camera_solids(view, BruteIntersector<Real>{view}, frame.camera.position, frame.camera_media))
+        film.flags |= flag_media_overflow;
+    const Intersector intersector{scene};
+    // Two masks stand for all, which spares the compiler half of its work; tests of their own compare masks.
+    constexpr int middle = 1;
+    if (least_mask(settings.effects | compiled.effects) <= middle)
+        render_split<Real, Effects<effect_masks[middle]>>(scene, frame, intersector, split, film, given);
+    else
+        render_split<Real, Effects<all_effects>>(scene, frame, intersector, split, film, given);
+    return film;
+}
+
+/// The form that the plain loop reads, if the scene fits into it and a ray is inside one solid at most, all convex: what
+/// OneMedium asks for.
+template <class Real>
+std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& scene) {
+    for (const Solid& solid : scene.solids)
+        if (solid.kind == SolidKind::mesh || solid.touched) return nullptr;
+    auto small = std::make_unique<SmallScene<Real>>();
+    return small->assign(scene, scene) ? std::move(small) : nullptr;
+}
+
+struct Done {
+    uint64_t given = 0;  // branches that went through a queue
+    int plain_loops = 0;
+};
+
+template <class Real>
+void check(const std::string& name, const SceneDescription& description, const FrameSettings& settings, Done& done) {
+    const std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(description);
+    const Film expected = golden::render_with(*make_embree_renderer<Real>(compiled), description, settings);
+    EXPECT_EQ(expected.flags, 0u) << name;
+    // A budget of truncation is spent in the order of one stack, so such trees stay whole.
+    std::vector<Split> splits = {{0}};
+    if (settings.cutoff == 0) splits.insert(splits.end(), {{1}, {2}, {5}, {1, 7}});
+    const auto expect_same = [&](const Film& film, const char* path, const Split& split) {
+        const std::string where = name + ", " + path + ", split after " + std::to_string(split.surfaces);
+        EXPECT_EQ(film.flags, 0u) << where;
+        EXPECT_EQ(film_hash(film), film_hash(expected)) << where;
+        EXPECT_EQ(film.rays.primary, expected.rays.primary) << where;
+        EXPECT_EQ(film.rays.reflected, expected.rays.reflected) << where;
+        EXPECT_EQ(film.rays.transmitted, expected.rays.transmitted) << where;
+        EXPECT_EQ(film.rays.shadow, expected.rays.shadow) << where;
+    };
+    using Tree = BvhIntersector<Real, MediaList>;
+    using PlainLoop = BruteIntersector<Real, OneMedium, SmallScene<Real>>;
+    const FacetTree<Real> tree = facet_tree(compiled->view());
+    SceneView<Real> view = compiled->view();
+    tree.put_into(view);
+    const auto small = small_scene(view);
+    for (const Split& split : splits) {
+        expect_same(render_as_device<Real, Tree>(*compiled, view, description, settings, split, done.given), "tree", split);
+        if (!small) continue;
+        ++done.plain_loops;
+        expect_same(render_as_device<Real, PlainLoop>(*compiled, *small, description, settings, split, done.given),
+                    "plain loop", split);
+    }
+}
+
+template <class Real>
+class DevicePathOnHost : public ::testing::Test {};
+using Reals = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(DevicePathOnHost, Reals);
+
+TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
+    Done done;
+    for (const std::string& name : golden::scene_names(source + "/scenes")) {
+        const SceneDescription scene = read_scene(source + "/scenes/" + name + ".json");
+        FrameSettings settings = golden::settings_for(scene);
+        settings.full_width = 64;
+        settings.full_height = 36;
+        settings.crop = {0, 0, 64, 36};
+        settings.cutoff = 0;
+        settings.depth = std::min(settings.depth, 8);
+        check<TypeParam>(name, scene, settings, done);
+        settings.crop = {25, 15, 9, 7};
+        settings.depth = scene.depth;
+        settings.cutoff = 0.01;
+        check<TypeParam>(name + " with a cutoff", scene, settings, done);
+    }
+    // The camera in a solid, whose rays begin in a medium.
+    SceneDescription scene = read_scene(source + "/scenes/benchmark.json");
+    scene.camera = CameraDescription();
+    for (const ObjectDescription& object : scene.objects)
+        if (const auto* solid = std::get_if<SolidObject>(&object.shape)) scene.camera.position = solid->center;
+    FrameSettings settings = golden::settings_for(scene);
+    settings.full_width = settings.full_height = 32;
+    settings.crop = {0, 0, 32, 32};
+    check<TypeParam>("benchmark from within", scene, settings, done);
+    EXPECT_GT(done.given, 1000u) << "hardly a tree was split";
+    EXPECT_GT(done.plain_loops, 0);
+}
+
+TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfGeneratedScenes) {
+    Done done;
+    for (uint64_t seed = 2; seed < generated_scene_count; seed += 6) {
+        const SceneDescription scene = generated_scene(seed, source + "/scenes");
+        check<TypeParam>("seed " + std::to_string(seed), scene, generated_settings(scene), done);
+    }
+    EXPECT_GT(done.given, 1000u) << "hardly a tree was split";
+    EXPECT_GT(done.plain_loops, 0);
+}
+
+}  // namespace

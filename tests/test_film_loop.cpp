@@ -1,0 +1,158 @@
+// A film's loop over a renderer that costs nothing: what it is told, what is said, what is left when it ends early.
+#include "apps/render/film_loop.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "render_program.h"
+#include "scene/exr.h"
+#include "scene/read_scene.h"
+
+namespace cistula {
+namespace {
+
+/// Black frames. Writes down what it is asked for: "+1" is an announcement, "0" a frame.
+class FakeRenderer : public Renderer {
+  public:
+    bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
+                RenderProgress& progress) override {
+        asked += " " + std::to_string(camera.frame);
+        sizes.push_back(film.pixels.size());
+        film.rect = settings.crop;
+        film.full_width = settings.full_width;
+        film.full_height = settings.full_height;
+        film.pixels.assign(static_cast<size_t>(film.rect.width) * static_cast<size_t>(film.rect.height), {});
+        if (camera.frame == stop_at) progress.stop = true;
+        return !progress.stop;
+    }
+    void expect(const CameraFrame& camera, const FrameSettings&) override {
+        asked += " +" + std::to_string(camera.frame);
+    }
+    uint32_t effects() const override { return 0; }
+    std::string intersector() const override { return "fake"; }
+    RenderTimes times() const override { return {0.25, 0.5}; }
+    std::vector<std::string> notes() const override { return {"memory is short"}; }
+    size_t memory() const override { return 0; }
+
+    std::string asked;
+    std::vector<size_t> sizes;  // of the films as they came
+    int stop_at = -1;
+};
+
+class FilmLoop : public RenderProgram {
+  protected:
+    FilmLoop() : scene_(read_scene(file("s.json"))) {
+        options_.progress = ProgressStyle::none;
+        settings_.full_width = settings_.crop.width = 40;
+        settings_.full_height = settings_.crop.height = 24;
+    }
+
+    /// What it prints.
+    std::string film(const std::vector<int>& frames, Backend backend) {
+        options_.backend = backend;
+        const OutputName output(file("f.##.exr"), "-o"), none;
+        const FilmJob job{options_, scene_, "hash", settings_, output, none, frames};
+        RenderProgress progress;
+        stats_ = RunStats();
+        testing::internal::CaptureStderr();
+        try {
+            render_film(job, renderer_, progress, stats_);
+        } catch (...) {
+            testing::internal::GetCapturedStderr();
+            throw;
+        }
+        return testing::internal::GetCapturedStderr();
+    }
+
+    void expect_failure(const std::vector<int>& frames, Backend backend, ExitCode code, const std::string& part) {
+        try {
+            film(frames, backend);
+            ADD_FAILURE() << "no error";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), code);
+            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+        }
+    }
+
+    const SceneDescription scene_;
+    RenderOptions options_;
+    FrameSettings settings_;
+    FakeRenderer renderer_;
+    RunStats stats_;
+};
+
+TEST_F(FilmLoop, AnnouncesTheNextFrameBeforeItAsksForOne) {
+    film({0, 5, 2}, Backend::cuda);
+    EXPECT_EQ(renderer_.asked, " +5 0 +2 5 2");
+    renderer_.asked.clear();
+    options_.resume = true;
+    std::filesystem::remove(file("f.00.exr"));
+    film({0, 5, 2, 3}, Backend::cuda);
+    EXPECT_EQ(renderer_.asked, " +3 0 3");
+    EXPECT_EQ(stats_.resumed, (std::vector<int>{5, 2}));
+}
+
+TEST_F(FilmLoop, SaysEachNoteOnceAndNothingWhereQuiet) {
+    EXPECT_EQ(film({0, 1, 2}, Backend::cuda), "render: memory is short\n");
+    options_.quiet = true;
+    EXPECT_EQ(film({0, 1, 2}, Backend::cuda), "");
+}
+
+TEST_F(FilmLoop, StatsAreInTheOrderOfTheFilmWithTheDevicesTimes) {
+    std::vector<int> frames;
+    for (int i = 0; i < 20; ++i) frames.push_back(i * 7 % 20);
+    film(frames, Backend::cuda);
+    ASSERT_EQ(stats_.frames.size(), frames.size());
+    for (size_t i = 0; i < frames.size(); ++i) {
+        EXPECT_EQ(stats_.frames[i].frame, frames[i]);
+        EXPECT_EQ(stats_.frames[i].device.kernel, 0.25);
+        EXPECT_EQ(stats_.frames[i].device.transfer, 0.5);
+    }
+    const auto has = [&](const char* key) {
+        return stats_json(stats_, settings_, options_).find(key) != std::string::npos;
+    };
+    EXPECT_FALSE(has("kernel_ms") || has("transfer_ms"));
+    stats_.devices = {"a GPU"};
+    EXPECT_TRUE(has("\"kernel_ms\": 250.0") && has("\"transfer_ms\": 500.0"));
+}
+
+TEST_F(FilmLoop, OnTheCpuAFilmIsWrittenBeforeTheNextIsHandedOver) {
+    film({0, 1, 2, 3, 4}, Backend::embree);
+    EXPECT_EQ(renderer_.sizes.size(), 5u);
+    for (size_t i = 2; i < renderer_.sizes.size(); ++i)
+        EXPECT_EQ(renderer_.sizes[i], 40u * 24u) << "frame " << i << " is a third film";
+}
+
+TEST_F(FilmLoop, WhatWasRenderedBeforeAnInterruptionIsWhole) {
+    renderer_.stop_at = 7;
+    std::vector<int> frames;
+    for (int i = 0; i < 12; ++i) frames.push_back(i);
+    for (const Backend backend : {Backend::embree, Backend::cuda}) {
+        expect_failure(frames, backend, ExitCode::interrupted, "interrupted; 7 of 12 frames written; ");
+        EXPECT_EQ(stats_.frames.size(), 7u);
+        for (const int frame : frames) {
+            const std::string name = file(fmt::format("f.{:02}.exr", frame));
+            EXPECT_EQ(exr_is_complete(name), frame < 7) << name;
+            std::filesystem::remove(name);
+        }
+        EXPECT_FALSE(has_part_files());
+    }
+}
+
+TEST_F(FilmLoop, AFailedWriteEndsTheFilm) {
+    std::vector<int> frames;
+    for (int i = 0; i < 1000; ++i) frames.push_back(i);
+    std::filesystem::create_directory(file("f.03.exr"));
+    for (const Backend backend : {Backend::embree, Backend::cuda}) {
+        expect_failure(frames, backend, ExitCode::file, "f.03.exr");
+        EXPECT_FALSE(exists("f.999.exr"));
+        for (const FrameStats& stats : stats_.frames) EXPECT_TRUE(exr_is_complete(stats.file)) << stats.file;
+        ASSERT_GE(stats_.frames.size(), 3u);
+        EXPECT_EQ(stats_.frames[2].frame, 2);
+    }
+}
+
+}  // namespace
+}  // namespace cistula

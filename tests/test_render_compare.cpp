@@ -1,0 +1,365 @@
+// The built `render-compare` from outside: statistics against values worked out by hand, verdicts, exit codes, files.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "apps/common/backends.h"
+#include "gpu.h"
+#include "run_program.h"
+#include "scene/error.h"
+#include "scene/exr.h"
+
+namespace cistula {
+namespace {
+
+using Arguments = std::vector<std::string>;
+using Channel = LayeredPicture::Channel;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+const std::string source = CISTULA_SOURCE_DIR;
+
+float float_of(uint32_t bits) {
+    return std::bit_cast<float>(bits);
+}
+
+/// 4 x 2 pixels at (5, 7) of 20 x 10.
+LayeredPicture picture_of(std::vector<Channel> channels) {
+    LayeredPicture picture;
+    picture.width = 4;
+    picture.height = 2;
+    picture.x = 5;
+    picture.y = 7;
+    picture.display_width = 20;
+    picture.display_height = 10;
+    picture.channels = std::move(channels);
+    picture.attributes = {{"cistula:depth", 4}, {"cistula:sceneHash", std::string("abc")}};
+    return picture;
+}
+
+const Channel first_r{"R", false, {0, 0.5f, 1, 2, 0, 0, 0, 0}};
+const Channel second_r{"R", false, {0, 0.75f, 1, 1.5f, 0, 0, 0, 0}};
+const Channel zeros{"G", false, std::vector<float>(8)};
+
+class RenderCompare : public testing::Test {
+  protected:
+    std::string file(const std::string& name) const { return folder_.file(name); }
+    bool exists(const std::string& name) const { return std::filesystem::exists(file(name)); }
+
+    ProgramResult run(const Arguments& arguments) const {
+        return RunningProgram(CISTULA_BIN_DIR "/render-compare", arguments, file("")).wait();
+    }
+
+    /// The standard output of a run that ends with `code` and says nothing on standard error.
+    std::string expect_code(int code, const Arguments& arguments) const {
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.code, code) << result.out << result.error;
+        EXPECT_EQ(result.error, "");
+        return result.out;
+    }
+
+    void expect_refused(const Arguments& arguments, ExitCode code, const std::string& part) const {
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.code, static_cast<int>(code)) << result.error;
+        EXPECT_EQ(result.error.rfind("render-compare: ", 0), 0u) << result.error;
+        EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+        EXPECT_NE(result.error.find(part), std::string::npos) << result.error;
+        EXPECT_EQ(result.out, "");
+    }
+
+    void put(const std::string& name, const LayeredPicture& picture) const { write_exr(file(name), picture); }
+
+    /// a.exr and b.exr of these channels; more arguments; the JSON.
+    nlohmann::json compare(int code, const std::vector<Channel>& a, const std::vector<Channel>& b,
+                           Arguments more = {}) const {
+        put("a.exr", picture_of(a));
+        put("b.exr", picture_of(b));
+        more.insert(more.begin(), {"a.exr", "b.exr", "--json", "result.json"});
+        expect_code(code, more);
+        return nlohmann::json::parse(bytes_of(file("result.json")));
+    }
+
+    const ScratchDirectory folder_;
+};
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+TEST_F(RenderCompare, StatisticsAreThoseWorkedOutByHand) {
+    const auto result = compare(1, {zeros, first_r}, {zeros, second_r});
+    EXPECT_FALSE(result.at("holds").get<bool>());
+    EXPECT_EQ(result.at("pixels"), 8);
+    ASSERT_EQ(result.at("channels").size(), 2u);
+    const auto &g = result.at("channels")[0], &r = result.at("channels")[1];
+    EXPECT_EQ(g.at("name"), "G");
+    EXPECT_EQ(g.at("differing"), 0);
+    EXPECT_EQ(g.at("max"), 0);
+    EXPECT_EQ(g.at("psnr"), "inf");
+    EXPECT_TRUE(g.at("worst").is_null());
+    EXPECT_EQ(r.at("differing"), 2);
+    EXPECT_EQ(r.at("infinite"), 0);
+    EXPECT_EQ(r.at("max"), 0.5);
+    EXPECT_EQ(r.at("mean"), 0.75 / 8);
+    EXPECT_DOUBLE_EQ(r.at("rmse").get<double>(), std::sqrt(0.3125 / 8));
+    EXPECT_NEAR(r.at("psnr").get<double>(), 10 * std::log10(4 / (0.3125 / 8)), 1e-12);  // the peak is 2
+    EXPECT_EQ(r.at("worst"), nlohmann::json({{"x", 8}, {"y", 7}, {"first", 2.0}, {"second", 1.5}}));
+    const std::string text = expect_code(1, {"a.exr", "b.exr"});
+    EXPECT_TRUE(contains(text, "(8, 7): 2 / 1.5\n")) << text;
+    EXPECT_TRUE(contains(text, "\ndiffer: 2 of 16 floats differ\n")) << text;
+}
+
+TEST_F(RenderCompare, ThePeakOfPsnrIsAtLeastOne) {
+    Channel dim = zeros, dimmer = zeros;
+    dim.values[7] = 0.5f;
+    dimmer.values[7] = 0.25f;
+    const auto g = compare(1, {dim}, {dimmer}).at("channels")[0];
+    EXPECT_NEAR(g.at("psnr").get<double>(), 10 * std::log10(1 / (0.0625 / 8)), 1e-12);
+    EXPECT_EQ(g.at("worst").at("x"), 8);
+    EXPECT_EQ(g.at("worst").at("y"), 8);
+}
+
+TEST_F(RenderCompare, WhatIsNotFiniteIsCountedApart) {
+    const float nan = float_of(0x7fc00000), other_nan = float_of(0x7fc00001);
+    const Channel a{"Z", false, {infinity, infinity, 1, nan, -0.0f, nan, 3, -infinity}};
+    const Channel b{"Z", false, {infinity, 1, nan, nan, 0.0f, other_nan, 3.5f, infinity}};
+    const auto z = compare(1, {a}, {b}).at("channels")[0];
+    EXPECT_EQ(z.at("differing"), 6);
+    EXPECT_EQ(z.at("infinite"), 3);
+    EXPECT_EQ(z.at("max"), "inf");
+    EXPECT_EQ(z.at("mean"), 0.5 / 5);
+    EXPECT_DOUBLE_EQ(z.at("rmse").get<double>(), std::sqrt(0.25 / 5));
+    EXPECT_NEAR(z.at("psnr").get<double>(), 10 * std::log10(3.5 * 3.5 / 0.05), 1e-12);
+    EXPECT_EQ(z.at("worst"), nlohmann::json({{"x", 6}, {"y", 7}, {"first", "inf"}, {"second", 1.0}}));
+    EXPECT_EQ(compare(1, {a}, {b}, {"--hardfail", "1e30"}).at("over_hardfail"), 3);
+    EXPECT_EQ(compare(1, {a}, {b}, {"--fail", "0"}).at("over_fail"), 4);
+    EXPECT_EQ(compare(0, {a}, {b}, {"--fail", "0.5", "--failpercent", "37.5"}).at("over_fail"), 3);
+    compare(0, {a}, {a});  // NaN and infinity equal themselves
+}
+
+TEST_F(RenderCompare, SignsOfZeroAndKindsOfNanAreBitsAndNoDifference) {
+    Channel a = zeros, b = zeros;
+    a.values[5] = -0.0f;
+    a.values[6] = float_of(0x7fc00000);
+    b.values[6] = float_of(0x7fc00123);
+    const auto g = compare(1, {a}, {b}).at("channels")[0];
+    EXPECT_EQ(g.at("differing"), 2);
+    EXPECT_EQ(g.at("max"), 0);
+    const std::string text = expect_code(1, {"a.exr", "b.exr"});
+    EXPECT_TRUE(contains(text, "(6, 8): -0 (bits 80000000) / 0 (bits 00000000)\n")) << text;
+    compare(0, {a}, {b}, {"--fail", "0"});
+    compare(0, {a}, {b}, {"--hardfail", "0"});
+}
+
+TEST_F(RenderCompare, Thresholds) {
+    const auto code = [&](int expected, const Arguments& thresholds) {
+        return compare(expected, {first_r, zeros}, {second_r, zeros}, thresholds);
+    };
+    EXPECT_EQ(code(0, {"--fail", "0.5"}).at("over_fail"), 0);
+    EXPECT_EQ(code(1, {"--fail", "0.25"}).at("over_fail"), 1);  // a difference of 0.25 is not over it
+    EXPECT_EQ(code(1, {"--fail", "0.1"}).at("over_fail"), 2);
+    code(0, {"--fail", "0.25", "--failpercent", "12.5"});
+    code(1, {"--fail", "0.25", "--failpercent", "12.4"});
+    code(0, {"--fail", "0.1", "--failpercent", "25"});
+    code(0, {"--hardfail", "0.5"});
+    EXPECT_EQ(code(1, {"--hardfail", "0.3"}).at("over_hardfail"), 1);
+    code(1, {"--fail", "0.1", "--failpercent", "100", "--hardfail", "0.3"});
+    code(1, {"--fail", "0", "--hardfail", "1"});
+    const auto all = code(0, {"--fail", "0.1", "--failpercent", "30", "--hardfail", "0.5"});
+    EXPECT_EQ(all.at("thresholds"), nlohmann::json({{"fail", 0.1}, {"failpercent", 30.0}, {"hardfail", 0.5}}));
+    EXPECT_EQ(
+        all.at("verdict"),
+        "within the thresholds: 2 of 8 pixels (25 %) over --fail 0.1, 30 % allowed; 0 pixels over --hardfail 0.5");
+    // A pixel counts once, however many of its channels fail.
+    Channel again = second_r, zeros_r = zeros;
+    again.name = "B";
+    zeros_r.name = "B";
+    EXPECT_EQ(compare(1, {first_r, zeros_r}, {second_r, again}, {"--fail", "0.1"}).at("over_fail"), 3);
+}
+
+TEST_F(RenderCompare, EqualImagesAreEqual) {
+    const auto result = compare(0, {first_r, zeros}, {first_r, zeros});
+    EXPECT_TRUE(result.at("holds").get<bool>());
+    EXPECT_EQ(result.at("verdict"), "equal: every bit of 16 floats and of the header");
+    EXPECT_EQ(expect_code(0, {"a.exr", "b.exr", "-q"}), "");
+    EXPECT_EQ(expect_code(0, {"a.exr", "a.exr"}).find("differ:"), std::string::npos);
+}
+
+TEST_F(RenderCompare, WindowsAndChannelsMustBeTheSameWhateverTheThresholds) {
+    const auto differs = [&](const std::function<void(LayeredPicture&)>& change, const std::string& part) {
+        LayeredPicture other = picture_of({first_r, zeros});
+        put("a.exr", other);
+        change(other);
+        put("b.exr", other);
+        std::filesystem::remove(file("d.exr"));
+        for (const Arguments& more : {Arguments{}, Arguments{"--fail", "100", "--failpercent", "100"}}) {
+            Arguments arguments{"a.exr", "b.exr", "--diff", "d.exr"};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            const std::string text = expect_code(1, arguments);
+            EXPECT_TRUE(contains(text, part + "\n")) << text;
+            EXPECT_TRUE(contains(text, "differ: the windows or channels differ")) << text;
+        }
+    };
+    differs([](LayeredPicture& p) { p.x = 6; }, "data window: 4x2+5+7 / 4x2+6+7");
+    EXPECT_FALSE(exists("d.exr"));
+    differs([](LayeredPicture& p) { std::swap(p.width, p.height); }, "data window: 4x2+5+7 / 2x4+5+7");
+    differs(
+        [](LayeredPicture& p) {
+            p.height = 1;
+            for (Channel& channel : p.channels) channel.values.resize(4);
+        },
+        "data window: 4x2+5+7 / 4x1+5+7");
+    differs([](LayeredPicture& p) { p.display_width = 21; }, "display window: 20x10 / 21x10");
+    differs([](LayeredPicture& p) { p.channels.pop_back(); }, "channel G: only in the first");
+    EXPECT_EQ(read_exr(file("d.exr")).channels.size(), 1u);
+    differs(
+        [](LayeredPicture& p) {
+            p.channels.push_back({"Z", false, std::vector<float>(8)});
+        },
+        "channel Z: only in the second");
+}
+
+TEST_F(RenderCompare, TheHeaderCountsWhereEveryBitDoes) {
+    const auto differs = [&](const std::function<void(LayeredPicture&)>& change, const std::string& line) {
+        LayeredPicture other = picture_of({first_r});
+        put("a.exr", other);
+        change(other);
+        put("b.exr", other);
+        const std::string strict = expect_code(1, {"a.exr", "b.exr"});
+        EXPECT_TRUE(contains(strict, "header: " + line + "\n")) << strict;
+        EXPECT_TRUE(contains(strict, "differ: all 8 floats compared are equal; the header differs")) << strict;
+        const std::string within = expect_code(0, {"a.exr", "b.exr", "--fail", "0"});
+        EXPECT_TRUE(contains(within, "header: " + line + "\n")) << within;
+    };
+    differs([](LayeredPicture& p) { p.attributes["cistula:depth"] = 8; }, "cistula:depth: 4 / 8");
+    differs([](LayeredPicture& p) { p.attributes.erase("cistula:sceneHash"); }, "cistula:sceneHash: abc / (none)");
+    differs([](LayeredPicture& p) { p.attributes["by"] = std::string("me\n"); }, "by: (none) / me\\n");
+    differs([](LayeredPicture& p) { p.attributes["cistula:depth"] = 4.0; }, "cistula:depth: 4 / 4");
+    differs([](LayeredPicture& p) { p.channels[0].half = true; }, "channel R: float / half");
+}
+
+TEST_F(RenderCompare, TheDifferenceImageHoldsTheDifferences) {
+    Channel z{"Z", false, {infinity, infinity, 1, 1, 1, 1, 1, 1}}, other = z;
+    other.values[1] = -3;
+    compare(1, {first_r, z}, {second_r, other}, {"--diff", "d.exr"});
+    const LayeredPicture d = read_exr(file("d.exr"));
+    EXPECT_EQ(d.x, 5);
+    EXPECT_EQ(d.y, 7);
+    EXPECT_EQ(d.display_width, 20);
+    EXPECT_EQ(d.display_height, 10);
+    ASSERT_EQ(d.channels.size(), 2u);
+    EXPECT_EQ(d.channels[0].values, (std::vector<float>{0, 0.25f, 0, 0.5f, 0, 0, 0, 0}));
+    EXPECT_EQ(d.channels[1].values, (std::vector<float>{0, infinity, 0, 0, 0, 0, 0, 0}));
+}
+
+TEST_F(RenderCompare, RefusesInOneLine) {
+    put("a.exr", picture_of({first_r}));
+    expect_refused({}, ExitCode::usage, "no images are given");
+    expect_refused({"a.exr"}, ExitCode::usage, "only one image is given");
+    expect_refused({"a.exr", "b.exr", "c.exr"}, ExitCode::usage, "c.exr: one image too many");
+    expect_refused({"a.exr", "b.exr", "--fial", "1"}, ExitCode::usage, "did you mean '--fail'?");
+    for (const char* text : {"-1", "nan", "inf", "x", "0.1f"}) {
+        expect_refused({"a.exr", "a.exr", "--fail", text}, ExitCode::usage, "must be a number, 0 or above");
+        expect_refused({"a.exr", "a.exr", "--hardfail", text}, ExitCode::usage, "must be a number, 0 or above");
+    }
+    expect_refused({"a.exr", "a.exr", "--fail", "0", "--failpercent", "101"}, ExitCode::usage, "from 0 to 100");
+    expect_refused({"a.exr", "a.exr", "--failpercent", "1"}, ExitCode::usage, "add --fail E");
+    expect_refused({"a.exr", "a.exr", "--diff", "d.png"}, ExitCode::usage, "name it *.exr");
+    expect_refused({"a.exr", "a.exr", "--diff", "./a.exr"}, ExitCode::usage, "the first image and --diff");
+    expect_refused({"b.exr", "a.exr", "--json", file("a.exr")}, ExitCode::usage, "the second image and --json");
+    expect_refused({"a.exr", "a.exr", "--diff", "d.exr", "--json", "d.exr"}, ExitCode::usage, "--diff and --json");
+    expect_refused({"a.exr", "a.exr", "--backend", "cuda"}, ExitCode::usage, "--backend: belongs to --golden");
+    expect_refused({"a.exr", "a.exr", "--precision", "float"}, ExitCode::usage, "--precision: belongs to --golden");
+    expect_refused({"a.exr", "none.exr"}, ExitCode::file, "none.exr: cannot read");
+    put_bytes(file("text.exr"), "no image");
+    expect_refused({"text.exr", "a.exr"}, ExitCode::file, "text.exr: cannot read");
+    const std::string bytes = bytes_of(file("a.exr"));
+    put_bytes(file("short.exr"), bytes.substr(0, bytes.size() - 3));
+    expect_refused({"a.exr", "short.exr"}, ExitCode::file, "short.exr: cannot read");
+    expect_refused({"a.exr", "a.exr", "--diff", "none/d.exr"}, ExitCode::file, "none/d.exr");
+    expect_refused({"a.exr", "a.exr", "--json", "none/d.json"}, ExitCode::file, "none/d.json");
+    EXPECT_EQ(bytes_of(file("a.exr")), bytes);
+    EXPECT_TRUE(contains(expect_code(0, {"--help"}), "Exit codes: 0 the comparison holds"));
+    EXPECT_EQ(expect_code(0, {"--version"}), "render-compare (Cistula) " CISTULA_VERSION "\n");
+}
+
+/// A golden/ of one scene, in the working directory of the program.
+class RenderCompareGolden : public RenderCompare {
+  protected:
+    RenderCompareGolden() {
+        std::filesystem::create_directory_symlink(source + "/scenes", file("scenes"));
+        std::filesystem::create_directory(file("golden"));
+        std::filesystem::copy(source + "/golden/seed", file("golden/seed"));
+    }
+};
+
+TEST_F(RenderCompareGolden, HoldsOnTheCpu) {
+    const std::string text = expect_code(0, {"--golden", "--json", "g.json"});
+    EXPECT_TRUE(contains(text, "seed         float     equal    equal\n")) << text;
+    EXPECT_TRUE(contains(text, "seed         double    equal    equal\n")) << text;
+    EXPECT_TRUE(contains(text, "\nequal: all 2 renders\n")) << text;
+    const auto result = nlohmann::json::parse(bytes_of(file("g.json")));
+    EXPECT_EQ(result.at("parity"), nlohmann::json({{"compared", 2}, {"differing", 0}}));
+    EXPECT_EQ(result.at("context").at("backend"), "embree");
+    EXPECT_EQ(result.at("cases")[1].at("precision"), "double");
+    EXPECT_EQ(result.at("cases")[1].at("floats"), 320 * 180 * 12);
+    const std::string one = expect_code(0, {"--golden", file("golden"), "--precision", "double"});
+    EXPECT_TRUE(contains(one, "equal: all 1 renders\n")) << one;
+    EXPECT_EQ(expect_code(0, {"--golden", "scenes/../golden", "-q", "--precision", "float"}), "");
+}
+
+TEST_F(RenderCompareGolden, SeesOtherIntegersAndOtherFloats) {
+    auto record = nlohmann::json::parse(bytes_of(file("golden/seed/golden.json")));
+    const std::string good = record.dump();
+    std::string hash = record["float"]["hash"];
+    hash[7] = hash[7] == '0' ? '1' : '0';
+    record["float"]["hash"] = hash;
+    put_bytes(file("golden/seed/golden.json"), record.dump());
+    const std::string integers = expect_code(1, {"--golden"});
+    EXPECT_TRUE(contains(integers, "seed         float     differs  equal\n")) << integers;
+    EXPECT_TRUE(contains(integers, "seed         double    equal    equal\n")) << integers;
+    EXPECT_TRUE(contains(integers, "\ndiffer: 1 of 2 renders\n")) << integers;
+
+    put_bytes(file("golden/seed/golden.json"), good);
+    LayeredPicture picture = read_exr(file("golden/seed/double.exr"));
+    for (Channel& channel : picture.channels)
+        if (channel.name == "G") channel.values[320 * 3 + 17] = 9;
+    write_exr(file("golden/seed/double.exr"), picture);
+    const std::string floats = expect_code(1, {"--golden", "--json", "g.json"});
+    EXPECT_TRUE(contains(floats, "seed         float     equal    equal\n")) << floats;
+    EXPECT_TRUE(contains(floats, "differ: 1 of 691200 floats differ; worst: G at (17, 3): 9 / ")) << floats;
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(file("g.json"))).at("cases")[1].at("floats_differing"), 1);
+}
+
+TEST_F(RenderCompareGolden, RefusesInOneLine) {
+    expect_refused({"--golden", "nowhere"}, ExitCode::file, "nowhere: holds no golden images");
+    expect_refused({"--golden", "scenes"}, ExitCode::file, "run in Cistula's source tree");
+    expect_refused({"--golden", "golden", "a.exr"}, ExitCode::usage, "a.exr: --golden takes one folder and no images");
+    expect_refused({"--golden", "--fail", "1"}, ExitCode::usage, "--fail: golden images are equal in every bit or not");
+    expect_refused({"--golden", "--diff", "d.exr"}, ExitCode::usage, "--diff: belongs to two images");
+    expect_refused({"--golden", "--device", "0"}, ExitCode::usage, "add --backend cuda");
+    expect_refused({"--golden", "--precision", "half"}, ExitCode::usage, "float or double or both");
+    put_bytes(file("golden/seed/golden.json"), "{}");
+    EXPECT_EQ(run({"--golden"}).code, static_cast<int>(ExitCode::file));
+    std::filesystem::rename(file("golden/seed"), file("golden/other"));
+    EXPECT_EQ(run({"--golden"}).code, static_cast<int>(ExitCode::file));
+}
+
+TEST_F(RenderCompareGolden, CudaHolds) {
+    CISTULA_NEEDS_GPU();
+    EXPECT_TRUE(contains(expect_code(0, {"--golden", "--backend", "cuda"}), "equal: all 2 renders"));
+}
+
+TEST_F(RenderCompareGolden, CudaIsRefusedAndNeverReplaced) {
+    const bool missing = !test::missing_gpu().empty();
+    expect_refused({"--golden", "--backend", "cuda", "--device", missing ? "0" : "4096"}, ExitCode::device,
+                   !has_cuda_backend() ? "no CUDA backend" : missing ? "" : "there is no such GPU");
+}
+
+}  // namespace
+}  // namespace cistula

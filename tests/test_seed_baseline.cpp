@@ -1,0 +1,106 @@
+// The baseline of the GPU tables renders Cistula's own picture: the same scene, light and camera, by another algorithm.
+#include "bench/seed_baseline_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "golden.h"
+#include "scene/seed_data.h"
+#include "scratch_directory.h"
+
+namespace cistula {
+namespace {
+
+constexpr int width = 160, height = 120;
+
+SceneDescription benchmark_scene() {
+    return read_scene(CISTULA_SOURCE_DIR "/scenes/benchmark.json");
+}
+
+template <int depth>
+ColorPicture by_the_baseline(const SceneDescription& description) {
+    const seed::OwnedScene scene = seed::make_scene(description);
+    const seed::View view = seed::make_view(camera_at(description.camera, 0), width, height);
+    std::vector<seed::Pixel> pixels(size_t(width) * height);
+    seed::render_on_host<depth>(scene.view(), view, pixels.data());
+    return seed::picture_of(view, pixels);
+}
+
+ColorPicture by_embree(const SceneDescription& description, int depth) {
+    FrameSettings settings;
+    settings.full_width = width;
+    settings.full_height = height;
+    settings.crop = {0, 0, width, height};
+    settings.depth = depth;
+    const auto renderer = make_embree_renderer<double>(compile_scene<double>(description));
+    return to_color(golden::render_with(*renderer, description, settings));
+}
+
+template <int depth>
+void expect_same_picture(const SceneDescription& description) {
+    const seed::Difference difference =
+        seed::compare(by_the_baseline<depth>(description), by_embree(description, depth));
+    std::cout << "depth " << depth << ": mean " << difference.mean << "/255, within 2/255 " << 100 * difference.within
+              << " %, worst " << difference.worst << "/255\n";
+    EXPECT_GE(difference.within, 0.99);
+    EXPECT_LE(difference.mean, 0.05);
+}
+
+TEST(SeedBaseline, TheSceneIsAllTriangles) {
+    const seed::OwnedScene scene = seed::make_scene(benchmark_scene());
+    EXPECT_EQ(scene.triangles.size(), 8u + 36u + 20u + 2u);
+    EXPECT_EQ(scene.lights.size(), 2u);
+}
+
+TEST(SeedBaseline, RendersCistulasPicture) {
+    expect_same_picture<1>(benchmark_scene());
+    expect_same_picture<4>(benchmark_scene());
+}
+
+// The scene's index is 1; this one bends and has total reflection.
+TEST(SeedBaseline, RendersCistulasPictureOfGlass) {
+    SceneDescription description = benchmark_scene();
+    for (MaterialDescription& material : description.materials)
+        if (material.transmission > 0) material.index = 1.5;
+    expect_same_picture<4>(description);
+}
+
+// The scene's lights are above everything; here there are faces behind one.
+TEST(SeedBaseline, RendersCistulasPictureWithALightAmongTheSolids) {
+    SceneDescription description = benchmark_scene();
+    description.lights[0].position = {0, 0, 1};
+    expect_same_picture<2>(description);
+}
+
+TEST(SeedBaseline, FramesAreRead) {
+    const ScratchDirectory folder;
+    const ColorPicture picture = by_the_baseline<2>(benchmark_scene());
+    write_seed_frame(folder.file("frame.data"), picture);
+    const ColorPicture read = read_seed_data(folder.file("frame.data"));
+    ASSERT_EQ(read.texels.size(), picture.texels.size());
+    const seed::Difference difference = seed::compare(read, picture);
+    EXPECT_EQ(difference.mean, 0);
+    EXPECT_EQ(difference.within, 1);
+}
+
+TEST(SeedBaseline, RefusesWhatItDoesNotRender) {
+    const auto refused = [](auto change) {
+        SceneDescription description = benchmark_scene();
+        change(description);
+        try {
+            seed::make_scene(description);
+        } catch (const Error& error) {
+            return error.code() == ExitCode::usage;
+        }
+        return false;
+    };
+    EXPECT_FALSE(refused([](SceneDescription&) {}));
+    EXPECT_TRUE(refused([](SceneDescription& s) { s.materials[0].fresnel = true; }));
+    EXPECT_TRUE(refused([](SceneDescription& s) { s.materials[0].tint = glm::dvec3(1, 0.5, 1); }));
+    EXPECT_TRUE(refused([](SceneDescription& s) { s.materials[0].absorption = glm::dvec3(1); }));
+    EXPECT_TRUE(refused([](SceneDescription& s) { s.lights[0].radius = 0.1; }));
+    EXPECT_TRUE(refused([](SceneDescription& s) { s.textures[0].file = "floor.data"; }));
+    EXPECT_TRUE(refused([](SceneDescription& s) { std::get<SolidObject>(s.objects[0].shape).edge_lights.count = 1; }));
+}
+
+}  // namespace
+}  // namespace cistula
