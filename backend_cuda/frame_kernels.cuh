@@ -15,13 +15,8 @@ inline constexpr int most_shared_words = (48 * 1024 - block_threads * int(sizeof
 static_assert(sizeof(PixelRecord) % sizeof(uint2) == 0 && 2 * sizeof(PixelRecord) % sizeof(uint4) == 0);
 static_assert(strip_rows % (2 * tile_height) == 0);
 
-/// Blocks that share a multiprocessor: what bounds the registers of a thread.
-#ifndef CISTULA_FLOAT_BLOCKS
-#define CISTULA_FLOAT_BLOCKS 3
-#define CISTULA_DOUBLE_BLOCKS 3
-#endif
-template <class Real>
-inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? CISTULA_FLOAT_BLOCKS : CISTULA_DOUBLE_BLOCKS;
+/// Blocks that share a multiprocessor: what bounds the registers of a thread, at 168. 2, 4 and 5 were slower on an H200.
+inline constexpr int least_blocks = 3;
 
 template <class Real, DevicePath path>
 struct PathTraits;
@@ -155,8 +150,8 @@ __device__ void write_tile(const PixelRecord* staged, PixelRecord* to, int colum
 }
 
 template <class Real, class E, DevicePath path>
-__global__ void __launch_bounds__(block_threads, least_blocks<Real>) render_pixels(const __grid_constant__ FrameJob job,
-                  const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
+__global__ void __launch_bounds__(block_threads, least_blocks)
+    render_pixels(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, path>::Intersector;
     using Media = typename Intersector::Media;
     using Stack = SharedBranchStack<Real, Media>;
@@ -185,8 +180,8 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>) render_pixe
 }
 
 template <class Real, class E, DevicePath path>
-__global__ void __launch_bounds__(block_threads, least_blocks<Real>) render_branches(const __grid_constant__ FrameJob job,
-                  const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
+__global__ void __launch_bounds__(block_threads, least_blocks)
+    render_branches(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, path>::Intersector;
     using Media = typename Intersector::Media;
     using Stack = SharedBranchStack<Real, Media>;

@@ -1,8 +1,10 @@
 // A film's loop over a renderer that costs nothing: what it is told, what is said, what is left when it ends early.
 #include "apps/render/film_loop.h"
 
+#include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <filesystem>
 
@@ -123,6 +125,19 @@ TEST_F(FilmLoop, OnTheCpuAFilmIsWrittenBeforeTheNextIsHandedOver) {
     EXPECT_EQ(renderer_.sizes.size(), 5u);
     for (size_t i = 2; i < renderer_.sizes.size(); ++i)
         EXPECT_EQ(renderer_.sizes[i], 40u * 24u) << "frame " << i << " is a third film";
+}
+
+TEST_F(FilmLoop, ForAGpuTheThreadsOfTheArenaCompress) {
+    for (const int threads : {1, 2, 9}) {
+        tbb::task_arena(threads).execute([&] {
+            film({0, 1, 2}, Backend::cuda);
+            EXPECT_EQ(Imf::globalThreadCount(), threads);
+            EXPECT_EQ(writer_limits(options_).frames, threads == 9 ? 4 : 2);
+            film({0, 1, 2}, Backend::embree);
+            EXPECT_EQ(Imf::globalThreadCount(), 0) << "the renderer needs the cores";
+            EXPECT_EQ(writer_limits(options_).frames, 1);
+        });
+    }
 }
 
 TEST_F(FilmLoop, WhatWasRenderedBeforeAnInterruptionIsWhole) {

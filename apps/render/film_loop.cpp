@@ -5,6 +5,7 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <set>
@@ -86,11 +87,17 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
 
 }  // namespace
 
-// A GPU is so much faster than the compression of its frames that every core should compress one. The CPU backend
-// needs the cores itself, and memory for no more than two films.
+// A GPU is so much faster than the compression of its frames that every core should compress. Several share a frame:
+// with one frame for each core, cores idle until as many are rendered, and again while the last ones are written. Two
+// frames at least, so that one is encoded while the other one is compressed. The CPU backend needs the cores itself,
+// and memory for no more than two films.
 WriterLimits writer_limits(const RenderOptions& options) {
     WriterLimits limits;
-    if (options.backend == Backend::cuda) limits.frames = tbb::this_task_arena::max_concurrency();
+    if (options.backend == Backend::cuda) {
+        const int threads = tbb::this_task_arena::max_concurrency();
+        limits.frames = std::max(2, threads / 2);
+        limits.exr_threads = threads;
+    }
     return limits;
 }
 

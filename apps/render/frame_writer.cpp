@@ -23,7 +23,9 @@ size_t bytes_of(const LayeredPicture& layers, const ColorPicture& color) {
 
 FrameWriter::FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits,
                          std::atomic<bool>& stop, std::vector<FrameStats>& written)
-    : channels_(channels), measure_(measure), limits_(limits), stop_(stop), written_(written) {}
+    : channels_(channels), measure_(measure), limits_(limits), stop_(stop), written_(written) {
+    set_exr_threads(limits.exr_threads);
+}
 
 FrameWriter::~FrameWriter() {
     {

@@ -31,13 +31,15 @@ struct FinishedFrame {
 struct WriterLimits {
     int frames = 1;                  // one thread each
     size_t bytes = size_t{2} << 30;  // of films and of the layers that they become
+    int exr_threads = 0;             // of OpenEXR, shared by the frames, beside those; see set_exr_threads
 };
 
-/// Every frame in work is encoded and written by one thread from its film to its files, whatever the others do.
+/// Every frame in work is led by one thread from its film to its files, whatever the others do.
 class FrameWriter {
   public:
     /// `stop` is set as soon as a write fails. `written` receives the frames in the order in which they were put; it
-    /// may be read after finish() or the destructor. Ledger and hash are computed where `measure`.
+    /// may be read after finish() or the destructor. Ledger and hash are computed where `measure`. Sets OpenEXR's
+    /// threads: files are neither written nor read elsewhere meanwhile.
     FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits, std::atomic<bool>& stop,
                 std::vector<FrameStats>& written);
     ~FrameWriter();

@@ -68,7 +68,7 @@ class FilmTimer {
         return sum;
     }
 
-    /// The same frames, rendered beforehand.
+    /// The same frames, rendered beforehand; frames in work and threads as for the whole film.
     double writers() {
         std::vector<FinishedFrame> finished(frames_.size());
         for (size_t i = 0; i < frames_.size(); ++i) {
@@ -99,7 +99,7 @@ class FilmTimer {
         return 1e3 * seconds_of([&] { render_film(job, *renderer_, progress, stats); });
     }
 
-    int writer_threads() const { return writer_limits(options_).frames; }
+    WriterLimits limits() const { return writer_limits(options_); }
 
   private:
     void render(int frame, Film& film) {
@@ -138,12 +138,13 @@ void time_film(GpuRecord& record, const std::string& folder, int frames) {
         whole.push_back(timer.whole_film(stats));
     }
     const std::string name = fmt::format("film/benchmark.json/1280x720/3x3/depth:4/frames:{}/", frames);
-    const int threads = timer.writer_threads();
+    const int threads = timer.limits().frames, exr_threads = timer.limits().exr_threads;
     record.add_times(name + "kernels", kernels);
-    record.add_times(name + "writers", writers, {{"threads", threads}});
+    record.add_times(name + "writers", writers, {{"threads", threads}, {"exr_threads", exr_threads}});
     record.add_times(name + "film", whole,
                      {{"overlap", std::max(median_of(kernels), median_of(writers)) / median_of(whole)},
                       {"threads", threads},
+                      {"exr_threads", exr_threads},
                       {"frame_render_ms", median_frame(stats, [](const FrameStats& f) { return f.render_seconds; })},
                       {"frame_kernel_ms", median_frame(stats, [](const FrameStats& f) { return f.device.kernel; })},
                       {"frame_transfer_ms", median_frame(stats, [](const FrameStats& f) { return f.device.transfer; })},

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 #include "backend_cuda/cuda_renderer.h"
 #include "scene/camera_path.h"
+#include "scene/film_picture.h"
 #include "scene/read_scene.h"
 
 namespace cistula::bench {
@@ -40,6 +43,41 @@ void time_one(GpuRecord& record, const SceneDescription& scene, int width, int h
 }
 
 }  // namespace
+
+void time_devices(GpuRecord& record, const std::string& folder, int runs) {
+    const SceneDescription scene = read_scene(folder + "/scenes/benchmark.json");
+    const std::shared_ptr<const CompiledScene<float>> compiled = compile_scene<float>(scene);
+    FrameSettings settings;
+    settings.full_width = 3840;
+    settings.full_height = 2160;
+    settings.crop = {0, 0, 3840, 2160};
+    settings.depth = 8;
+    settings.supersample = 4;
+    const size_t present = list_cuda_devices().size();
+    std::string hash;
+    for (size_t count = 1; count <= present; count *= 2) {
+        CudaOptions options;
+        options.devices.clear();
+        for (size_t d = 0; d < count; ++d) options.devices.push_back(int(d));
+        const auto renderer = make_cuda_renderer<float>(compiled, options);
+        std::vector<double> kernel, whole;
+        Film film;
+        for (int run = -1; run < runs; ++run) {
+            RenderProgress progress;
+            const auto start = std::chrono::steady_clock::now();
+            renderer->render(camera_at(scene.camera, 0), settings, film, progress);
+            if (run < 0) continue;
+            whole.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() * 1e3);
+            kernel.push_back(renderer->times().kernel * 1e3);
+        }
+        record.add_times(fmt::format("benchmark.json/3840x2160/4x4/depth:8/float/devices:{}", count), kernel,
+                         {{"rays", film.rays.total()}, {"frame_ms", median_of(whole)}});
+        if (count == 1)
+            hash = film_hash(film);
+        else
+            record.add_parity(fmt::format("devices:{}", count), film.pixels.size(), film_hash(film) == hash ? 0 : 1);
+    }
+}
 
 void time_frames(GpuRecord& record, const std::string& folder, int runs, int split) {
     const SceneDescription scene = read_scene(folder + "/scenes/benchmark.json");

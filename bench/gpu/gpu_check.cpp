@@ -19,13 +19,14 @@ namespace {
 struct Options {
     std::string folder = ".", json;
     uint64_t functions = 0, generated = 0;
-    bool scenes = false, times = false, rays = false;
+    bool scenes = false, times = false, rays = false, devices = false;
     int runs = 20, split = CudaOptions().split, film = 0;
 };
 
 int run(const Options& options) {
     GpuRecord record;
     if (options.times) time_frames(record, options.folder, options.runs, options.split);
+    if (options.devices) time_devices(record, options.folder, 5);
     if (options.rays) time_rays(record, options.runs);
     if (options.film > 0) time_film(record, options.folder, options.film);
     if (options.functions > 0)
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
     app.add_flag("--scenes", options.scenes, "compare all of scenes/, and with golden/");
     app.add_option("--generated", options.generated, "generated scenes to compare");
     app.add_flag("--times", options.times, "time frames");
+    app.add_flag("--devices", options.devices, "time a heavy frame on one GPU, two, ... all");
     app.add_flag("--rays", options.rays, "time rays on a mesh, and compare their hits");
     app.add_option("--film", options.film, "frames of a film to time, rendered and written");
     app.add_option("--runs", options.runs, "runs of each, after warm-up")->check(CLI::Range(1, 10000));

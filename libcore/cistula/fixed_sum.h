@@ -24,8 +24,8 @@ CISTULA_INLINE double fixed_scale(int shift) {
 /// Radiances are scaled to a bound of at most 1, so that a larger one is as much a fault as an infinite one.
 template <class Real>
 CISTULA_INLINE bool to_fixed(Real x, double scale, int64_t& out) {
-    const double value = static_cast<double>(x) * scale;
-    if (!(value >= 0 && value <= scale)) return false;
+    const Real value = x * static_cast<Real>(scale);  // exact, scale being a power of two
+    if (!(x >= 0 && x <= 1)) return false;
     out = static_cast<int64_t>(value);
     return true;
 }
@@ -33,10 +33,10 @@ CISTULA_INLINE bool to_fixed(Real x, double scale, int64_t& out) {
 /// The same with ceil in place of floor: for the ledger.
 template <class Real>
 CISTULA_INLINE bool to_fixed_up(Real x, double scale, int64_t& out) {
-    const double value = static_cast<double>(x) * scale;
-    if (!(value >= 0 && value <= scale)) return false;
+    const Real value = x * static_cast<Real>(scale);
+    if (!(x >= 0 && x <= 1)) return false;
     const int64_t whole = static_cast<int64_t>(value);
-    out = whole + (static_cast<double>(whole) < value ? 1 : 0);
+    out = whole + (static_cast<Real>(whole) < value ? 1 : 0);
     return true;
 }
 

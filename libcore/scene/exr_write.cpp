@@ -9,7 +9,9 @@
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <set>
@@ -20,6 +22,10 @@
 
 namespace cistula {
 namespace {
+
+/// Enough for one file, which keeps twice as many blocks of lines in work. Files written at once share the threads in
+/// the order of their blocks, so that none should queue all it has.
+constexpr int most_threads_of_a_file = 4;
 
 /// OpenEXR's destructor swallows errors; this stream keeps them, so that a full disk never passes for a file.
 class CheckedStream : public Imf::OStream {
@@ -144,12 +150,16 @@ void write_pixels(Imf::OStream& stream, const LayeredPicture& picture) {
             buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
         }
     }
-    Imf::OutputFile file(stream, header);
+    Imf::OutputFile file(stream, header, std::min(Imf::globalThreadCount(), most_threads_of_a_file));
     file.setFrameBuffer(buffer);
     file.writePixels(picture.height);
 }
 
 }  // namespace
+
+void set_exr_threads(int threads) {
+    Imf::setGlobalThreadCount(threads);
+}
 
 void write_exr(const std::string& path, const LayeredPicture& picture) {
     check(picture);
