@@ -9,7 +9,7 @@
 namespace cistula {
 namespace {
 
-constexpr size_t staging_bytes = size_t{32} << 20;
+constexpr size_t staging_bytes = size_t{32} << 20, copy_bytes = size_t{4} << 20;
 /// Branches that may wait per pixel of a part; trees that find no room are walked to their end where they are.
 constexpr size_t queue_share = 2;
 
@@ -140,10 +140,15 @@ void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
         CISTULA_CUDA_CHECK(cudaEventSynchronize(staged_[buffer]));
         if (first + batch < rows) fill(first + batch, buffer ^ 1);
         const PixelRecord* from = staging_[buffer].as<PixelRecord>();
-        tbb::parallel_for(0, std::min(batch, rows - first), [&](int i) {
-            const int row = first + i;
+        const int count = std::min(batch, rows - first);
+        // Rows that are neighbors in the film go together: large copies pass the caches by, which writers of files want.
+        const int together = part.strip_step == 1 ? std::max(int(copy_bytes / row_bytes), 1) : 1;
+        tbb::parallel_for(0, (count + together - 1) / together, [&](int i) {
+            const int begin = i * together, row = first + begin;
             const int y = (part.first_strip + row / strip_rows * part.strip_step) * strip_rows + row % strip_rows;
-            if (y < part.rect.height) std::memcpy(&film.pixels[size_t(y) * width], from + size_t(i) * width, row_bytes);
+            const int rows_here = std::min({together, count - begin, part.rect.height - y});
+            if (rows_here > 0)
+                std::memcpy(&film.pixels[size_t(y) * width], from + size_t(begin) * width, size_t(rows_here) * row_bytes);
         });
     }
 }
