@@ -84,7 +84,7 @@ class CudaRenderer : public Renderer {
             }
             if (part + 1 < frame.parts)
                 start(frame, part + 1);
-            else if (expected_)
+            else if (expected_ && same(expected_->settings, settings))  // others may need memory that this one still has
                 begun_ = begin(expected_->camera, expected_->settings, frame.first_slot + part + 1);
             const int slot = (frame.first_slot + part) % DeviceWorker<Real>::slots;
             tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
@@ -157,7 +157,7 @@ class CudaRenderer : public Renderer {
         const int per_device = (frame.strips + devices() - 1) / devices();
         int wanted = int(std::clamp<size_t>(part_samples / (strip_pixels * samples), 1, size_t(per_device)));
         if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / strip_pixels, 1, size_t(wanted)));
-        frame.part_strips = reserve(wanted, strip_pixels);
+        frame.part_strips = reserve(wanted, strip_pixels, frame.mask);
         frame.parts = (per_device + frame.part_strips - 1) / frame.part_strips;
         frame.first_slot = slot % DeviceWorker<Real>::slots;
         start(frame, 0);
@@ -165,12 +165,12 @@ class CudaRenderer : public Renderer {
     }
 
     /// Memory for parts of `strips`, or of half as many until it is enough.
-    int reserve(int strips, size_t strip_pixels) {
+    int reserve(int strips, size_t strip_pixels, int mask) {
         const int wanted = strips;
         for (;; strips = (strips + 1) / 2) {
             bool room = true;
             for (auto& worker : workers_)
-                room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit);
+                room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit, mask);
             if (room) break;
             if (strips == 1)
                 throw Error(ExitCode::device, fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or "

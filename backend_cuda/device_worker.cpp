@@ -40,18 +40,39 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     if (path_ == DevicePath::plain_loop) scene_.small.assign(here, scene_.view);
 }
 
+/// A kernel's first launch takes memory for its threads' stacks: over a gigabyte on a large device. It must come before the
+/// pixels', which can do with less.
 template <class Real>
-bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit) {
+void DeviceWorker<Real>::prime(int mask) {
+    if (primed_ >> mask & 1u) return;
+    PartSlot& slot = slots_[0];
+    slot.records.reserve(strip_rows * sizeof(PixelRecord));
+    FrameJob job;
+    job.records = slot.records.as<PixelRecord>();
+    job.width = 1;
+    job.rows = strip_rows;  // of a rectangle without height: no pixel is rendered
+    job.tally = slot.tally.as<DeviceTally>();
+    launch_pixels(mask, path_, scene_, job, compute_);
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+    primed_ |= 1u << mask;
+}
+
+template <class Real>
+bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask) {
     use_device(device_);
+    prime(mask);
     const size_t bytes = pixels * sizeof(PixelRecord);
     const size_t branch = queued_branch_bytes<Real>(path_), wanted = split_ > 0 ? pixels / queue_share : 0;
     if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
-    for (PartSlot& slot : slots_)
-        if (!slot.records.try_reserve(bytes)) return false;
-    for (DeviceMemory& queue : queue_)
-        if (!queue.try_reserve(wanted * branch)) return false;
+    bool room = true;
+    for (PartSlot& slot : slots_) room = room && slot.records.try_reserve(bytes);
+    for (DeviceMemory& queue : queue_) room = room && queue.try_reserve(wanted * branch);
     queue_capacity_ = wanted;
-    return true;
+    if (room) return true;
+    // What one has got would be missing when the others ask for less.
+    for (PartSlot& slot : slots_) slot.records.free();
+    for (DeviceMemory& queue : queue_) queue.free();
+    return false;
 }
 
 template <class Real>

@@ -42,8 +42,9 @@ class DeviceWorker {
     /// `here`: the scene of the arena, where this program can read it.
     DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path, int split);
 
-    /// Room for parts of that many pixels in both slots. False where there is none.
-    bool reserve(size_t pixels, size_t memory_limit);
+    /// Room for parts of that many pixels in both slots, beside what the kernels of `mask` take for themselves. False
+    /// where there is none.
+    bool reserve(size_t pixels, size_t memory_limit, int mask);
 
     /// Enqueues a part; nothing is waited for. Its slot must be free.
     void start(const FramePart& part, int slot);
@@ -62,6 +63,7 @@ class DeviceWorker {
   private:
     static constexpr int passes = 6;  // over pixels, then over queues
 
+    void prime(int mask);
     void copy_rows(const PartSlot& slot, Film& film);
 
     const int device_;
@@ -72,6 +74,7 @@ class DeviceWorker {
     PinnedMemory staging_[2];
     CudaEvent staged_[2];
     size_t queue_capacity_ = 0;
+    uint32_t primed_ = 0;  // bit m: the kernels of mask m have run
     DeviceScene<Real> scene_;
     PartSlot slots_[slots];
 };
