@@ -31,13 +31,6 @@ bool same(const CameraFrame& a, const CameraFrame& b) {
     return p.position == q.position && p.forward == q.forward && p.right == q.right && p.up == q.up &&
            p.tan_half_width == q.tan_half_width;
 }
-bool same(const PixelRect& a, const PixelRect& b) {
-    return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
-}
-bool same(const FrameSettings& a, const FrameSettings& b) {
-    return a.full_width == b.full_width && a.full_height == b.full_height && same(a.crop, b.crop) &&
-           a.supersample == b.supersample && a.depth == b.depth && a.cutoff == b.cutoff && a.effects == b.effects;
-}
 
 template <class Real>
 class CudaRenderer : public Renderer {
@@ -64,7 +57,7 @@ class CudaRenderer : public Renderer {
         notes_.clear();
         times_ = {};
         prepare_film(film, settings, scene_->radiance_exponent);
-        if (!begun_ || !same(begun_->camera, camera) || !same(begun_->settings, settings)) {
+        if (!begun_ || !same(begun_->camera, camera) || begun_->settings != settings) {
             drop_begun();
             begun_ = begin(camera, settings);
         }
@@ -84,7 +77,7 @@ class CudaRenderer : public Renderer {
             }
             if (part + 1 < frame.parts)
                 start(frame, part + 1);
-            else if (expected_ && same(expected_->settings, settings))  // others may need memory that this one still has
+            else if (expected_ && expected_->settings == settings)  // others may need memory that this one still has
                 begun_ = begin(expected_->camera, expected_->settings, frame.first_slot + part + 1);
             const int slot = (frame.first_slot + part) % DeviceWorker<Real>::slots;
             tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {

@@ -8,32 +8,16 @@
 #include <cstring>
 
 #include "backend_embree/embree_tree.h"
+#include "bumpy_scene.h"
 #include "program.h"
 #include "scene/error.h"
 #include "scene/frame_view.h"
-#include "scene/generated_mesh.h"
 
 namespace cistula::bench {
 namespace {
 
-constexpr uint32_t triangle_count = 1'300'000;
 constexpr int width = 640, height = 480, tile = 16, repetitions = 9;
-
-SceneDescription bumpy_scene() {
-    SceneDescription scene;
-    scene.source = "bumpy sphere";
-    // The sphere fills the picture: every ray hits.
-    scene.camera.position = {0, -2.6, 1};
-    scene.camera.field_of_view = 30;
-    scene.materials.emplace_back();
-    ObjectDescription object;
-    object.name = "sphere";
-    object.material = 0;
-    object.shape = bumpy_sphere(triangle_count);
-    object.place = "/objects/0";
-    scene.objects.push_back(std::move(object));
-    return scene;
-}
+constexpr double field_of_view = 30;  // every ray hits
 
 size_t triangles_of(const SceneDescription& scene) {
     return std::get<TrianglesObject>(scene.objects[0].shape).triangles.size();
@@ -123,7 +107,7 @@ class Theirs {
 };
 
 struct Setting {
-    SceneDescription scene = bumpy_scene();
+    SceneDescription scene = bumpy_scene(field_of_view);
     Ours<float> single{scene};
     Ours<double> twice{scene};
     Theirs embree{scene, *single.compiled};
@@ -174,7 +158,7 @@ void measure_memory(benchmark::State& state, const std::string& precision) {
 
 template <class Real>
 double memory_of_ours() {
-    const SceneDescription scene = bumpy_scene();
+    const SceneDescription scene = bumpy_scene(field_of_view);
     const Ours<Real> ours(scene);
     return peak_memory();
 }

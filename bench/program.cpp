@@ -5,29 +5,13 @@
 #include <array>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <memory>
 
 #include "apps/common/build_info.h"
+#include "apps/common/machine.h"
 #include "scene/error.h"
 
 namespace cistula::bench {
-namespace {
-
-/// What follows "KEY:" or "KEY\t:" in one of Linux's tables; empty: not there.
-std::string table_value(const char* file, const std::string& key) {
-    std::ifstream stream(file);
-    for (std::string line; std::getline(stream, line);) {
-        if (line.rfind(key, 0) != 0) continue;
-        const size_t colon = line.find(':');
-        const size_t value = colon == line.npos ? line.npos : line.find_first_not_of(" \t", colon + 1);
-        if (value != line.npos) return line.substr(value);
-    }
-    return {};
-}
-
-}  // namespace
-
 std::string output_of(const std::string& command) {
     const auto close = [](FILE* stream) { pclose(stream); };
     std::unique_ptr<FILE, decltype(close)> pipe(popen((command + " 2>&1").c_str(), "r"), close);
@@ -69,7 +53,7 @@ int run_program(int argc, char** argv, int repetitions, void (*register_all)(con
             return int(ExitCode::usage);
         }
     }
-    benchmark::AddCustomContext("cpu", table_value("/proc/cpuinfo", "model name"));
+    benchmark::AddCustomContext("cpu", processor_name());
     benchmark::AddCustomContext("compiler", __VERSION__);
     benchmark::AddCustomContext("flags", build_flags());
     benchmark::AddCustomContext("commit", build_commit());

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "apps/common/build_info.h"
+#include "apps/common/machine.h"
 #include "apps/common/command_line.h"
 #include "bench/seed_baseline_run.h"
 #include "bench/seed_baseline_scene.h"
@@ -72,24 +73,6 @@ void check(Options& options) {
     if (options.repetitions == 0) options.repetitions = options.cpu ? 3 : 20;
 }
 
-/// What follows the colon on the first line of one of Linux's tables that begins with `key`.
-std::string table_value(const char* file, const std::string& key) {
-    std::ifstream stream(file);
-    for (std::string line; std::getline(stream, line);) {
-        const size_t colon = line.find(": ");
-        if (line.rfind(key, 0) == 0 && colon != line.npos) return line.substr(colon + 2);
-    }
-    return "unknown";
-}
-
-/// Of the kernel driver, "580.65.06".
-std::string driver_version() {
-    std::istringstream words(table_value("/proc/driver/nvidia/version", "NVRM version"));
-    for (std::string word; words >> word;)
-        if (word[0] >= '0' && word[0] <= '9' && word.find('.') != word.npos) return word;
-    return "unknown";
-}
-
 Json context_of(const Options& options) {
     char host[256] = {};
     if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
@@ -97,7 +80,7 @@ Json context_of(const Options& options) {
                     {"host_name", host},
                     {"executable", "seed_baseline"},
                     {"num_cpus", std::thread::hardware_concurrency()},
-                    {"cpu", table_value("/proc/cpuinfo", "model name")},
+                    {"cpu", processor_name()},
                     {"commit", build_commit()},
                     {"scene", std::filesystem::path(options.scene).filename().string()},
                     {"resolution", {options.width, options.height}}};
@@ -109,7 +92,7 @@ Json context_of(const Options& options) {
     const DeviceDescription device = describe_device();
     context["gpu"] = device.name;
     context["gpu_capability"] = fmt::format("{}.{}", device.major, device.minor);
-    context["driver"] = driver_version();
+    context["driver"] = gpu_driver_version();
     context["cuda_driver"] = device.driver;
     context["cuda_runtime"] = device.runtime;
     context["compiler"] = device.compiler;

@@ -1,4 +1,4 @@
-# cistula_build_info: the flags and the commit of a build, which render --stats and the benchmarks record.
+# cistula_build_info: the flags and the commit of a build and the machine that it runs on, which render --stats and the benchmarks record.
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
 set(_flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_host}")
 string(REPLACE ";" " " _flags "${_flags}")
@@ -16,7 +16,8 @@ if(NOT _commit)
     set(_commit "unknown")
 endif()
 
-add_library(cistula_build_info STATIC "${PROJECT_SOURCE_DIR}/apps/common/build_info.cpp")
+add_library(cistula_build_info STATIC
+    "${PROJECT_SOURCE_DIR}/apps/common/build_info.cpp" "${PROJECT_SOURCE_DIR}/apps/common/machine.cpp")
 target_include_directories(cistula_build_info PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(cistula_build_info PRIVATE
     CISTULA_BUILD_FLAGS="${_flags}" CISTULA_BUILD_COMMIT="${_commit}")

@@ -17,15 +17,6 @@
 
 namespace cistula::golden {
 
-/// The names of all scenes in a folder, sorted: "benchmark" for benchmark.json.
-inline std::vector<std::string> scene_names(const std::filesystem::path& scenes) {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(scenes))
-        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 template <class Real>
 Film render_brute(const SceneDescription& description) {
     const auto renderer = make_host_renderer<Real>(compile_scene<Real>(description), HostIntersector::brute);

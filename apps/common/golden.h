@@ -1,6 +1,11 @@
 // The golden images: what they are rendered with. Shared by make_golden, the tests and render-compare.
 #pragma once
 
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "scene/camera_path.h"
 #include "scene/description.h"
 #include "scene/film_picture.h"
@@ -9,6 +14,15 @@
 namespace cistula::golden {
 
 inline constexpr int width = 320, height = 180;
+
+/// The names of all scenes in a folder, sorted: "benchmark" for benchmark.json.
+inline std::vector<std::string> scene_names(const std::filesystem::path& scenes) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(scenes))
+        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
 
 inline FrameSettings settings_for(const SceneDescription& scene) {
     FrameSettings settings;

@@ -11,10 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <thread>
 
 #include "apps/common/build_info.h"
+#include "apps/common/machine.h"
 #include "scene/required_effects.h"
 
 namespace cistula {
@@ -25,13 +25,6 @@ using Json = nlohmann::ordered_json;
 std::string host_name() {
     char name[256] = {};
     return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
-
-std::string processor_name() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.rfind("model name", 0) == 0 && line.find(": ") != line.npos) return line.substr(line.find(": ") + 2);
-    return "unknown";
 }
 
 /// Bytes: the largest resident set of this process so far.

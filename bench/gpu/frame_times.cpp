@@ -12,34 +12,50 @@
 namespace cistula::bench {
 namespace {
 
-constexpr int warm_up = 3;
+FrameSettings settings_of(int width, int height, int depth, int supersample) {
+    FrameSettings settings;
+    settings.full_width = width;
+    settings.full_height = height;
+    settings.crop = {0, 0, width, height};
+    settings.depth = depth;
+    settings.supersample = supersample;
+    return settings;
+}
+
+/// Of the runs after warm-up, in milliseconds.
+struct FrameRuns {
+    std::vector<double> kernel, transfer, frame;
+    Film film;  // the last
+};
+
+FrameRuns timed(Renderer& renderer, const SceneDescription& scene, const FrameSettings& settings, int warm_up, int runs) {
+    FrameRuns result;
+    for (int run = -warm_up; run < runs; ++run) {
+        RenderProgress progress;
+        const auto start = std::chrono::steady_clock::now();
+        renderer.render(camera_at(scene.camera, 0), settings, result.film, progress);
+        if (run < 0) continue;
+        result.frame.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() * 1e3);
+        result.kernel.push_back(renderer.times().kernel * 1e3);
+        result.transfer.push_back(renderer.times().transfer * 1e3);
+    }
+    return result;
+}
 
 template <class Real>
 void time_one(GpuRecord& record, const SceneDescription& scene, int width, int height, int depth, int runs, int split) {
     CudaOptions options;
     options.split = split;
     const auto renderer = make_cuda_renderer<Real>(compile_scene<Real>(scene), options);
-    FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
-    settings.depth = depth;
-    std::vector<double> kernel, transfer;
-    Film film;
-    for (int run = -warm_up; run < runs; ++run) {
-        RenderProgress progress;
-        renderer->render(camera_at(scene.camera, 0), settings, film, progress);
-        if (run < 0) continue;
-        kernel.push_back(renderer->times().kernel * 1e3);
-        transfer.push_back(renderer->times().transfer * 1e3);
-    }
+    const FrameRuns r = timed(*renderer, scene, settings_of(width, height, depth, 1), 3, runs);
+    const RayCounts& rays = r.film.rays;
     record.add_times(fmt::format("benchmark.json/{}x{}/depth:{}/{}/split:{}", width, height, depth,
                                  sizeof(Real) == sizeof(float) ? "float" : "double", split),
-                     kernel,
-                     {{"rays", film.rays.total()},
-                      {"surfaces", film.rays.primary + film.rays.reflected + film.rays.transmitted},
-                      {"rays_per_second", double(film.rays.total()) / (median_of(kernel) * 1e-3)},
-                      {"transfer_ms", median_of(transfer)}});
+                     r.kernel,
+                     {{"rays", rays.total()},
+                      {"surfaces", rays.primary + rays.reflected + rays.transmitted},
+                      {"rays_per_second", double(rays.total()) / (median_of(r.kernel) * 1e-3)},
+                      {"transfer_ms", median_of(r.transfer)}});
 }
 
 }  // namespace
@@ -47,12 +63,6 @@ void time_one(GpuRecord& record, const SceneDescription& scene, int width, int h
 void time_devices(GpuRecord& record, const std::string& folder, int runs) {
     const SceneDescription scene = read_scene(folder + "/scenes/benchmark.json");
     const std::shared_ptr<const CompiledScene<float>> compiled = compile_scene<float>(scene);
-    FrameSettings settings;
-    settings.full_width = 3840;
-    settings.full_height = 2160;
-    settings.crop = {0, 0, 3840, 2160};
-    settings.depth = 8;
-    settings.supersample = 4;
     const size_t present = list_cuda_devices().size();
     std::string hash;
     for (size_t count = 1; count <= present; count *= 2) {
@@ -60,22 +70,13 @@ void time_devices(GpuRecord& record, const std::string& folder, int runs) {
         options.devices.clear();
         for (size_t d = 0; d < count; ++d) options.devices.push_back(int(d));
         const auto renderer = make_cuda_renderer<float>(compiled, options);
-        std::vector<double> kernel, whole;
-        Film film;
-        for (int run = -1; run < runs; ++run) {
-            RenderProgress progress;
-            const auto start = std::chrono::steady_clock::now();
-            renderer->render(camera_at(scene.camera, 0), settings, film, progress);
-            if (run < 0) continue;
-            whole.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() * 1e3);
-            kernel.push_back(renderer->times().kernel * 1e3);
-        }
-        record.add_times(fmt::format("benchmark.json/3840x2160/4x4/depth:8/float/devices:{}", count), kernel,
-                         {{"rays", film.rays.total()}, {"frame_ms", median_of(whole)}});
+        const FrameRuns r = timed(*renderer, scene, settings_of(3840, 2160, 8, 4), 1, runs);
+        record.add_times(fmt::format("benchmark.json/3840x2160/4x4/depth:8/float/devices:{}", count), r.kernel,
+                         {{"rays", r.film.rays.total()}, {"frame_ms", median_of(r.frame)}});
         if (count == 1)
-            hash = film_hash(film);
+            hash = film_hash(r.film);
         else
-            record.add_parity(fmt::format("devices:{}", count), film.pixels.size(), film_hash(film) == hash ? 0 : 1);
+            record.add_parity(fmt::format("devices:{}", count), r.film.pixels.size(), film_hash(r.film) == hash ? 0 : 1);
     }
 }
 

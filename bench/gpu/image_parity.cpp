@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <fstream>
 
 #include "apps/common/golden.h"
@@ -14,14 +12,6 @@
 
 namespace cistula::bench {
 namespace {
-
-std::vector<std::string> scene_names(const std::string& folder) {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
-    return names;
-}
 
 /// Integers and floats of a pixel that are not the same, bit for bit.
 uint64_t differing_values(const PixelRecord& a, const PixelRecord& b) {
@@ -87,7 +77,7 @@ void check(GpuRecord& record, const std::string& name, const SceneDescription& s
 }  // namespace
 
 void check_scenes(GpuRecord& record, const std::string& folder) {
-    for (const std::string& name : scene_names(folder + "/scenes")) {
+    for (const std::string& name : golden::scene_names(folder + "/scenes")) {
         const SceneDescription scene = read_scene(folder + "/scenes/" + name + ".json");
         const auto golden = nlohmann::json::parse(std::ifstream(folder + "/golden/" + name + "/golden.json"));
         const FrameSettings settings = golden::settings_for(scene);

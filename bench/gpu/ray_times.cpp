@@ -7,33 +7,22 @@
 #include <memory>
 
 #include "backend_cuda/cuda_resources.h"
+#include "bench/bumpy_scene.h"
 #include "bench/gpu/ray_compare.h"
 #include "bench/gpu/ray_kernels.h"
 #include "scene/frame_view.h"
-#include "scene/generated_mesh.h"
 #include "scene/scene_arena.h"
 
 namespace cistula::bench {
 namespace {
 
-constexpr uint32_t triangle_count = 1'300'000;
 constexpr int warm_up = 3;
 constexpr uint32_t rays_at_once = uint32_t{1} << 18;  // compared
 constexpr int unwritten = 0xee;                       // bytes of what no kernel wrote must not look right
 
-/// The sphere fills the picture but for its corners; the light is beside the camera, so that some of it is in shadow.
-SceneDescription bumpy_scene() {
-    SceneDescription scene;
-    scene.source = "bumpy sphere";
-    scene.camera.position = {0, -2.6, 1};
-    scene.camera.field_of_view = 40;
-    scene.materials.emplace_back();
-    ObjectDescription object;
-    object.name = "sphere";
-    object.material = 0;
-    object.shape = bumpy_sphere(triangle_count);
-    object.place = "/objects/0";
-    scene.objects.push_back(std::move(object));
+/// The light is beside the camera, so that some of the sphere is in shadow.
+SceneDescription lit_scene() {
+    SceneDescription scene = bumpy_scene(40);
     LightDescription light;
     light.position = {4, -3, 3};
     light.place = "/lights/0";
@@ -189,7 +178,7 @@ class RayBenchmark {
 }  // namespace
 
 void time_rays(GpuRecord& record, int runs) {
-    const SceneDescription scene = bumpy_scene();
+    const SceneDescription scene = lit_scene();
     RayBenchmark<float>(scene).run(record, runs);
     RayBenchmark<double>(scene).run(record, runs);
 }

@@ -5,34 +5,14 @@
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 #include <thread>
 
 #include "apps/common/build_info.h"
+#include "apps/common/machine.h"
 #include "backend_cuda/cuda_renderer.h"
 #include "scene/atomic_file.h"
 
 namespace cistula::bench {
-namespace {
-
-std::string processor_name() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.rfind("model name", 0) == 0 && line.find(": ") != line.npos) return line.substr(line.find(": ") + 2);
-    return "unknown";
-}
-
-/// The kernel driver's own version, "580.159.04".
-std::string driver_version() {
-    std::ifstream file("/proc/driver/nvidia/version");
-    std::string word;
-    while (file >> word)
-        if (!word.empty() && word.find_first_not_of("0123456789.") == word.npos && word.find('.') != word.npos) return word;
-    return "unknown";
-}
-
-}  // namespace
-
 double median_of(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const size_t half = values.size() / 2;
@@ -49,7 +29,7 @@ GpuRecord::GpuRecord(const std::string& program) {
     all_["context"] = {{"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
                        {"executable", program},
                        {"gpu", gpus},
-                       {"driver", driver_version()},
+                       {"driver", gpu_driver_version()},
                        {"driver_cuda", cuda_driver_version()},
                        {"cpu", processor_name()},
                        {"num_cpus", std::thread::hardware_concurrency()},

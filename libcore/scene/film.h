@@ -13,6 +13,8 @@ namespace cistula {
 /// A rectangle of pixels; (0, 0) is the top left of the full frame.
 struct PixelRect {
     int x = 0, y = 0, width = 0, height = 0;
+
+    bool operator==(const PixelRect&) const = default;
 };
 
 /// Leaves trivial elements unset: the threads that render the pixels touch their memory first.

@@ -22,6 +22,8 @@ struct FrameSettings {
     double cutoff = 0;         // error budget per pixel in the scene's radiance units
     uint32_t effects = 0;      // mask to run; 0: the least that contains what the scene requires
     int tile = 16;             // pixels along a tile's side; never changes the image
+
+    bool operator==(const FrameSettings&) const = default;
 };
 
 /// Shared between the rendering threads and whoever watches; all members may be read at any time.

@@ -1,0 +1,31 @@
+#include "apps/common/machine.h"
+
+#include <fstream>
+#include <sstream>
+
+namespace cistula {
+
+std::string table_value(const char* file, const std::string& key) {
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);) {
+        if (line.rfind(key, 0) != 0) continue;
+        const size_t colon = line.find(':');
+        const size_t value = colon == line.npos ? line.npos : line.find_first_not_of(" \t", colon + 1);
+        if (value != line.npos) return line.substr(value);
+    }
+    return {};
+}
+
+std::string processor_name() {
+    const std::string name = table_value("/proc/cpuinfo", "model name");
+    return name.empty() ? "unknown" : name;
+}
+
+std::string gpu_driver_version() {
+    std::istringstream words(table_value("/proc/driver/nvidia/version", "NVRM version"));
+    for (std::string word; words >> word;)
+        if (word[0] >= '0' && word[0] <= '9' && word.find('.') != word.npos) return word;
+    return "unknown";
+}
+
+}  // namespace cistula
