@@ -80,6 +80,12 @@ TYPED_TEST(TextureTest, AnyNumberStaysInsideThePicture) {
     for (uint32_t n : {1u, 2u, 3u, 7u, 640u})
         for (int i = -2000; i <= 2000; ++i)
             ASSERT_EQ(repeated(Real(i), n), uint32_t(((i % int(n)) + int(n)) % int(n))) << i << " " << n;
+    // Up to where float numbers are far apart.
+    for (const int64_t n : {3, 4187, 65535})
+        for (int64_t far = 1 << 20; far < int64_t{1} << 40; far += far / 7) {
+            const Real i = -Real(far);
+            ASSERT_EQ(repeated(i, uint32_t(n)), uint32_t((int64_t(i) % n + n) % n)) << int64_t(i) << " " << n;
+        }
 }
 
 }  // namespace

@@ -5,11 +5,23 @@
 
 namespace cistula {
 
-/// i modulo n, for any finite i that is an integer.
+/// i - floor(i / n) n, exact for integers i below 2^23 in float and 2^52 in double: no quotient that is not whole then
+/// rounds to a whole one.
 template <class Real>
-CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
+CISTULA_INLINE uint32_t remainder(Real i, uint32_t n) {
     const Real r = i - floor_of(i / Real(n)) * Real(n);
     return uint32_t(clamped(r, Real(0), Real(n - 1)));
+}
+CISTULA_SELDOM inline uint32_t far_remainder(double i, uint32_t n) {
+    return remainder(i, n);
+}
+
+/// i modulo n, for an integer i.
+CISTULA_INLINE uint32_t repeated(float i, uint32_t n) {
+    return magnitude(i) < 0x1p23f ? remainder(i, n) : far_remainder(double(i), n);
+}
+CISTULA_INLINE uint32_t repeated(double i, uint32_t n) {
+    return remainder(i, n);
 }
 
 /// Between the four texels around (x, y); texel(i, j) are their colors.
