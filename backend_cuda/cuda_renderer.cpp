@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "backend_cuda/device_worker.h"
+#include "backend_cuda/locked_pages.h"
 #include "scene/frame_view.h"
 
 namespace cistula {
@@ -69,6 +70,7 @@ class CudaRenderer : public Renderer {
             worker->rays = RayCounts();
             worker->flags = 0;
         }
+        const bool locked = has_locked_pages(film);
         RayCounts before;
         for (int part = 0; part < frame.parts; ++part) {
             if (progress.stop) {
@@ -81,7 +83,7 @@ class CudaRenderer : public Renderer {
                 begun_ = begin(expected_->camera, expected_->settings, frame.first_slot + part + 1);
             const int slot = (frame.first_slot + part) % DeviceWorker<Real>::slots;
             tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
-                if (strips_of(frame, part, d) > 0) workers_[d]->fetch(slot, film);
+                if (strips_of(frame, part, d) > 0) workers_[d]->fetch(slot, film, locked);
             });
             film.rays = RayCounts();
             for (const auto& worker : workers_) film.rays.add(worker->rays);

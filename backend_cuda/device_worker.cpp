@@ -119,13 +119,16 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
 }
 
 template <class Real>
-void DeviceWorker<Real>::fetch(int index, Film& film) {
+void DeviceWorker<Real>::fetch(int index, Film& film, bool locked) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     CISTULA_CUDA_CHECK(cudaEventSynchronize(slot.done));
     kernel_seconds += slot.end.since(slot.begin) * 1e-3;
     const auto start = std::chrono::steady_clock::now();
-    copy_rows(slot, film);
+    if (locked)
+        copy_straight(slot, film);
+    else
+        copy_rows(slot, film);
     const DeviceTally& tally = *slot.tally_copy.as<DeviceTally>();
     for (const auto& counts : tally.rays) {
         rays.primary += counts[0];
@@ -141,6 +144,27 @@ template <class Real>
 void DeviceWorker<Real>::wait() const {
     use_device(device_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+}
+
+/// Into a film in locked pages: all strips that are whole at once, and the last one.
+template <class Real>
+void DeviceWorker<Real>::copy_straight(const PartSlot& slot, Film& film) {
+    const FramePart& part = slot.part;
+    const size_t width = size_t(part.rect.width), strip = strip_rows * width, strip_bytes = strip * sizeof(PixelRecord);
+    const auto rows_of = [&](int i) {
+        return std::clamp(part.rect.height - (part.first_strip + i * part.strip_step) * strip_rows, 0, strip_rows);
+    };
+    const int whole = rows_of(part.strips - 1) == strip_rows ? part.strips : part.strips - 1;
+    const PixelRecord* from = slot.records.as<PixelRecord>();
+    PixelRecord* to = film.pixels.data() + size_t(part.first_strip) * strip;
+    if (whole > 0)
+        CISTULA_CUDA_CHECK(cudaMemcpy2DAsync(to, size_t(part.strip_step) * strip_bytes, from, strip_bytes, strip_bytes,
+                                             size_t(whole), cudaMemcpyDeviceToHost, copy_));
+    if (whole < part.strips)
+        CISTULA_CUDA_CHECK(cudaMemcpyAsync(to + size_t(whole * part.strip_step) * strip, from + size_t(whole) * strip,
+                                           size_t(rows_of(whole)) * width * sizeof(PixelRecord), cudaMemcpyDeviceToHost,
+                                           copy_));
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(copy_));
 }
 
 /// Through two page-locked buffers: one is filled while threads spread the other over the film.

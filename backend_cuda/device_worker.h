@@ -49,8 +49,8 @@ class DeviceWorker {
     /// Enqueues a part; nothing is waited for. Its slot must be free.
     void start(const FramePart& part, int slot);
 
-    /// Waits for the part in a slot and puts its pixels where they belong in the film.
-    void fetch(int slot, Film& film);
+    /// Waits for the part in a slot and puts its pixels where they belong in the film; `locked`: that lies in locked pages.
+    void fetch(int slot, Film& film, bool locked);
 
     /// Waits for all that was started.
     void wait() const;
@@ -65,6 +65,7 @@ class DeviceWorker {
 
     void prime(int mask);
     void copy_rows(const PartSlot& slot, Film& film);
+    void copy_straight(const PartSlot& slot, Film& film);
 
     const int device_;
     const DevicePath path_;
