@@ -33,9 +33,13 @@ bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const In
             RayCounts rays;
             uint32_t flags = 0;
             for (int y = y0; y < y1; ++y)
-                for (int x = x0; x < x1; ++x)
-                    flags |= render_pixel<Real, E>(scene, frame, intersector, rect.x + x, rect.y + y,
-                                                   film.pixels[size_t(y) * size_t(rect.width) + size_t(x)], rays);
+                for (int x = x0; x < x1; ++x) {
+                    PixelWork own;
+                    render_pixel<Real, E>(scene, frame, intersector, rect.x + x, rect.y + y,
+                                          film.pixels[size_t(y) * size_t(rect.width) + size_t(x)], own);
+                    rays.add(own.rays);
+                    flags |= own.flags;
+                }
             progress.pixels_done += uint64_t(x1 - x0) * uint64_t(y1 - y0);
             progress.rays += rays.total();
             const std::lock_guard<std::mutex> lock(totals);

@@ -214,6 +214,34 @@ TYPED_TEST(Cuda, RefusesDevicesThatAreNotThere) {
     }
 }
 
+TYPED_TEST(Cuda, FilmsThatComeByAgainAreCopiedStraight) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = scene_of("benchmark");
+    FrameSettings settings = golden::settings_for(scene);
+    settings.crop = {3, 5, settings.full_width - 10, settings.full_height - 13};  // the last strip is not whole
+    const auto renderer = this->gpu(scene);
+    Film film;
+    for (const int frame : {0, 20, 40, 0}) {  // the pages are locked for the second
+        RenderProgress progress;
+        ASSERT_TRUE(renderer->render(camera_at(scene.camera, frame), settings, film, progress));
+        EXPECT_EQ(image_of(film), this->expected(scene, settings, frame)) << "frame " << frame;
+    }
+    const std::vector<PixelRecord> kept(film.pixels.begin(), film.pixels.end());
+    film = Film();  // the lock goes with the memory
+    film.pixels.assign(kept.begin(), kept.end());
+}
+
+TYPED_TEST(Cuda, SharesOfAPixelsSamplesAddUp) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = scene_of("platonic");
+    for (const int k : {2, 3, 5}) {
+        FrameSettings settings = golden::settings_for(scene);
+        settings.supersample = k;
+        settings.crop = {1, 2, 37, 29};
+        EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << k;
+    }
+}
+
 TYPED_TEST(Cuda, SaysWhereTheTimeWent) {
     CISTULA_NEEDS_GPU();
     const SceneDescription scene = scene_of("benchmark");

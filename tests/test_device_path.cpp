@@ -22,7 +22,7 @@ struct Waiting {
     size_t record;
 };
 
-/// What backend_cuda's SharedBranchStack does: after `surfaces` surfaces of a tree, whatever waits goes to the queue while
+/// What backend_cuda's GivingBranchStack does: after `surfaces` surfaces of a tree, whatever waits goes to the queue while
 /// that has room. 0: nothing does.
 template <class Real, class Media>
 class GivingStack {
@@ -70,22 +70,32 @@ void render_split(const Scene& scene, const FrameView& frame, const Intersector&
     typename Stack::Queue queue, next;
     const size_t width = size_t(film.rect.width);
     for (size_t i = 0; i < film.pixels.size(); ++i) {
-        Stack stack(split.surfaces, queue, split.capacity, i);
-        film.flags |= render_pixel<Real, E>(scene, frame, intersector, film.rect.x + int(i % width),
-                                            film.rect.y + int(i / width), film.pixels[i], film.rays, stack);
+        // Where pixels have several samples, backend_cuda's threads share them.
+        const int threads = frame.supersample > 1 ? 4 : 1;
+        for (int thread = 0; thread < threads; ++thread) {
+            Stack stack(split.surfaces, queue, split.capacity, i);
+            PixelWork work;
+            PixelRecord part;
+            render_pixel<Real, E>(scene, frame, intersector, film.rect.x + int(i % width), film.rect.y + int(i / width),
+                                  SampleRange{thread, threads}, part, work, stack);
+            if (thread == 0)
+                film.pixels[i] = part;
+            else
+                film.pixels[i].add(part);
+            film.rays.add(work.rays);
+            film.flags |= work.flags;
+        }
     }
     for (; !queue.empty(); queue = std::exchange(next, {})) {
         given += queue.size();
         for (size_t i = queue.size(); i-- > 0;) {
             PixelRecord part, &record = film.pixels[queue[i].record];
             Stack stack(split.surfaces, next, split.capacity, queue[i].record);
-            film.flags |= resume_branch<Real, E>(scene, frame, intersector, queue[i].branch, part, film.rays, stack);
-            for (int c = 0; c < 3; ++c) {
-                record.radiance[c] += part.radiance[c];
-                record.pruned[c] += part.pruned[c];
-                record.cut[c] += part.cut[c];
-            }
-            record.rays += part.rays;
+            PixelWork work;
+            resume_branch<Real, E>(scene, frame, intersector, queue[i].branch, part, work, stack);
+            film.rays.add(work.rays);
+            film.flags |= work.flags;
+            record.add(part);
         }
     }
 }

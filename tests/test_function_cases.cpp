@@ -239,9 +239,9 @@ TYPED_TEST(FunctionInputs, ShadowsAreOfAllKinds) {
     for_each_input<ConvexShadowCase<Real>>([&](const typename ConvexShadowCase<Real>::Input& in, const uint64_t*) {
         SceneView<Real> scene = view_of(in.shape);
         scene.incidents = {in.shadow.incidents, 2};
-        bool out = false;
-        held += light_on_convex(scene, in.shadow.light, 0, in.shape.ray.origin, out);
-        outside += out;
+        const LightSide side = light_on_convex(scene, in.shadow.light, 0, in.shape.ray.origin);
+        held += side != LightSide::none;
+        outside += side == LightSide::outside;
     });
     EXPECT_GT(held, 1000);
     EXPECT_GT(outside, 200);

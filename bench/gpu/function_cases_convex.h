@@ -215,10 +215,10 @@ struct ConvexIntervalCase {
         const SceneView<Real> scene = view_of(in);
         const Vec3<Real>&o = in.ray.origin, &d = in.ray.direction;
         const ConvexInterval<Real> all = convex_interval(scene, in.solid, o, d, false);
-        const ConvexInterval<Real> rest = convex_interval(scene, in.solid, o, d, false, in.skipped);
+        const ConvexExit<Real> rest = convex_exit(scene, in.solid, o, d, in.skipped);
         out.unsigned_zero(all.enter);
         out.unsigned_zero(all.leave);
-        out.unsigned_zero(rest.leave);
+        out.unsigned_zero(rest.t);
         out.bits(all.met(scene.extent));
         // Misses, and lies beyond half the way to it.
         const bool misses = passes_by(in.solid, o, d, RealTraits<Real>::infinity);

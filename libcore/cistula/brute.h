@@ -34,19 +34,23 @@ struct BruteIntersector {
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
         if (!is_finite(ray)) return best;
-        // One loop for rays in the open and enclosed ones, for the sake of the device's code size.
-        const uint32_t around = enclosing(scene, ray);
-        const bool enclosed = around != no_solid;
-        for (uint32_t i = 0; i < (enclosed ? 1 : scene.convex.size); ++i)
-            closest_convex(scene, enclosed ? around : scene.convex[i], ray, best);
-        if (enclosed) return best;
-        TriangleRay<Real> triangle_ray;
-        bool sheared = false;
-        for (uint32_t i = 0; i < scene.clusters.size; ++i) {
-            if (misses_flat(scene, i, ray, best.t)) continue;
-            if (!sheared) triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction), sheared = true;
-            closest_cluster(scene, i, ray, triangle_ray, best);
+        if constexpr (Media::contacts) {
+            if (closest_enclosed(scene, ray, best)) return best;
+            for (const uint32_t index : scene.convex) closest_convex(scene, index, ray, best);
+        } else {
+            const uint32_t around = ray.media.only();
+            if (around != no_solid) closest_exit(scene, around, ray, best);
+            if (around != no_solid && scene.solids[around].alone) return best;
+            for (uint32_t i = 0; i < scene.convex.size; ++i) {
+                const NumberedSolid& next = scene.convex[i];
+                if (next.index != around && next.index != ray.from_solid)
+                    closest_entry(scene, next.index, next.solid, ray, best);
+            }
         }
+        // The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
+        for (uint32_t i = 0; i < scene.clusters.size; ++i)
+            if (!misses_flat(scene, i, ray, best.t))
+                closest_cluster(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
         return best;
     }
 
@@ -56,15 +60,22 @@ struct BruteIntersector {
         ShadowSum sum;
         if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
         shadow_start<Real, E>(scene, shadow, sum);
-        for (uint32_t i = 0; i < scene.convex.size && !sum.dark(); ++i)
-            shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
-        TriangleRay<Real> triangle_ray;
-        bool sheared = false;
-        for (uint32_t i = 0; i < scene.clusters.size && !sum.dark(); ++i) {
-            if (misses_flat(scene, i, shadow.ray, shadow.distance)) continue;
-            if (!sheared) triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sheared = true;
-            shadow_cluster<Real, E>(scene, i, shadow, triangle_ray, sum);
+        if constexpr (Media::contacts) {
+            for (uint32_t i = 0; i < scene.convex.size && !sum.dark(); ++i)
+                shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
+        } else {
+            const uint32_t around = shadow.ray.media.only();
+            if (around != no_solid) shadow_exit<Real, E>(scene, around, shadow, sum);
+            for (uint32_t i = 0; i < scene.convex.size && !sum.dark(); ++i) {
+                const NumberedSolid& next = scene.convex[i];
+                if (next.index != around && next.index != shadow.ray.from_solid)
+                    shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);
+            }
         }
+        for (uint32_t i = 0; i < scene.clusters.size && !sum.dark(); ++i)
+            if (!misses_flat(scene, i, shadow.ray, shadow.distance))
+                shadow_cluster<Real, E>(scene, i, shadow,
+                                        TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
         return sum.template share<E, Real>();
     }
 };

@@ -14,7 +14,7 @@ struct Camera {
 /// 1 / sqrt(square) to within 2 u of double, for squares in [2^-120, 2^120]: Newton from a single-precision start, a third
 /// of the time of a square root and a division where doubles are dear.
 CISTULA_INLINE double inverse_root(double square) {
-    double r = double(1.0f / square_root(float(square)));
+    double r = double(reciprocal(square_root(float(square))));
     for (int step = 0; step < 2; ++step) r = r * fused(-0.5 * square * r, r, 1.5);
     return r;
 }

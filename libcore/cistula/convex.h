@@ -12,12 +12,21 @@ template <class Real>
 struct ConvexInterval {
     Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
 #if CISTULA_ON_DEVICE
-    uint32_t enter_slab = 0, leave_slab = 0;  // the first with these values; the host looks them up where they count
+    uint32_t enter_slab = 0;  // the first with this value; the host looks it up where it counts
 #endif
 
     /// For an origin outside. A solid that ends where the line starts, give or take the rounding of a point on a shared
     /// face, is behind it.
     CISTULA_INLINE bool met(Real extent) const { return enter <= leave && leave > incidence<Real> * extent; }
+};
+
+/// The least t at which a line leaves a slab.
+template <class Real>
+struct ConvexExit {
+    Real t = RealTraits<Real>::infinity;
+#if CISTULA_ON_DEVICE
+    uint32_t face = 0;  // the first with this value; the host looks it up where it counts
+#endif
 };
 
 inline constexpr uint32_t no_face = 0xffffffffu;
@@ -60,33 +69,41 @@ CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
     return least(least(least(a[0], a[4]), least(a[2], a[6])), least(least(a[1], a[5]), least(a[3], a[7])));
 }
 
-/// For an origin outside only whether it is met is sure where it is not. `skipped` is a face that cannot be the one to leave by.
+/// `may_stop`: where it is sure not to be met, that is all that is known.
 template <class Real, class Scene>
 CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Solid& solid,
                                                     const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                                    [[maybe_unused]] bool outside, uint32_t skipped = no_face) {
+                                                    [[maybe_unused]] bool may_stop) {
     ConvexInterval<Real> interval;
-    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
-    const auto leaves_by_skipped = [&] {
-        return (dot(slabs[skipped / 2].normal, direction) > Real(0)) == ((skipped & 1u) != 0);
-    };
 #if CISTULA_ON_DEVICE
+    // As if no slab were parallel to the line; with more care where one was.
+    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
+    Real slope = Real(1);
 #pragma unroll 1  // code that fits the instruction cache is worth more
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        const Slab<Real>& slab = slabs[i];
+        const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin), inverse = reciprocal(nd);
+        const Real at_low = (slab.low - no) * inverse, at_high = (slab.high - no) * inverse;
+        const Real enter = lesser(at_low, at_high);
+        slope = lesser(slope, magnitude(nd));
+        if (enter > interval.enter) interval.enter_slab = i;
+        interval.enter = greater(enter, interval.enter);
+        interval.leave = lesser(greater(at_low, at_high), interval.leave);
+        if (may_stop && interval.enter > interval.leave) break;
+    }
+    if (!(slope < least_slope<Real>)) return interval;
+    interval = ConvexInterval<Real>();
+#pragma unroll 1
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         Real enter, leave;
         cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
-        if (skipped / 2 == i && leaves_by_skipped()) leave = RealTraits<Real>::infinity;
         if (enter > interval.enter) interval.enter = enter, interval.enter_slab = i;
-        if (leave < interval.leave) interval.leave = leave, interval.leave_slab = i;
-        // A miss stays one; a ray that is inside leaves whatever rounding says.
-        if (outside && interval.enter > interval.leave) break;
+        interval.leave = lesser(leave, interval.leave);
     }
 #else
     for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
         alignas(32) Real enter[slab_lanes], leave[slab_lanes];
         cross_slabs(scene.slab_groups[solid.first_group + first / slab_lanes], origin, direction, enter, leave);
-        if (skipped / 2 - first < uint32_t(slab_lanes) && leaves_by_skipped())
-            leave[skipped / 2 - first] = RealTraits<Real>::infinity;
         interval.enter = greatest(greatest_lane(enter), interval.enter);
         interval.leave = least(least_lane(leave), interval.leave);
     }
@@ -94,22 +111,72 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const So
     return interval;
 }
 
-/// The first face by which the line enters or leaves, as convex_interval found it.
+/// The face by which a line leaves a slab.
+template <class Real>
+CISTULA_INLINE uint32_t leaving_face(uint32_t slab, Real slope) {
+    return 2 * slab + (slope > Real(0) ? 1 : 0);
+}
+
+/// Where a line from inside leaves: by another face than `skipped`, whatever rounding says about where it starts.
 template <class Real, class Scene>
-CISTULA_INLINE uint32_t convex_face(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
-                                    const Vec3<Real>& direction, const ConvexInterval<Real>& interval, bool leaves,
-                                    uint32_t skipped = no_face) {
+CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
+                                            const Vec3<Real>& direction, uint32_t skipped = no_face) {
+    ConvexExit<Real> exit;
     const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
 #if CISTULA_ON_DEVICE
-    const uint32_t slab = leaves ? interval.leave_slab : interval.enter_slab;
-    return 2 * slab + ((dot(slabs[slab].normal, direction) > Real(0)) == leaves ? 1 : 0);
+#pragma unroll 1
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        const Slab<Real>& slab = slabs[i];
+        const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin), inverse = reciprocal(nd);
+        const Real t = greater((slab.low - no) * inverse, (slab.high - no) * inverse);
+        const uint32_t face = leaving_face(i, nd);
+        if (t < exit.t && face != skipped && !(magnitude(nd) < least_slope<Real>)) exit = {t, face};
+    }
 #else
-    const Real t = leaves ? interval.leave : interval.enter;
+    for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
+        alignas(32) Real enter[slab_lanes], leave[slab_lanes];
+        cross_slabs(scene.slab_groups[solid.first_group + first / slab_lanes], origin, direction, enter, leave);
+        if (skipped / 2 - first < uint32_t(slab_lanes) &&
+            leaving_face(skipped / 2, dot(slabs[skipped / 2].normal, direction)) == skipped)
+            leave[skipped / 2 - first] = RealTraits<Real>::infinity;
+        exit.t = least(least_lane(leave), exit.t);
+    }
+#endif
+    return exit;
+}
+
+/// The first face by which the line enters, as convex_interval found it.
+template <class Real, class Scene>
+CISTULA_INLINE uint32_t convex_face(const Scene& scene, const Solid& solid, [[maybe_unused]] const Vec3<Real>& origin,
+                                    const Vec3<Real>& direction, const ConvexInterval<Real>& interval) {
+    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
+#if CISTULA_ON_DEVICE
+    const uint32_t i = interval.enter_slab;
+    return leaving_face(i, dot(slabs[i].normal, direction)) ^ 1u;
+#else
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         Real enter, leave;
         cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
-        const uint32_t face = 2 * i + ((dot(slabs[i].normal, direction) > Real(0)) == leaves ? 1 : 0);
-        if ((leaves ? leave : enter) == t && face != skipped) return face;
+        if (enter == interval.enter) return leaving_face(i, dot(slabs[i].normal, direction)) ^ 1u;
+    }
+    return 0;
+#endif
+}
+
+/// The first face by which the line leaves, as convex_exit found it.
+template <class Real, class Scene>
+CISTULA_INLINE uint32_t convex_face([[maybe_unused]] const Scene& scene, [[maybe_unused]] const Solid& solid,
+                                    [[maybe_unused]] const Vec3<Real>& origin, [[maybe_unused]] const Vec3<Real>& direction,
+                                    const ConvexExit<Real>& exit, [[maybe_unused]] uint32_t skipped) {
+#if CISTULA_ON_DEVICE
+    return exit.face;
+#else
+    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        Real enter, leave;
+        cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
+        const uint32_t face = leaving_face(i, dot(slabs[i].normal, direction));
+        if (leave == exit.t && face != skipped) return face;
     }
     return 0;
 #endif
@@ -125,24 +192,42 @@ CISTULA_INLINE bool passes_by(const Solid& solid, const Vec3<Real>& origin, cons
     return rest > Real(0) && (ahead < Real(0) || rest > ahead * ahead);
 }
 
+/// The way out of a convex solid that the ray is inside, if that is less than `best`: before the face is looked up, what
+/// the time alone decides.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
+    const Solid& solid = scene.solids[index];
+    const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
+    const ConvexExit<Real> exit = convex_exit(scene, solid, ray.origin, ray.direction, skipped);
+    const Real t = greatest(exit.t, Real(0));
+    if (!(t <= best.t && t < RealTraits<Real>::infinity)) return;
+    const uint64_t key =
+        make_key(CrossingKind::leave, index, convex_face(scene, solid, ray.origin, ray.direction, exit, skipped));
+    if (best.improves(t, key)) best = {t, key, Real(0), Real(0), 0, false};
+}
+
+/// The way into a convex solid that the ray neither is inside nor left.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Solid& solid, const Ray<Real, Media>& ray,
+                                  Hit<Real>& best) {
+    if (passes_by(solid, ray.origin, ray.direction, best.t)) return;
+    const ConvexInterval<Real> interval = convex_interval(scene, solid, ray.origin, ray.direction, true);
+    if (!interval.met(scene.extent)) return;
+    const Real t = greatest(interval.enter, Real(0));
+    if (!(t <= best.t && t < RealTraits<Real>::infinity) || t < ray.after.t) return;
+    const uint64_t key =
+        make_key(CrossingKind::enter, index, convex_face(scene, solid, ray.origin, ray.direction, interval));
+    if (ray.after.before(t, key) && best.improves(t, key)) best = {t, key, Real(0), Real(0), 0, true};
+}
+
 /// The ray's next crossing of a convex solid, if it is less than `best`.
 template <class Real, class Media, class Scene>
 CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                    Hit<Real>& best) {
-    const bool inside = ray.media.contains(index), own = ray.from_solid == index;
-    if (own && !inside) return;
-    const Solid& solid = scene.solids[index];
-    if (!inside && passes_by(solid, ray.origin, ray.direction, best.t)) return;
-    const uint32_t skipped = own ? ray.from_face : no_face;
-    const ConvexInterval<Real> interval = convex_interval(scene, solid, ray.origin, ray.direction, !inside, skipped);
-    if (!inside && !interval.met(scene.extent)) return;
-    // Before the face, which takes a look at every slab, what the time alone decides.
-    const Real found = inside ? interval.leave : interval.enter, t = greatest(found, Real(0));
-    if (!(t <= best.t && t < RealTraits<Real>::infinity) || (!inside && t < ray.after.t)) return;
-    const uint32_t face = convex_face(scene, solid, ray.origin, ray.direction, interval, inside, skipped);
-    const uint64_t key = make_key(inside ? CrossingKind::leave : CrossingKind::enter, index, face);
-    if (!inside && !ray.after.before(t, key)) return;
-    if (best.improves(t, key)) best = {t, key, Real(0), Real(0), 0, !inside};
+    if (ray.media.contains(index))
+        closest_exit(scene, index, ray, best);
+    else if (ray.from_solid != index)
+        closest_entry(scene, index, scene.solids[index], ray, best);
 }
 
 /// The solid around a ray that meets its own way out next, since it stands alone; no_solid for any other ray.

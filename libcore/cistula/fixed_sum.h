@@ -22,8 +22,8 @@ CISTULA_INLINE double fixed_scale(int shift) {
 
 /// out = floor(x * scale), exactly, for x in [0, 1]; anything else (NaN too) gives false and leaves out alone.
 /// Radiances are scaled to a bound of at most 1, so that a larger one is as much a fault as an infinite one.
-template <class Real>
-CISTULA_INLINE bool to_fixed(Real x, double scale, int64_t& out) {
+template <class Real, class Scale>
+CISTULA_INLINE bool to_fixed(Real x, Scale scale, int64_t& out) {
     const Real value = x * static_cast<Real>(scale);  // exact, scale being a power of two
     if (!(x >= 0 && x <= 1)) return false;
     out = static_cast<int64_t>(value);
@@ -31,8 +31,8 @@ CISTULA_INLINE bool to_fixed(Real x, double scale, int64_t& out) {
 }
 
 /// The same with ceil in place of floor: for the ledger.
-template <class Real>
-CISTULA_INLINE bool to_fixed_up(Real x, double scale, int64_t& out) {
+template <class Real, class Scale>
+CISTULA_INLINE bool to_fixed_up(Real x, Scale scale, int64_t& out) {
     const Real value = x * static_cast<Real>(scale);
     if (!(x >= 0 && x <= 1)) return false;
     const int64_t whole = static_cast<int64_t>(value);

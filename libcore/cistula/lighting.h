@@ -25,8 +25,8 @@ CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Rea
 template <class Real, class E, class Intersector, class Media, class Scene>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector,
                                     const Ray<Real, Media>& ray, const Hit<Real>& hit, const Surface<Real>& s,
-                                    const Vec3<Real>& weight, PixelSums<Real>& sums, TreeRays& rays) {
-    const Material<Real>& m = *s.material;
+                                    const Vec3<Real>& weight, PixelSums<Real>& sums, PixelRays& rays) {
+    const Material<Real>& m = scene.materials[s.material];
     sums.add(weight * (s.color * m.ambient));
     if constexpr (E::has(effect_diffuse | effect_specular)) {
         for (uint32_t i = 0; i < scene.lights.size; ++i) {
@@ -35,7 +35,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             // A light in the plane of the face lights it at no angle; rounding must not decide on which side it is.
             if (!(dot(s.normal, to_light) > incidence<Real> * scene.extent)) continue;
             const Real distance = length(to_light);
-            to_light *= Real(1) / distance;
+            to_light *= reciprocal(distance);
             const Real n_l = dot(s.normal, to_light);
             if (!(n_l > Real(0))) continue;
             const Vec3<Real> lit = phong<Real, E>(m, s.color, light, s.normal, to_light, -ray.direction, n_l, distance);

@@ -26,8 +26,16 @@ struct Meeting {
         take(first);
     }
 
+    CISTULA_INLINE const Crossing<Real>& last() const {
+        if constexpr (capacity == 1)
+            return taken[0];  // no index: that would put all of it into memory
+        else
+            return taken[count - 1];
+    }
+
     CISTULA_INLINE void take(const Hit<Real>& crossing) {
-        taken[count++] = {crossing.t, crossing.key};
+        taken[capacity == 1 ? 0 : count] = {crossing.t, crossing.key};
+        ++count;
         const int change = media_change(key_kind(crossing.key));
         if (change != 0) fits &= beyond.add(key_solid(crossing.key), change);
     }
@@ -45,7 +53,7 @@ CISTULA_INLINE void meet(const Scene& scene, const Intersector& intersector, con
     Ray<Real, Media> probe = ray;
     while (meeting.count < Meeting<Real, Media>::capacity) {
         probe.media = meeting.beyond;
-        probe.after = meeting.taken[meeting.count - 1];
+        probe.after = meeting.last();
         const Hit<Real> next = intersector.closest(probe);
         const uint32_t solid = key_solid(next.key);
         if (!(next.t <= reach) || key_kind(next.key) == CrossingKind::sheet || solid == key_solid(hit.key)) break;

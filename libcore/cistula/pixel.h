@@ -31,7 +31,7 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame,
         const Vec3<double> closest = along(origin, -along_view, direction);
         const double rest = square - dot(closest, closest);
         if (!(rest > 0) || along_view > 0) return false;
-        const double half = square_root(rest);
+        const double half = rest > 0x1p-100 ? rest * inverse_root(rest) : 0;
         start = -along_view - half;
         origin = along(closest, -half, direction);
     }
@@ -84,73 +84,76 @@ CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& inte
     }
 }
 
-/// All samples of pixel (px, py), the k x k grid of centers. Adds to `rays`; returns RenderFlag bits. Branches that `stack`
-/// gives away are missing from the record: resume_branch adds them.
+/// Notes down what a sample sees first.
+template <class Real>
+struct FirstSeen {
+    const FrameView& frame;
+    const PixelWork& work;
+    PixelRecord& record;
+    bool middle;  // the sample that stands for the pixel where no mean makes sense
+
+    CISTULA_INLINE void nothing(bool light) const { record.hits += light ? 1 : 0; }
+    CISTULA_INLINE void surface(const Hit<Real>& hit, const Vec3<Real>& normal) const {
+        ++record.hits;
+        if (!middle) return;
+        record.id = int32_t(key_solid(hit.key)) + 1;
+        record.z = float((work.start + double(hit.t)) * work.facing * frame.unit_length);
+        for (int c = 0; c < 3; ++c) record.normal[c] = float(normal[c]);
+    }
+};
+
+/// Which of a pixel's samples are rendered: all, or every step-th where several threads share a pixel.
+struct SampleRange {
+    int first = 0, step = 1;
+};
+
+/// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own. Branches that `stack` gives away are
+/// missing from the record: resume_branch adds them.
 template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE uint32_t render_pixel(const Scene& scene, const FrameView& frame,
-                                        const Intersector& intersector, int px, int py, PixelRecord& record,
-                                        RayCounts& rays, Stack& stack) {
+CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
+                                 SampleRange samples, PixelRecord& record, PixelWork& work, Stack& stack) {
     record = PixelRecord();
     record.z = RealTraits<float>::infinity;
-    uint32_t flags = 0;
-    RayCounts own;
-    const int k = frame.supersample, chosen = (k / 2) * k + k / 2;
-    for (int sample = 0; sample < k * k; ++sample) {
+    const int k = frame.supersample;
+    for (int sample = samples.first; sample < k * k; sample += samples.step) {
+        const int row = k == 1 ? 0 : sample / k, column = sample - row * k;
         Ray<Real, typename Intersector::Media> ray;
-        double start;
         // In half samples from the middle of the picture.
-        const int across = 2 * (px * k + sample % k) + 1 - frame.width * k;
-        const int down = 2 * (py * k + sample / k) + 1 - frame.height * k;
+        const int across = 2 * (px * k + column) + 1 - frame.width * k;
+        const int down = 2 * (py * k + row) + 1 - frame.height * k;
         const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
-        PixelSums<Real> sums(frame.tree, scene.bound, record, flags);
-        ++own.primary;
-        if (!primary_ray(scene, frame, direction, ray, start)) {
+        PixelSums<Real> sums(frame.tree, scene.bound, record, work.flags);
+        ++work.rays.primary;
+        if (!primary_ray(scene, frame, direction, ray, work.start)) {
             sums.add(scene.background);
             continue;
         }
-        TreeRays tree_rays;
-        RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, tree_rays, stack);
-        tree.trace(ray, [&](bool anything, const Hit<Real>* surface) {
-            record.hits += anything ? 1 : 0;
-            if (sample != chosen || !surface) return;
-            record.id = int32_t(key_solid(surface->key)) + 1;
-            record.z = float((start + double(surface->t)) * dot(direction, frame.camera.forward) * frame.unit_length);
-            const Vec3<Real> normal = normal_at(scene, *surface);
-            for (int c = 0; c < 3; ++c) record.normal[c] = float(normal[c]);
-        });
-        own.add(tree_rays);
+        work.facing = dot(direction, frame.camera.forward);
+        RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, work.rays, stack);
+        tree.trace(ray, FirstSeen<Real>{frame, work, record, column == k / 2 && row == k / 2});
     }
-    record.rays = uint32_t(least(own.total(), uint64_t(0xffffffffu)));
-    rays.add(own);
-    return flags;
+    record.rays = work.rays.total();
 }
 
-/// The same with a stack of its own.
+/// All samples, with a stack of its own.
 template <class Real, class E, class Intersector, class Scene>
-CISTULA_INLINE uint32_t render_pixel(const Scene& scene, const FrameView& frame,
-                                        const Intersector& intersector, int px, int py, PixelRecord& record,
-                                        RayCounts& rays) {
+CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
+                                 PixelRecord& record, PixelWork& work) {
     BranchStack<Real, typename Intersector::Media> stack;
-    return render_pixel<Real, E>(scene, frame, intersector, px, py, record, rays, stack);
+    render_pixel<Real, E>(scene, frame, intersector, px, py, SampleRange(), record, work, stack);
 }
 
-/// The rest of a tree from a branch that another stack gave away; `record` gets sums and rays of its own.
+/// The rest of a tree from a branch that another stack gave away; `record` and `work` get what is its own.
 template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE uint32_t resume_branch(const Scene& scene, const FrameView& frame,
+CISTULA_INLINE void resume_branch(const Scene& scene, const FrameView& frame,
                                          const Intersector& intersector,
                                          Branch<Real, typename Intersector::Media>& branch, PixelRecord& record,
-                                         RayCounts& rays, Stack& stack) {
+                                         PixelWork& work, Stack& stack) {
     record = PixelRecord();
-    uint32_t flags = 0;
-    PixelSums<Real> sums(frame.tree, scene.bound, record, flags);
-    TreeRays tree_rays;
-    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, tree_rays, stack);
+    PixelSums<Real> sums(frame.tree, scene.bound, record, work.flags);
+    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, work.rays, stack);
     tree.resume(branch);
-    RayCounts own;
-    own.add(tree_rays);
-    record.rays = uint32_t(own.total());
-    rays.add(own);
-    return flags;
+    record.rays = work.rays.total();
 }
 
 }  // namespace cistula

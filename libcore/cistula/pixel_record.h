@@ -13,9 +13,24 @@ enum RenderFlag : uint32_t {
     flag_too_many_crossings = 1u << 3,  // a straight ray crossed more faces than the limit
 };
 
-/// Rays of one tree. A tree of 2^32 rays would take hours.
-struct TreeRays {
-    uint32_t reflected = 0, transmitted = 0, shadow = 0;
+/// Rays of one pixel, of which 2^32 would take hours.
+struct PixelRays {
+    uint32_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
+
+    CISTULA_INLINE void add(const PixelRays& o) {
+        primary += o.primary;
+        reflected += o.reflected;
+        transmitted += o.transmitted;
+        shadow += o.shadow;
+    }
+    CISTULA_INLINE uint32_t total() const { return primary + reflected + transmitted + shadow; }
+};
+
+/// What is noted down while a pixel is rendered; a device keeps it where it costs no registers.
+struct PixelWork {
+    PixelRays rays;
+    uint32_t flags = 0;            // RenderFlag bits
+    double start = 0, facing = 0;  // of the sample under way: from the camera to its ray's origin; cosine to the view axis
 };
 
 struct RayCounts {
@@ -27,7 +42,8 @@ struct RayCounts {
         transmitted += o.transmitted;
         shadow += o.shadow;
     }
-    CISTULA_INLINE void add(const TreeRays& o) {
+    CISTULA_INLINE void add(const PixelRays& o) {
+        primary += o.primary;
         reflected += o.reflected;
         transmitted += o.transmitted;
         shadow += o.shadow;
@@ -45,6 +61,21 @@ struct PixelRecord {
     int32_t id;         // 1 + solid under the sample nearest the pixel's center; 0: none
     float z;            // that sample's distance along the view axis in scene units; infinity: none
     float normal[3];    // that sample's unit normal, toward the viewer, in world axes; 0: none
+
+    /// Takes other samples of the same pixel in.
+    CISTULA_INLINE void add(const PixelRecord& o) {
+        for (int c = 0; c < 3; ++c) {
+            radiance[c] += o.radiance[c];
+            pruned[c] += o.pruned[c];
+            cut[c] += o.cut[c];
+        }
+        hits += o.hits;
+        rays += o.rays;
+        if (o.id == 0) return;
+        id = o.id;
+        z = o.z;
+        for (int c = 0; c < 3; ++c) normal[c] = o.normal[c];
+    }
 };
 
 }  // namespace cistula

@@ -10,8 +10,8 @@ namespace cistula {
 /// What a frame asks of every ray tree.
 struct TreeSettings {
     int depth = 4;           // surfaces shaded along a path, the first included
-    double fixed_scale = 1;  // 2^s of the sums
-    double fixed_unit = 1;   // 2^-s
+    float fixed_scale = 1;  // 2^s of the sums, a power of two that every Real has
+    float fixed_unit = 1;   // 2^-s
     int64_t budget = 0;      // truncation allowed per sample, in units of the sums
 };
 

@@ -13,8 +13,8 @@ namespace cistula {
 inline constexpr int largest_depth = 1024;
 /// Faces that one ray may pass without shading or bending; more fail the render (flag_too_many_crossings).
 inline constexpr int largest_crossings = 1 << 20;
-/// The branch that is followed after the k-th push weighs at most 2^-k, and one under 2^-62 is dropped.
-inline constexpr int branch_stack = 66;
+/// The branch that is followed while k others wait weighs at most 2^-k, and one under 2^-62 is dropped.
+inline constexpr int branch_stack = 67;
 
 /// Part of a tree that is still to be followed: `weight` times what `ray` sees.
 template <class Real, class Media = MediaList>
@@ -25,15 +25,32 @@ struct Branch {
     uint32_t mirrored : 1 = 0;
 };
 
+/// A branch as it lies in memory, unset until then.
+template <class Real, class Media>
+struct alignas(Branch<Real, Media>) BranchWords {
+    static constexpr int count = sizeof(Branch<Real, Media>) / sizeof(uint32_t);
+    static_assert(sizeof(Branch<Real, Media>) % sizeof(uint32_t) == 0);
+
+    uint32_t word[count];
+
+    CISTULA_INLINE static BranchWords of(const Branch<Real, Media>& branch) { return bits_as<BranchWords>(branch); }
+    CISTULA_INLINE void give(Branch<Real, Media>& branch) const { memcpy(&branch, word, sizeof branch); }
+};
+
 /// Room for branches, unset: a Branch sets itself, and most trees need a few.
 template <class Real, class Media, int size>
 class BranchRoom {
   public:
-    CISTULA_INLINE void put(int i, const Branch<Real, Media>& branch) { memcpy(bytes_[i], &branch, sizeof branch); }
-    CISTULA_INLINE void get(int i, Branch<Real, Media>& branch) const { memcpy(&branch, bytes_[i], sizeof branch); }
+    using Words = BranchWords<Real, Media>;
+
+    CISTULA_INLINE void put(int i, const Branch<Real, Media>& branch) { entries_[i] = Words::of(branch); }
+    CISTULA_INLINE void get(int i, Branch<Real, Media>& branch) const {
+        const Words copy = entries_[i];  // in words: memcpy from an unknown place goes byte by byte
+        copy.give(branch);
+    }
 
   private:
-    alignas(Branch<Real, Media>) unsigned char bytes_[size][sizeof(Branch<Real, Media>)];
+    Words entries_[size];
 };
 
 /// The branches that wait, in the thread's own memory. A RayTree tells it of every surface that it shades.
@@ -66,11 +83,11 @@ class RayTree {
     using Scene = typename Intersector::Scene;
 
     CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth,
-                           PixelSums<Real>& sums, TreeRays& rays, Stack& stack)
+                           PixelSums<Real>& sums, PixelRays& rays, Stack& stack)
         : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums), rays_(rays), stack_(stack) {}
 
-    /// Adds all that the primary ray sees to the sums. first(anything, surface) is told what it meets first: whether a
-    /// surface or a seen light, and the surface, or null.
+    /// Adds all that the primary ray sees to the sums, and tells what it meets first: first.surface(hit, normal), or
+    /// first.nothing(light) where that is no surface but perhaps a seen light.
     template <class First>
     CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
         Branch<Real, Media> branch{primary, Vec3<Real>(Real(1))};
@@ -79,25 +96,39 @@ class RayTree {
 
     /// Goes on with a branch of another tree, which that one left. In any order only where the budget of truncation is 0.
     CISTULA_INLINE void resume(Branch<Real, Media>& branch) {
-        if (follow(branch)) walk(branch, [](bool, const Hit<Real>*) {});
+        if (follow(branch)) walk(branch, Unnoted());
     }
 
   private:
+    struct Unnoted {
+        CISTULA_INLINE void surface(const Hit<Real>&, const Vec3<Real>&) const {}
+        CISTULA_INLINE void nothing(bool) const {}
+    };
+
     template <class First>
     CISTULA_INLINE void walk(Branch<Real, Media>& branch, const First& first) {
-        Meeting<Real, Media> meeting;
-        for (bool at_first = true;; at_first = false) {
+        bool at_first = true;
+        do {
+            Meeting<Real, Media> meeting;  // within the loop, as all that only some rays have: it holds no registers elsewhere
             bool light = false;
-            const bool surface = next_surface(branch, meeting, light);
-            if (at_first) first(surface || light, surface ? &meeting.hit : nullptr);
-            if (surface) {
+            if (next_surface(branch, meeting, light)) {
+                const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, meeting.hit);
+                if (at_first) first.surface(meeting.hit, s.normal);
                 stack_.shaded();
-                if (shade(branch, meeting)) continue;
+                shade(branch, meeting, s);
+            } else if (at_first) {
+                first.nothing(light);
             }
-            do {
-                if (!stack_.pop(branch)) return;
-            } while (!follow(branch));
-        }
+            at_first = false;
+        } while (next(branch));
+    }
+
+    /// The latest of the branches that wait and are worth it; false if there is none.
+    CISTULA_INLINE bool next(Branch<Real, Media>& branch) {
+        do {
+            if (!stack_.pop(branch)) return false;
+        } while (!follow(branch));
+        return true;
     }
 
     CISTULA_INLINE bool follow(const Branch<Real, Media>& branch) {
@@ -112,10 +143,11 @@ class RayTree {
         const Crossing<Real>& crossing = meeting.taken[0];
         const uint32_t solid = key_solid(crossing.key);
         Media media = meeting.beyond;
-        if (Media::meshes && ray.fresh() && solid == ray.from_solid && scene_.solids[solid].kind == SolidKind::mesh)
-            count_passed_over(ray, crossing, media);
+        if constexpr (Media::meshes)
+            if (ray.fresh() && solid == ray.from_solid && scene_.solids[solid].kind == SolidKind::mesh)
+                count_passed_over(ray, crossing, media);
         ray.media = media;
-        ray.after = meeting.taken[meeting.count - 1];
+        ray.after = meeting.last();
     }
 
     /// A line that starts on a mesh takes its first crossing from the right side. Others of that mesh that rounding puts
@@ -178,44 +210,45 @@ class RayTree {
         }
     }
 
-    /// Adds a face's local light and replaces the branch by the lighter of its children; the heavier one is pushed. False
-    /// if there is none to go on with.
-    CISTULA_INLINE bool shade(Branch<Real, Media>& branch, const Meeting<Real, Media>& meeting) {
-        const Hit<Real>& hit = meeting.hit;
-        const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, hit);
+    /// Adds a face's local light. What it sends on waits, before the lights are looked at: nothing of the branch has to be
+    /// kept at hand for later then.
+    CISTULA_INLINE void shade(const Branch<Real, Media>& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
         if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
-        const Material<Real>& m = *s.material;
-        if (m.local > Real(0))
-            add_local_light<Real, E>(scene_, intersector_, branch.ray, hit, s, branch.weight * m.local, sums_, rays_);
-        if constexpr (!E::has(effect_reflection | effect_transmission)) return false;
+        if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, meeting, s);
+        const Real local = scene_.materials[s.material].local;
+        if (local > Real(0))
+            add_local_light<Real, E>(scene_, intersector_, branch.ray, meeting.hit, s, branch.weight * local, sums_, rays_);
+    }
 
-        const Shares<Real> shares = split_at<Real, E>(scene_, m, branch.ray.direction, s.normal, branch.ray.media,
-                                                      meeting.beyond, key_kind(hit.key) == CrossingKind::sheet);
+    /// Pushes the heavier of the branch's children and then the lighter, which is next.
+    CISTULA_INLINE void send_on(const Branch<Real, Media>& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
+        const bool sheet = key_kind(meeting.hit.key) == CrossingKind::sheet;
+        const Shares<Real> shares = split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal,
+                                                      branch.ray.media, meeting.beyond, sheet);
         const Vec3<Real> mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
         // Sums over channels, so that a child that is not the heavier is at most half its parent.
         const Real mirrored_size = mirrored.x + mirrored.y + mirrored.z, through_size = through.x + through.y + through.z;
         if (int(branch.depth) + 1 >= depth_) {
             if (mirrored_size > Real(0)) sums_.cut(mirrored);
             if (through_size > Real(0)) sums_.cut(through);
-            return false;
+            return;
         }
-        const bool both = mirrored_size > Real(0) && through_size > Real(0);
-        const bool through_first = !(mirrored_size > Real(0)) || (both && through_size < mirrored_size);
-        if (both) {
-            Branch<Real, Media> heavier;
-            become(heavier, branch, meeting, s, shares, !through_first, through_first ? mirrored : through);
-            if (!stack_.push(heavier)) sums_.flag(flag_stack_overflow);
-        } else if (!(mirrored_size > Real(0)) && !(through_size > Real(0))) {
-            return false;
+        bool goes_through = through_size >= mirrored_size;
+#if CISTULA_ON_DEVICE
+#pragma unroll 1  // one copy of the code
+#endif
+        for (int i = 0; i < 2; ++i, goes_through = !goes_through) {
+            if (!((goes_through ? through_size : mirrored_size) > Real(0))) continue;
+            if (!stack_.push(child_of(branch, meeting, s, shares, goes_through, goes_through ? through : mirrored)))
+                sums_.flag(flag_stack_overflow);
         }
-        become(branch, branch, meeting, s, shares, through_first, through_first ? through : mirrored);
-        return follow(branch);
     }
 
-    /// Makes `child` (which may be `parent` itself) the ray that goes through, or the mirrored one.
-    CISTULA_INLINE void become(Branch<Real, Media>& child, const Branch<Real, Media>& parent, const Meeting<Real, Media>& meeting,
-                               const Surface<Real>& s, const Shares<Real>& shares, bool goes_through,
-                               const Vec3<Real>& weight) {
+    /// The ray that goes through, or the mirrored one.
+    CISTULA_INLINE Branch<Real, Media> child_of(const Branch<Real, Media>& parent, const Meeting<Real, Media>& meeting,
+                                                const Surface<Real>& s, const Shares<Real>& shares, bool goes_through,
+                                                const Vec3<Real>& weight) {
+        Branch<Real, Media> child;
         child.depth = parent.depth + 1;
         child.weight = weight;
         child.mirrored = !goes_through;
@@ -228,13 +261,14 @@ class RayTree {
             child.ray = parent.ray;
             pass(child.ray, meeting);
         }
+        return child;
     }
 
     const Scene& scene_;
     const Intersector& intersector_;
     const int depth_;
     PixelSums<Real>& sums_;
-    TreeRays& rays_;
+    PixelRays& rays_;
     Stack& stack_;
 };
 

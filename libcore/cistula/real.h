@@ -47,6 +47,12 @@ template <class T>
 CISTULA_INLINE T magnitude(T a) {
     return a < T(0) ? -a : a;
 }
+CISTULA_INLINE float magnitude(float a) {
+    return fabsf(a);
+}
+CISTULA_INLINE double magnitude(double a) {
+    return ::fabs(a);
+}
 
 /// False for NaN and both infinities.
 template <class Real>

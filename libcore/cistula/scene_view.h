@@ -15,7 +15,7 @@ enum class SolidKind : uint32_t {
 
 /// The points with low <= normal.x <= high. A single plane has low = -infinity. Face 2 i is slab i's low side, 2 i + 1 its high one.
 template <class Real>
-struct Slab {
+struct alignas(2 * sizeof(Real)) Slab {  // read in pairs of numbers
     Vec3<Real> normal;  // unit
     Real low, high;
 };
@@ -46,6 +46,12 @@ struct alignas(16) Solid {
     uint32_t touched;                 // convex, mesh: 1 if its padded box meets that of another such solid
     uint32_t alone;                   // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
                                       // hits next is its own face
+};
+
+/// A solid and its number.
+struct NumberedSolid {
+    Solid solid;
+    uint32_t index;
 };
 
 /// So much that rounding never turns a ray that the slabs accept into one that passes the sphere by: the terms of the

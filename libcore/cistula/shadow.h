@@ -67,52 +67,75 @@ struct ShadowSum {
     }
 };
 
-/// Whether the light lies on faces of a solid, and whether `point` is outside one of those planes.
+/// Where a line to a light starts that lies on faces of a solid.
+enum class LightSide { none, inside, outside };  // on no face of it; inside all of their planes, or outside one
+
+/// By value: a reference would put the ray into memory.
 template <class Real, class Scene>
-CISTULA_SELDOM bool light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index,
-                                    const Vec3<Real>& point, bool& outside) {
-    bool incident = false;
-    outside = false;
+CISTULA_SELDOM LightSide light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index, Vec3<Real> point) {
+    LightSide side = LightSide::none;
     for (uint32_t i = 0; i < light.incident_count; ++i) {
         const Incident& face = scene.incidents[light.first_incident + i];
         if (face.solid != index) continue;
-        incident = true;
         const Slab<Real>& slab = scene.slabs[scene.solids[index].first_slab + face.face / 2];
         const Real n = dot(slab.normal, point);
-        outside |= face.face & 1u ? n > slab.high : n < slab.low;
+        if (face.face & 1u ? n > slab.high : n < slab.low) return LightSide::outside;
+        side = LightSide::inside;
     }
-    return incident;
+    return side;
+}
+
+template <class Real, class Media, class Scene>
+CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow) {
+    return shadow.light->incident_count == 0 ? LightSide::none
+                                             : light_on_convex(scene, *shadow.light, index, shadow.ray.origin);
+}
+
+/// A convex solid that the ray starts in. A light on its own face is never beyond that, whatever the rounding of two
+/// nearly equal distances says.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
+    const Ray<Real, Media>& ray = shadow.ray;
+    const Solid& solid = scene.solids[index];
+    const Material<Real>& material = scene.materials[solid.material];
+    Real leave = shadow.distance;
+    if (light_side(scene, index, shadow) == LightSide::none) {
+        const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
+        leave = greatest(convex_exit(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
+        if (leave < shadow.distance) sum.cross<E>(material);
+    }
+    if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance), Real(0)));
+}
+
+/// One that it neither starts in nor left. With a light on its face half-spaces decide.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid& solid, const ShadowRay<Real, Media>& shadow,
+                                 ShadowSum& sum) {
+    const Ray<Real, Media>& ray = shadow.ray;
+    if (passes_by(solid, ray.origin, ray.direction, shadow.distance)) return;
+    const LightSide side = light_side(scene, index, shadow);
+    if (side == LightSide::outside) return;
+    const ConvexInterval<Real> interval =
+        convex_interval(scene, solid, ray.origin, ray.direction, side == LightSide::none);
+    const Real enter = greatest(interval.enter, Real(0));
+    Real leave = shadow.distance;
+    const Material<Real>& material = scene.materials[solid.material];
+    if (side == LightSide::none) {
+        if (!interval.met(scene.extent) || !(enter < shadow.distance)) return;
+        leave = greatest(interval.leave, Real(0));
+        if (leave < shadow.distance) sum.cross<E>(material);
+    }
+    sum.cross<E>(material);
+    if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance) - enter, Real(0)));
 }
 
 template <class Real, class E, class Media, class Scene>
 CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                   ShadowSum& sum) {
-    const Ray<Real, Media>& ray = shadow.ray;
-    const bool inside = ray.media.contains(index), own = ray.from_solid == index;
-    if (own && !inside) return;
-    const Solid& solid = scene.solids[index];
-    if (!inside && passes_by(solid, ray.origin, ray.direction, shadow.distance)) return;
-    const Material<Real>& material = scene.materials[solid.material];
-    const ConvexInterval<Real> interval =
-        convex_interval(scene, solid, ray.origin, ray.direction, !inside && shadow.light->incident_count == 0,
-                        own ? ray.from_face : no_face);
-    const Real enter = inside ? Real(0) : greatest(interval.enter, Real(0));
-    const Real leave = least(greatest(interval.leave, Real(0)), shadow.distance);
-    bool outside = false;
-    if (shadow.light->incident_count != 0 && light_on_convex(scene, *shadow.light, index, ray.origin, outside)) {
-        // A light on the solid's own face: half-spaces decide, not a comparison of nearly equal distances.
-        if (outside && !inside) return;
-        if (!inside) sum.cross<E>(material);
-        if constexpr (E::has(effect_absorption))
-            sum.absorb(material, greatest(shadow.distance - enter, Real(0)));
-        return;
-    }
-    if (!inside) {
-        if (!interval.met(scene.extent) || !(enter < shadow.distance)) return;
-        sum.cross<E>(material);
-    }
-    if (greatest(interval.leave, Real(0)) < shadow.distance) sum.cross<E>(material);
-    if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(leave - enter, Real(0)));
+    if (shadow.ray.media.contains(index))
+        shadow_exit<Real, E>(scene, index, shadow, sum);
+    else if (shadow.ray.from_solid != index)
+        shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
 }
 
 /// Takes an accepted crossing of a triangle into the sum if it lies before the light.

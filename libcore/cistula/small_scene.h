@@ -19,9 +19,13 @@ struct InlineSpan {
 
     /// False if they do not fit. `from` must be readable here.
     bool assign(const Span<T>& from) {
-        if (from.size > capacity) return false;
-        size = from.size;
-        for (uint32_t i = 0; i < size; ++i) data[i] = from[i];
+        return assign(from.size, [&](uint32_t i) { return from[i]; });
+    }
+    template <class Get>
+    bool assign(uint32_t count, const Get& get) {
+        if (count > capacity) return false;
+        size = count;
+        for (uint32_t i = 0; i < size; ++i) data[i] = get(i);
         return true;
     }
 };
@@ -32,7 +36,7 @@ struct SmallScene {
 
     InlineSpan<Solid, 24> solids;
     InlineSpan<Slab<Real>, 96> slabs;
-    InlineSpan<uint32_t, 16> convex;
+    InlineSpan<NumberedSolid, 16> convex;  // copies: a look at one needs no other first
     InlineSpan<Cluster<Real>, 4> clusters;
     InlineSpan<Material<Real>, 16> materials;
     InlineSpan<Light<Real>, 8> lights;
@@ -54,7 +58,8 @@ struct SmallScene {
 
     /// False if `here`, a view that can be read, is too large. `there`: the same scene where kernels read it.
     bool assign(const SceneView<Real>& here, const SceneView<Real>& there) {
-        if (!solids.assign(here.solids) || !slabs.assign(here.slabs) || !convex.assign(here.convex) ||
+        if (!solids.assign(here.solids) || !slabs.assign(here.slabs) || 
+            !convex.assign(here.convex.size, [&](uint32_t i) { return NumberedSolid{here.solids[here.convex[i]], here.convex[i]}; }) ||
             !clusters.assign(here.clusters) || !materials.assign(here.materials) || !lights.assign(here.lights) ||
             !textures.assign(here.textures))
             return false;

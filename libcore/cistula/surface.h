@@ -13,7 +13,7 @@ struct Surface {
     Vec3<Real> normal;             // geometric, unit, toward the viewer
     Vec3<Real> viewer_side;        // where rays that stay on the viewer's side start
     Vec3<Real> color;              // the material's, times its texture
-    const Material<Real>* material;
+    uint32_t material;
 };
 
 /// From a point on a triangle toward the apex over its centroid, by about 8 u M: the segment crosses no other triangle
@@ -32,16 +32,20 @@ CISTULA_INLINE Real largest_magnitude(const Vec3<Real>& a) {
     return greatest(magnitude(a.x), greatest(magnitude(a.y), magnitude(a.z)));
 }
 
-/// The unit normal of a triangle from two of its edges; not finite for one without area. The square of a small one's area
-/// underflows, so that those are scaled first.
+/// The same for a small one, the square of whose area underflows: it is scaled first. By value, as it is called.
+template <class Real>
+CISTULA_SELDOM Vec3<Real> small_triangle_normal(Vec3<Real> ab, Vec3<Real> ac) {
+    const Real scale = Real(1) / greatest(largest_magnitude(ab), largest_magnitude(ac));
+    const Vec3<Real> scaled = cross(ab * scale, ac * scale);
+    return normalized(scaled / largest_magnitude(scaled));
+}
+
+/// The unit normal of a triangle from two of its edges; not finite for one without area.
 template <class Real>
 CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>& ac) {
     const Vec3<Real> n = cross(ab, ac);
     const Real square = dot(n, n);
-    if (square > Real(0x1p-80)) return n / square_root(square);
-    const Real scale = Real(1) / greatest(largest_magnitude(ab), largest_magnitude(ac));
-    const Vec3<Real> scaled = cross(ab * scale, ac * scale);
-    return normalized(scaled / largest_magnitude(scaled));
+    return square > Real(0x1p-80) ? n / square_root(square) : small_triangle_normal(ab, ac);
 }
 
 /// The corners of the triangle that was hit.
@@ -94,8 +98,9 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     const Solid& solid = scene.solids[key_solid(hit.key)];
     const uint32_t face = key_face(hit.key);
     Surface<Real> s;
-    s.material = &scene.materials[solid.material];
-    s.color = s.material->color;
+    s.material = solid.material;
+    const Material<Real>& material = scene.materials[s.material];
+    s.color = material.color;
     s.normal = normal_at(scene, hit);
     if (solid.kind == SolidKind::convex) {
         s.point = along(ray.origin, hit.t, ray.direction);
@@ -107,10 +112,10 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
     s.viewer_side = off_triangle(scene, hit, s.point, corner, s.normal, hit.enters);
     if constexpr (E::has(effect_texture)) {
-        if (s.material->texture >= 0) {
+        if (material.texture >= 0) {
             const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (face - solid.first_triangle);
             const Vec2<Real> at = uv[0] * (Real(1) - hit.u - hit.v) + uv[1] * hit.u + uv[2] * hit.v;
-            s.color *= texture_at(scene, scene.textures[uint32_t(s.material->texture)], at);
+            s.color *= texture_at(scene, scene.textures[uint32_t(material.texture)], at);
         }
     }
     return s;

@@ -28,11 +28,11 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     frame.half_sample = frame.camera.tan_half_width / (double(frame.width) * frame.supersample);
     frame.tree.depth = settings.depth;
     const int shift = fixed_shift(uint32_t(settings.supersample * settings.supersample));
-    frame.tree.fixed_scale = fixed_scale(shift);
-    frame.tree.fixed_unit = fixed_scale(-shift);
+    frame.tree.fixed_scale = float(fixed_scale(shift));
+    frame.tree.fixed_unit = float(fixed_scale(-shift));
     // A budget beyond the bound itself prunes everything either way.
     const double budget = least(elementary::scaled(settings.cutoff, -scene.radiance_exponent), 16.0);
-    frame.tree.budget = int64_t(floor_of(least(budget * frame.tree.fixed_scale, 0x1p62)));
+    frame.tree.budget = int64_t(floor_of(least(budget * fixed_scale(shift), 0x1p62)));
     return frame;
 }
 
