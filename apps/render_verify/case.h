@@ -1,0 +1,93 @@
+// A case: its name, what is exact about it, how far off it may be, and one of two bodies.
+//
+// Rays (a functor, run for i in [0, count) on every intersector, on the device too):
+//     struct MyCase {
+//         static constexpr const char* name = "geometry/my-case";
+//         static constexpr const char* exact = "what is exact, in one line";
+//         static constexpr Bound bound = no_failures("rays");
+//         uint32_t parameter;                        // trivially copyable members: the part's parameters
+//         static void plan(Plan& plan);              // adds parts: scene, functor, points, counts (plan.h)
+//         template <class Real, class Intersector>
+//         CISTULA_HD void operator()(const Setup<Real>&, const Intersector&, uint64_t i, Tally&) const;
+//     };
+// In the place of operator(), `uint64_t fingerprint(setup, intersector, i) const` gives a word a ray that must be the
+// same on all intersectors as from a plain loop over all primitives on the host.
+//
+// Images (a function, run with the renderer of every intersector):
+//         static void render(Stage& stage, Tally& tally);   // stage.h
+//
+// Options, static constexpr bool: `own_traversal` (the functor asks no intersector: it runs once on the host and once
+// on the device), `needs_witness` (without a try that met the hazard, tally.witness(true), the case does not hold).
+#pragma once
+
+#include <string>
+
+#include "apps/render_verify/tally.h"
+
+namespace cistula::verify {
+
+enum class Measure { failures, worst };
+
+struct Bound {
+    Measure measure;
+    bool must_fail;   // broken on purpose: holds only if at least `limit` tries fail
+    double limit[2];  // float, double
+    const char* unit;
+};
+
+/// A count of zero, or bit equality.
+constexpr Bound no_failures(const char* unit) {
+    return {Measure::failures, false, {0, 0}, unit};
+}
+/// The largest deviation measured; expectations must hold as well.
+constexpr Bound at_most(double limit, const char* unit) {
+    return {Measure::worst, false, {limit, limit}, unit};
+}
+constexpr Bound at_most(double limit_in_float, double limit_in_double, const char* unit) {
+    return {Measure::worst, false, {limit_in_float, limit_in_double}, unit};
+}
+/// For what is built wrong on purpose.
+constexpr Bound must_fail(double at_least, const char* unit) {
+    return {Measure::failures, true, {at_least, at_least}, unit};
+}
+
+/// Where the renderer is known not to hold a case yet. It stays in the list and fails; docs/numerics.md says how often
+/// and why.
+enum class FailsIn { nothing, single, both };
+
+struct CaseInfo {
+    std::string name, exact;
+    Bound bound;
+    bool own_traversal = false, needs_witness = false;
+    FailsIn fails_in = FailsIn::nothing;
+};
+
+class Plan;
+class Stage;
+
+template <class Case>
+concept RayCase = requires(Plan& plan) {
+    Case::plan(plan);
+};
+template <class Case>
+concept ImageCase = requires(Stage& stage, Tally& tally) {
+    Case::render(stage, tally);
+};
+template <class Case>
+concept ComparedCase = RayCase<Case> && requires {
+    Case::compared;
+};
+
+template <class... Cases>
+struct CaseList {};
+
+template <class Case>
+CaseInfo case_info() {
+    CaseInfo info{Case::name, Case::exact, Case::bound};
+    if constexpr (requires { Case::own_traversal; }) info.own_traversal = Case::own_traversal;
+    if constexpr (requires { Case::needs_witness; }) info.needs_witness = Case::needs_witness;
+    if constexpr (requires { Case::fails_in; }) info.fails_in = Case::fails_in;
+    return info;
+}
+
+}  // namespace cistula::verify

@@ -1,0 +1,66 @@
+// The kernels of cases: a thread takes every 2^16th ray. Included by the generated group_*.cu only.
+#pragma once
+
+#include <cstring>
+
+#include "apps/render_verify/case.h"
+#include "apps/render_verify/device_run.h"
+#include "backend_cuda/cuda_check.h"
+
+namespace cistula::verify {
+
+template <class Case, class Real>
+__global__ void __launch_bounds__(device_block)
+    tally_rays(const __grid_constant__ Setup<Real> setup, const Case functor, uint64_t place, uint64_t count,
+               Tally* out) {
+    const uint64_t thread = uint64_t(blockIdx.x) * blockDim.x + threadIdx.x;
+    Tally tally;
+    for (uint64_t i = thread; i < count; i += device_threads) {
+        tally.place = place + i;
+        functor(setup, BvhIntersector<Real>{setup.scene}, i, tally);
+    }
+    out[thread] = tally;
+}
+
+template <class Case, class Real>
+__global__ void __launch_bounds__(device_block) word_rays(const __grid_constant__ Setup<Real> setup, const Case functor,
+                                                          uint64_t first, uint64_t count, uint64_t* out) {
+    const uint64_t thread = uint64_t(blockIdx.x) * blockDim.x + threadIdx.x;
+    for (uint64_t i = thread; i < count; i += device_threads)
+        out[i] = functor.fingerprint(setup, BvhIntersector<Real>{setup.scene}, first + i);
+}
+
+template <class Case>
+Case functor_of(const std::byte* bytes) {
+    Case functor;
+    std::memcpy(&functor, bytes, sizeof(Case));
+    return functor;
+}
+
+template <class Case, class Real>
+DeviceMethods<Real> device_methods_of() {
+    DeviceMethods<Real> methods;
+    if constexpr (ComparedCase<Case>)
+        methods.words = [](const std::byte* functor, const Setup<Real>& setup, uint64_t first, uint64_t count,
+                           uint64_t* out) {
+            word_rays<Case, Real>
+                <<<device_threads / device_block, device_block>>>(setup, functor_of<Case>(functor), first, count, out);
+            check_cuda(cudaGetLastError(), Case::name);
+        };
+    else if constexpr (RayCase<Case>)
+        methods.tally = [](const std::byte* functor, const Setup<Real>& setup, uint64_t place, uint64_t count,
+                           Tally* out) {
+            tally_rays<Case, Real>
+                <<<device_threads / device_block, device_block>>>(setup, functor_of<Case>(functor), place, count, out);
+            check_cuda(cudaGetLastError(), Case::name);
+        };
+    return methods;
+}
+
+/// In the order of the list.
+template <class Real, class... Cases>
+std::vector<DeviceMethods<Real>> device_methods(CaseList<Cases...>) {
+    return {device_methods_of<Cases, Real>()...};
+}
+
+}  // namespace cistula::verify

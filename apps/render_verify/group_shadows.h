@@ -1,0 +1,24 @@
+// What reaches a point of a light: shadows of faces on themselves, of closed bodies, of glass, and lights that touch
+// them.
+#pragma once
+
+#include "apps/render_verify/shadows/acne.h"
+#include "apps/render_verify/shadows/closed_box.h"
+#include "apps/render_verify/shadows/exact_product.h"
+#include "apps/render_verify/shadows/falloff.h"
+#include "apps/render_verify/shadows/half_spaces.h"
+#include "apps/render_verify/shadows/lights_in_contact.h"
+#include "apps/render_verify/shadows/lights_on_star.h"
+#include "apps/render_verify/shadows/own_light.h"
+#include "apps/render_verify/shadows/permutations.h"
+#include "apps/render_verify/shadows/seen_lights.h"
+
+namespace cistula::verify::shadows {
+
+using Cases =
+    CaseList<AcnePlanes, AcneTriangles, AcneSheets, AcneFarPlanes, AcneFarTriangles, AcneTinyTriangles, Terminator,
+             BoxPlanes, BoxTriangles, BoxTiny, BoxPixels, InsideGlassPlanes, InsideGlassTriangles, LightsOnPlanes,
+             LightsOnTriangles, LightsOnStar, LightsInContact, OwnLightPlanes, OwnLightTriangles, LightAtThePoint,
+             Falloff, ThroughSheets, ThroughSolids, PermutedTriangles, PermutedLights, SeenLightTree, SeenLightPixels>;
+
+}  // namespace cistula::verify::shadows

@@ -1,0 +1,117 @@
+// Cases on the host: a functor over TBB, on each of the host's intersectors. Included by the generated group_*.cpp
+// only.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cstring>
+
+#include "apps/render_verify/case_table.h"
+#include "backend_embree/embree_intersector.h"
+#include "backend_embree/frame_loop.h"
+
+namespace cistula::verify {
+
+/// Every primitive's exact test, without what spares other intersectors some of them.
+template <class Real>
+struct PlainIntersector {
+    using Media = MediaList;
+    using Scene = SceneView<Real>;
+    const Scene& scene;
+
+    Hit<Real> closest(const Ray<Real>& ray) const {
+        Hit<Real> best;
+        if (!is_finite(ray)) return best;
+        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
+        for (uint32_t p = 0; p < scene.convex.size + scene.clusters.size; ++p)
+            closest_primitive(scene, p, ray, triangle_ray, best);
+        return best;
+    }
+};
+
+/// Calls body(intersector).
+template <class Real, class Body>
+void with_intersector(HostPath path, const SceneView<Real>& scene, RTCScene tree, const Body& body) {
+    switch (path) {
+        case HostPath::embree:
+            return body(EmbreeIntersector<Real>{scene, tree});
+        case HostPath::bvh:
+            return body(BvhIntersector<Real>{scene});
+        default:
+            return body(BruteIntersector<Real>{scene});
+    }
+}
+
+template <class Case>
+Case functor_of(const std::byte* bytes) {
+    Case functor;
+    std::memcpy(static_cast<void*>(&functor), bytes, sizeof(Case));
+    return functor;
+}
+
+template <class Case, class Real>
+Tally tally_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& setup, RTCScene tree, uint64_t place,
+                    uint64_t count) {
+    const Case functor = functor_of<Case>(bytes);
+    Tally all;
+    with_intersector(path, setup.scene, tree, [&](const auto& intersector) {
+        all = tbb::parallel_reduce(
+            tbb::blocked_range<uint64_t>(0, count, 64), Tally(),
+            [&](const auto& range, Tally tally) {
+                use_default_rounding();
+                for (uint64_t i = range.begin(); i != range.end(); ++i) {
+                    tally.place = place + i;
+                    functor(setup, intersector, i, tally);
+                }
+                return tally;
+            },
+            [](Tally a, const Tally& b) {
+                a.merge(b);
+                return a;
+            });
+    });
+    return all;
+}
+
+template <class Case, class Real>
+void words_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& setup, RTCScene tree, uint64_t first,
+                   uint64_t count, uint64_t* out) {
+    const Case functor = functor_of<Case>(bytes);
+    const auto fill = [&](const auto& intersector) {
+        tbb::parallel_for(tbb::blocked_range<uint64_t>(0, count, 64), [&](const auto& range) {
+            use_default_rounding();
+            for (uint64_t i = range.begin(); i != range.end(); ++i)
+                out[i] = functor.fingerprint(setup, intersector, first + i);
+        });
+    };
+    if (path == HostPath::plain)
+        fill(PlainIntersector<Real>{setup.scene});
+    else
+        with_intersector(path, setup.scene, tree, fill);
+}
+
+template <class Case, class Real>
+void fill_entry(CaseEntry& entry) {
+    entry.info = case_info<Case>();
+    static_assert(RayCase<Case> != ImageCase<Case>, "a case has either plan() or render()");
+    if constexpr (RayCase<Case>) entry.plan = [](Plan& plan) { Case::plan(plan); };
+    if constexpr (ImageCase<Case>) entry.render = [](Stage& stage, Tally& tally) { Case::render(stage, tally); };
+    if constexpr (ComparedCase<Case>)
+        entry.methods<Real>().words = &words_on_host<Case, Real>;
+    else if constexpr (RayCase<Case>)
+        entry.methods<Real>().tally = &tally_on_host<Case, Real>;
+}
+
+/// The cases of a list; the second precision completes the entries that the first one made, from `first` on.
+template <class Real, class... Cases>
+void fill_entries(CaseList<Cases...>, const std::vector<DeviceMethods<Real>>& device, size_t first,
+                  std::vector<CaseEntry>& entries) {
+    if (entries.size() < first + sizeof...(Cases)) entries.resize(first + sizeof...(Cases));
+    [[maybe_unused]] size_t next = first;
+    (fill_entry<Cases, Real>(entries[next++]), ...);
+    for (size_t i = 0; i < device.size(); ++i) entries[first + i].methods<Real>().device = device[i];
+}
+
+}  // namespace cistula::verify

@@ -1,0 +1,138 @@
+// Bodies between planes x = begin and x = end, as cubes of planes or as wide boxes of triangles, and the indices along
+// x.
+#pragma once
+
+#include <set>
+
+#include "apps/render_verify/refraction/lines.h"
+#include "apps/render_verify/scenes.h"
+
+namespace cistula::verify::refraction {
+
+struct Body {
+    double begin, end, index;
+    bool operator<(const Body& other) const {
+        return begin != other.begin ? begin < other.begin : end != other.end ? end < other.end : index < other.index;
+    }
+};
+struct Arrangement {
+    const char* name;
+    std::vector<Body> bodies;
+};
+
+/// Index 1 is a bubble.
+inline std::vector<Arrangement> arrangements() {
+    return {{"two abutting", {{0, 2, 1.5}, {2, 4, 1.33}}},
+            {"three abutting", {{0, 2, 1.33}, {2, 4, 2}, {4, 6, 1.5}}},
+            {"two of one glass", {{0, 2, 1.5}, {2, 4, 1.5}}},
+            {"overlapping", {{0, 3, 1.5}, {1, 4, 1.33}, {2, 5, 2}}},
+            {"nested", {{0, 6, 1.5}, {1, 5, 1.33}, {2, 4, 2}}},
+            {"bubble", {{0, 6, 1.5}, {2, 4, 1}}},
+            {"flush in front", {{0, 4, 1.5}, {0, 2, 1.33}}},
+            {"flush behind", {{0, 4, 1.5}, {2, 4, 1.33}}},
+            {"abutting in another", {{0, 6, 1.33}, {1, 3, 1.5}, {3, 5, 2}}},
+            {"bubble at a face", {{0, 4, 1.5}, {4, 6, 1.33}, {2, 4, 1}}},
+            {"twice the same", {{0, 4, 1.5}, {0, 4, 1.33}}}};
+}
+
+enum class Form { cubes, wide_boxes, both };
+
+/// A closed box; two ways of cutting its faces into triangles.
+inline TrianglesObject box_mesh(const glm::dvec3& low, const glm::dvec3& high, const Rotation& rotation,
+                                bool other_way) {
+    TrianglesObject mesh;
+    for (const double x : {low.x, high.x})
+        for (const double y : {low.y, high.y})
+            for (const double z : {low.z, high.z}) mesh.vertices.push_back(rotation(glm::dvec3(x, y, z)));
+    const uint32_t quads[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+    for (const auto& q : quads) {
+        if (other_way)
+            mesh.triangles.insert(mesh.triangles.end(), {{q[0], q[1], q[3]}, {q[1], q[2], q[3]}});
+        else
+            mesh.triangles.insert(mesh.triangles.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
+    }
+    return mesh;
+}
+
+inline constexpr double box_half_width = 8;
+
+inline SceneDescription scene_of(const std::vector<Body>& bodies, Form form, const glm::dvec3& turn) {
+    const Rotation rotation(turn);
+    SceneDescription scene = empty_scene();
+    for (size_t i = 0; i < bodies.size(); ++i) {
+        const Body& body = bodies[i];
+        const int material = add_material(scene, glass(body.index));
+        const double half = 0.5 * (body.end - body.begin), middle = body.begin + half;
+        const bool cube = form == Form::cubes || (form == Form::both && i % 2 == 0);
+        const double wide = form == Form::both ? half : box_half_width;
+        if (cube)
+            add_object(scene, solid_object(PlatonicSolid::cube, rotation({middle, 0, 0}), std::sqrt(3.0) * half, turn),
+                       material);
+        else
+            add_object(scene, box_mesh({body.begin, -wide, -wide}, {body.end, wide, wide}, rotation, i % 2 != 0),
+                       material);
+    }
+    return scene;
+}
+
+/// The place of x = y = z = 0, the three axes, the number of intervals, how far beside the x axis rays may go, the sine
+/// of their greatest angle to it in air; then of every interval its ends, its index, the solids there as bits.
+inline void sequence_numbers(const std::vector<Body>& bodies, Form form, const glm::dvec3& turn,
+                             const glm::dvec3& center, double factor, std::vector<double>& numbers) {
+    const Rotation rotation(turn);
+    std::set<double> ends;
+    for (const Body& body : bodies) ends.insert({body.begin, body.end});
+    ends.insert({*ends.begin() - 1, *ends.rbegin() + 1});
+    for (const glm::dvec3& v :
+         {-center * factor, rotation({factor, 0, 0}), rotation({0, factor, 0}), rotation({0, 0, factor})})
+        numbers.insert(numbers.end(), {v.x, v.y, v.z});
+    // At most 8 lengths of air at a slope of 3/4 from 1.5 beside the axis; 8 at a slope of 1/16 from 0.4.
+    const bool wide = form == Form::wide_boxes;
+    numbers.insert(numbers.end(), {double(ends.size() - 1), wide ? 1.5 : 0.4, wide ? 0.6 : 0.0625});
+    for (auto end = std::next(ends.begin()); end != ends.end(); ++end) {
+        const double begin = *std::prev(end);
+        double index = 1;
+        uint32_t solids = 0;
+        for (uint32_t i = 0; i < bodies.size(); ++i)
+            if (bodies[i].begin <= begin && *end <= bodies[i].end) index = bodies[i].index, solids |= 1u << i;
+        numbers.insert(numbers.end(), {begin, *end, index, double(solids)});
+    }
+}
+
+inline std::string label(Form form, const char* name, const std::vector<Body>& bodies, const glm::dvec3& turn) {
+    std::string text = name;
+    if (turn != glm::dvec3(0)) text += ", turned";
+    text += form == Form::cubes ? ", planes:" : form == Form::both ? ", planes and meshes:" : ", meshes:";
+    for (const Body& body : bodies)
+        text += " [" + std::to_string(int(body.begin)) + ", " + std::to_string(int(body.end)) + "] " +
+                std::to_string(body.index).substr(0, 4);
+    return text;
+}
+
+/// Up by an ulp, down, or not at all, by the value and whose it is, so that a mesh stays closed.
+template <class Real>
+Real moved(Real x, uint64_t whose) {
+    if (!is_finite(x) || x == Real(0)) return x;
+    Draw draw(whose, uint64_t(bits_as<typename parity::Layout<Real>::Bits>(x)));
+    return parity::stepped(x, draw.between(-1, 1));
+}
+template <class Real>
+void move_planes(CompiledScene<Real>& compiled, uint64_t seed) {
+    for (const Solid& solid : compiled.solids)
+        for (uint32_t i = 0; i < solid.slab_count; ++i) {
+            const uint64_t whose = 256 * seed + solid.first_slab + i;
+            Slab<Real>& slab = compiled.slabs[solid.first_slab + i];
+            SlabGroup<Real>& group = compiled.slab_groups[solid.first_group + i / slab_lanes];
+            group.low[i % slab_lanes] = slab.low = moved(slab.low, whose);
+            group.high[i % slab_lanes] = slab.high = moved(slab.high, whose);
+        }
+}
+template <class Real>
+void move_corners(CompiledScene<Real>& compiled, uint64_t seed) {
+    for (Cluster<Real>& cluster : compiled.clusters)
+        for (auto& corner : cluster.corner)
+            for (int axis = 0; axis < 3; ++axis)
+                for (Real& x : corner[axis]) x = moved(x, 1024 * seed + 4 * cluster.solid + uint64_t(axis));
+}
+
+}  // namespace cistula::verify::refraction

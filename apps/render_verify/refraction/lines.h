@@ -1,0 +1,88 @@
+// What a path of light is made of: the straight lines that the ray tree itself follows, seen by an intersector that
+// notes what it is asked. For scenes in which a face lets all through or, beyond the critical angle, mirrors all.
+#pragma once
+
+#include "apps/render_verify/crossings.h"
+#include "cistula/ray_tree.h"
+
+namespace cistula::verify::refraction {
+
+template <class Real>
+struct Lines {
+    static constexpr int capacity = 12;
+
+    Vec3<Real> origin[capacity], direction[capacity];
+    double index[capacity];     // of the medium that the line starts in
+    Hit<Real> first[capacity];  // what it meets first, shaded or not
+    MediaList media[capacity];
+    int count = 0;
+    uint32_t flags = 0;  // RenderFlag bits
+    bool cut = false;    // went on past `capacity`
+
+    CISTULA_HD bool whole() const { return flags == 0 && !cut; }
+};
+
+template <class Real, class Intersector>
+struct Watched {
+    using Media = MediaList;
+    using Scene = SceneView<Real>;
+    const Scene& scene;
+    const Intersector& inner;
+    Lines<Real>& lines;
+
+    CISTULA_HD Hit<Real> closest(const Ray<Real>& ray) const {
+        const Hit<Real> hit = inner.closest(ray);
+        const int last = lines.count - 1;
+        const bool asked_before =
+            last >= 0 && ray.origin == lines.origin[last] && ray.direction == lines.direction[last];
+        if (!ray.fresh() || asked_before || lines.count == Lines<Real>::capacity) return hit;
+        lines.origin[lines.count] = ray.origin;
+        lines.direction[lines.count] = ray.direction;
+        lines.index[lines.count] = index_of(scene, ray.media);
+        lines.first[lines.count] = hit;
+        lines.media[lines.count] = ray.media;
+        ++lines.count;
+        return hit;
+    }
+    template <class E>
+    CISTULA_HD Vec3<Real> transmittance(const ShadowRay<Real>&) const {
+        return Vec3<Real>(Real(0));
+    }
+};
+
+/// Of what a tree sees first nothing is kept.
+struct Unnoted {
+    template <class Hit, class Normal>
+    CISTULA_HD void surface(const Hit&, const Normal&) const {}
+    CISTULA_HD void nothing(bool) const {}
+};
+
+template <class Real, class Intersector>
+CISTULA_HD inline void trace(const Setup<Real>& setup, const Intersector& intersector, const Ray<Real>& ray,
+                             Lines<Real>& lines) {
+    using Glass = Effects<effect_reflection | effect_transmission | effect_refraction>;
+    using Tree = RayTree<Real, Glass, Watched<Real, Intersector>, BranchStack<Real, MediaList>>;
+    TreeSettings settings;
+    settings.depth = Lines<Real>::capacity;
+    settings.fixed_scale = 0x1p62;
+    settings.fixed_unit = 0x1p-62;
+    PixelRecord record = PixelRecord();
+    const Vec3<Real> bound(Real(1));
+    PixelSums<Real> sums(settings, bound, record, lines.flags);
+    PixelRays rays;
+    BranchStack<Real, MediaList> stack;
+    lines.count = 0;
+    const Watched<Real, Intersector> watched{setup.scene, intersector, lines};
+    Tree(setup.scene, watched, settings.depth, sums, rays, stack).trace(ray, Unnoted());
+    lines.cut = record.cut[0] != 0;
+}
+
+/// A material that lets all through.
+inline MaterialDescription glass(double index) {
+    MaterialDescription material;
+    material.transmission = 1;
+    material.index = index;
+    return material;
+}
+
+}  // namespace cistula::verify::refraction

@@ -1,0 +1,192 @@
+// Media one beside, over and in another: along a ray there is the sequence of indices that the scene's description
+// says, and never a gap of air where bodies touch.
+#pragma once
+
+#include <algorithm>
+
+#include "apps/render_verify/case.h"
+#include "apps/render_verify/refraction/bodies.h"
+
+namespace cistula::verify::refraction {
+
+/// Straight at faces that all lie across one axis: the sequence is known from the intervals alone.
+struct MediaSequence {
+    template <class Real, class Intersector>
+    CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
+                               Tally& tally) const {
+        const Span<double>& numbers = setup.numbers;
+        const auto placed = [&](double x, double y, double z) {
+            Vec3<double> p(numbers[0], numbers[1], numbers[2]);
+            for (int k = 0; k < 3; ++k) p[k] += x * numbers[3 + k] + y * numbers[6 + k] + z * numbers[9 + k];
+            return p;
+        };
+        const uint32_t count = uint32_t(numbers[12]);
+        const double reach = numbers[13], sine = numbers[14];
+        const auto interval = [&](uint32_t k) { return numbers.data + 15 + 4 * k; };
+        Draw draw = setup.draw(i);
+        const uint32_t start = draw.below(count - 1);
+        const double* from = interval(start);
+        // At the next face: anywhere on it, its middle, or where a mesh is cut into triangles.
+        double y = draw.centered<double>(reach), z = draw.centered<double>(reach);
+        const int where = draw.between(0, 5);
+        if (where == 0) y = z = 0;
+        if (where == 1) y = z;
+        if (where == 2) y = -z;
+        const Vec3<double> slope = in_ball(draw) * (sine / from[2]);
+        const double across = square_root(1 - slope.y * slope.y - slope.z * slope.z);
+        const double back = (from[1] - from[0]) * (0.0625 + 0.875 * draw.unit<double>()) / across;
+        const Vec3<Real> target(placed(from[1], y, z));
+        const Vec3<Real> origin(placed(from[1] - back * across, y - back * slope.y, z - back * slope.z));
+        Ray<Real> ray = ray_from(origin, normalized(target - origin));
+        for (uint32_t solid = 0; solid < 8; ++solid)
+            if ((uint32_t(from[3]) >> solid & 1u) != 0) ray.media.add(solid, 1);
+        Lines<Real> lines;
+        trace(setup, intersector, ray, lines);
+        bool same = lines.whole();
+        int line = 0;
+        for (uint32_t k = start; k < count && same; ++k) {
+            if (k > start && interval(k)[2] == interval(k - 1)[2]) continue;
+            same = line < lines.count && lines.index[line] == interval(k)[2];
+            ++line;
+        }
+        tally.expect(same && line == lines.count);
+    }
+
+    /// Every order in the file; `change` alters the compiled scene.
+    template <class Functor, class Change>
+    static void plan_bodies(Plan& plan, const std::vector<Form>& forms, const Change& change) {
+        uint64_t number = 0;
+        for (const Form form : forms)
+            for (const Arrangement& arrangement : arrangements()) {
+                std::vector<Body> bodies = arrangement.bodies;
+                std::sort(bodies.begin(), bodies.end());
+                do {
+                    for (const glm::dvec3& turn : {glm::dvec3(0), glm::dvec3(20, 35, 50)}) {
+                        Part& part = plan.add(label(form, arrangement.name, bodies, turn), scene_of(bodies, form, turn),
+                                              Functor(), {}, plan.rays(20000, 100));
+                        part.frame_numbers = [=](const glm::dvec3& center, double factor,
+                                                 std::vector<double>& numbers) {
+                            sequence_numbers(bodies, form, turn, center, factor, numbers);
+                        };
+                        change(part, number++);
+                    }
+                } while (std::next_permutation(bodies.begin(), bodies.end()));
+            }
+    }
+};
+
+struct MediaPlanes : MediaSequence {
+    static constexpr const char* name = "refraction/media/planes";
+    static constexpr const char* exact = "the sequence of indices through nested, abutting, overlapping solids";
+    static constexpr Bound bound = no_failures("rays");
+    static void plan(Plan& plan) {
+        plan_bodies<MediaPlanes>(plan, {Form::cubes}, [](Part&, uint64_t) {});
+    }
+};
+struct MediaTriangles : MediaSequence {
+    static constexpr const char* name = "refraction/media/triangles";
+    static constexpr const char* exact = "the same through meshes, whose shared faces are cut in two ways";
+    static constexpr Bound bound = no_failures("rays");
+    static void plan(Plan& plan) {
+        plan_bodies<MediaTriangles>(plan, {Form::wide_boxes}, [](Part&, uint64_t) {});
+    }
+};
+struct MediaMixed : MediaSequence {
+    static constexpr const char* name = "refraction/media/planes-and-triangles";
+    static constexpr FailsIn fails_in = FailsIn::both;
+    static constexpr const char* exact = "the same where a solid of planes shares a face with a mesh";
+    static constexpr Bound bound = no_failures("rays");
+    static void plan(Plan& plan) {
+        plan_bodies<MediaMixed>(plan, {Form::both}, [](Part&, uint64_t) {});
+    }
+};
+
+/// Corners moved by an ulp or none each, so that shared faces have gaps and overlaps of up to 2 ulps of M: 4 u a
+/// coordinate, less than half of what a meeting of faces spans (meeting.h).
+struct MediaMovedTriangles : MediaSequence {
+    static constexpr const char* name = "refraction/media/within-rounding/triangles";
+    static constexpr const char* exact = "the same where shared faces of meshes are ulps apart, or one in the other";
+    static constexpr Bound bound = no_failures("rays");
+    static void plan(Plan& plan) {
+        plan_bodies<MediaMovedTriangles>(plan, {Form::wide_boxes}, [](Part& part, uint64_t number) {
+            part.edit([number](auto& compiled) { move_corners(compiled, number); });
+        });
+    }
+};
+/// Planes closer than 1e-12 M are one when a scene is read, so that in double they are never a few ulps apart; in float
+/// they may be: moved there only.
+struct MediaMovedPlanes : MediaSequence {
+    static constexpr const char* name = "refraction/media/within-rounding/planes";
+    static constexpr FailsIn fails_in = FailsIn::single;
+    static constexpr const char* exact = "the same where shared faces of solids of planes are ulps apart in float";
+    static constexpr Bound bound = no_failures("rays");
+    static void plan(Plan& plan) {
+        plan_bodies<MediaMovedPlanes>(plan, {Form::cubes}, [](Part& part, uint64_t number) {
+            part.edit_float = [number](CompiledScene<float>& compiled) { move_planes(compiled, number); };
+        });
+    }
+};
+
+/// Eight cubes of one glass that share faces, edges and a corner are one cube: light is in it once, however it is
+/// reflected.
+struct Octants {
+    template <class Real, class Intersector>
+    CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
+                               Tally& tally) const {
+        Draw draw = setup.draw(i);
+        const Vec3<Real> target = setup.point(draw.below(setup.points.size));
+        const Vec3<double> way = on_sphere(draw);
+        const Vec3<Real> origin(Vec3<double>(target) + way * (setup.numbers[0] * (2.5 + draw.unit<double>())));
+        Lines<Real> lines;
+        trace(setup, intersector, ray_from(origin, normalized(target - origin)), lines);
+        bool one_body = lines.flags == 0 && lines.count >= 2 && lines.index[0] == 1 && lines.index[1] == 1.5;
+        for (int k = 2; k < lines.count; ++k) one_body = one_body && lines.index[k] <= lines.index[k - 1];
+        tally.expect(one_body && (lines.cut || lines.index[lines.count - 1] == 1));
+    }
+    template <class Functor>
+    static void plan_octants(Plan& plan, const std::vector<Form>& forms) {
+        for (const Form form : forms)
+            for (const glm::dvec3& turn : {glm::dvec3(0), glm::dvec3(20, 35, 50)}) {
+                const Rotation rotation(turn);
+                SceneDescription scene = empty_scene();
+                const int material = add_material(scene, glass(1.5));
+                for (int octant = 0; octant < 8; ++octant) {
+                    const glm::dvec3 center((octant & 1) - 0.5, (octant >> 1 & 1) - 0.5, (octant >> 2) - 0.5);
+                    const bool cube = form == Form::cubes || (form == Form::both && octant % 3 == 0);
+                    if (cube)
+                        add_object(scene, solid_object(PlatonicSolid::cube, rotation(center), std::sqrt(0.75), turn),
+                                   material);
+                    else
+                        add_object(scene, box_mesh(center - 0.5, center + 0.5, rotation, octant % 2 != 0), material);
+                }
+                // On the faces, edges and corner that they share, well within the whole.
+                std::vector<glm::dvec3> points;
+                for (int x = -7; x <= 7; ++x)
+                    for (int y = -7; y <= 7; ++y)
+                        for (const glm::dvec3& p : {glm::dvec3(0, x, y), glm::dvec3(x, 0, y), glm::dvec3(x, y, 0)})
+                            points.push_back(rotation(p / 8.0));
+                Part& part = plan.add(form == Form::cubes  ? "planes"
+                                      : form == Form::both ? "planes and meshes"
+                                                           : "meshes",
+                                      scene, Functor(), points, plan.rays(200000, 2500));
+                part.frame_numbers = [](const glm::dvec3&, double factor, std::vector<double>& numbers) {
+                    numbers = {factor};
+                };
+            }
+    }
+};
+struct MediaOctants : Octants {
+    static constexpr const char* name = "refraction/media/octants";
+    static constexpr const char* exact = "eight cubes of one glass: never out of it and in again";
+    static constexpr Bound bound = no_failures("rays");
+    static void plan(Plan& plan) { plan_octants<MediaOctants>(plan, {Form::cubes, Form::wide_boxes}); }
+};
+struct MediaMixedOctants : Octants {
+    static constexpr const char* name = "refraction/media/octants/planes-and-triangles";
+    static constexpr FailsIn fails_in = FailsIn::both;
+    static constexpr const char* exact = "the same, some of planes and some meshes";
+    static constexpr Bound bound = no_failures("rays");
+    static void plan(Plan& plan) { plan_octants<MediaMixedOctants>(plan, {Form::both}); }
+};
+
+}  // namespace cistula::verify::refraction

@@ -1,0 +1,227 @@
+#include "apps/render_verify/runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+
+#include "apps/common/backends.h"
+#include "apps/render_verify/ready_part.h"
+#include "backend_embree/embree_renderer.h"
+
+namespace cistula::verify {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+HostPath path_of(IntersectorKind kind) {
+    switch (kind) {
+        case IntersectorKind::embree:
+            return HostPath::embree;
+        case IntersectorKind::bvh:
+            return HostPath::bvh;
+        default:
+            return HostPath::brute;
+    }
+}
+
+#if CISTULA_HAS_CUDA
+template <class Real>
+Tally on_device(const RayMethods<Real>& methods, const Part& part, const Setup<Real>& setup, uint64_t place) {
+    return tally_on_device(methods.device, part.functor.data(), setup, place, part.count);
+}
+template <class Real>
+std::vector<uint64_t> words_of_device(const RayMethods<Real>& methods, const Part& part, const Setup<Real>& setup,
+                                      uint64_t count) {
+    return words_on_device(methods.device, part.functor.data(), setup, count);
+}
+#else
+[[noreturn]] void no_cuda() {
+    throw std::runtime_error("this build has no CUDA backend");
+}
+template <class Real>
+Tally on_device(const RayMethods<Real>&, const Part&, const Setup<Real>&, uint64_t) {
+    no_cuda();
+}
+template <class Real>
+std::vector<uint64_t> words_of_device(const RayMethods<Real>&, const Part&, const Setup<Real>&, uint64_t) {
+    no_cuda();
+}
+#endif
+
+/// One outcome for each intersector, filled part by part.
+class CaseRun {
+  public:
+    CaseRun(const CaseEntry& entry, const RunSettings& settings, Precision precision)
+        : entry_(entry), settings_(settings), precision_(precision) {
+        for (const IntersectorKind kind : settings.intersectors) {
+            if (entry.info.own_traversal && kind != IntersectorKind::brute && kind != IntersectorKind::cuda) continue;
+            Outcome outcome;
+            outcome.info = &entry.info;
+            outcome.intersector = kind;
+            outcome.precision = precision;
+            outcomes_.push_back(outcome);
+        }
+    }
+
+    std::vector<Outcome> run() {
+        if (entry_.render)
+            for (Outcome& outcome : outcomes_) guarded(outcome, [&] { run_images(outcome); });
+        else if (precision_ == Precision::double_)
+            run_rays<double>();
+        else
+            run_rays<float>();
+        return std::move(outcomes_);
+    }
+
+  private:
+    /// What a case throws becomes the outcome's problem.
+    template <class Work>
+    void guarded(Outcome& outcome, const Work& work) {
+        const auto start = Clock::now();
+        try {
+            if (outcome.problem.empty()) work();
+        } catch (const std::exception& error) {
+            outcome.problem = error.what();
+        }
+        outcome.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    template <class Real>
+    void run_rays() {
+        Plan plan(settings_.quick);
+        std::string problem;
+        try {
+            entry_.plan(plan);
+            if (plan.parts.empty()) problem = "the case has no parts";
+            for (uint64_t number = 0; number < plan.parts.size() && problem.empty(); ++number) {
+                ReadyPart<Real> ready(plan.parts[number], number);
+                problem = ready.missing_warning();
+                if (problem.empty()) run_part(plan.parts[number], number, ready);
+            }
+        } catch (const std::exception& error) {
+            problem = error.what();
+        }
+        for (Outcome& outcome : outcomes_) {
+            if (outcome.problem.empty()) outcome.problem = problem;
+            const uint64_t at = outcome.tally.worst_at, number = at >> place_shift;
+            if (at != no_place && number < plan.parts.size())
+                outcome.worst_label =
+                    fmt::format("{}, ray {}", plan.parts[number].label, at & ((uint64_t(1) << place_shift) - 1));
+        }
+    }
+
+    template <class Real>
+    void run_part(const Part& part, uint64_t number, ReadyPart<Real>& ready) {
+        const RayMethods<Real>& methods = entry_.methods<Real>();
+        const uint64_t place = number << place_shift, plain = ready.plain_count(settings_.quick);
+        const auto tree = [&](const Outcome& outcome) {
+            return outcome.intersector == IntersectorKind::embree ? ready.embree() : nullptr;
+        };
+        if (!methods.words) {
+            for (Outcome& outcome : outcomes_)
+                guarded(outcome, [&] {
+                    const bool brute = outcome.intersector == IntersectorKind::brute && !entry_.info.own_traversal;
+                    outcome.tally.merge(outcome.intersector == IntersectorKind::cuda
+                                            ? on_device(methods, part, ready.setup(), place)
+                                            : methods.tally(path_of(outcome.intersector), part.functor.data(),
+                                                            ready.setup(), tree(outcome), place,
+                                                            brute ? plain : part.count));
+                });
+            return;
+        }
+        std::vector<uint64_t> expected(plain), found(plain);
+        methods.words(HostPath::plain, part.functor.data(), ready.setup(), nullptr, 0, plain, expected.data());
+        for (Outcome& outcome : outcomes_)
+            guarded(outcome, [&] {
+                if (outcome.intersector == IntersectorKind::cuda)
+                    found = words_of_device(methods, part, ready.setup(), plain);
+                else
+                    methods.words(path_of(outcome.intersector), part.functor.data(), ready.setup(), tree(outcome), 0,
+                                  plain, found.data());
+                for (uint64_t i = 0; i < plain; ++i) {
+                    outcome.tally.place = place + i;
+                    outcome.tally.expect(found[i] == expected[i]);
+                }
+            });
+    }
+
+    template <class Real>
+    Film film_of(IntersectorKind kind, const SceneDescription& scene, const FrameSettings& settings, int frame) {
+        std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(scene);
+        if (kind == IntersectorKind::bvh) build_primitive_tree(*compiled);
+        const std::unique_ptr<Renderer> renderer = [&] {
+            switch (kind) {
+                case IntersectorKind::bvh:
+                    return make_host_renderer<Real>(compiled, HostIntersector::bvh);
+                case IntersectorKind::brute:
+                    return make_host_renderer<Real>(compiled, HostIntersector::brute);
+                case IntersectorKind::cuda:
+                    return make_renderer<Real>(Backend::cuda, compiled, choose_devices(Backend::cuda, {}).options);
+                default:
+                    return make_embree_renderer<Real>(compiled);
+            }
+        }();
+        Film film;
+        RenderProgress progress;
+        renderer->render(camera_at(scene.camera, frame), settings, film, progress);
+        return film;
+    }
+
+    void run_images(Outcome& outcome) {
+        const IntersectorKind kind = outcome.intersector;
+        const auto film = [&](const SceneDescription& scene, const FrameSettings& settings, int frame) {
+            return precision_ == Precision::double_ ? film_of<double>(kind, scene, settings, frame)
+                                                    : film_of<float>(kind, scene, settings, frame);
+        };
+        Stage stage(settings_.quick, precision_, intersector_name(kind), film);
+        outcome.tally.place = 0;
+        entry_.render(stage, outcome.tally);
+        if (outcome.tally.worst_at != no_place) outcome.worst_label = fmt::format("try {}", outcome.tally.worst_at);
+    }
+
+    const CaseEntry& entry_;
+    const RunSettings& settings_;
+    const Precision precision_;
+    std::vector<Outcome> outcomes_;
+};
+
+}  // namespace
+
+const char* intersector_name(IntersectorKind kind) {
+    constexpr const char* names[] = {"embree", "bvh", "brute", "cuda"};
+    return names[size_t(kind)];
+}
+
+double Outcome::measured() const {
+    return info->bound.measure == Measure::failures ? double(tally.failures) : tally.worst;
+}
+
+bool Outcome::is_known() const {
+    const bool here =
+        info->fails_in == FailsIn::both || (info->fails_in == FailsIn::single && precision == Precision::single_);
+    return here && !holds() && problem.empty() && tally.tried != 0;
+}
+
+bool Outcome::holds() const {
+    if (!problem.empty() || tally.tried == 0 || (info->needs_witness && tally.witnesses == 0)) return false;
+    if (info->bound.must_fail) return measured() >= limit();
+    if (info->bound.measure == Measure::worst && tally.failures != 0) return false;
+    return measured() <= limit();
+}
+
+std::vector<Outcome> run_cases(const std::vector<const CaseEntry*>& cases, const RunSettings& settings,
+                               const std::function<void(const Outcome&)>& done) {
+    std::vector<Outcome> all;
+    for (const CaseEntry* entry : cases)
+        for (const Precision precision : settings.precisions)
+            for (Outcome& outcome : CaseRun(*entry, settings, precision).run()) {
+                done(outcome);
+                all.push_back(std::move(outcome));
+            }
+    return all;
+}
+
+}  // namespace cistula::verify

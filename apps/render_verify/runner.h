@@ -1,0 +1,44 @@
+// Runs cases on the intersectors of this machine and judges what they found.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/render_verify/case_table.h"
+#include "scene/renderer.h"
+
+namespace cistula::verify {
+
+enum class IntersectorKind { embree, bvh, brute, cuda };
+const char* intersector_name(IntersectorKind kind);
+
+/// One case on one intersector in one precision.
+struct Outcome {
+    const CaseInfo* info = nullptr;
+    IntersectorKind intersector = IntersectorKind::embree;
+    Precision precision = Precision::single_;
+    Tally tally;
+    std::string worst_label;  // the part and the ray with the largest deviation; empty: none deviates
+    std::string problem;      // what kept it from being judged: it then does not hold
+    double seconds = 0;
+
+    double limit() const { return info->bound.limit[precision == Precision::double_]; }
+    /// What stands against the limit.
+    double measured() const;
+    bool holds() const;
+    /// Does not hold, as is known.
+    bool is_known() const;
+};
+
+struct RunSettings {
+    bool quick = false;
+    std::vector<IntersectorKind> intersectors;
+    std::vector<Precision> precisions;
+};
+
+/// Calls `done` after each outcome, in the order of the cases, then precisions, then intersectors.
+std::vector<Outcome> run_cases(const std::vector<const CaseEntry*>& cases, const RunSettings& settings,
+                               const std::function<void(const Outcome&)>& done);
+
+}  // namespace cistula::verify

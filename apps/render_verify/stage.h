@@ -1,0 +1,46 @@
+// What a case of images has: a renderer on one intersector in one precision, for any scene.
+#pragma once
+
+#include <functional>
+
+#include "scene/compiled_scene.h"
+#include "scene/description.h"
+#include "scene/film.h"
+#include "scene/renderer.h"
+
+namespace cistula::verify {
+
+class Stage {
+  public:
+    using Render = std::function<Film(const SceneDescription&, const FrameSettings&, int frame)>;
+
+    Stage(bool is_quick, Precision in, std::string by, Render render)
+        : quick(is_quick), precision(in), intersector(std::move(by)), render_(std::move(render)) {}
+
+    const bool quick;
+    const Precision precision;
+    const std::string intersector;  // "embree", "bvh", "brute", "cuda"
+
+    bool in_double() const { return precision == Precision::double_; }
+    /// u: half an ulp of 1.
+    double unit() const { return in_double() ? 0x1p-53 : 0x1p-24; }
+
+    /// Throws Error where the film cannot be trusted (film.flags).
+    Film render(const SceneDescription& scene, const FrameSettings& settings, int frame = 0) const {
+        return render_(scene, settings, frame);
+    }
+    Film render(const SceneDescription& scene, int width, int height) const {
+        FrameSettings settings;
+        settings.full_width = width;
+        settings.full_height = height;
+        settings.crop = {0, 0, width, height};
+        settings.depth = scene.depth;
+        settings.cutoff = scene.cutoff;
+        return render(scene, settings);
+    }
+
+  private:
+    Render render_;
+};
+
+}  // namespace cistula::verify

@@ -1,0 +1,333 @@
+// render-verify: options, exit codes, records; what cases judge; and that docs/numerics.md names every case.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/common/command_line.h"
+#include "apps/render_verify/host_run.h"
+#include "apps/render_verify/program.h"
+#include "apps/render_verify/scenes.h"
+#include "gpu.h"
+#include "run_program.h"
+
+namespace cistula::verify {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+// ---- cases made for these tests
+
+/// Calls what a test puts here.
+std::function<void(uint64_t i, Tally&)> each_ray;
+uint64_t ray_count = 10;
+
+template <class Self>
+struct Made {
+    static constexpr const char* exact = "what the test says";
+    static void plan(Plan& plan) {
+        SceneDescription scene = empty_scene();
+        add_object(scene, solid_object(PlatonicSolid::cube));
+        plan.add("a cube", scene, Self{}, {}, ray_count);
+    }
+    template <class Real, class Intersector>
+    void operator()(const Setup<Real>&, const Intersector&, uint64_t i, Tally& tally) const {
+        each_ray(i, tally);
+    }
+};
+struct Counts : Made<Counts> {
+    static constexpr const char* name = "made/counts";
+    static constexpr Bound bound = no_failures("rays");
+};
+struct Broken : Made<Broken> {
+    static constexpr const char* name = "made/broken";
+    static constexpr Bound bound = must_fail(3, "rays");
+};
+struct Measures : Made<Measures> {
+    static constexpr const char* name = "made/measures";
+    static constexpr Bound bound = at_most(2, "ulps");
+};
+struct Witnessed : Made<Witnessed> {
+    static constexpr const char* name = "made/witnessed";
+    static constexpr Bound bound = no_failures("rays");
+    static constexpr bool needs_witness = true;
+};
+struct Compared : Made<Compared> {
+    static constexpr const char* name = "made/compared";
+    static constexpr Bound bound = no_failures("rays");
+    static constexpr bool compared = true;
+    template <class Real, class Intersector>
+    uint64_t fingerprint(const Setup<Real>&, const Intersector&, uint64_t i) const {
+        return i == 7 && std::is_same_v<Intersector, BvhIntersector<Real>> ? 1 : 0;
+    }
+};
+struct Images {
+    static constexpr const char* name = "made/images";
+    static constexpr const char* exact = "a cube covers the middle of the picture";
+    static constexpr Bound bound = no_failures("pixels");
+    static void render(Stage& stage, Tally& tally) {
+        SceneDescription scene = empty_scene();
+        add_object(scene, solid_object(PlatonicSolid::cube));
+        const Film film = stage.render(scene, 9, 9);
+        tally.expect(film.flags == 0 && film.pixels[40].hits == 1 && film.pixels[0].hits == 0);
+    }
+};
+
+template <class Case>
+CaseEntry entry_of() {
+    CaseEntry entry;
+    fill_entry<Case, float>(entry);
+    fill_entry<Case, double>(entry);
+    return entry;
+}
+
+/// The exit code of a run over one case, and its record.
+template <class Case>
+int code_of(nlohmann::json* record = nullptr, Arguments more = {}) {
+    const ScratchDirectory folder;
+    const std::string file = folder.file("record.json");
+    more.insert(more.begin(), {"render-verify", "--json", file});
+    std::vector<const char*> argv;
+    for (const std::string& argument : more) argv.push_back(argument.c_str());
+    const int code = run_program("render-verify", "",
+                                 [&] { return verify_program(int(argv.size()), argv.data(), {entry_of<Case>()}); });
+    if (record) *record = nlohmann::json::parse(bytes_of(file));
+    return code;
+}
+
+TEST(Verify, AFailingRayIsExitCode1AndNamed) {
+    each_ray = [](uint64_t, Tally& tally) { tally.expect(true); };
+    EXPECT_EQ(code_of<Counts>(), 0);
+    each_ray = [](uint64_t i, Tally& tally) { tally.expect(i < 6); };
+    nlohmann::json record;
+    EXPECT_EQ(code_of<Counts>(&record), 1);
+    ASSERT_EQ(record["cases"].size(), 6u);  // three intersectors, two precisions
+    for (const auto& one : record["cases"]) {
+        EXPECT_EQ(one["case"], "made/counts");
+        EXPECT_EQ(one["holds"], false);
+        EXPECT_EQ(one["worst"], 4);
+        EXPECT_EQ(one["bound"], 0);
+        EXPECT_EQ(one["tried"], 10);
+        EXPECT_EQ(one["unit"], "rays");
+        EXPECT_EQ(one["worst_at"], "a cube, ray 6");
+    }
+    EXPECT_EQ(record["cases"][0]["intersector"], "embree");
+    EXPECT_EQ(record["cases"][0]["precision"], "float");
+    for (const char* key : {"cpu", "compiler", "flags", "commit"}) EXPECT_TRUE(record["context"].contains(key)) << key;
+}
+
+TEST(Verify, NothingTriedAndThrownErrorsDoNotHold) {
+    each_ray = [](uint64_t, Tally&) {};
+    EXPECT_EQ(code_of<Counts>(), 1);
+    each_ray = [](uint64_t i, Tally& tally) {
+        tally.expect(true);
+        if (i == 3) throw std::runtime_error("broken <case>");
+    };
+    nlohmann::json record;
+    EXPECT_EQ(code_of<Counts>(&record), 1);
+    EXPECT_EQ(record["cases"][0]["complaint"], "broken <case>");
+}
+
+TEST(Verify, WhatIsBrokenOnPurposeMustFail) {
+    each_ray = [](uint64_t i, Tally& tally) { tally.expect(i >= 3); };
+    EXPECT_EQ(code_of<Broken>(), 0);
+    each_ray = [](uint64_t i, Tally& tally) { tally.expect(i >= 2); };
+    EXPECT_EQ(code_of<Broken>(), 1);
+}
+
+TEST(Verify, MeasuredDeviationsStandAgainstTheBound) {
+    each_ray = [](uint64_t i, Tally& tally) { tally.measure(i == 4 ? 2 : 0.5); };
+    nlohmann::json record;
+    EXPECT_EQ(code_of<Measures>(&record), 0);
+    EXPECT_EQ(record["cases"][0]["worst"], 2);
+    each_ray = [](uint64_t i, Tally& tally) { tally.measure(i == 4 ? 2.0000001 : 0.5); };
+    EXPECT_EQ(code_of<Measures>(), 1);
+    each_ray = [](uint64_t i, Tally& tally) { tally.measure(i == 4 ? NAN : 0.5); };
+    EXPECT_EQ(code_of<Measures>(&record), 1);
+    EXPECT_EQ(record["cases"][0]["worst"], "inf");
+    each_ray = [](uint64_t i, Tally& tally) { i == 4 ? tally.expect(false) : tally.measure(0); };
+    EXPECT_EQ(code_of<Measures>(), 1);
+}
+
+TEST(Verify, AHazardThatIsNeverMetProvesNothing) {
+    each_ray = [](uint64_t i, Tally& tally) { tally.expect(true), tally.witness(i == 9); };
+    EXPECT_EQ(code_of<Witnessed>(), 0);
+    each_ray = [](uint64_t, Tally& tally) { tally.expect(true), tally.witness(false); };
+    EXPECT_EQ(code_of<Witnessed>(), 1);
+}
+
+TEST(Verify, IntersectorsThatDifferAreFound) {
+    nlohmann::json record;
+    EXPECT_EQ(code_of<Compared>(&record, {"--precision", "double"}), 1);
+    ASSERT_EQ(record["cases"].size(), 3u);
+    for (const auto& one : record["cases"]) EXPECT_EQ(one["failures"], one["intersector"] == "bvh" ? 1 : 0);
+    EXPECT_EQ(record["cases"][1]["worst_at"], "a cube, ray 7");
+}
+
+TEST(Verify, ImagesComeFromEveryIntersector) {
+    nlohmann::json record;
+    EXPECT_EQ(code_of<Images>(&record), 0);
+    ASSERT_EQ(record["cases"].size(), 6u);
+}
+
+TEST(Verify, TalliesDoNotDependOnTheOrder) {
+    const auto tally = [](uint64_t place, double deviation) {
+        Tally t;
+        t.place = place;
+        t.measure(deviation);
+        return t;
+    };
+    const Tally parts[] = {tally(5, 1), tally(3, 2), tally(2, 2), tally(9, 0.5)};
+    std::vector<int> order{0, 1, 2, 3};
+    do {
+        Tally all;
+        for (const int i : order) all.merge(parts[i]);
+        EXPECT_EQ(all.tried, 4u);
+        EXPECT_EQ(all.worst, 2);
+        EXPECT_EQ(all.worst_at, 2u);
+    } while (std::next_permutation(order.begin(), order.end()));
+}
+
+// ---- the built program
+
+class RenderVerify : public testing::Test {
+  protected:
+    std::string file(const std::string& name) const { return folder_.file(name); }
+    ProgramResult run(const Arguments& arguments) const {
+        return RunningProgram(CISTULA_BIN_DIR "/render-verify", arguments, file("")).wait();
+    }
+    void expect_refused(const Arguments& arguments, ExitCode code, const std::string& part) const {
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.code, static_cast<int>(code)) << result.error;
+        EXPECT_EQ(result.error.rfind("render-verify: ", 0), 0u) << result.error;
+        EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+        EXPECT_NE(result.error.find(part), std::string::npos) << result.error;
+        EXPECT_EQ(result.out, "");
+    }
+
+    const ScratchDirectory folder_;
+};
+
+TEST_F(RenderVerify, RefusesWhatItDoesNotKnow) {
+    expect_refused({"--case", "geometry/fanz"}, ExitCode::usage, "did you mean 'geometry/fans'?");
+    expect_refused({"--case", "*nothing*"}, ExitCode::usage, "no such case");
+    expect_refused({"--backend", "embre"}, ExitCode::usage, "did you mean 'embree'?");
+    expect_refused({"--precision", "half"}, ExitCode::usage, "must be float or double or both");
+    expect_refused({"--quik"}, ExitCode::usage, "did you mean '--quick'?");
+    expect_refused({"geometry/fans"}, ExitCode::usage, "--case");
+    expect_refused({"--json", "a", "--html", "./a"}, ExitCode::usage, "both --json and --html");
+    expect_refused({"--quick", "--case", "geometry/fans", "--json", "no/such/folder/a.json"}, ExitCode::file, "a.json");
+}
+
+TEST_F(RenderVerify, ABackendThatIsNotThereIsAnError) {
+    if (test::missing_gpu().empty()) GTEST_SKIP() << "this machine has a GPU";
+    for (const char* backend : {"cuda", "all"})
+        expect_refused({"--backend", backend, "--quick", "--case", "geometry/fans"}, ExitCode::device, "");
+}
+
+TEST_F(RenderVerify, WritesATableARecordAndAPage) {
+    const ProgramResult result = run({"--quick", "--case", "geometry/axis-parallel", "--case", "geometry/broken/*",
+                                      "--precision", "double", "--json", "a.json", "--html", "a.html"});
+    EXPECT_EQ(result.code, 0) << result.out << result.error;
+    EXPECT_NE(result.out.find("geometry/axis-parallel"), std::string::npos);
+    EXPECT_NE(result.out.find("all 6 hold"), std::string::npos) << result.out;
+    const auto record = nlohmann::json::parse(bytes_of(file("a.json")));
+    EXPECT_EQ(record["context"]["quick"], true);
+    ASSERT_EQ(record["cases"].size(), 6u);
+    for (const auto& one : record["cases"]) {
+        EXPECT_EQ(one["holds"], true);
+        EXPECT_EQ(one["precision"], "double");
+    }
+    const std::string page = bytes_of(file("a.html"));
+    EXPECT_NE(page.find("geometry/axis-parallel"), std::string::npos);
+    EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);
+    for (const char* loaded : {"http", "<script", "src=", "url(", "@import", "<link"})
+        EXPECT_EQ(page.find(loaded), std::string::npos) << loaded;
+}
+
+/// The hard cases, on the host's intersectors, in both precisions.
+TEST_F(RenderVerify, TheQuickRunHoldsButForWhatIsKnown) {
+    const ProgramResult result = run({"--quick", "--json", "all.json"});
+    std::printf("%s", result.out.c_str());
+    const auto record = nlohmann::json::parse(bytes_of(file("all.json")));
+    std::set<std::string> cases;
+    bool all = true;
+    for (const auto& one : record["cases"]) {
+        cases.insert(one["case"].get<std::string>());
+        all = all && one["holds"] == true;
+        EXPECT_TRUE(one["holds"] == true || one["known"] == true) << one.dump();
+    }
+    EXPECT_EQ(cases.size(), all_cases().size());
+    EXPECT_EQ(result.code, all ? 0 : 1);
+}
+
+TEST_F(RenderVerify, RunsGiveTheSameNumbersAgain) {
+    const Arguments arguments{"--quick", "--case", "geometry/broken/", "--json"};
+    const auto numbers = [&](const std::string& name) {
+        Arguments more = arguments;
+        more.push_back(name);
+        EXPECT_EQ(run(more).code, 0);
+        auto record = nlohmann::json::parse(bytes_of(file(name)));
+        for (auto& one : record["cases"]) one.erase("seconds");
+        return record["cases"];
+    };
+    EXPECT_EQ(numbers("a.json"), numbers("b.json"));
+}
+
+TEST_F(RenderVerify, ListsItsCases) {
+    const ProgramResult result = run({"--list"});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(size_t(std::count(result.out.begin(), result.out.end(), '\n')), all_cases().size());
+}
+
+// ---- docs/numerics.md
+
+/// The names in the fourth column of its tables.
+std::multiset<std::string> documented_cases() {
+    std::multiset<std::string> names;
+    std::istringstream text(bytes_of(CISTULA_SOURCE_DIR "/docs/numerics.md"));
+    for (std::string line; std::getline(text, line);) {
+        if (line.rfind("| ", 0) != 0) continue;
+        std::vector<std::string> cells;
+        for (size_t begin = 1; begin < line.size();) {
+            const size_t end = std::min(line.find('|', begin), line.size());
+            cells.push_back(line.substr(begin, end - begin));
+            begin = end + 1;
+        }
+        if (cells.size() < 5 || cells[3].find('`') == std::string::npos) continue;
+        EXPECT_EQ(cells.size(), 5u) << line;
+        for (size_t open = cells[3].find('`'); open != std::string::npos; open = cells[3].find('`', open)) {
+            const size_t close = cells[3].find('`', open + 1);
+            names.insert(cells[3].substr(open + 1, close - open - 1));
+            open = close + 1;
+        }
+        // What a row says lives somewhere does live there.
+        for (size_t open = cells[2].find('`'); open != std::string::npos; open = cells[2].find('`', open)) {
+            const size_t close = cells[2].find('`', open + 1);
+            const std::string path = cells[2].substr(open + 1, close - open - 1);
+            const std::string root = CISTULA_SOURCE_DIR "/";
+            EXPECT_TRUE(std::filesystem::exists(root + path) || std::filesystem::exists(root + "libcore/" + path))
+                << path;
+            open = close + 1;
+        }
+    }
+    return names;
+}
+
+TEST(NumericsDocument, NamesEveryCaseAndNoOther) {
+    const std::multiset<std::string> documented = documented_cases();
+    std::set<std::string> existing;
+    for (const CaseEntry& entry : all_cases()) {
+        EXPECT_TRUE(existing.insert(entry.info.name).second) << entry.info.name << " exists twice";
+        EXPECT_GE(documented.count(entry.info.name), 1u) << entry.info.name << " is not in docs/numerics.md";
+        EXPECT_EQ(entry.plan == nullptr, entry.render != nullptr) << entry.info.name;
+    }
+    for (const std::string& name : documented)
+        EXPECT_TRUE(existing.count(name) != 0) << name << " in docs/numerics.md is no case of render-verify";
+    EXPECT_GE(existing.size(), 20u);
+}
+
+}  // namespace
+}  // namespace cistula::verify
