@@ -113,7 +113,7 @@ __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, u
             const unsigned int whole = warp_sum(counts[i]);
             if (lane == i) sum = whole;
         }
-        if (lane < 4) atomicAdd(to + lane, (unsigned long long)sum);
+        if (lane < 4 && sum != 0) atomicAdd(to + lane, (unsigned long long)sum);
     }
     if (flags != 0) atomicOr(&tally.flags, flags);
 }

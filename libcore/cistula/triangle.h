@@ -32,7 +32,7 @@ struct TriangleRay {
             r.kx = r.ky;
             r.ky = k;
         }
-        r.sz = reciprocal(along_z);
+        r.sz = Real(1) / along_z;  // of any size: functions are compared beyond what renders ask
         r.sx = component(direction, r.kx) * r.sz;
         r.sy = component(direction, r.ky) * r.sz;
         r.ox = component(origin, r.kx);
