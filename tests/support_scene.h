@@ -194,10 +194,12 @@ struct Count {
     int enters = 0, leaves = 0, sheets = 0;
 };
 
-/// Goes straight on until nothing is met. Crossings come in increasing (t, key), and they end.
+/// Goes straight on until nothing is met; a line that starts on no face meets all. Crossings come in increasing (t,
+/// key), and they end.
 template <class Real, class Intersector>
 Count cross_all(const Intersector& intersector, Ray<Real> ray) {
     Count count;
+    if (ray.from_solid == no_solid && ray.fresh()) ray.meet_all();
     for (int i = 0; i < 100000; ++i) {
         const Hit<Real> hit = intersector.closest(ray);
         if (!hit.found()) return count;

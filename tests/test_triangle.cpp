@@ -293,7 +293,16 @@ TYPED_TEST(TriangleTest, TheSignOfDetTellsTheSide) {
         for (const Real side : {Real(1), Real(-1)}) {
             const Vec3<Real> origin = permuted({Real(0.125), Real(-0.25), Real(2) * side});
             const Vec3<Real> direction = permuted({Real(0), Real(0), -side});
-            const Hit<Real> hit = BruteIntersector<Real>{view}.closest(test::ray_from(origin, direction));
+            Ray<Real> ray = test::ray_from(origin, direction);
+            if (side > 0) ray.media.add(0, 1);  // first crossings come from the side that the list states
+            const Hit<Real> refused = BruteIntersector<Real>{view}.closest(ray);
+            EXPECT_FALSE(refused.found());
+            EXPECT_EQ(refused.passed_over, Real(2));
+            ray.meet_all();
+            EXPECT_EQ(BruteIntersector<Real>{view}.closest(ray).t, Real(2));
+            ray = test::ray_from(origin, direction);
+            if (side < 0) ray.media.add(0, 1);
+            const Hit<Real> hit = BruteIntersector<Real>{view}.closest(ray);
             ASSERT_TRUE(hit.found());
             EXPECT_EQ(hit.enters, side > 0);
             EXPECT_EQ(key_kind(hit.key), side > 0 ? CrossingKind::enter : CrossingKind::leave);

@@ -69,10 +69,12 @@ struct Crossings {
 
 inline constexpr uint32_t most_crossings = 1u << 18;
 
-/// Straight on until nothing is met. `only`: crossings of other solids do not count; no_solid: all do.
+/// Straight on until nothing is met; a line that starts on no face meets all. `only`: crossings of other solids do not
+/// count; no_solid: all do.
 template <class Real, class Intersector>
 CISTULA_HD inline Crossings cross_all(const Intersector& intersector, Ray<Real> ray, uint32_t only = no_solid) {
     Crossings found;
+    if (ray.from_solid == no_solid && ray.fresh()) ray.meet_all();
     for (uint32_t i = 0; i < most_crossings; ++i) {
         const Hit<Real> hit = intersector.closest(ray);
         if (!hit.found()) return found;

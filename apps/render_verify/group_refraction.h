@@ -5,6 +5,7 @@
 #include "apps/render_verify/refraction/camera_inside.h"
 #include "apps/render_verify/refraction/critical_angle.h"
 #include "apps/render_verify/refraction/fresnel.h"
+#include "apps/render_verify/refraction/grazing.h"
 #include "apps/render_verify/refraction/index_one.h"
 #include "apps/render_verify/refraction/media.h"
 #include "apps/render_verify/refraction/prism.h"
@@ -16,6 +17,6 @@ namespace cistula::verify::refraction {
 using Cases = CaseList<IndexOne, CriticalAngle, CriticalAngleTraced, FresnelNormal, FresnelEqual, FresnelGrazing,
                        AnyAngle, BrewsterShare, BrewsterAngle, Reversibility, SlabParallel, SlabDisplacement,
                        PrismDeviation, MediaPlanes, MediaTriangles, MediaMixed, MediaMovedPlanes, MediaMovedTriangles,
-                       MediaOctants, MediaMixedOctants, CameraInside>;
+                       MediaOctants, MediaMixedOctants, GrazingShared, GrazingMoved, CameraInside>;
 
 }  // namespace cistula::verify::refraction

@@ -203,7 +203,22 @@ CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<R
     if (!(t <= best.t && t < RealTraits<Real>::infinity)) return;
     const uint64_t key =
         make_key(CrossingKind::leave, index, convex_face(scene, solid, ray.origin, ray.direction, exit, skipped));
-    if (best.improves(t, key)) best = {t, key, Real(0), Real(0), 0, false};
+    if (best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, false);
+}
+
+/// Whether a line from within the planes of a solid that it is not inside goes out by a face that it starts on, give or
+/// take rounding: at a slant it would go far in the film before that. Where solids touch only. By value, as it is
+/// called.
+template <class Real, class Scene>
+CISTULA_SELDOM bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real> origin, Vec3<Real> direction) {
+    const Solid& solid = scene.solids[index];
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
+        const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin);
+        const Real depth = nd > Real(0) ? slab.high - no : no - slab.low;
+        if (nd != Real(0) && depth <= incidence<Real> * scene.extent) return true;
+    }
+    return false;
 }
 
 /// The way into a convex solid that the ray neither is inside nor left.
@@ -215,9 +230,10 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Soli
     if (!interval.met(scene.extent)) return;
     const Real t = greatest(interval.enter, Real(0));
     if (!(t <= best.t && t < RealTraits<Real>::infinity) || t < ray.after.t) return;
+    if (Media::contacts && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction)) return;
     const uint64_t key =
         make_key(CrossingKind::enter, index, convex_face(scene, solid, ray.origin, ray.direction, interval));
-    if (ray.after.before(t, key) && best.improves(t, key)) best = {t, key, Real(0), Real(0), 0, true};
+    if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);
 }
 
 /// The ray's next crossing of a convex solid, if it is less than `best`.

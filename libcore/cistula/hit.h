@@ -46,8 +46,21 @@ struct Hit {
     Real u = 0, v = 0;   // triangles: weights of the second and third corner
     uint32_t slot = 0;   // triangles: 8 cluster + lane
     bool enters = true;  // triangles: against the normal; the sign of det, not of a rounded dot product
+    /// The least t of crossings of meshes that came from the wrong side for the first on a line (triangle.h).
+    Real passed_over = RealTraits<Real>::infinity;
 
     CISTULA_INLINE bool found() const { return key != no_key; }
+
+    /// Another crossing in the place of this one; `passed_over` stays.
+    CISTULA_INLINE void take(Real other_t, uint64_t other_key, Real other_u, Real other_v, uint32_t other_slot,
+                             bool other_enters) {
+        t = other_t;
+        key = other_key;
+        u = other_u;
+        v = other_v;
+        slot = other_slot;
+        enters = other_enters;
+    }
 
     /// The one hit rule: keep the least (t, key).
     CISTULA_INLINE bool improves(Real other_t, uint64_t other_key) const {

@@ -10,19 +10,21 @@ namespace cistula {
 
 template <class Real, class Media = MediaList>
 struct Meeting {
-    static constexpr int capacity = Media::contacts ? 4 : 1;
+    static constexpr int capacity = Media::contacts ? 8 : 1;
 
     Hit<Real> hit;                   // the crossing to shade: of the solid with the highest priority
     Crossing<Real> taken[capacity];  // crossings that change the media, in their order; sheets change none
     int count;
     Media beyond;                    // after all of them
     bool fits;                       // whether the lists had room
+    bool passed_over;                // whether crossings from the wrong side come before the first
 
     CISTULA_INLINE void begin(const Ray<Real, Media>& ray, const Hit<Real>& first) {
         hit = first;
         count = 0;
         beyond = ray.media;
         fits = true;
+        passed_over = first.passed_over <= first.t;
         take(first);
     }
 
@@ -50,16 +52,17 @@ CISTULA_INLINE void meet(const Scene& scene, const Intersector& intersector, con
     if (!Media::contacts || !scene.solids[key_solid(hit.key)].touched) return;
     const Real cosine = magnitude(dot(normal_at(scene, hit), ray.direction));
     const Real reach = hit.t + incidence<Real> * scene.extent / greatest(cosine, Real(0x1p-10));
+    // A mesh's two crossings at an edge may come in the wrong order: then both are taken.
+    const bool turned = hit.enters == ray.media.contains(key_solid(hit.key));
     Ray<Real, Media> probe = ray;
     while (meeting.count < Meeting<Real, Media>::capacity) {
         probe.media = meeting.beyond;
         probe.after = meeting.last();
         const Hit<Real> next = intersector.closest(probe);
         const uint32_t solid = key_solid(next.key);
-        if (!(next.t <= reach) || key_kind(next.key) == CrossingKind::sheet || solid == key_solid(hit.key)) break;
+        if (!(next.t <= reach) || key_kind(next.key) == CrossingKind::sheet || (solid == key_solid(hit.key) && !turned))
+            break;
         const bool higher = solid > key_solid(meeting.hit.key);
-        // The state of a convex solid sees to it that leaving it is not missed later.
-        if (scene.solids[solid].kind == SolidKind::convex && key_kind(next.key) == CrossingKind::leave && !higher) break;
         meeting.take(next);
         if (higher) meeting.hit = next;
     }

@@ -73,6 +73,7 @@ CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& inte
     Ray<Real> ray;
     ray.origin = Vec3<Real>(along(point, -distance, direction));
     ray.direction = Vec3<Real>(direction);
+    ray.meet_all();
     for (;;) {
         const Hit<Real> hit = intersector.closest(ray);
         if (!(double(hit.t) < distance)) return fits;

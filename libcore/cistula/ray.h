@@ -110,6 +110,10 @@ struct Ray {
     Media media;                    // around the point `after`
 
     CISTULA_INLINE bool fresh() const { return after.t < Real(0); }
+    /// Whether the line's first crossing of a mesh has to come from the side on which the line starts.
+    CISTULA_INLINE bool by_side() const { return after.t <= Real(-1); }
+    /// The line is to meet all crossings, from whichever side: for those who count.
+    CISTULA_INLINE void meet_all() { after.t = Real(-0.5); }
 };
 
 /// A ray that is not finite meets nothing.

@@ -139,32 +139,38 @@ class RayTree {
     }
 
     /// Straight on through a face.
-    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting) {
-        const Crossing<Real>& crossing = meeting.taken[0];
-        const uint32_t solid = key_solid(crossing.key);
+    template <class Absorbed>
+    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting, Absorbed& absorption) {
         Media media = meeting.beyond;
         if constexpr (Media::meshes)
-            if (ray.fresh() && solid == ray.from_solid && scene_.solids[solid].kind == SolidKind::mesh)
-                count_passed_over(ray, crossing, media);
+            if (meeting.passed_over) count_passed_over(ray, meeting.taken[0], media, absorption);
         ray.media = media;
         ray.after = meeting.last();
     }
 
-    /// A line that starts on a mesh takes its first crossing from the right side. Others of that mesh that rounding puts
-    /// before it, at an edge that the line grazes, count all the same once it goes on straight.
-    CISTULA_INLINE void count_passed_over(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media) {
+    /// A line's first crossing of a mesh is from the right side. Others of that mesh that rounding puts before it, at
+    /// an edge that the line grazes, count all the same once it goes on straight.
+    template <class Absorbed>
+    CISTULA_INLINE void count_passed_over(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media,
+                                          Absorbed& absorption) {
         Ray<Real, Media> probe = ray;
-        probe.from_solid = no_solid;
+        probe.meet_all();
         for (;;) {
             const Hit<Real> next = intersector_.closest(probe);
             if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
-            const int change = media_change(key_kind(next.key));
-            bool fits = true;
-            if (key_solid(next.key) == ray.from_solid) fits = media.add(ray.from_solid, change);
-            if (change != 0) fits &= probe.media.add(key_solid(next.key), change);
-            if (!fits) sums_.flag(flag_media_overflow);
+            if (!behind_start(ray, next)) {
+                if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) sums_.flag(flag_media_overflow);
+                absorption.cross(scene_, next.key, next.t);
+            }
             probe.after = {next.t, next.key};
         }
+    }
+
+    /// Whether a mesh that is crossed from the wrong side is the one beyond which the line starts, as that touches the
+    /// solid whose face it leaves.
+    CISTULA_INLINE bool behind_start(const Ray<Real, Media>& ray, const Hit<Real>& hit) {
+        if (ray.from_solid == no_solid || ray.from_solid == key_solid(hit.key)) return false;
+        return hit.t * magnitude(dot(normal_at(scene_, hit), ray.direction)) <= incidence<Real> * scene_.extent;
     }
 
     /// A crossing with nothing to shade: inside a medium of higher priority, or of a clear face between equal media.
@@ -192,6 +198,7 @@ class RayTree {
                 }
             }
             if (!hit.found()) {
+                absorption.dim(scene_, branch.ray.media, hit.t, branch.weight);
                 sums_.add(branch.weight * scene_.background);
                 return false;
             }
@@ -202,7 +209,7 @@ class RayTree {
                 return true;
             }
             for (int i = 0; i < meeting.count; ++i) absorption.cross(scene_, meeting.taken[i].key, meeting.taken[i].t);
-            pass(branch.ray, meeting);
+            pass(branch.ray, meeting, absorption);
             if (crossings == largest_crossings) {
                 sums_.flag(flag_too_many_crossings);
                 return false;
@@ -259,7 +266,8 @@ class RayTree {
             child.ray = spawned(far_side(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
         } else {
             child.ray = parent.ray;
-            pass(child.ray, meeting);
+            Absorption<false> later;  // counted from there on
+            pass(child.ray, meeting, later);
         }
         return child;
     }

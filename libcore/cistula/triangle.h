@@ -246,10 +246,13 @@ CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_
     CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
     if (scene.solids[solid].kind == SolidKind::sheet)
         kind = CrossingKind::sheet;
-    else if (own && ray.fresh() && c.enters() == ray.media.contains(solid))
-        return;  // a line that starts on this mesh first crosses it from the side on which it starts
+    else if ((Media::meshes ? ray.by_side() : own && ray.fresh()) && c.enters() == ray.media.contains(solid)) {
+        // A line first crosses a mesh from the side on which it starts.
+        if constexpr (Media::meshes) best.passed_over = lesser(c.t, best.passed_over);
+        return;
+    }
     const uint64_t key = make_key(kind, solid, triangle);
-    if (ray.after.before(c.t, key) && best.improves(c.t, key)) best = {c.t, key, c.u(), c.v(), slot, c.enters()};
+    if (ray.after.before(c.t, key) && best.improves(c.t, key)) best.take(c.t, key, c.u(), c.v(), slot, c.enters());
 }
 
 /// The ray's next crossing of a cluster's triangles, if it is less than `best`.

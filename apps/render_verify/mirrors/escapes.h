@@ -26,7 +26,6 @@ struct EscapesMeshes : BouncesInside {
 /// As the camera's lines, and those that go straight on.
 struct FirstLines : BouncesInside {
     static constexpr const char* name = "mirrors/escapes/camera-in-mesh";
-    static constexpr FailsIn fails_in = FailsIn::both;
     static constexpr const char* exact = "a line that starts inside a mesh, on no face, first meets a face from within";
     static constexpr Bound bound = no_failures("rays");
     static void plan(Plan& plan) { plan_meshes<FirstLines>(plan, Start::as_rendered, 100000, 20000); }

@@ -93,7 +93,6 @@ struct MediaTriangles : MediaSequence {
 };
 struct MediaMixed : MediaSequence {
     static constexpr const char* name = "refraction/media/planes-and-triangles";
-    static constexpr FailsIn fails_in = FailsIn::both;
     static constexpr const char* exact = "the same where a solid of planes shares a face with a mesh";
     static constexpr Bound bound = no_failures("rays");
     static void plan(Plan& plan) {
@@ -117,7 +116,6 @@ struct MediaMovedTriangles : MediaSequence {
 /// they may be: moved there only.
 struct MediaMovedPlanes : MediaSequence {
     static constexpr const char* name = "refraction/media/within-rounding/planes";
-    static constexpr FailsIn fails_in = FailsIn::single;
     static constexpr const char* exact = "the same where shared faces of solids of planes are ulps apart in float";
     static constexpr Bound bound = no_failures("rays");
     static void plan(Plan& plan) {
@@ -183,7 +181,6 @@ struct MediaOctants : Octants {
 };
 struct MediaMixedOctants : Octants {
     static constexpr const char* name = "refraction/media/octants/planes-and-triangles";
-    static constexpr FailsIn fails_in = FailsIn::both;
     static constexpr const char* exact = "the same, some of planes and some meshes";
     static constexpr Bound bound = no_failures("rays");
     static void plan(Plan& plan) { plan_octants<MediaMixedOctants>(plan, {Form::both}); }
