@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the assets that the scenes use and that a formula describes: knot.ply, and marble.data in the seed's format.
+"""Writes the assets that the scenes use and that a formula describes: knot.ply, marble.data in the seed's format, and
+hard/torus.ply and hard/slivers.ply.
 
 Usage: scenes/make_assets.py [FOLDER]    (default: this script's folder)
 """
@@ -24,6 +25,23 @@ def cross(a, b):
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
+def write_mesh(path, vertices, triangles):
+    """Binary little-endian PLY of a closed mesh, turned to be counter-clockwise seen from outside."""
+    volume = 0.0
+    for a, b, c in triangles:
+        n = cross(vertices[b], vertices[c])
+        volume += sum(x * y for x, y in zip(vertices[a], n))
+    if volume < 0:
+        triangles = [(a, c, b) for a, b, c in triangles]
+    header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\nproperty float x\n"
+              f"property float y\nproperty float z\nelement face {len(triangles)}\n"
+              "property list uchar int vertex_indices\nend_header\n")
+    with open(path, "wb") as f:
+        f.write(header.encode())
+        f.write(b"".join(struct.pack("<3f", *v) for v in vertices))
+        f.write(b"".join(struct.pack("<B3i", 3, *t) for t in triangles))
+
+
 def write_knot(path, along=168, around=20, thickness=0.52):
     """A closed tube around the knot: counter-clockwise seen from outside, binary little-endian PLY."""
     step = 1e-5
@@ -41,19 +59,48 @@ def write_knot(path, along=168, around=20, thickness=0.52):
             here, right = i * around + j, i * around + (j + 1) % around
             over, corner = (here + around) % (along * around), (right + around) % (along * around)
             triangles += [(here, over, corner), (here, corner, right)]
-    volume = 0.0
-    for a, b, c in triangles:
-        n = cross(vertices[b], vertices[c])
-        volume += sum(x * y for x, y in zip(vertices[a], n))
-    if volume < 0:
-        triangles = [(a, c, b) for a, b, c in triangles]
-    header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\nproperty float x\n"
-              f"property float y\nproperty float z\nelement face {len(triangles)}\n"
-              "property list uchar int vertex_indices\nend_header\n")
-    with open(path, "wb") as f:
-        f.write(header.encode())
-        f.write(b"".join(struct.pack("<3f", *v) for v in vertices))
-        f.write(b"".join(struct.pack("<B3i", 3, *t) for t in triangles))
+    write_mesh(path, vertices, triangles)
+
+
+def write_torus(path, around=24, across=12, radius=1.0, tube=0.45):
+    """About the z axis; closed."""
+    vertices, triangles = [], []
+    for i in range(around):
+        a = 2 * math.pi * i / around
+        for j in range(across):
+            b = 2 * math.pi * j / across
+            r = radius + tube * math.cos(b)
+            vertices.append((r * math.cos(a), r * math.sin(a), tube * math.sin(b)))
+            here, right = i * across + j, i * across + (j + 1) % across
+            over, corner = (here + across) % (around * across), (right + across) % (around * across)
+            triangles += [(here, over, corner), (here, corner, right)]
+    write_mesh(path, vertices, triangles)
+
+
+def write_slivers(path, thin=2.0**-19):
+    """The box [-1, 1]^3 cut along planes across its axes, whose strips are 2^20 times as long as wide; closed."""
+    cuts = [-1, -0.5, -0.5 + thin, 0, thin, 0.5, 0.5 + thin, 1]
+    numbers, vertices, triangles = {}, [], []
+
+    def number(point):
+        if point not in numbers:
+            numbers[point] = len(vertices)
+            vertices.append(point)
+        return numbers[point]
+
+    for axis in range(3):
+        for side in (-1, 1):
+            for low, high in zip(cuts, cuts[1:]):
+                for left, right in zip(cuts, cuts[1:]):
+                    corners = []
+                    for u, v in ((low, left), (high, left), (high, right), (low, right)):
+                        point = [0, 0, 0]
+                        point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3] = side, u, v
+                        corners.append(number(tuple(point)))
+                    triangles += [(corners[0], corners[1], corners[2]), (corners[0], corners[2], corners[3])]
+                    if side < 0:
+                        triangles[-2:] = [t[::-1] for t in triangles[-2:]]
+    write_mesh(path, vertices, triangles)
 
 
 def write_marble(path, size=224):
@@ -78,4 +125,7 @@ def write_marble(path, size=224):
 if __name__ == "__main__":
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
     write_knot(os.path.join(folder, "knot.ply"))
+    os.makedirs(os.path.join(folder, "hard"), exist_ok=True)
+    write_torus(os.path.join(folder, "hard", "torus.ply"))
+    write_slivers(os.path.join(folder, "hard", "slivers.ply"))
     write_marble(os.path.join(folder, "marble.data"))

@@ -59,6 +59,7 @@ void make(const fs::path& folder, const std::string& name) {
     const LayeredPicture in_float = to_layers(single, golden::channels());
     const LayeredPicture in_double = to_layers(twice, golden::channels());
     const golden::Difference d = golden::compare(in_float, in_double, true);
+    const FrameSettings settings = golden::settings_for(scene);
     fs::create_directories(folder / name);
     write_and_compare(folder / name / "float.exr", in_float);
     write_and_compare(folder / name / "double.exr", in_double);
@@ -75,8 +76,8 @@ void make(const fs::path& folder, const std::string& name) {
             }
     const nlohmann::ordered_json record = {
         {"scene", name},
-        {"width", golden::width},
-        {"height", golden::height},
+        {"width", settings.full_width},
+        {"height", settings.full_height},
         {"depth", scene.depth},
         {"float", {{"hash", film_hash(single)}}},
         {"double", {{"hash", film_hash(twice)}}},
@@ -85,7 +86,7 @@ void make(const fs::path& folder, const std::string& name) {
           {"channel", d.channel},
           {"x", d.x},
           {"y", d.y},
-          {"share_over_half_of_1_255", double(over) / (golden::width * golden::height)}}}};
+          {"share_over_half_of_1_255", double(over) / (settings.full_width * settings.full_height)}}}};
     write_and_compare(folder / name / "golden.json", record);
 }
 

@@ -1,8 +1,10 @@
 #include "scene/mesh_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "scene/compiled_scene.h"
+#include "scene/generated_mesh.h"
 #include "scene/mesh_topology.h"
 #include "scene/polygon.h"
 #include "scene_samples.h"
@@ -70,6 +72,34 @@ TEST(MeshFile, BinaryPlyToo) {
     ASSERT_EQ(parts.size(), 1u);
     ASSERT_EQ(parts[0].mesh.triangles.size(), 1u);
     EXPECT_EQ(parts[0].mesh.vertices[parts[0].mesh.triangles[0][1]], dvec3(1.5, 0, 0));
+}
+
+/// However small a mesh is, only vertices at one position are one.
+TEST(MeshFile, VerticesThatAreNearStayApart) {
+    const ScratchDirectory scratch;
+    const TrianglesObject ring = torus(2e-6, 0.9e-6, 48, 24);
+    std::string ply = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(ring.vertices.size()) +
+                      "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                      std::to_string(ring.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string obj;
+    for (const dvec3& p : ring.vertices) {
+        const std::string line = fmt::format("{:.9e} {:.9e} {:.9e}\n", p.x, p.y, p.z);
+        ply += line;
+        obj += "v " + line;
+    }
+    for (const auto& t : ring.triangles) {
+        ply += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+        obj += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    }
+    put_bytes(scratch.file("t.ply"), ply);
+    put_bytes(scratch.file("t.obj"), obj);
+    for (const char* name : {"t.ply", "t.obj"}) {
+        const auto parts = read_mesh(mesh_of(scratch.file(name)), "/objects/0");
+        ASSERT_EQ(parts.size(), 1u);
+        const MeshTopology topology = find_topology(parts[0].mesh);
+        EXPECT_TRUE(topology.closed) << name;
+        EXPECT_EQ(topology.count, ring.triangles.size()) << name;
+    }
 }
 
 TEST(MeshFile, ObjGroupsBringTheirMaterials) {

@@ -241,7 +241,7 @@ TEST(Scenes, BenchmarkIsWhatItsFiguresWereMeasuredOn) {
 
 TEST(Scenes, AllAreValid) {
     int count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(source_root() / "scenes")) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_root() / "scenes")) {
         if (entry.path().extension() != ".json") continue;
         EXPECT_NO_THROW(read_scene(entry.path().string())) << entry.path();
         ++count;

@@ -13,22 +13,25 @@
 
 namespace cistula::golden {
 
+/// At most; films that are smaller keep their size.
 inline constexpr int width = 320, height = 180;
 
-/// The names of all scenes in a folder, sorted: "benchmark" for benchmark.json.
+/// The names of all scenes in a folder and those inside it, sorted: "benchmark" for benchmark.json, "hard/slivers" for
+/// hard/slivers.json.
 inline std::vector<std::string> scene_names(const std::filesystem::path& scenes) {
     std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(scenes))
-        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(scenes))
+        if (entry.path().extension() == ".json")
+            names.push_back(entry.path().lexically_relative(scenes).replace_extension().generic_string());
     std::sort(names.begin(), names.end());
     return names;
 }
 
 inline FrameSettings settings_for(const SceneDescription& scene) {
     FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
+    settings.full_width = std::min(width, scene.film.width);
+    settings.full_height = std::min(height, scene.film.height);
+    settings.crop = {0, 0, settings.full_width, settings.full_height};
     settings.depth = scene.depth;
     settings.cutoff = scene.cutoff;
     return settings;

@@ -30,13 +30,13 @@ struct GoldenResult {
     bool holds() const { return flags == 0 && hash == expected_hash && passes(comparison, {}); }
 };
 
-/// The subfolders that hold a golden.json, sorted.
+/// The folders inside this one that hold a golden.json, sorted: "benchmark", "hard/slivers".
 std::vector<std::string> golden_names(const fs::path& folder) {
     std::error_code error;
     std::vector<std::string> names;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (std::error_code ignored; fs::exists(entry->path() / "golden.json", ignored))
-            names.push_back(entry->path().filename().string());
+    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (entry->path().filename() == "golden.json" && entry.depth() > 0)
+            names.push_back(entry->path().parent_path().lexically_relative(folder).generic_string());
     if (names.empty())
         throw Error(ExitCode::file,
                     fmt::format("{}: holds no golden images{}; run in Cistula's source tree, or name its folder: "
@@ -61,11 +61,11 @@ Film render(const SceneDescription& scene, Backend backend, const CudaOptions& c
     return golden::render_with(*renderer, scene, golden::settings_for(scene));
 }
 
-GoldenResult check(const fs::path& folder, const SceneDescription& scene, Precision precision, Backend backend,
-                   const CudaOptions& cuda) {
+GoldenResult check(const std::string& name, const fs::path& folder, const SceneDescription& scene, Precision precision,
+                   Backend backend, const CudaOptions& cuda) {
     const bool in_double = precision == Precision::double_;
     GoldenResult result;
-    result.scene = folder.filename().string();
+    result.scene = name;
     result.precision = in_double ? "double" : "float";
     result.expected_hash = expected_hash(folder / "golden.json", result.precision.c_str());
     const LayeredPicture expected = read_exr((folder / (result.precision + ".exr")).string());
@@ -87,8 +87,8 @@ std::string image_text(const Comparison& comparison) {
     return text;
 }
 
-std::string row(const GoldenResult& result) {
-    return fmt::format("{:<12} {:<9} {:<8} {}{}\n", result.scene, result.precision,
+std::string row(const GoldenResult& result, size_t name_width) {
+    return fmt::format("{:<{}} {:<9} {:<8} {}{}\n", result.scene, name_width, result.precision,
                        result.hash == result.expected_hash ? "equal" : "differs",
                        one_line(image_text(result.comparison)),
                        result.flags == 0 ? "" : fmt::format("; the film cannot be trusted (flags {})", result.flags));
@@ -132,15 +132,17 @@ bool run_golden(const CompareOptions& options) {
     const std::vector<std::string> names = golden_names(options.golden);
     // "." and "golden/.." have a parent too.
     const fs::path folder = fs::canonical(options.golden), scenes = folder.parent_path() / "scenes";
-    say(fmt::format("{}: backend {}{}\n{:<12} {:<9} {:<8} {}\n", options.golden, backend_name(options.backend),
+    size_t name_width = 12;
+    for (const std::string& name : names) name_width = std::max(name_width, name.size());
+    say(fmt::format("{}: backend {}{}\n{:<{}} {:<9} {:<8} {}\n", options.golden, backend_name(options.backend),
                     devices.names.empty() ? "" : fmt::format(" on {}", fmt::join(devices.names, ", ")), "scene",
-                    "precision", "film", "image"));
+                    name_width, "precision", "film", "image"));
     std::vector<GoldenResult> results;
     for (const std::string& name : names) {
         const SceneDescription scene = read_scene((scenes / (name + ".json")).string());
         for (const Precision precision : options.precisions) {
-            results.push_back(check(folder / name, scene, precision, options.backend, devices.options));
-            say(row(results.back()));
+            results.push_back(check(name, folder / name, scene, precision, options.backend, devices.options));
+            say(row(results.back(), name_width));
         }
     }
     const auto differing = static_cast<size_t>(

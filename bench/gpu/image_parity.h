@@ -7,7 +7,7 @@
 
 namespace cistula::bench {
 
-/// Every scene in FOLDER/scenes by both backends, and each against its golden hash, in both precisions; a plain loop and a
+/// Every scene in FOLDER/scenes and the folders inside it by both backends, and each against its golden hash, in both precisions; a plain loop and a
 /// tree, split trees and whole ones.
 void check_scenes(GpuRecord& record, const std::string& folder);
 

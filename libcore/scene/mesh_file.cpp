@@ -129,8 +129,10 @@ std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& pla
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                                             aiComponent_COLORS | aiComponent_BONEWEIGHTS);
-    // Not aiProcess_Triangulate: Debian's build of it ends the program on some broken files.
-    const aiScene* scene = importer.ReadFile(object.file, aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices);
+    // Not aiProcess_Triangulate: Debian's build of it ends the program on some broken files. Nor
+    // aiProcess_JoinIdenticalVertices, which joins some that are up to 1e-5 apart: find_topology joins those that are
+    // equal.
+    const aiScene* scene = importer.ReadFile(object.file, aiProcess_RemoveComponent);
     if (!scene) refuse(place, object.file, "cannot be read: " + one_line(importer.GetErrorString()));
 
     std::vector<MeshPart> parts;
