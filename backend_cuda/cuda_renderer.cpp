@@ -17,6 +17,9 @@ namespace {
 constexpr uint32_t plain_loop_primitives = 16;
 /// Samples of a part: the longest that Ctrl-C waits for.
 constexpr size_t part_samples = size_t{1} << 25;
+/// Frames of up to so many samples split trees of more surfaces than `deep`, after so many levels.
+constexpr size_t few_samples = size_t{1} << 19;
+constexpr int deep = 5, split_levels = 4;
 
 template <class Real>
 bool fits_plain_loop(const SceneView<Real>& scene) {
@@ -49,7 +52,7 @@ class CudaRenderer : public Renderer {
         bytes_ = arena.bytes().size();
         for (const int index : options_.devices) {
             use_device(index);
-            workers_.push_back(std::make_unique<DeviceWorker<Real>>(index, arena, view_, path_, options_.split));
+            workers_.push_back(std::make_unique<DeviceWorker<Real>>(index, arena, view_, path_));
         }
     }
 
@@ -116,6 +119,7 @@ class CudaRenderer : public Renderer {
         FrameView view;
         bool fits = true;      // the camera's list of media
         int mask = 0;
+        int split_depth = 0;
         int strips = 0;        // of the whole rectangle
         int part_strips = 0;   // of a part, per device
         int parts = 0;
@@ -152,20 +156,30 @@ class CudaRenderer : public Renderer {
         const int per_device = (frame.strips + devices() - 1) / devices();
         int wanted = int(std::clamp<size_t>(part_samples / (strip_pixels * samples), 1, size_t(per_device)));
         if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / strip_pixels, 1, size_t(wanted)));
-        frame.part_strips = reserve(wanted, strip_pixels, frame.mask);
+        frame.split_depth = split_depth(settings, frame.view.tree, size_t(per_device) * strip_pixels * samples);
+        frame.part_strips = reserve(wanted, strip_pixels, frame);
         frame.parts = (per_device + frame.part_strips - 1) / frame.part_strips;
         frame.first_slot = slot % DeviceWorker<Real>::slots;
         start(frame, 0);
         return frame;
     }
 
+    /// Of a frame of few samples the last threads would be long alone with the deepest trees; others keep the device busy
+    /// meanwhile. A budget of truncation is spent in the order of one thread's stack.
+    int split_depth(const FrameSettings& settings, const TreeSettings& tree, size_t samples_per_device) const {
+        if (tree.budget != 0) return 0;
+        if (options_.split != CudaOptions::automatic) return options_.split;
+        return samples_per_device <= few_samples && settings.depth > deep ? split_levels : 0;
+    }
+
     /// Memory for parts of `strips`, or of half as many until it is enough.
-    int reserve(int strips, size_t strip_pixels, int mask) {
+    int reserve(int strips, size_t strip_pixels, const Frame& frame) {
         const int wanted = strips;
         for (;; strips = (strips + 1) / 2) {
             bool room = true;
             for (auto& worker : workers_)
-                room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit, mask);
+                room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit, frame.mask,
+                                               frame.split_depth != 0);
             if (room) break;
             if (strips == 1)
                 throw Error(ExitCode::device, fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or "
@@ -202,6 +216,7 @@ class CudaRenderer : public Renderer {
             job.first_strip = part * frame.part_strips * devices() + int(d);
             job.strip_step = devices();
             job.mask = frame.mask;
+            job.split_depth = frame.split_depth;
             workers_[d]->start(job, (frame.first_slot + part) % DeviceWorker<Real>::slots);
         }
     }

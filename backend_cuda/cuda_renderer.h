@@ -31,7 +31,8 @@ struct CudaOptions {
     std::vector<int> devices = {0};  // CudaDevice::index; all share every frame, by interleaved tiles
     // None of these changes the image:
     size_t memory_limit = 0;   // bytes of a device that pixels may take; 0: what is free
-    int split = 0;             // surfaces of a tree that a thread shades before other threads take what waits; 0: all
+    static constexpr int automatic = -1;
+    int split = automatic;     // depth from which other threads follow a tree's branches; 0: never
     bool always_tree = false;  // a tree even where a plain loop would do; for tests
 };
 

@@ -6,12 +6,17 @@
 #include <chrono>
 #include <cstring>
 
+#include "scene/shadow_plan.h"
+
 namespace cistula {
 namespace {
 
 constexpr size_t staging_bytes = size_t{32} << 20, copy_bytes = size_t{4} << 20;
-/// Branches that may wait per pixel of a part; trees that find no room are walked to their end where they are.
-constexpr size_t queue_share = 2;
+/// Branches that may wait per pixel of a part, and in all; trees that find no room are walked to their end where they are.
+constexpr size_t queued_per_pixel = 2, most_queued = size_t{1} << 21;
+/// From so many pixels on the warps of a block interleave: all four then do much the same at a time and share the
+/// instructions that are fetched. Of fewer, the few that take longest are better kept apart.
+constexpr size_t many_pixels = size_t{1} << 19;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -24,9 +29,8 @@ void use_device(int device) {
 }
 
 template <class Real>
-DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path,
-                                 int split)
-    : device_(device), path_(path), split_(split) {
+DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path)
+    : device_(device), path_(path) {
     arena_.reserve(std::max<size_t>(scene.bytes().size(), 1));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(),
                                        cudaMemcpyHostToDevice, compute_));
@@ -37,7 +41,10 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     }
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
     scene_.view = scene.at(arena_.as<void>());
-    if (path_ == DevicePath::plain_loop) scene_.small.assign(here, scene_.view);
+    if (path_ == DevicePath::plain_loop) {
+        scene_.small.assign(here, scene_.view);
+        plan_shadows(here, scene_.small.plan);
+    }
 }
 
 /// A kernel's first launch takes memory for its threads' stacks: over a gigabyte on a large device. It must come before the
@@ -58,11 +65,11 @@ void DeviceWorker<Real>::prime(int mask) {
 }
 
 template <class Real>
-bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask) {
+bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, bool splits) {
     use_device(device_);
     prime(mask);
     const size_t bytes = pixels * sizeof(PixelRecord);
-    const size_t branch = queued_branch_bytes<Real>(path_), wanted = split_ > 0 ? pixels / queue_share : 0;
+    const size_t branch = queued_branch_bytes<Real>(path_), wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
     if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
     bool room = true;
     for (PartSlot& slot : slots_) room = room && slot.records.try_reserve(bytes);
@@ -90,13 +97,11 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.first_strip = part.first_strip;
     job.strip_step = part.strip_step;
     job.rows = part.strips * strip_rows;
+    job.interleaved = size_t(job.width) * size_t(job.rows) >= many_pixels;
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(queue_sizes_.as<void>(), 0, passes * sizeof(unsigned int), compute_));
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
-    // A budget is spent in the order of one thread's stack; and small trees are not worth splitting.
-    const bool splits = split_ > 0 && part.frame.tree.budget == 0 &&
-                        (part.frame.tree.depth > 30 || (1 << part.frame.tree.depth) > split_);
     const auto queue = [&](int pass) {
         BranchQueue q;
         q.items = queue_[pass % 2].as<void>();
@@ -104,12 +109,19 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
         q.size = queue_sizes_.as<unsigned int>() + pass;
         return q;
     };
-    job.surfaces = split_;
-    if (splits) job.to = queue(0);
+    // A pass follows trees that many levels further down, the last one to their end.
+    const auto give = [&](int pass) {
+        const int depth = (pass + 1) * part.split_depth;
+        const bool last = part.split_depth == 0 || pass + 1 == passes || depth >= part.frame.tree.depth;
+        job.to = last ? BranchQueue() : queue(pass);
+        job.split_depth = last ? whole_trees : depth;
+        return !last;
+    };
+    bool more = give(0);
     launch_pixels(part.mask, path_, scene_, job, compute_);
-    for (int pass = 1; splits && pass < passes; ++pass) {
+    for (int pass = 1; more; ++pass) {
         job.from = queue(pass - 1);
-        job.to = pass + 1 < passes ? queue(pass) : BranchQueue();
+        more = give(pass);
         launch_branches(part.mask, path_, scene_, job, compute_);
     }
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.end, compute_));

@@ -23,7 +23,8 @@ struct FramePart {
     FrameView frame;
     PixelRect rect;
     int first_strip = 0, strip_step = 1, strips = 0;
-    int mask = 0;  // index of effect_masks
+    int mask = 0;         // index of effect_masks
+    int split_depth = 0;  // from which other threads follow a tree's branches; 0: never
 };
 
 /// A part on its way.
@@ -40,11 +41,11 @@ class DeviceWorker {
     static constexpr int slots = 2;  // parts on their way at once
 
     /// `here`: the scene of the arena, where this program can read it.
-    DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path, int split);
+    DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path);
 
     /// Room for parts of that many pixels in both slots, beside what the kernels of `mask` take for themselves. False
-    /// where there is none.
-    bool reserve(size_t pixels, size_t memory_limit, int mask);
+    /// where there is none. `splits`: with queues for branches.
+    bool reserve(size_t pixels, size_t memory_limit, int mask, bool splits);
 
     /// Enqueues a part; nothing is waited for. Its slot must be free.
     void start(const FramePart& part, int slot);
@@ -69,7 +70,6 @@ class DeviceWorker {
 
     const int device_;
     const DevicePath path_;
-    const int split_;
     CudaStream compute_, copy_;
     DeviceMemory arena_, queue_[2], queue_sizes_;
     PinnedMemory staging_[2];

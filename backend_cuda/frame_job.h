@@ -25,6 +25,8 @@ struct BranchQueue {
     unsigned int* size = nullptr;  // may pass capacity: what found no room
 };
 
+inline constexpr int whole_trees = 0x7fffffff;
+
 /// Rows of the frame's rectangle: strip s of the job is strip first_strip + s * strip_step of the rectangle.
 struct FrameJob {
     FrameView frame;
@@ -33,9 +35,10 @@ struct FrameJob {
     int width = 0, height = 0;       // of the rectangle
     int first_strip = 0, strip_step = 1;
     int rows = 0;  // whole strips; rows below the rectangle are left alone
+    bool interleaved = false;  // whether the four warps of a block take every other pixel and row of it, or a tile each
     DeviceTally* tally = nullptr;
     BranchQueue from, to;  // passes after the first read `from`
-    int surfaces = 0;      // that a thread shades before what waits goes `to` the queue
+    int split_depth = whole_trees;  // branches of this depth and more go `to` the queue
 };
 
 /// Which intersector and which form of media the kernels use. Never changes the image.

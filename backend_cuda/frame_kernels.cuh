@@ -8,14 +8,20 @@
 namespace cistula {
 
 inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_threads * block_warps;
-/// A warp renders a tile of 8 x 4 pixels, a block 2 x 2 of those: neighbors see the same things.
+/// A warp renders a tile of 8 x 4 pixels: neighbors see the same things.
 inline constexpr int tile_width = 8, tile_height = 4;
 static_assert(sizeof(PixelRecord) % sizeof(uint2) == 0 && 2 * sizeof(PixelRecord) % sizeof(uint4) == 0);
-static_assert(strip_rows % (2 * tile_height) == 0);
+static_assert(strip_rows % tile_height == 0);
 
-/// Blocks that share a multiprocessor: what bounds the registers of a thread, at 96 and 128. Others were slower on an H200.
+/// What a block keeps of its pixels while it renders them: registers are dearer.
+struct alignas(16) BlockRoom {
+    PixelRecord records[block_threads];
+    PixelWork work[block_threads];
+};
+
+/// Blocks that share a multiprocessor: what bounds the registers of a thread, at 80 and 128. Others were slower on an H200.
 template <class Real>
-inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? 5 : 4;
+inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? 6 : 4;
 
 template <class Real, DevicePath path>
 struct PathTraits;
@@ -45,8 +51,8 @@ __device__ inline unsigned int next_place(unsigned int* size) {
     return __shfl_sync(here, first, leader) + unsigned(__popc(here & ((1u << lane) - 1u)));
 }
 
-/// The branches that wait, in the thread's own memory. After a number of surfaces what waits goes to the queue, so that
-/// deep trees are split over many threads; the sums being integers, the order of work never shows.
+/// The branches that wait, in the thread's own memory; from a depth on they go to the queue while that has room, so that
+/// deep trees are split over many threads. The sums being integers, the order of work never shows.
 template <class Real, class Media>
 class GivingBranchStack {
   public:
@@ -54,40 +60,37 @@ class GivingBranchStack {
     /// Apart from the rest, so that this stays in registers.
     using Room = BranchRoom<Real, Media, branch_stack>;
 
-    __device__ GivingBranchStack(Room& room, const BranchQueue& queue, unsigned int record, int surfaces)
-        : room_(room), queue_(queue), record_(record), left_(queue.capacity != 0 ? surfaces : 0x7fffffff) {}
+    __device__ GivingBranchStack(Room& room, const FrameJob& job, unsigned int record)
+        : room_(room), job_(job), record_(record) {}
 
-    __device__ void shaded() { --left_; }
     __device__ bool push(const Entry& branch) {
         if (count_ == branch_stack) return false;
         room_.put(count_++, branch);
+        if (int(branch.depth) >= job_.split_depth) count_ -= give_away(&room_, count_ - 1, &job_.to, record_);
         return true;
     }
     __device__ bool pop(Entry& branch) {
-        if (left_ <= 0 && count_ > 0) count_ = give_away(&room_, count_, &queue_, record_);
         if (count_ == 0) return false;
         room_.get(--count_, branch);
         return true;
     }
 
   private:
-    /// Moves what waits to the queue while that has room; how many are left. Called: a seldom thing, and long.
-    __device__ __noinline__ static int give_away(const Room* room, int count, const BranchQueue* queue, unsigned int record) {
-        for (; count > 0; --count) {
-            const unsigned int place = next_place(queue->size);
-            if (place >= queue->capacity) break;
-            QueuedBranch<Real, Media> item;
-            room->get(count - 1, item.branch);
-            item.record = record;
-            static_cast<QueuedBranch<Real, Media>*>(queue->items)[place] = item;
-        }
-        return count;
+    /// Whether the queue has room for entry i, which it then has. Called, so that this seldom thing is nowhere in the way.
+    __device__ __noinline__ static bool give_away(const Room* room, int i, const BranchQueue* queue, unsigned int record) {
+        const unsigned int place = next_place(queue->size);
+        if (place >= queue->capacity) return false;
+        QueuedBranch<Real, Media> item;
+        room->get(i, item.branch);
+        item.record = record;
+        static_cast<QueuedBranch<Real, Media>*>(queue->items)[place] = item;
+        return true;
     }
 
     Room& room_;
-    const BranchQueue& queue_;
+    const FrameJob& job_;
     unsigned int record_;
-    int left_, count_ = 0;
+    int count_ = 0;
 };
 
 /// Over all lanes, for every one.
@@ -118,22 +121,60 @@ __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, u
     if (flags != 0) atomicOr(&tally.flags, flags);
 }
 
-/// A warp writes its tile's records, whole lines at a time.
+/// Where pixels have several samples, all warps of a block share one tile's, so that no thread is long at work.
+__host__ __device__ inline bool shares_tiles(const FrameView& frame) {
+    return frame.supersample > 1;
+}
+
+/// Pixels of a block: a tile that its warps share, or 2 x 2 of them.
+struct BlockShape {
+    int width, height;
+
+    __host__ __device__ static BlockShape of(const FrameView& frame) {
+        return shares_tiles(frame) ? BlockShape{tile_width, tile_height} : BlockShape{2 * tile_width, 2 * tile_height};
+    }
+};
+
+/// A block's threads write its records, row by row and whole lines at a time.
 template <class Word>
-__device__ void write_tile(const PixelRecord* staged, PixelRecord* to, int columns, int width) {
-    const int lane = threadIdx.x % warp_threads, words = columns * int(sizeof(PixelRecord)) / int(sizeof(Word));
-#pragma unroll 2
-    for (int r = 0; r < tile_height; ++r) {
-        const auto* from_row = reinterpret_cast<const Word*>(staged + r * tile_width);
+__device__ void write_rows(const PixelRecord* staged, BlockShape block, PixelRecord* to, int columns, int width) {
+    const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
+    const int words = columns * int(sizeof(PixelRecord)) / int(sizeof(Word));
+#pragma unroll 1
+    for (int r = warp; r < block.height; r += block_warps) {
+        const auto* from_row = reinterpret_cast<const Word*>(staged + r * block.width);
         auto* to_row = reinterpret_cast<Word*>(to + size_t(r) * size_t(width));
         for (int i = lane; i < words; i += warp_threads) to_row[i] = from_row[i];
     }
 }
 
-/// A block has 2 x 2 tiles, one a warp. Where pixels have several samples, all its warps share one tile's, so that no thread
-/// is long at work.
-__host__ __device__ inline bool shares_tiles(const FrameView& frame) {
-    return frame.supersample > 1;
+#if __CUDA_ARCH__ >= 900
+/// The same by the copy engine of the multiprocessor, a row an order (PTX ISA, cp.async.bulk).
+__device__ inline void copy_rows(const PixelRecord* staged, BlockShape block, PixelRecord* to, int width) {
+    asm volatile("fence.proxy.async.shared::cta;" ::: "memory");
+    __syncthreads();
+    const int r = int(threadIdx.x);
+    if (r >= block.height) return;
+    asm volatile("cp.async.bulk.global.shared::cta.bulk_group [%0], [%1], %2;" ::"l"(to + size_t(r) * size_t(width)),
+                 "r"(unsigned(__cvta_generic_to_shared(staged + r * block.width))),
+                 "r"(block.width * int(sizeof(PixelRecord)))
+                 : "memory");
+    asm volatile("cp.async.bulk.commit_group;\n\tcp.async.bulk.wait_group.read 0;" ::: "memory");
+}
+#endif
+
+__device__ inline void write_block(const PixelRecord* staged, BlockShape block, const FrameJob& job, int left, int top) {
+    PixelRecord* to = job.records + size_t(top) * size_t(job.width) + left;
+    const int columns = min(block.width, job.width - left);
+    // In pairs of records all is aligned to 16 bytes.
+    if (columns < block.width || job.width % 2 != 0)
+        write_rows<uint2>(staged, block, to, columns, job.width);
+    else
+#if __CUDA_ARCH__ >= 900
+        copy_rows(staged, block, to, job.width);
+#else
+        write_rows<uint4>(staged, block, to, columns, job.width);
+#endif
 }
 
 template <class Real, class E, DevicePath path>
@@ -142,37 +183,32 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     using Intersector = typename PathTraits<Real, path>::Intersector;
     using Media = typename Intersector::Media;
     using Stack = GivingBranchStack<Real, Media>;
-    // Registers are dearer.
-    __shared__ alignas(16) PixelRecord records[block_warps][warp_threads];
-    __shared__ PixelWork work[block_warps][warp_threads];
+    __shared__ BlockRoom room;
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
     const bool shares = shares_tiles(job.frame);
-    const int left = (shares ? int(blockIdx.x) : int(blockIdx.x) * 2 + warp % 2) * tile_width;
-    const int top = (shares ? int(blockIdx.y) : int(blockIdx.y) * 2 + warp / 2) * tile_height;
-    const int column = left + lane % tile_width, row = top + lane / tile_width;
-    const int y = (job.first_strip + row / strip_rows * job.strip_step) * strip_rows + row % strip_rows;
-    PixelWork& own = work[warp][lane] = PixelWork();
-    PixelRecord& record = records[warp][lane];
-    if (column < job.width && row < job.rows && y < job.height) {
-        typename Stack::Room room;
-        Stack stack(room, job.to, unsigned(row) * unsigned(job.width) + unsigned(column), job.surfaces);
+    const BlockShape block = BlockShape::of(job.frame);
+    const int x = lane % tile_width, y = lane / tile_width;
+    const int c = shares ? x : job.interleaved ? 2 * x + warp % 2 : x + warp % 2 * tile_width;
+    const int r = shares ? y : job.interleaved ? 2 * y + warp / 2 : y + warp / 2 * tile_height;
+    const int left = int(blockIdx.x) * block.width, top = int(blockIdx.y) * block.height;
+    const int place = shares ? int(threadIdx.x) : r * block.width + c;
+    const int column = left + c, row = top + r;
+    const int film_row = (job.first_strip + row / strip_rows * job.strip_step) * strip_rows + row % strip_rows;
+    PixelWork& own = room.work[threadIdx.x] = PixelWork();
+    PixelRecord& record = room.records[place];
+    if (column < job.width && row < job.rows && film_row < job.height) {
+        typename Stack::Room branches;
+        Stack stack(branches, job, unsigned(row) * unsigned(job.width) + unsigned(column));
         const SampleRange samples{shares ? warp : 0, shares ? block_warps : 1};
-        render_pixel<Real, E>(scene, job.frame, Intersector{scene}, job.x + column, job.y + y, samples, record, own, stack);
+        render_pixel<Real, E>(scene, job.frame, Intersector{scene}, job.x + column, job.y + film_row, samples, record, own, stack);
     }
+    __syncthreads();
     if (shares) {
-        __syncthreads();
         if (warp == 0)
-            for (int other = 1; other < block_warps; ++other) record.add(records[other][lane]);
+            for (int other = 1; other < block_warps; ++other) record.add(room.records[other * warp_threads + lane]);
+        __syncthreads();
     }
-    __syncwarp();
-    if (warp == 0 || !shares) {
-        PixelRecord* to = job.records + size_t(top) * size_t(job.width) + left;
-        // In pairs of records all is aligned to 16 bytes.
-        if (job.width - left >= tile_width && job.width % 2 == 0)
-            write_tile<uint4>(records[warp], to, tile_width, job.width);
-        else
-            write_tile<uint2>(records[warp], to, job.width - left < tile_width ? job.width - left : tile_width, job.width);
-    }
+    write_block(room.records, block, job, left, top);
     add_to_tally(*job.tally, own.rays, own.flags);
 }
 
@@ -190,7 +226,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
         PixelRecord part;
         PixelWork own;
         typename Stack::Room room;
-        Stack stack(room, job.to, item.record, job.surfaces);
+        Stack stack(room, job, item.record);
         resume_branch<Real, E>(scene, job.frame, Intersector{scene}, item.branch, part, own, stack);
         rays.add(own.rays);
         flags |= own.flags;
@@ -222,9 +258,8 @@ unsigned int filling_blocks(const Kernel& kernel) {
 template <class Real, int mask>
 void launch_mask(DevicePath path, bool branches, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
     using E = Effects<effect_masks[mask]>;
-    const int tiles = shares_tiles(job.frame) ? 1 : 2;  // of a block, across and down
-    const dim3 grid(unsigned(job.width + tiles * tile_width - 1) / unsigned(tiles * tile_width),
-                    unsigned(job.rows / (tiles * tile_height)));
+    const BlockShape block = BlockShape::of(job.frame);
+    const dim3 grid(unsigned(job.width + block.width - 1) / unsigned(block.width), unsigned(job.rows / block.height));
     const auto launch = [&](auto pixels_kernel, auto branches_kernel, const auto& own) {
         if (branches)
             branches_kernel<<<filling_blocks(branches_kernel), block_threads, 0, stream>>>(job, own);

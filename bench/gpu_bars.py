@@ -26,9 +26,9 @@ class Part(Records):
         self.parity = {"cases": record.get("cases", []), **record.get("parity", {})}
 
     def named(self, name):
-        """The benchmark of that name, whatever follows it (split:16), on one GPU; of several the kernels' own split."""
+        """The benchmark of that name, whatever follows it (split:-1), on one GPU; of several the kernels' own split."""
         found = [b for b in self.benchmarks if (b["name"] + "/").startswith(name + "/") and "/devices:" not in b["name"]]
-        return sorted(found, key=lambda b: "/split:" in b["name"] and not b["name"].endswith("/split:16"))[:1]
+        return sorted(found, key=lambda b: "/split:" in b["name"] and not b["name"].endswith("/split:-1"))[:1]
 
     def time(self, name):
         return next((b["real_time"] for b in self.named(name)), None)

@@ -9,6 +9,7 @@
 #include "golden.h"
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
+#include "scene/shadow_plan.h"
 
 using namespace cistula;
 
@@ -22,43 +23,45 @@ struct Waiting {
     size_t record;
 };
 
-/// What backend_cuda's GivingBranchStack does: after `surfaces` surfaces of a tree, whatever waits goes to the queue while
-/// that has room. 0: nothing does.
+/// What backend_cuda's GivingBranchStack does: branches of `depth` and more go to the queue while that has room.
 template <class Real, class Media>
 class GivingStack {
   public:
     using Entry = Branch<Real, Media>;
     using Queue = std::vector<Waiting<Real, Media>>;
 
-    GivingStack(int surfaces, Queue& queue, size_t capacity, size_t record)
-        : queue_(queue), capacity_(surfaces > 0 ? capacity : 0), record_(record), left_(surfaces) {}
+    GivingStack(int depth, Queue& queue, size_t capacity, size_t record)
+        : queue_(queue), capacity_(capacity), record_(record), depth_(depth) {}
 
-    void shaded() { --left_; }
     bool push(const Entry& branch) {
+        if (int(branch.depth) >= depth_ && queue_.size() < capacity_) {
+            queue_.push_back({branch, record_});
+            return true;
+        }
         if (pending_.size() == size_t(branch_stack)) return false;
         pending_.push_back(branch);
         return true;
     }
     bool pop(Entry& branch) {
-        while (!pending_.empty()) {
-            branch = pending_.back();
-            pending_.pop_back();
-            if (left_ > 0 || queue_.size() >= capacity_) return true;
-            queue_.push_back({branch, record_});
-        }
-        return false;
+        if (pending_.empty()) return false;
+        branch = pending_.back();
+        pending_.pop_back();
+        return true;
     }
 
   private:
     Queue& queue_;
     std::vector<Entry> pending_;
     size_t capacity_, record_;
-    int left_;
+    int depth_;
 };
 
+/// Every pass follows trees `levels` further down; 0: to their end.
 struct Split {
-    int surfaces = 0;
+    int levels = 0;
     size_t capacity = ~size_t{0};
+
+    int depth(int pass) const { return levels > 0 ? (pass + 1) * levels : largest_depth; }
 };
 
 /// A frame as a device renders it: a pass over pixels, then passes over what waits, here until nothing does and from the
@@ -73,7 +76,7 @@ void render_split(const Scene& scene, const FrameView& frame, const Intersector&
         // Where pixels have several samples, backend_cuda's threads share them.
         const int threads = frame.supersample > 1 ? 4 : 1;
         for (int thread = 0; thread < threads; ++thread) {
-            Stack stack(split.surfaces, queue, split.capacity, i);
+            Stack stack(split.depth(0), queue, split.capacity, i);
             PixelWork work;
             PixelRecord part;
             render_pixel<Real, E>(scene, frame, intersector, film.rect.x + int(i % width), film.rect.y + int(i / width),
@@ -86,11 +89,11 @@ void render_split(const Scene& scene, const FrameView& frame, const Intersector&
             film.flags |= work.flags;
         }
     }
-    for (; !queue.empty(); queue = std::exchange(next, {})) {
+    for (int pass = 1; !queue.empty(); queue = std::exchange(next, {}), ++pass) {
         given += queue.size();
         for (size_t i = queue.size(); i-- > 0;) {
             PixelRecord part, &record = film.pixels[queue[i].record];
-            Stack stack(split.surfaces, next, split.capacity, queue[i].record);
+            Stack stack(split.depth(pass), next, split.capacity, queue[i].record);
             PixelWork work;
             resume_branch<Real, E>(scene, frame, intersector, queue[i].branch, part, work, stack);
             film.rays.add(work.rays);
@@ -127,7 +130,9 @@ std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& scene) {
     for (const Solid& solid : scene.solids)
         if (solid.kind == SolidKind::mesh || solid.touched) return nullptr;
     auto small = std::make_unique<SmallScene<Real>>();
-    return small->assign(scene, scene) ? std::move(small) : nullptr;
+    if (!small->assign(scene, scene)) return nullptr;
+    plan_shadows(scene, small->plan);
+    return small;
 }
 
 struct Done {
@@ -142,9 +147,9 @@ void check(const std::string& name, const SceneDescription& description, const F
     EXPECT_EQ(expected.flags, 0u) << name;
     // A budget of truncation is spent in the order of one stack, so such trees stay whole.
     std::vector<Split> splits = {{0}};
-    if (settings.cutoff == 0) splits.insert(splits.end(), {{1}, {2}, {5}, {1, 7}});
+    if (settings.cutoff == 0) splits.insert(splits.end(), {{1}, {2}, {4}, {1, 7}});
     const auto expect_same = [&](const Film& film, const char* path, const Split& split) {
-        const std::string where = name + ", " + path + ", split after " + std::to_string(split.surfaces);
+        const std::string where = name + ", " + path + ", split after levels: " + std::to_string(split.levels);
         EXPECT_EQ(film.flags, 0u) << where;
         EXPECT_EQ(film_hash(film), film_hash(expected)) << where;
         EXPECT_EQ(film.rays.primary, expected.rays.primary) << where;

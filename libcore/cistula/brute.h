@@ -43,7 +43,9 @@ struct BruteIntersector {
             if (around != no_solid && scene.solids[around].alone) return best;
             for (uint32_t i = 0; i < scene.convex.size; ++i) {
                 const NumberedSolid& next = scene.convex[i];
-                if (next.index != around && next.index != ray.from_solid)
+                // All conditions in one, so that their values are waited for but once.
+                if ((next.index != around) & (next.index != ray.from_solid) &
+                    !passes_by(next.solid, ray.origin, ray.direction, best.t))
                     closest_entry(scene, next.index, next.solid, ray, best);
             }
         }
@@ -63,19 +65,33 @@ struct BruteIntersector {
         if constexpr (Media::contacts) {
             for (uint32_t i = 0; i < scene.convex.size && !sum.dark(); ++i)
                 shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
+            for (uint32_t i = 0; i < scene.clusters.size && !sum.dark(); ++i)
+                if (!misses_flat(scene, i, shadow.ray, shadow.distance))
+                    shadow_cluster<Real, E>(scene, i, shadow,
+                                            TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
         } else {
-            const uint32_t around = shadow.ray.media.only();
-            if (around != no_solid) shadow_exit<Real, E>(scene, around, shadow, sum);
-            for (uint32_t i = 0; i < scene.convex.size && !sum.dark(); ++i) {
-                const NumberedSolid& next = scene.convex[i];
-                if (next.index != around && next.index != shadow.ray.from_solid)
+            const uint32_t light = uint32_t(shadow.light - scene.lights.data);
+            const uint32_t around = shadow.ray.media.only(), from = shadow.ray.from_solid;
+            if (around != no_solid) {
+                if (!E::has(effect_absorption) && (scene.plan.beyond[light] >> around & 1u) != 0)
+                    sum.cross<E>(scene.materials[scene.solids[around].material]);
+                else
+                    shadow_exit<Real, E>(scene, around, shadow, sum);
+            }
+            const uint32_t near = from == no_solid ? ~0u : scene.plan.near[from][light];
+            for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.dark(); left &= left - 1) {
+                const NumberedSolid& next = scene.convex[lowest_bit(left)];
+                if ((next.index != around) & (next.index != from) &
+                    !passes_by(next.solid, shadow.ray.origin, shadow.ray.direction, shadow.distance))
                     shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);
             }
+            for (uint32_t left = near & scene.plan.all_clusters; left != 0 && !sum.dark(); left &= left - 1) {
+                const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
+                if (!misses_flat(scene, i, shadow.ray, shadow.distance))
+                    shadow_cluster<Real, E>(scene, i, shadow,
+                                            TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
+            }
         }
-        for (uint32_t i = 0; i < scene.clusters.size && !sum.dark(); ++i)
-            if (!misses_flat(scene, i, shadow.ray, shadow.distance))
-                shadow_cluster<Real, E>(scene, i, shadow,
-                                        TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
         return sum.template share<E, Real>();
     }
 };

@@ -188,8 +188,8 @@ template <class Real>
 CISTULA_INLINE bool passes_by(const Solid& solid, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
     const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
     const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - Real(solid.padded_square);
-    if (ahead > limit) return rest > limit * (Real(2) * ahead - limit);
-    return rest > Real(0) && (ahead < Real(0) || rest > ahead * ahead);
+    const Real beyond = limit * (Real(2) * ahead - limit), beside = ahead < Real(0) ? Real(0) : ahead * ahead;
+    return rest > (ahead > limit ? beyond : beside);
 }
 
 /// The way out of a convex solid that the ray is inside, if that is less than `best`: before the face is looked up, what
@@ -221,11 +221,10 @@ CISTULA_SELDOM bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real>
     return false;
 }
 
-/// The way into a convex solid that the ray neither is inside nor left.
+/// The way into a convex solid that the ray neither is inside nor left, nor passes by.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Solid& solid, const Ray<Real, Media>& ray,
                                   Hit<Real>& best) {
-    if (passes_by(solid, ray.origin, ray.direction, best.t)) return;
     const ConvexInterval<Real> interval = convex_interval(scene, solid, ray.origin, ray.direction, true);
     if (!interval.met(scene.extent)) return;
     const Real t = greatest(interval.enter, Real(0));
@@ -242,7 +241,7 @@ CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray
                                    Hit<Real>& best) {
     if (ray.media.contains(index))
         closest_exit(scene, index, ray, best);
-    else if (ray.from_solid != index)
+    else if (ray.from_solid != index && !passes_by(scene.solids[index], ray.origin, ray.direction, best.t))
         closest_entry(scene, index, scene.solids[index], ray, best);
 }
 

@@ -19,6 +19,9 @@ inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 template <int n>
 CISTULA_INLINE double polynomial(double x, const double (&coefficients)[n]) {
     double sum = coefficients[n - 1];
+#if CISTULA_ON_DEVICE
+#pragma unroll
+#endif
     for (int i = n - 2; i >= 0; --i) sum = fused(sum, x, coefficients[i]);
     return sum;
 }

@@ -15,6 +15,18 @@ struct TreeSettings {
     int64_t budget = 0;      // truncation allowed per sample, in units of the sums
 };
 
+/// The bits of a number as an integer. Numbers in [0, 1] are in its order, and all others (-0, NaN) are above them.
+CISTULA_INLINE uint32_t word_of(float a) {
+    return bits_as<uint32_t>(a);
+}
+CISTULA_INLINE uint64_t word_of(double a) {
+    return bits_as<uint64_t>(a);
+}
+template <class Real>
+CISTULA_INLINE auto greatest_word(const Vec3<Real>& a) {
+    return greatest(word_of(a.x), greatest(word_of(a.y), word_of(a.z)));
+}
+
 template <class Real>
 class PixelSums {
   public:
@@ -55,13 +67,8 @@ class PixelSums {
     /// Whether the branch could add more than one unit of the sums; what is not finite or beyond the bound is left to
     /// most_of.
     CISTULA_INLINE bool clearly_counts(const Vec3<Real>& weight) const {
-        bool counts = false, legal = true;
-        for (int c = 0; c < 3; ++c) {
-            const Real most = weight[c] * bound_[c];
-            counts |= most > Real(settings_.fixed_unit);
-            legal &= most >= Real(0) && most <= Real(1);
-        }
-        return counts && legal;
+        const auto most = greatest_word(weight * bound_);
+        return most <= word_of(Real(1)) && most > word_of(Real(settings_.fixed_unit));
     }
 
     /// The most a branch can add, rounded up; B's slack of 2^-10 covers the rounding of all weights below it.

@@ -53,11 +53,10 @@ class BranchRoom {
     Words entries_[size];
 };
 
-/// The branches that wait, in the thread's own memory. A RayTree tells it of every surface that it shades.
+/// The branches that wait, in the thread's own memory.
 template <class Real, class Media>
 class BranchStack {
   public:
-    CISTULA_INLINE void shaded() {}
     /// False if there is no room.
     CISTULA_INLINE bool push(const Branch<Real, Media>& branch) {
         if (count_ == branch_stack) return false;
@@ -114,7 +113,6 @@ class RayTree {
             if (next_surface(branch, meeting, light)) {
                 const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, meeting.hit);
                 if (at_first) first.surface(meeting.hit, s.normal);
-                stack_.shaded();
                 shade(branch, meeting, s);
             } else if (at_first) {
                 first.nothing(light);

@@ -107,12 +107,11 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance), Real(0)));
 }
 
-/// One that it neither starts in nor left. With a light on its face half-spaces decide.
+/// One that it neither starts in nor left, nor passes by. With a light on its face half-spaces decide.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid& solid, const ShadowRay<Real, Media>& shadow,
                                  ShadowSum& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
-    if (passes_by(solid, ray.origin, ray.direction, shadow.distance)) return;
     const LightSide side = light_side(scene, index, shadow);
     if (side == LightSide::outside) return;
     const ConvexInterval<Real> interval =
@@ -136,7 +135,8 @@ CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const Shad
                                   ShadowSum& sum) {
     if (shadow.ray.media.contains(index))
         shadow_exit<Real, E>(scene, index, shadow, sum);
-    else if (shadow.ray.from_solid != index)
+    else if (shadow.ray.from_solid != index &&
+             !passes_by(scene.solids[index], shadow.ray.origin, shadow.ray.direction, shadow.distance))
         shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
 }
 

@@ -30,16 +30,35 @@ struct InlineSpan {
     }
 };
 
+/// What is known of shadow rays before they are shot (plan_shadows, scene/shadow_plan.h).
+struct ShadowPlan {
+    static constexpr uint32_t solids = 24, lights = 8, first_cluster = 16;
+
+    uint32_t all_convex, all_clusters;  // bit p: convex[p]; bit first_cluster + p: clusters[p]
+    uint32_t beyond[lights];            // bit i: the light is well outside of convex solid i
+    uint32_t near[solids][lights];      // the primitives that may lie between that solid's surface and that light
+
+    /// Nothing is known.
+    void clear(uint32_t convex, uint32_t clusters) {
+        all_convex = (1u << convex) - 1;
+        all_clusters = ((1u << clusters) - 1) << first_cluster;
+        for (uint32_t& of_light : beyond) of_light = 0;
+        for (auto& of_solid : near)
+            for (uint32_t& primitives : of_solid) primitives = ~0u;
+    }
+};
+
 template <class Real>
 struct SmallScene {
     using Scalar = Real;
 
-    InlineSpan<Solid, 24> solids;
+    InlineSpan<Solid, ShadowPlan::solids> solids;
     InlineSpan<Slab<Real>, 96> slabs;
     InlineSpan<NumberedSolid, 16> convex;  // copies: a look at one needs no other first
     InlineSpan<Cluster<Real>, 4> clusters;
     InlineSpan<Material<Real>, 16> materials;
-    InlineSpan<Light<Real>, 8> lights;
+    InlineSpan<Light<Real>, ShadowPlan::lights> lights;
+    ShadowPlan plan;
     InlineSpan<Texture, 8> textures;
     // Elsewhere, as in the view that it was made of:
     Span<SlabGroup<Real>> slab_groups;
@@ -58,7 +77,7 @@ struct SmallScene {
 
     /// False if `here`, a view that can be read, is too large. `there`: the same scene where kernels read it.
     bool assign(const SceneView<Real>& here, const SceneView<Real>& there) {
-        if (!solids.assign(here.solids) || !slabs.assign(here.slabs) || 
+        if (!solids.assign(here.solids) || !slabs.assign(here.slabs) ||
             !convex.assign(here.convex.size, [&](uint32_t i) { return NumberedSolid{here.solids[here.convex[i]], here.convex[i]}; }) ||
             !clusters.assign(here.clusters) || !materials.assign(here.materials) || !lights.assign(here.lights) ||
             !textures.assign(here.textures))
@@ -73,6 +92,7 @@ struct SmallScene {
         tree_items = there.tree_items;
         seen_tree = there.seen_tree;
         seen_items = there.seen_items;
+        plan.clear(convex.size, clusters.size);
         background = here.background;
         bound = here.bound;
         extent = here.extent;

@@ -89,7 +89,7 @@ std::vector<std::function<std::unique_ptr<Renderer>(Compiled<Real>)>> renderers(
         variants[1].devices = choose_devices(Backend::cuda, every).options.devices;  // one GPU or several
         variants[2].split = 1;
         variants[3].always_tree = true;
-        variants[4].split = 3;
+        variants[4].split = 2;
         variants[4].memory_limit = size_t(1) << 20;
         for (const CudaOptions& options : variants)
             all.push_back(

@@ -1,0 +1,147 @@
+// What plan_shadows leaves out no shadow ray would have met, and it leaves out most.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <random>
+
+#include "cistula/brute.h"
+#include "cistula/lighting.h"
+#include "scene/compiled_scene.h"
+#include "scene/read_scene.h"
+#include "scene/shadow_plan.h"
+
+namespace cistula {
+namespace {
+
+const std::string source = CISTULA_SOURCE_DIR;
+
+template <class Real>
+class ShadowPlans : public ::testing::Test {
+  public:
+    using Small = SmallScene<Real>;
+    using Intersector = BruteIntersector<Real, OneMedium, Small>;
+    using E = Effects<effect_masks[1]>;
+
+    /// The same scene without a plan and with one; false where it is none for the plain loop.
+    bool load(const SceneDescription& description) {
+        compiled_ = compile_scene<Real>(description);
+        const SceneView<Real> view = compiled_->view();
+        for (const Solid& solid : view.solids)
+            if (solid.kind == SolidKind::mesh || solid.touched) return false;
+        if (!blind_->assign(view, view) || !planned_->assign(view, view)) return false;
+        plan_shadows(view, planned_->plan);
+        return true;
+    }
+
+    /// Shadow rays from whatever rays of all directions meet, from both sides of it. How many were compared.
+    int compare_rays(std::mt19937_64& random, int count) {
+        std::uniform_real_distribution<double> in_cube(-1, 1);
+        const auto vector = [&] { return Vec3<Real>(Real(in_cube(random)), Real(in_cube(random)), Real(in_cube(random))); };
+        const Intersector blind{*blind_}, planned{*planned_};
+        int compared = 0;
+        for (int i = 0; i < count; ++i) {
+            Ray<Real, OneMedium> ray;
+            ray.origin = vector() * blind_->extent;
+            ray.direction = normalized(vector());
+            for (uint32_t s = 0; s < blind_->solids.size; ++s)
+                if (blind_->solids[s].kind == SolidKind::convex && inside_convex(*blind_, blind_->solids[s], ray.origin))
+                    ray.media.add(s, 1);
+            const Hit<Real> hit = first_hit(blind, ray);
+            if (!hit.found()) continue;
+            const Surface<Real> s = surface_at<Real, E>(*blind_, ray, hit);
+            compared += compare(blind, planned, s, hit, ray.media);
+            // The other side of the face.
+            OneMedium beyond = ray.media;
+            const int change = media_change(key_kind(hit.key));
+            if (change != 0 && !beyond.add(key_solid(hit.key), change)) continue;
+            Surface<Real> back = s;
+            back.normal = -s.normal;
+            back.viewer_side = far_side(*blind_, hit, s.point, s.normal);
+            compared += compare(blind, planned, back, hit, beyond);
+        }
+        return compared;
+    }
+
+    const ShadowPlan& plan() const { return planned_->plan; }
+    uint32_t lights() const { return planned_->lights.size; }
+    uint32_t solids() const { return planned_->solids.size; }
+
+  private:
+    /// Called: inlined, GCC takes the lack of a solid for an index out of bounds.
+    [[gnu::noinline]] static Hit<Real> first_hit(const Intersector& intersector, const Ray<Real, OneMedium>& ray) {
+        return intersector.closest(ray);
+    }
+
+    static int compare(const Intersector& blind, const Intersector& planned, const Surface<Real>& s, const Hit<Real>& hit,
+                       const OneMedium& media) {
+        int compared = 0;
+        for (uint32_t l = 0; l < blind.scene.lights.size; ++l) {
+            const auto share = [&](const Intersector& intersector) {
+                const Light<Real>& light = intersector.scene.lights[l];
+                const Vec3<Real> to_light = light.position - s.viewer_side;
+                const Real distance = length(to_light);
+                const ShadowRay<Real, OneMedium> shadow{spawned(s.viewer_side, to_light / distance, hit, media), distance, &light};
+                return intersector.template transmittance<E>(shadow);
+            };
+            if (!(dot(s.normal, blind.scene.lights[l].position - s.viewer_side) > incidence<Real> * blind.scene.extent)) continue;
+            EXPECT_EQ(share(planned), share(blind)) << "light " << l << ", solid " << key_solid(hit.key);
+            ++compared;
+        }
+        return compared;
+    }
+
+    std::shared_ptr<const CompiledScene<Real>> compiled_;
+    std::unique_ptr<Small> blind_ = std::make_unique<Small>(), planned_ = std::make_unique<Small>();
+};
+
+using Reals = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(ShadowPlans, Reals);
+
+TYPED_TEST(ShadowPlans, ChangeNoShareInTheScenes) {
+    std::mt19937_64 random(1);
+    for (const char* name : {"benchmark", "platonic", "infinity", "seed", "hard/lights-on-edges", "hard/tiny-beside-unit"}) {
+        if (!this->load(read_scene(source + "/scenes/" + name + ".json"))) continue;
+        EXPECT_GT(this->compare_rays(random, 100000), 5000) << name;
+    }
+}
+
+/// Boxes and other solids close together, with lights among them, in them and close to their faces.
+TYPED_TEST(ShadowPlans, ChangeNoShareInCrowds) {
+    std::mt19937_64 random(2);
+    std::uniform_real_distribution<double> at(-1, 1);
+    const PlatonicSolid shapes[] = {PlatonicSolid::cube, PlatonicSolid::octahedron, PlatonicSolid::dodecahedron,
+                                    PlatonicSolid::icosahedron};
+    int loaded = 0, compared = 0;
+    for (int n = 0; n < 60; ++n) {
+        SceneDescription scene = read_scene(source + "/scenes/benchmark.json");
+        const int material = scene.objects[0].material;
+        scene.objects.resize(0);
+        for (int i = 0; i < 5; ++i) {
+            SolidObject solid;
+            solid.solid = shapes[random() % std::size(shapes)];
+            solid.center = {at(random), at(random), at(random)};
+            solid.radius = 0.1 + 0.3 * std::abs(at(random));
+            scene.objects.push_back({"", material, solid, ""});
+        }
+        scene.lights.resize(4, scene.lights[0]);
+        for (LightDescription& light : scene.lights) light.position = {1.2 * at(random), 1.2 * at(random), 1.2 * at(random)};
+        if (!this->load(scene)) continue;
+        ++loaded;
+        compared += this->compare_rays(random, 20000);
+    }
+    EXPECT_GT(loaded, 10);
+    EXPECT_GT(compared, 100000);
+}
+
+TYPED_TEST(ShadowPlans, LeaveOutMostOfWhatThereIs) {
+    ASSERT_TRUE(this->load(read_scene(source + "/scenes/benchmark.json")));
+    int near = 0;
+    for (uint32_t l = 0; l < this->lights(); ++l) {
+        EXPECT_EQ(this->plan().beyond[l], 7u) << "both lights are outside of all three solids";
+        for (uint32_t s = 0; s < 3; ++s) near += std::popcount(this->plan().near[s][l]);
+    }
+    EXPECT_LE(near, 5) << "of 3 solids, 2 lights, 2 other solids and a floor";
+}
+
+}  // namespace
+}  // namespace cistula
