@@ -133,4 +133,23 @@ TYPED_TEST(Touching, ASharedFaceIsShadedOnce) {
     }
 }
 
+/// An opaque box and its twin in the same place, as planes and as a mesh, in either order: the later one is shaded, and the
+/// other must not shadow it.
+TYPED_TEST(Touching, ATwinCastsNoShadowOnItsTwin) {
+    SceneDescription empty = floor_and_light();
+    const int opaque = test::add_material(empty);
+    for (const Shape later : {Shape::planes, Shape::mesh}) {
+        SceneDescription alone = empty;
+        add_box(alone, later, true, opaque);
+        const Film expected = film_of<TypeParam>(alone);
+        for (const Shape earlier : {Shape::planes, Shape::mesh}) {
+            SceneDescription twins = empty;
+            add_box(twins, earlier, true, opaque);
+            add_box(twins, later, true, opaque);
+            EXPECT_LE(apart(film_of<TypeParam>(twins), expected), past_edges<TypeParam>)
+                << (earlier == Shape::mesh ? "a mesh" : "planes") << " under " << (later == Shape::mesh ? "a mesh" : "planes");
+        }
+    }
+}
+
 }  // namespace

@@ -156,19 +156,13 @@ class RayTree {
         for (;;) {
             const Hit<Real> next = intersector_.closest(probe);
             if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
-            if (!behind_start(ray, next)) {
+            // From the wrong side where the line starts: that mesh is behind it.
+            if (!lies_at_start(scene_, ray, next)) {
                 if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) sums_.flag(flag_media_overflow);
                 absorption.cross(scene_, next.key, next.t);
             }
             probe.after = {next.t, next.key};
         }
-    }
-
-    /// Whether a mesh that is crossed from the wrong side is the one beyond which the line starts, as that touches the
-    /// solid whose face it leaves.
-    CISTULA_INLINE bool behind_start(const Ray<Real, Media>& ray, const Hit<Real>& hit) {
-        if (ray.from_solid == no_solid || ray.from_solid == key_solid(hit.key)) return false;
-        return hit.t * magnitude(dot(normal_at(scene_, hit), ray.direction)) <= incidence<Real> * scene_.extent;
     }
 
     /// A crossing with nothing to shade: inside a medium of higher priority, or of a clear face between equal media.

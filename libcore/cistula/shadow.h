@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cistula/convex.h"
-#include "cistula/effects.h"
+#include "cistula/surface.h"
 #include "cistula/transmittance.h"
 #include "cistula/triangle.h"
 
@@ -140,9 +140,20 @@ CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const Shad
         shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
 }
 
+/// Whether a mesh that touches others is crossed where the ray starts on one of them, and from the side on which the ray is
+/// not: it is behind the ray.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool behind_shadow(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
+                                  const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray) {
+    if (!scene.solids[index].touched || !(c.t <= Real(1024) * incidence<Real> * scene.extent)) return false;
+    if (c.enters() != ray.media.contains(index)) return false;
+    const CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
+    return lies_at_start(scene, ray, Hit<Real>{c.t, make_key(kind, index, triangle), c.u(), c.v(), slot, c.enters()});
+}
+
 /// Takes an accepted crossing of a triangle into the sum if it lies before the light.
 template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle,
+CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
     if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
     if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
@@ -152,6 +163,8 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
         holds_light |= face.solid == index && face.face == triangle;
     }
     if (holds_light) return;
+    if constexpr (Media::meshes)
+        if (behind_shadow(scene, index, triangle, slot, c, shadow.ray)) return;
     const Solid& solid = scene.solids[index];
     const Material<Real>& material = scene.materials[solid.material];
     sum.cross<E>(material);
@@ -166,7 +179,8 @@ CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const Sha
     if (leaves_flat(scene, index, shadow.ray)) return;
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
-        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], c, shadow, sum);
+        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, shadow,
+                                 sum);
     });
 }
 
@@ -177,7 +191,7 @@ CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const Shado
     const Facet<Real>& facet = scene.facets[index];
     TriangleCrossing<Real> c;
     if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
-        shadow_crossing<Real, E>(scene, facet.solid, facet.triangle, c, shadow, sum);
+        shadow_crossing<Real, E>(scene, facet.solid, facet.triangle, facet.slot, c, shadow, sum);
 }
 
 /// What meshes that contain the start of the ray add.

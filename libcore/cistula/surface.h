@@ -93,6 +93,13 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
     return hit.enters ? normal : -normal;
 }
 
+/// Whether a crossing of a mesh lies where a line starts on a face of another solid, give or take rounding.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool lies_at_start(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
+    if (ray.from_solid == no_solid || ray.from_solid == key_solid(hit.key)) return false;
+    return hit.t * magnitude(dot(normal_at(scene, hit), ray.direction)) <= incidence<Real> * scene.extent;
+}
+
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
