@@ -24,8 +24,6 @@ constexpr int deep = 5, split_levels = 4;
 template <class Real>
 bool fits_plain_loop(const SceneView<Real>& scene) {
     if (scene.convex.size + scene.clusters.size > plain_loop_primitives) return false;
-    for (const Solid& solid : scene.solids)
-        if (solid.kind == SolidKind::mesh || solid.touched) return false;
     const auto small = std::make_unique<SmallScene<Real>>();
     return small->assign(scene, scene);
 }
@@ -167,20 +165,27 @@ class CudaRenderer : public Renderer {
     /// Of a frame of few samples the last threads would be long alone with the deepest trees; others keep the device busy
     /// meanwhile. A budget of truncation is spent in the order of one thread's stack.
     int split_depth(const FrameSettings& settings, const TreeSettings& tree, size_t samples_per_device) const {
-        if (tree.budget != 0) return 0;
-        if (options_.split != CudaOptions::automatic) return options_.split;
-        return samples_per_device <= few_samples && settings.depth > deep ? split_levels : 0;
+        const int chosen = samples_per_device <= few_samples && settings.depth > deep ? split_levels : 0;
+        const int split = options_.split != CudaOptions::automatic ? options_.split : chosen;
+        return tree.budget == 0 && split > 0 && split < settings.depth ? split : 0;
     }
 
     /// Memory for parts of `strips`, or of half as many until it is enough.
-    int reserve(int strips, size_t strip_pixels, const Frame& frame) {
+    int reserve(int strips, size_t strip_pixels, Frame& frame) {
         const int wanted = strips;
-        for (;; strips = (strips + 1) / 2) {
+        const auto has_room = [&] {
             bool room = true;
             for (auto& worker : workers_)
                 room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit, frame.mask,
                                                frame.split_depth != 0);
-            if (room) break;
+            return room;
+        };
+        for (;; strips = (strips + 1) / 2) {
+            if (has_room()) break;
+            if (frame.split_depth != 0) {  // queues spare time, but are not needed
+                frame.split_depth = 0;
+                if (has_room()) break;
+            }
             if (strips == 1)
                 throw Error(ExitCode::device, fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or "
                                                           "--crop needs less, or free memory that other programs hold",

@@ -69,6 +69,8 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, b
     use_device(device_);
     prime(mask);
     const size_t bytes = pixels * sizeof(PixelRecord);
+    if (!splits)
+        for (DeviceMemory& queue : queue_) queue.free();
     const size_t branch = queued_branch_bytes<Real>(path_), wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
     if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
     bool room = true;

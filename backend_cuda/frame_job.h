@@ -34,7 +34,7 @@ struct FrameJob {
     int x = 0, y = 0;                // of the rectangle in the frame
     int width = 0, height = 0;       // of the rectangle
     int first_strip = 0, strip_step = 1;
-    int rows = 0;  // whole strips; rows below the rectangle are left alone
+    int rows = 0;  // whole strips; records below the rectangle are unset
     bool interleaved = false;  // whether the four warps of a block take every other pixel and row of it, or a tile each
     DeviceTally* tally = nullptr;
     BranchQueue from, to;  // passes after the first read `from`

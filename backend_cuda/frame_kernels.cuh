@@ -8,7 +8,7 @@
 namespace cistula {
 
 inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_threads * block_warps;
-/// A warp renders a tile of 8 x 4 pixels: neighbors see the same things.
+/// A warp renders 8 x 4 pixels, next to each other or every other one: neighbors see the same things.
 inline constexpr int tile_width = 8, tile_height = 4;
 static_assert(sizeof(PixelRecord) % sizeof(uint2) == 0 && 2 * sizeof(PixelRecord) % sizeof(uint4) == 0);
 static_assert(strip_rows % tile_height == 0);
@@ -135,46 +135,39 @@ struct BlockShape {
     }
 };
 
-/// A block's threads write its records, row by row and whole lines at a time.
-template <class Word>
-__device__ void write_rows(const PixelRecord* staged, BlockShape block, PixelRecord* to, int columns, int width) {
+/// A block's threads write its records, whole lines at a time; all of the block's in few instructions.
+template <int width, int height>
+__device__ void write_all(const PixelRecord* staged, PixelRecord* to, int frame_width) {
+    constexpr int words = width * int(sizeof(PixelRecord)) / int(sizeof(uint4));
+    const auto* from = reinterpret_cast<const uint4*>(staged);
+    auto* out = reinterpret_cast<uint4*>(to);
+    const int pitch = frame_width / 2 * (2 * int(sizeof(PixelRecord)) / int(sizeof(uint4)));
+#pragma unroll
+    for (int i = int(threadIdx.x); i < words * height; i += block_threads) out[i / words * pitch + i % words] = from[i];
+}
+
+/// The first columns of its rows.
+__device__ inline void write_columns(const PixelRecord* staged, BlockShape block, PixelRecord* to, int columns, int frame_width) {
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
-    const int words = columns * int(sizeof(PixelRecord)) / int(sizeof(Word));
+    const int words = columns * int(sizeof(PixelRecord)) / int(sizeof(uint2));
 #pragma unroll 1
     for (int r = warp; r < block.height; r += block_warps) {
-        const auto* from_row = reinterpret_cast<const Word*>(staged + r * block.width);
-        auto* to_row = reinterpret_cast<Word*>(to + size_t(r) * size_t(width));
+        const auto* from_row = reinterpret_cast<const uint2*>(staged + r * block.width);
+        auto* to_row = reinterpret_cast<uint2*>(to + size_t(r) * size_t(frame_width));
         for (int i = lane; i < words; i += warp_threads) to_row[i] = from_row[i];
     }
 }
-
-#if __CUDA_ARCH__ >= 900
-/// The same by the copy engine of the multiprocessor, a row an order (PTX ISA, cp.async.bulk).
-__device__ inline void copy_rows(const PixelRecord* staged, BlockShape block, PixelRecord* to, int width) {
-    asm volatile("fence.proxy.async.shared::cta;" ::: "memory");
-    __syncthreads();
-    const int r = int(threadIdx.x);
-    if (r >= block.height) return;
-    asm volatile("cp.async.bulk.global.shared::cta.bulk_group [%0], [%1], %2;" ::"l"(to + size_t(r) * size_t(width)),
-                 "r"(unsigned(__cvta_generic_to_shared(staged + r * block.width))),
-                 "r"(block.width * int(sizeof(PixelRecord)))
-                 : "memory");
-    asm volatile("cp.async.bulk.commit_group;\n\tcp.async.bulk.wait_group.read 0;" ::: "memory");
-}
-#endif
 
 __device__ inline void write_block(const PixelRecord* staged, BlockShape block, const FrameJob& job, int left, int top) {
     PixelRecord* to = job.records + size_t(top) * size_t(job.width) + left;
     const int columns = min(block.width, job.width - left);
     // In pairs of records all is aligned to 16 bytes.
     if (columns < block.width || job.width % 2 != 0)
-        write_rows<uint2>(staged, block, to, columns, job.width);
+        write_columns(staged, block, to, columns, job.width);
+    else if (shares_tiles(job.frame))
+        write_all<tile_width, tile_height>(staged, to, job.width);
     else
-#if __CUDA_ARCH__ >= 900
-        copy_rows(staged, block, to, job.width);
-#else
-        write_rows<uint4>(staged, block, to, columns, job.width);
-#endif
+        write_all<2 * tile_width, 2 * tile_height>(staged, to, job.width);
 }
 
 template <class Real, class E, DevicePath path>

@@ -123,12 +123,9 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
     return film;
 }
 
-/// The form that the plain loop reads, if the scene fits into it and a ray is inside one solid at most, all convex: what
-/// OneMedium asks for.
+/// The form that the plain loop reads, if the scene fits into it.
 template <class Real>
 std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& scene) {
-    for (const Solid& solid : scene.solids)
-        if (solid.kind == SolidKind::mesh || solid.touched) return nullptr;
     auto small = std::make_unique<SmallScene<Real>>();
     if (!small->assign(scene, scene)) return nullptr;
     plan_shadows(scene, small->plan);

@@ -73,7 +73,8 @@ struct BruteIntersector {
             const uint32_t light = uint32_t(shadow.light - scene.lights.data);
             const uint32_t around = shadow.ray.media.only(), from = shadow.ray.from_solid;
             if (around != no_solid) {
-                if (!E::has(effect_absorption) && (scene.plan.beyond[light] >> around & 1u) != 0)
+                // From its own face, as lines from other faces may start a little off theirs.
+                if (!E::has(effect_absorption) && from == around && (scene.plan.beyond[light] >> around & 1u) != 0)
                     sum.cross<E>(scene.materials[scene.solids[around].material]);
                 else
                     shadow_exit<Real, E>(scene, around, shadow, sum);

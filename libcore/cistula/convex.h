@@ -206,8 +206,8 @@ CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<R
     if (best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, false);
 }
 
-/// Whether a line from within the planes of a solid that it is not inside goes out by a face that it starts on, give or
-/// take rounding: at a slant it would go far in the film before that. Where solids touch only. By value, as it is
+/// Whether a line from within the planes of a solid that it is not inside goes toward a face that it starts on, give or
+/// take rounding: at a slant it would go far in the film before it is out. Asked where solids touch. By value, as it is
 /// called.
 template <class Real, class Scene>
 CISTULA_SELDOM bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real> origin, Vec3<Real> direction) {
@@ -229,7 +229,8 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Soli
     if (!interval.met(scene.extent)) return;
     const Real t = greatest(interval.enter, Real(0));
     if (!(t <= best.t && t < RealTraits<Real>::infinity) || t < ray.after.t) return;
-    if (Media::contacts && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction)) return;
+    if constexpr (Media::contacts)
+        if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction)) return;
     const uint64_t key =
         make_key(CrossingKind::enter, index, convex_face(scene, solid, ray.origin, ray.direction, interval));
     if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);

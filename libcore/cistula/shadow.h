@@ -121,8 +121,8 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid
     const Material<Real>& material = scene.materials[solid.material];
     if (side == LightSide::none) {
         if (!interval.met(scene.extent) || !(enter < shadow.distance)) return;
-        if (Media::contacts && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
-            return;
+        if constexpr (Media::contacts)
+            if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction)) return;
         leave = greatest(interval.leave, Real(0));
         if (leave < shadow.distance) sum.cross<E>(material);
     }

@@ -32,16 +32,18 @@ struct InlineSpan {
 
 /// What is known of shadow rays before they are shot (plan_shadows, scene/shadow_plan.h).
 struct ShadowPlan {
-    static constexpr uint32_t solids = 24, lights = 8, first_cluster = 16;
+    static constexpr uint32_t solids = 24, lights = 8, convex = 16, clusters = 4;
+    static constexpr uint32_t first_cluster = convex;
+    static_assert(solids <= 32 && first_cluster + clusters <= 32);
 
     uint32_t all_convex, all_clusters;  // bit p: convex[p]; bit first_cluster + p: clusters[p]
     uint32_t beyond[lights];            // bit i: the light is well outside of convex solid i
     uint32_t near[solids][lights];      // the primitives that may lie between that solid's surface and that light
 
     /// Nothing is known.
-    void clear(uint32_t convex, uint32_t clusters) {
-        all_convex = (1u << convex) - 1;
-        all_clusters = ((1u << clusters) - 1) << first_cluster;
+    void clear(uint32_t convex_count, uint32_t cluster_count) {
+        all_convex = (1u << convex_count) - 1;
+        all_clusters = ((1u << cluster_count) - 1) << first_cluster;
         for (uint32_t& of_light : beyond) of_light = 0;
         for (auto& of_solid : near)
             for (uint32_t& primitives : of_solid) primitives = ~0u;
@@ -54,8 +56,8 @@ struct SmallScene {
 
     InlineSpan<Solid, ShadowPlan::solids> solids;
     InlineSpan<Slab<Real>, 96> slabs;
-    InlineSpan<NumberedSolid, 16> convex;  // copies: a look at one needs no other first
-    InlineSpan<Cluster<Real>, 4> clusters;
+    InlineSpan<NumberedSolid, ShadowPlan::convex> convex;  // copies: a look at one needs no other first
+    InlineSpan<Cluster<Real>, ShadowPlan::clusters> clusters;
     InlineSpan<Material<Real>, 16> materials;
     InlineSpan<Light<Real>, ShadowPlan::lights> lights;
     ShadowPlan plan;
@@ -75,8 +77,11 @@ struct SmallScene {
     Vec3<Real> bound;
     Real extent;
 
-    /// False if `here`, a view that can be read, is too large. `there`: the same scene where kernels read it.
+    /// False if `here`, a view that can be read, is too large, or if a ray in it may be inside more than one solid or a mesh:
+    /// OneMedium asks for that. `there`: the same scene where kernels read it.
     bool assign(const SceneView<Real>& here, const SceneView<Real>& there) {
+        for (const Solid& solid : here.solids)
+            if (solid.kind == SolidKind::mesh || solid.touched) return false;
         if (!solids.assign(here.solids) || !slabs.assign(here.slabs) ||
             !convex.assign(here.convex.size, [&](uint32_t i) { return NumberedSolid{here.solids[here.convex[i]], here.convex[i]}; }) ||
             !clusters.assign(here.clusters) || !materials.assign(here.materials) || !lights.assign(here.lights) ||
