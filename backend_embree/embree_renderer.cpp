@@ -7,17 +7,11 @@ namespace cistula {
 
 namespace {
 
-/// Up to this many primitives a plain loop is faster than any tree.
-constexpr uint32_t plain_loop_primitives = 16;
-
 template <class Real>
 class EmbreeRenderer : public Renderer {
   public:
-    EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, const EmbreeOptions& options)
-        : scene_(std::move(scene)), view_(scene_->view()) {
-        if (options.always_tree || view_.convex.size + view_.clusters.size > plain_loop_primitives)
-            tree_ = std::make_unique<EmbreeTree<Real>>(view_, options);
-    }
+    EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, std::shared_ptr<const EmbreeTree<Real>> tree)
+        : scene_(std::move(scene)), view_(scene_->view()), tree_(std::move(tree)) {}
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
@@ -34,7 +28,7 @@ class EmbreeRenderer : public Renderer {
   private:
     std::shared_ptr<const CompiledScene<Real>> scene_;
     SceneView<Real> view_;
-    std::unique_ptr<EmbreeTree<Real>> tree_;
+    std::shared_ptr<const EmbreeTree<Real>> tree_;
     uint32_t effects_ = 0;
 };
 
@@ -43,12 +37,23 @@ class EmbreeRenderer : public Renderer {
 template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options) {
-    return std::make_unique<EmbreeRenderer<Real>>(std::move(scene), options);
+    std::shared_ptr<const EmbreeTree<Real>> tree = embree_tree(scene->view(), options);
+    return make_embree_renderer(std::move(scene), std::move(tree));
+}
+
+template <class Real>
+std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
+                                               std::shared_ptr<const EmbreeTree<Real>> tree) {
+    return std::make_unique<EmbreeRenderer<Real>>(std::move(scene), std::move(tree));
 }
 
 template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<float>>,
                                                         const EmbreeOptions&);
 template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<double>>,
                                                         const EmbreeOptions&);
+template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<float>>,
+                                                        std::shared_ptr<const EmbreeTree<float>>);
+template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<double>>,
+                                                        std::shared_ptr<const EmbreeTree<double>>);
 
 }  // namespace cistula

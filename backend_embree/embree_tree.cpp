@@ -9,6 +9,9 @@ namespace cistula {
 
 namespace {
 
+/// Up to this many primitives a plain loop is faster than any tree.
+constexpr uint32_t plain_loop_primitives = 16;
+
 void fail(const std::string& what) {
     throw Error(ExitCode::device, "Embree: " + what);
 }
@@ -63,7 +66,15 @@ EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& 
         fail("building the tree failed with error " + std::to_string(int(error)));
 }
 
+template <class Real>
+std::shared_ptr<const EmbreeTree<Real>> embree_tree(const SceneView<Real>& scene, const EmbreeOptions& options) {
+    if (!options.always_tree && scene.convex.size + scene.clusters.size <= plain_loop_primitives) return nullptr;
+    return std::make_shared<const EmbreeTree<Real>>(scene, options);
+}
+
 template class EmbreeTree<float>;
 template class EmbreeTree<double>;
+template std::shared_ptr<const EmbreeTree<float>> embree_tree(const SceneView<float>&, const EmbreeOptions&);
+template std::shared_ptr<const EmbreeTree<double>> embree_tree(const SceneView<double>&, const EmbreeOptions&);
 
 }  // namespace cistula

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <string>
 
 #include "backend_embree/embree_intersector.h"
@@ -25,5 +26,14 @@ class EmbreeTree {
     DevicePointer device_;
     ScenePointer scene_;
 };
+
+/// The tree that a renderer of the scene walks; null where a plain loop does.
+template <class Real>
+std::shared_ptr<const EmbreeTree<Real>> embree_tree(const SceneView<Real>& scene, const EmbreeOptions& options);
+
+/// A renderer over a tree of the scene, which it shares.
+template <class Real>
+std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
+                                               std::shared_ptr<const EmbreeTree<Real>> tree);
 
 }  // namespace cistula

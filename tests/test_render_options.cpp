@@ -106,23 +106,23 @@ TEST(RenderOptions, Actions) {
     EXPECT_EQ(parse({"--print-template"}).action, Action::print_template);
     EXPECT_EQ(parse({"--list-devices"}).action, Action::list_devices);
     EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
+    const RenderOptions pixel = parse({"s.json", "--pixel", "12,034", "--json", "-", "-f", "7", "-v"});
+    EXPECT_EQ(pixel.action, Action::pixel);
+    EXPECT_EQ(pixel.pixel.x, 12);
+    EXPECT_EQ(pixel.pixel.y, 34);
+    EXPECT_EQ(pixel.json, "-");
+    EXPECT_EQ(pixel.frames, (std::vector<int>{7}));
 }
 
 TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
     const std::string help = help_text();
-    for (const char* part : {"--output",       "--frames",
-                             "--backend",      "--res",
-                             "--crop",         "--supersample",
-                             "--depth",        "--cutoff",
-                             "--precision",    "--threads",
-                             "--bits",         "--preview",
-                             "--aov",          "--explain",
-                             "--stats",        "--resume",
-                             "--progress",     "--quiet",
-                             "--verbose",      "--help",
-                             "--device ",      "--list-devices",
-                             "--version",      "--print-template",
-                             "Examples:",      "Exit codes: 0 done",
+    for (const char* part : {"--output",       "--frames",         "--backend",  "--res",
+                             "--crop",         "--supersample",    "--depth",    "--cutoff",
+                             "--precision",    "--threads",        "--bits",     "--preview",
+                             "--aov",          "--explain",        "--pixel",    "--json",
+                             "--stats",        "--resume",         "--progress", "--quiet",
+                             "--verbose",      "--help",           "--device ",  "--list-devices",
+                             "--version",      "--print-template", "Examples:",  "Exit codes: 0 done",
                              "130 interrupted"})
         EXPECT_NE(help.find(part), std::string::npos) << part;
 }

@@ -8,9 +8,11 @@
 
 #include "apps/common/backends.h"
 #include "apps/common/command_line.h"
+#include "backend_embree/embree_pixel_tree.h"
 #include "explain.h"
 #include "film_loop.h"
 #include "interrupt.h"
+#include "pixel_report.h"
 #include "progress.h"
 #include "scene/atomic_file.h"
 #include "scene/compiled_scene.h"
@@ -22,6 +24,15 @@
 namespace cistula {
 namespace {
 
+int threads_of(const RenderOptions& options) {
+    return options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+}
+
+void print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
+    if (options.quiet) return;
+    for (const std::string& warning : warnings) fmt::print(stderr, "render: warning: {}\n", one_line(warning));
+}
+
 template <class Real>
 std::unique_ptr<Renderer> prepare(const SceneDescription& scene, const RenderOptions& options, const CudaOptions& cuda,
                                   RunStats& stats) {
@@ -29,9 +40,7 @@ std::unique_ptr<Renderer> prepare(const SceneDescription& scene, const RenderOpt
     stats.compile_seconds = seconds_of([&] { compiled = compile_scene<Real>(scene); });
     stats.scene_hash = compiled->hash;
     stats.required_effects = compiled->effects;
-    if (!options.quiet)
-        for (const std::string& warning : compiled->warnings)
-            fmt::print(stderr, "render: warning: {}\n", one_line(warning));
+    print_warnings(compiled->warnings, options);
     std::unique_ptr<Renderer> renderer;
     stats.tree_seconds = seconds_of([&] { renderer = make_renderer<Real>(options.backend, compiled, cuda); });
     return renderer;
@@ -102,7 +111,7 @@ void render_scene(const RenderOptions& options) {
     RenderProgress progress;  // outlives the guard
     InterruptGuard guard;
 
-    const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+    const int threads = threads_of(options);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
     tbb::task_arena arena(threads);
     arena.execute([&] {
@@ -140,6 +149,40 @@ void render_scene(const RenderOptions& options) {
     });
 }
 
+template <class Real>
+void report_pixel(const RenderOptions& options, const SceneDescription& scene, const FrameSettings& settings,
+                  const CameraFrame& camera) {
+    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
+    print_warnings(compiled->warnings, options);
+    const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, options.pixel.x, options.pixel.y);
+    const SceneNames names = name_scene(scene);
+    const PixelReport report{options, scene, names, settings, camera, tree, compiled->hash};
+    if (options.json != "-") print(pixel_text(report, options.verbose));
+    if (options.json == "-")
+        print(pixel_json(report));
+    else if (!options.json.empty())
+        write_file_atomically(options.json, pixel_json(report));
+    if (tree.film.flags != 0)
+        throw Error(ExitCode::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", scene.source,
+                                                  options.pixel.x, options.pixel.y, describe_flags(tree.film.flags)));
+}
+
+void report_pixel(const RenderOptions& options) {
+    const SceneDescription scene = read_scene(options.scene);
+    const FrameSettings settings = frame_settings(options, scene);
+    const CameraFrame camera = camera_at(scene.camera, options.frames.empty() ? 0 : options.frames.front());
+    if (!options.json.empty() && options.json != "-") {
+        require_directory(options.json);
+        require_different_files(options.scene, OutputName(), OutputName(), options.json, {}, "--json");
+    }
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<size_t>(threads_of(options)));
+    if (options.precision == Precision::double_)
+        report_pixel<double>(options, scene, settings, camera);
+    else
+        report_pixel<float>(options, scene, settings, camera);
+}
+
 void run(const RenderOptions& options) {
     switch (options.action) {
         case Action::print_help:
@@ -150,6 +193,8 @@ void run(const RenderOptions& options) {
             return print(seed_template());
         case Action::list_devices:
             return print(list_devices_text());
+        case Action::pixel:
+            return report_pixel(options);
         case Action::explain:
         case Action::render:
             return render_scene(options);

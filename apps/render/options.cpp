@@ -16,7 +16,7 @@ namespace {
 /// The options' texts as CLI11 leaves them.
 struct Texts {
     std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, threads, layers,
-        device, backend = "embree", precision = "float", bits = "float", progress = "auto";
+        device, pixel, json, backend = "embree", precision = "float", bits = "float", progress = "auto";
     bool explain = false, resume = false, quiet = false, verbose = false, version = false, print_template = false,
          list_devices = false;
 };
@@ -44,6 +44,9 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
     app.add_flag("--explain", texts.explain, "print the effects the scene calls for and why; renders nothing");
+    app.add_option("--pixel", texts.pixel, "print how this pixel comes about, ray by ray; renders nothing")
+        ->type_name("X,Y");
+    app.add_option("--json", texts.json, "with --pixel: the same as JSON; - is standard output")->type_name("FILE");
     app.add_flag("--resume", texts.resume, "skip frames whose file is complete and of the same scene and settings");
     app.add_option("--progress", texts.progress, "auto, plain or none")->type_name("STYLE");
     app.add_flag("-q,--quiet", texts.quiet, "errors only");
@@ -51,6 +54,26 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_flag("--print-template", texts.print_template, "print the seed's text input and exit");
     app.add_flag("--version", texts.version, "print the version and exit");
     app.set_help_flag("-h,--help", "print this and exit");
+}
+
+/// What has no meaning where one pixel is taken apart.
+void refuse_with_pixel(const Texts& texts) {
+    const auto refuse = [&](bool given, const char* option, const char* why) {
+        if (given)
+            fail_usage(
+                fmt::format("--pixel {}: {} has no place here: {}; leave it out", one_line(texts.pixel), option, why));
+    };
+    constexpr const char* no_image = "no image is written";
+    refuse(!texts.output.empty(), "-o", no_image);
+    refuse(!texts.preview.empty(), "--preview", no_image);
+    refuse(!texts.stats.empty(), "--stats", "nothing is timed");
+    refuse(!texts.layers.empty(), "--aov", no_image);
+    refuse(texts.bits != "float", "--bits", no_image);
+    refuse(!texts.crop.empty(), "--crop", "the pixel counts from the top left of the full frame");
+    refuse(texts.resume, "--resume", no_image);
+    refuse(texts.progress != "auto", "--progress", "one pixel takes no time");
+    refuse(texts.explain, "--explain", "each prints a report of its own");
+    refuse(texts.backend != "embree", "--backend", "the CPU follows the rays, and every backend gives the same bits");
 }
 
 RenderOptions checked(const Texts& texts) {
@@ -68,6 +91,7 @@ RenderOptions checked(const Texts& texts) {
     options.resume = texts.resume;
     options.quiet = texts.quiet;
     options.verbose = texts.verbose;
+    options.json = texts.json;
     options.backend = parse_backend(texts.backend);
     options.devices = parse_devices(texts.device, options.backend);
     options.precision = chosen<Precision>("--precision", texts.precision,
@@ -78,6 +102,17 @@ RenderOptions checked(const Texts& texts) {
     if (!texts.frames.empty()) options.frames = parse_frames(texts.frames);
     if (!texts.resolution.empty()) options.resolution = parse_size(texts.resolution);
     if (!texts.crop.empty()) options.crop = parse_crop(texts.crop);
+    if (!texts.pixel.empty()) {
+        options.pixel = parse_pixel(texts.pixel);
+        options.action = Action::pixel;
+        refuse_with_pixel(texts);
+        if (options.frames.size() > 1)
+            fail_usage(fmt::format("--frames names {} frames, and --pixel {} is of one; name that one",
+                                   options.frames.size(), texts.pixel));
+    } else if (!texts.json.empty()) {
+        fail_usage(
+            fmt::format("--json {}: is for --pixel X,Y; of a render, --stats FILE.json tells the times", texts.json));
+    }
     if (!texts.layers.empty()) options.channels = parse_layers(texts.layers);
     options.channels.half = chosen<bool>("--bits", texts.bits, {{"float", false}, {"half", true}});
     if (!texts.supersample.empty())
@@ -140,6 +175,7 @@ Examples:
   render scenes/glass.json -o g.exr --precision double --supersample 4 --aov error,id,Z,N
   render scenes/infinity.json -o corner.exr --crop 64x64+128+96 --cutoff 0.001 --stats corner.json
   render scenes/seed.json -o out/beauty.####.exr --backend cuda --device all
+  render scenes/glass.json --pixel 640,300 --supersample 1 | less  why this pixel is what it is
   render - -o frame%d.out < input.txt                              the seed's input and frames
   render --print-template > input.txt
 
@@ -172,6 +208,16 @@ PixelRect parse_crop(std::string_view text) {
     }
     fail_usage(
         fmt::format("--crop {}: must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96", text));
+}
+
+PixelPlace parse_pixel(std::string_view text) {
+    const size_t comma = text.find(',');
+    if (comma != text.npos) {
+        const auto x = whole_number<int>(text.substr(0, comma)), y = whole_number<int>(text.substr(comma + 1));
+        if (x && y && *x >= 0 && *y >= 0) return {*x, *y};
+    }
+    fail_usage(fmt::format("--pixel {}: must be X,Y in pixels from the top left, which is 0,0, as in 320,240",
+                           one_line(text)));
 }
 
 OutputChannels parse_layers(std::string_view text) {
@@ -207,6 +253,11 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)
         fail_usage(fmt::format("--crop {}x{}+{}+{}: leaves the frame, which is {}x{}", crop.width, crop.height, crop.x,
                                crop.y, settings.full_width, settings.full_height));
+    const PixelPlace& pixel = options.pixel;
+    if (options.action == Action::pixel && (pixel.x >= settings.full_width || pixel.y >= settings.full_height))
+        fail_usage(fmt::format("--pixel {},{}: is outside of the frame, which is {}x{}; its last pixel is {},{}",
+                               pixel.x, pixel.y, settings.full_width, settings.full_height, settings.full_width - 1,
+                               settings.full_height - 1));
     return settings;
 }
 

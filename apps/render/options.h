@@ -16,9 +16,12 @@ namespace cistula {
 struct PictureSize {
     int width = 0, height = 0;
 };
+struct PixelPlace {
+    int x = 0, y = 0;  // from the top left of the full frame
+};
 
 enum class ProgressStyle { automatic, plain, none };
-enum class Action { render, explain, print_help, print_version, print_template, list_devices };
+enum class Action { render, explain, pixel, print_help, print_version, print_template, list_devices };
 
 struct RenderOptions {
     Action action = Action::render;
@@ -30,6 +33,8 @@ struct RenderOptions {
     DeviceChoice devices;  // of the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
+    PixelPlace pixel;  // with Action::pixel
+    std::string json;  // the same: a file, "-" or empty
     std::optional<int> supersample, depth;
     std::optional<double> cutoff;
     Precision precision = Precision::single_;
@@ -54,6 +59,9 @@ PictureSize parse_size(std::string_view text);
 
 /// "WxH+X+Y", X and Y from the top left of the full frame. Throws Error (usage).
 PixelRect parse_crop(std::string_view text);
+
+/// "X,Y". Throws Error (usage).
+PixelPlace parse_pixel(std::string_view text);
 
 /// "error,id,samples,cost,Z,N", any of them. Throws Error (usage) with the nearest name for an unknown one.
 OutputChannels parse_layers(std::string_view text);

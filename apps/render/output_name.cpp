@@ -95,7 +95,7 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
 }
 
 void require_different_files(const std::string& scene, const OutputName& image, const OutputName& preview,
-                             const std::string& stats, const std::vector<int>& frames) {
+                             const std::string& stats, const std::vector<int>& frames, const char* option) {
     std::map<std::string, const char*> users;
     const auto use = [&](const std::string& path, const char* what) {
         if (path.empty()) return;
@@ -109,7 +109,7 @@ void require_different_files(const std::string& scene, const OutputName& image, 
                                                      user->second, what));
     };
     if (scene != "-") use(scene, "the scene");
-    use(stats, "--stats");
+    use(stats, option);
     for (const int frame : frames) {
         use(image.for_frame(frame), "an image");
         use(preview.for_frame(frame), "a preview");

@@ -49,8 +49,8 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
 void require_directory(const std::string& path);
 
 /// Throws Error (usage) where two of these would be one file, symbolic links followed: the scene, the stats, the images
-/// and previews of all frames. `stats` may be empty, `scene` "-".
+/// and previews of all frames. `stats` may be empty, `scene` "-"; `option` is what names the stats.
 void require_different_files(const std::string& scene, const OutputName& image, const OutputName& preview,
-                             const std::string& stats, const std::vector<int>& frames);
+                             const std::string& stats, const std::vector<int>& frames, const char* option = "--stats");
 
 }  // namespace cistula
