@@ -199,7 +199,7 @@ class BranchReader {
             out.fresnel = 0;
         }
         read_children(walk, shares);
-        if (m.local > Real(0)) read_light(walk, ray, meeting.hit, s);
+        if (m.local > Real(0)) read_light(walk, ray, s);
     }
 
     void read_children(Walk& walk, const Shares<Real>& shares) const {
@@ -237,7 +237,7 @@ class BranchReader {
     }
 
     /// As add_local_light, whose shadow rays were seen.
-    void read_light(Walk& walk, const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s) const {
+    void read_light(Walk& walk, const Ray<Real>& ray, const Surface<Real>& s) const {
         PixelSurface& out = walk.branch.surface;
         const Material<Real>& m = scene_.materials[s.material];
         const double radiance = elementary::power_of_two(compiled_.radiance_exponent);
@@ -275,7 +275,6 @@ class BranchReader {
             if (shadow.arrives != Vec3<Real>(Real(1))) share.through = solids_on_the_way(shadow.shadow);
         }
         require(walk.seen, next == shadows.size(), "the number of shadow rays");
-        (void)hit;
     }
 
     /// Which solids take light from a shadow ray, in the order in which it meets them; the first eight.

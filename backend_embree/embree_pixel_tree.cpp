@@ -5,30 +5,23 @@
 #include "backend_embree/embree_tree.h"
 #include "backend_embree/frame_loop.h"
 #include "backend_embree/pixel_recorder.h"
+#include "scene/film_picture.h"
 
 namespace cistula {
 namespace {
 
-bool same_bits(float a, float b) {
-    return bits_as<uint32_t>(a) == bits_as<uint32_t>(b);
-}
-
 /// Whether the samples add up to the film's one pixel.
 bool same_pixel(const PixelTree& tree) {
-    PixelRecord sum{};
-    sum.z = RealTraits<float>::infinity;
-    RayCounts rays;
+    Film sum;
+    sum.pixels.push_back(PixelRecord());
+    PixelRecord& pixel = sum.pixels.front();
+    pixel.z = RealTraits<float>::infinity;
     for (const SampleTree& sample : tree.samples) {
-        sum.add(sample.record);
-        rays.add(sample.rays);
+        pixel.add(sample.record);
+        sum.rays.add(sample.rays);
     }
-    const PixelRecord& pixel = tree.film.pixels.at(0);
-    const RayCounts& counted = tree.film.rays;
-    bool same = sum.hits == pixel.hits && sum.rays == pixel.rays && sum.id == pixel.id && same_bits(sum.z, pixel.z);
-    for (int c = 0; c < 3; ++c)
-        same = same && sum.radiance[c] == pixel.radiance[c] && sum.pruned[c] == pixel.pruned[c] &&
-               sum.cut[c] == pixel.cut[c] && same_bits(sum.normal[c], pixel.normal[c]);
-    return same && rays.primary == counted.primary && rays.reflected == counted.reflected &&
+    const RayCounts &rays = sum.rays, &counted = tree.film.rays;
+    return film_hash(sum) == film_hash(tree.film) && rays.primary == counted.primary && rays.reflected == counted.reflected &&
            rays.transmitted == counted.transmitted && rays.shadow == counted.shadow;
 }
 

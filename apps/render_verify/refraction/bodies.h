@@ -75,17 +75,49 @@ inline SceneDescription scene_of(const std::vector<Body>& bodies, Form form, con
     return scene;
 }
 
-/// The place of x = y = z = 0, the three axes, the number of intervals, how far beside the x axis rays may go, the sine
-/// of their greatest angle to it in air; then of every interval its ends, its index, the solids there as bits.
-inline void sequence_numbers(const std::vector<Body>& bodies, Form form, const glm::dvec3& turn,
-                             const glm::dvec3& center, double factor, std::vector<double>& numbers) {
+/// Where bodies are in the frame: the place of x = y = z = 0 and the three axes, the first twelve numbers of a case.
+inline void place_numbers(const glm::dvec3& turn, const glm::dvec3& center, double factor, std::vector<double>& numbers) {
     const Rotation rotation(turn);
-    std::set<double> ends;
-    for (const Body& body : bodies) ends.insert({body.begin, body.end});
-    ends.insert({*ends.begin() - 1, *ends.rbegin() + 1});
     for (const glm::dvec3& v :
          {-center * factor, rotation({factor, 0, 0}), rotation({0, factor, 0}), rotation({0, 0, factor})})
         numbers.insert(numbers.end(), {v.x, v.y, v.z});
+}
+
+CISTULA_HD inline Vec3<double> placed(const Span<double>& numbers, double x, double y, double z) {
+    Vec3<double> p(numbers[0], numbers[1], numbers[2]);
+    for (int k = 0; k < 3; ++k) p[k] += x * numbers[3 + k] + y * numbers[6 + k] + z * numbers[9 + k];
+    return p;
+}
+
+struct PlaceOnFace {
+    double y, z;
+};
+
+/// Anywhere within `reach` of the x axis, on it, or where a mesh is cut into triangles.
+CISTULA_HD inline PlaceOnFace place_on_face(Draw& draw, double reach) {
+    double y = draw.centered<double>(reach), z = draw.centered<double>(reach);
+    const int where = draw.between(0, 5);
+    if (where == 0) y = z = 0;
+    if (where == 1) y = z;
+    if (where == 2) y = -z;
+    return {y, z};
+}
+
+/// Puts the ray into the solids of these bits.
+template <class Real>
+CISTULA_HD inline void surround(Ray<Real>& ray, uint32_t solids) {
+    for (uint32_t solid = 0; solid < 8; ++solid)
+        if ((solids >> solid & 1u) != 0) ray.media.add(solid, 1);
+}
+
+/// Those of place_numbers, the number of intervals, how far beside the x axis rays may go, the sine
+/// of their greatest angle to it in air; then of every interval its ends, its index, the solids there as bits.
+inline void sequence_numbers(const std::vector<Body>& bodies, Form form, const glm::dvec3& turn,
+                             const glm::dvec3& center, double factor, std::vector<double>& numbers) {
+    std::set<double> ends;
+    for (const Body& body : bodies) ends.insert({body.begin, body.end});
+    ends.insert({*ends.begin() - 1, *ends.rbegin() + 1});
+    place_numbers(turn, center, factor, numbers);
     // At most 8 lengths of air at a slope of 3/4 from 1.5 beside the axis; 8 at a slope of 1/16 from 0.4.
     const bool wide = form == Form::wide_boxes;
     numbers.insert(numbers.end(), {double(ends.size() - 1), wide ? 1.5 : 0.4, wide ? 0.6 : 0.0625});

@@ -29,20 +29,11 @@ struct Grazing {
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
                                Tally& tally) const {
         const Span<double>& numbers = setup.numbers;
-        const auto placed = [&](double x, double y, double z) {
-            Vec3<double> p(numbers[0], numbers[1], numbers[2]);
-            for (int k = 0; k < 3; ++k) p[k] += x * numbers[3 + k] + y * numbers[6 + k] + z * numbers[9 + k];
-            return p;
-        };
+        const auto at = [&](double x, double y, double z) { return placed(numbers, x, y, z); };
         const double face = numbers[12], onward = numbers[13], before = numbers[14], behind = numbers[15];
         const uint32_t solids = uint32_t(numbers[16]);
         Draw draw = setup.draw(i);
-        // Anywhere, the middle, or where a mesh is cut into triangles.
-        double y = draw.centered<double>(0.2), z = draw.centered<double>(0.2);
-        const int where = draw.between(0, 5);
-        if (where == 0) y = z = 0;
-        if (where == 1) y = z;
-        if (where == 2) y = -z;
+        const auto [y, z] = place_on_face(draw, 0.2);
         // A cosine between 1 and 2^-8 before the face or behind it.
         const double cosine = (0.5 + 0.5 * draw.unit<double>()) / (1 << draw.between(0, 7));
         double sine = square_root(1 - cosine * cosine);
@@ -52,12 +43,11 @@ struct Grazing {
         const double slope = square_root(1 - sine * sine), back = 0.05 + 0.1 * draw.unit<double>();
         const Vec3<double> aside = on_sphere(draw);
         const double across = sine / square_root(aside.y * aside.y + aside.z * aside.z);
-        const Vec3<Real> target(placed(face, y, z));
+        const Vec3<Real> target(at(face, y, z));
         const Vec3<Real> origin(
-            placed(face - back * slope * onward, y - back * across * aside.y, z - back * across * aside.z));
+            at(face - back * slope * onward, y - back * across * aside.y, z - back * across * aside.z));
         Ray<Real> ray = ray_from(origin, normalized(target - origin));
-        for (uint32_t solid = 0; solid < 8; ++solid)
-            if ((solids >> solid & 1u) != 0) ray.media.add(solid, 1);
+        surround(ray, solids);
         Lines<Real> lines;
         trace(setup, intersector, ray, lines);
         bool good = lines.flags == 0 && lines.count >= 2 && lines.index[0] == before &&
@@ -94,10 +84,7 @@ struct Grazing {
                             part.frame_numbers = [=, at = shared.at, before = index[0], behind = index[1],
                                                   solids = around[0]](const glm::dvec3& center, double factor,
                                                                       std::vector<double>& numbers) {
-                                const Rotation rotation(turn);
-                                for (const glm::dvec3& v : {-center * factor, rotation({factor, 0, 0}),
-                                                            rotation({0, factor, 0}), rotation({0, 0, factor})})
-                                    numbers.insert(numbers.end(), {v.x, v.y, v.z});
+                                place_numbers(turn, center, factor, numbers);
                                 numbers.insert(numbers.end(), {at, onward, before, behind, double(solids)});
                             };
                             if (changed)

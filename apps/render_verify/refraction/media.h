@@ -15,31 +15,21 @@ struct MediaSequence {
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
                                Tally& tally) const {
         const Span<double>& numbers = setup.numbers;
-        const auto placed = [&](double x, double y, double z) {
-            Vec3<double> p(numbers[0], numbers[1], numbers[2]);
-            for (int k = 0; k < 3; ++k) p[k] += x * numbers[3 + k] + y * numbers[6 + k] + z * numbers[9 + k];
-            return p;
-        };
+        const auto at = [&](double x, double y, double z) { return placed(numbers, x, y, z); };
         const uint32_t count = uint32_t(numbers[12]);
         const double reach = numbers[13], sine = numbers[14];
         const auto interval = [&](uint32_t k) { return numbers.data + 15 + 4 * k; };
         Draw draw = setup.draw(i);
         const uint32_t start = draw.below(count - 1);
         const double* from = interval(start);
-        // At the next face: anywhere on it, its middle, or where a mesh is cut into triangles.
-        double y = draw.centered<double>(reach), z = draw.centered<double>(reach);
-        const int where = draw.between(0, 5);
-        if (where == 0) y = z = 0;
-        if (where == 1) y = z;
-        if (where == 2) y = -z;
+        const auto [y, z] = place_on_face(draw, reach);  // the next one
         const Vec3<double> slope = in_ball(draw) * (sine / from[2]);
         const double across = square_root(1 - slope.y * slope.y - slope.z * slope.z);
         const double back = (from[1] - from[0]) * (0.0625 + 0.875 * draw.unit<double>()) / across;
-        const Vec3<Real> target(placed(from[1], y, z));
-        const Vec3<Real> origin(placed(from[1] - back * across, y - back * slope.y, z - back * slope.z));
+        const Vec3<Real> target(at(from[1], y, z));
+        const Vec3<Real> origin(at(from[1] - back * across, y - back * slope.y, z - back * slope.z));
         Ray<Real> ray = ray_from(origin, normalized(target - origin));
-        for (uint32_t solid = 0; solid < 8; ++solid)
-            if ((uint32_t(from[3]) >> solid & 1u) != 0) ray.media.add(solid, 1);
+        surround(ray, uint32_t(from[3]));
         Lines<Real> lines;
         trace(setup, intersector, ray, lines);
         bool same = lines.whole();
