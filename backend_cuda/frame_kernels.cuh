@@ -39,7 +39,7 @@ struct PathTraits<Real, DevicePath::tree> {
 template <class Real, class Media>
 struct QueuedBranch {
     Branch<Real, Media> branch;
-    unsigned int record;
+    unsigned long long record;  // no padding behind it: that would be copied unset
 };
 
 /// A place in a queue for every lane that is here: one addition for all of them.
