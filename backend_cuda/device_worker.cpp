@@ -186,7 +186,8 @@ template <class Real>
 void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
     const FramePart& part = slot.part;
     const size_t width = size_t(part.rect.width), row_bytes = width * sizeof(PixelRecord);
-    const int rows = part.strips * strip_rows, batch = int(std::max<size_t>(staging_bytes / row_bytes, 1));
+    // No more than there is: to lock pages takes longer than to render a small frame.
+    const int rows = part.strips * strip_rows, batch = std::min(int(std::max<size_t>(staging_bytes / row_bytes, 1)), rows);
     for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * row_bytes);
     const auto fill = [&](int first, int buffer) {
         CISTULA_CUDA_CHECK(cudaMemcpyAsync(staging_[buffer].as<void>(),
