@@ -85,9 +85,10 @@ inline SceneDescription half_plane(const SampleLine& line, int samples_across, b
     const double step = height * camera_at(scene.camera, 0).camera.tan_half_width / samples_across;
     const double size = std::sqrt(double(line.a * line.a + line.b * line.b));
     const glm::dvec3 normal(line.a / size, -line.b / size, 0), along(-normal.y, normal.x, 0);  // down is -y
-    const glm::dvec3 middle = normal * (line.c / size * step);
+    const double offset = line.c / size * step;  // of the line from the middle, which may be outside of the picture
+    const glm::dvec3 middle = normal * offset;
     const glm::dvec3 one = middle + along * reach, other = middle - along * reach;
-    const glm::dvec3 away = normal * (beyond ? reach : -reach);
+    const glm::dvec3 away = normal * ((beyond ? 1 : -1) * (reach + std::abs(offset)));
     add_object(scene, sheet({one, other, other + away, one + away}));
     return scene;
 }
