@@ -135,6 +135,16 @@ class CudaRenderer : public Renderer {
 
     int devices() const { return int(workers_.size()); }
 
+    static Pass first_pass(const FrameSettings& settings) {
+        return settings.adaptive() ? Pass::adaptive_pixels : Pass::pixels;
+    }
+
+    /// A pixel's, more or less.
+    static size_t samples_of(const FrameSettings& settings) {
+        constexpr size_t adaptive = 16;
+        return settings.adaptive() ? adaptive : size_t(settings.supersample) * size_t(settings.supersample);
+    }
+
     /// The frame's plan, its first part on its way.
     Frame begin(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) {
         Frame frame;
@@ -150,7 +160,7 @@ class CudaRenderer : public Renderer {
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
         const size_t strip_pixels = size_t(rect.width) * strip_rows;
-        const size_t samples = size_t(settings.supersample) * size_t(settings.supersample);
+        const size_t samples = samples_of(settings);
         const int per_device = (frame.strips + devices() - 1) / devices();
         int wanted = int(std::clamp<size_t>(part_samples / (strip_pixels * samples), 1, size_t(per_device)));
         if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / strip_pixels, 1, size_t(wanted)));
@@ -165,6 +175,7 @@ class CudaRenderer : public Renderer {
     /// Of a frame of few samples the last threads would be long alone with the deepest trees; others keep the device busy
     /// meanwhile. A budget of truncation is spent in the order of one thread's stack.
     int split_depth(const FrameSettings& settings, const TreeSettings& tree, size_t samples_per_device) const {
+        if (settings.adaptive()) return 0;
         const int chosen = samples_per_device <= few_samples && settings.depth > deep ? split_levels : 0;
         const int split = options_.split != CudaOptions::automatic ? options_.split : chosen;
         return tree.budget == 0 && split > 0 && split < settings.depth ? split : 0;
@@ -177,7 +188,7 @@ class CudaRenderer : public Renderer {
             bool room = true;
             for (auto& worker : workers_)
                 room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit, frame.mask,
-                                               frame.split_depth != 0);
+                                               first_pass(frame.settings), frame.split_depth != 0);
             return room;
         };
         for (;; strips = (strips + 1) / 2) {
@@ -220,6 +231,7 @@ class CudaRenderer : public Renderer {
             job.rect = frame.settings.crop;
             job.first_strip = part * frame.part_strips * devices() + int(d);
             job.strip_step = devices();
+            job.first = first_pass(frame.settings);
             job.mask = frame.mask;
             job.split_depth = frame.split_depth;
             workers_[d]->start(job, (frame.first_slot + part) % DeviceWorker<Real>::slots);

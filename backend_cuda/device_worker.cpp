@@ -34,7 +34,7 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     arena_.reserve(std::max<size_t>(scene.bytes().size(), 1));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(),
                                        cudaMemcpyHostToDevice, compute_));
-    queue_sizes_.reserve(passes * sizeof(unsigned int));
+    counters_.reserve(counters * sizeof(unsigned int));
     for (PartSlot& slot : slots_) {
         slot.tally.reserve(sizeof(DeviceTally));
         slot.tally_copy.reserve(sizeof(DeviceTally));
@@ -50,8 +50,9 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
 /// A kernel's first launch takes memory for its threads' stacks: over a gigabyte on a large device. It must come before the
 /// pixels', which can do with less.
 template <class Real>
-void DeviceWorker<Real>::prime(int mask) {
-    if (primed_ >> mask & 1u) return;
+void DeviceWorker<Real>::prime(int mask, Pass first) {
+    const int kernel = 2 * mask + (first == Pass::pixels ? 0 : 1);
+    if (primed_ >> kernel & 1u) return;
     PartSlot& slot = slots_[0];
     slot.records.reserve(strip_rows * sizeof(PixelRecord));
     FrameJob job;
@@ -59,15 +60,17 @@ void DeviceWorker<Real>::prime(int mask) {
     job.width = 1;
     job.rows = strip_rows;  // of a rectangle without height: no pixel is rendered
     job.tally = slot.tally.as<DeviceTally>();
-    launch_pixels(mask, path_, scene_, job, compute_);
+    job.next = counters_.as<unsigned int>();
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(job.next, 0, sizeof(unsigned int), compute_));
+    launch(first, mask, path_, scene_, job, compute_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
-    primed_ |= 1u << mask;
+    primed_ |= 1u << kernel;
 }
 
 template <class Real>
-bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, bool splits) {
+bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, Pass first, bool splits) {
     use_device(device_);
-    prime(mask);
+    prime(mask, first);
     const size_t bytes = pixels * sizeof(PixelRecord);
     if (!splits)
         for (DeviceMemory& queue : queue_) queue.free();
@@ -102,13 +105,13 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.interleaved = size_t(job.width) * size_t(job.rows) >= many_pixels;
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
-    CISTULA_CUDA_CHECK(cudaMemsetAsync(queue_sizes_.as<void>(), 0, passes * sizeof(unsigned int), compute_));
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
     const auto queue = [&](int pass) {
         BranchQueue q;
         q.items = queue_[pass % 2].as<void>();
         q.capacity = static_cast<unsigned int>(queue_capacity_);
-        q.size = queue_sizes_.as<unsigned int>() + pass;
+        q.size = counters_.as<unsigned int>() + pass;
         return q;
     };
     // A pass follows trees that many levels further down, the last one to their end.
@@ -120,11 +123,12 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
         return !last;
     };
     bool more = give(0);
-    launch_pixels(part.mask, path_, scene_, job, compute_);
+    job.next = counters_.as<unsigned int>() + passes;
+    launch(part.first, part.mask, path_, scene_, job, compute_);
     for (int pass = 1; more; ++pass) {
         job.from = queue(pass - 1);
         more = give(pass);
-        launch_branches(part.mask, path_, scene_, job, compute_);
+        launch(Pass::branches, part.mask, path_, scene_, job, compute_);
     }
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.end, compute_));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.tally_copy.as<void>(), job.tally, sizeof(DeviceTally),

@@ -23,6 +23,7 @@ struct FramePart {
     FrameView frame;
     PixelRect rect;
     int first_strip = 0, strip_step = 1, strips = 0;
+    Pass first = Pass::pixels;  // or adaptive_pixels
     int mask = 0;         // index of effect_masks
     int split_depth = 0;  // from which other threads follow a tree's branches; 0: never
 };
@@ -43,9 +44,9 @@ class DeviceWorker {
     /// `here`: the scene of the arena, where this program can read it.
     DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path);
 
-    /// Room for parts of that many pixels in both slots, beside what the kernels of `mask` take for themselves. False
-    /// where there is none. `splits`: with queues for branches.
-    bool reserve(size_t pixels, size_t memory_limit, int mask, bool splits);
+    /// Room for parts of that many pixels in both slots, beside what the kernels of `mask` take for themselves, of
+    /// which `first` goes over the pixels. False where there is none. `splits`: with queues for branches.
+    bool reserve(size_t pixels, size_t memory_limit, int mask, Pass first, bool splits);
 
     /// Enqueues a part; nothing is waited for. Its slot must be free.
     void start(const FramePart& part, int slot);
@@ -63,19 +64,20 @@ class DeviceWorker {
 
   private:
     static constexpr int passes = 6;  // over pixels, then over queues
+    static constexpr int counters = passes + 1;  // sizes of queues, and the next pixel
 
-    void prime(int mask);
+    void prime(int mask, Pass first);
     void copy_rows(const PartSlot& slot, Film& film);
     void copy_straight(const PartSlot& slot, Film& film);
 
     const int device_;
     const DevicePath path_;
     CudaStream compute_, copy_;
-    DeviceMemory arena_, queue_[2], queue_sizes_;
+    DeviceMemory arena_, queue_[2], counters_;
     PinnedMemory staging_[2];
     CudaEvent staged_[2];
     size_t queue_capacity_ = 0;
-    uint32_t primed_ = 0;  // bit m: the kernels of mask m have run
+    uint32_t primed_ = 0;  // bit 2 m: that mask m's kernel over pixels has run; 2 m + 1: its adaptive one
     DeviceScene<Real> scene_;
     PartSlot slots_[slots];
 };

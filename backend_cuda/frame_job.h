@@ -39,6 +39,7 @@ struct FrameJob {
     DeviceTally* tally = nullptr;
     BranchQueue from, to;  // passes after the first read `from`
     int split_depth = whole_trees;  // branches of this depth and more go `to` the queue
+    unsigned int* next = nullptr;   // of adaptive sampling: the pixel that the next free thread takes
 };
 
 /// Which intersector and which form of media the kernels use. Never changes the image.
@@ -59,11 +60,11 @@ struct DeviceScene {
 template <class Real>
 size_t queued_branch_bytes(DevicePath path);
 
-/// Enqueues a pass over all pixels of the job, or over the branches of job.from. `mask` is an index of effect_masks.
-/// Throws Error (device).
+/// What a kernel goes over: all pixels of the job, those of a frame with a target error, or the branches of job.from.
+enum class Pass { pixels, adaptive_pixels, branches };
+
+/// Enqueues a pass. `mask` is an index of effect_masks. Throws Error (device).
 template <class Real>
-void launch_pixels(int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream);
-template <class Real>
-void launch_branches(int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream);
+void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream);
 
 }  // namespace cistula

@@ -3,6 +3,7 @@
 
 #include "backend_cuda/cuda_check.h"
 #include "backend_cuda/frame_job.h"
+#include "cistula/adaptive_pixel.h"
 #include "cistula/bvh.h"
 
 namespace cistula {
@@ -237,6 +238,44 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     add_to_tally(*job.tally, rays, flags);
 }
 
+/// Pixels of a frame with a target error want from 4 samples to 256. A thread that is done with one takes the next, so that
+/// all lanes of a warp have a sample to render.
+template <class Real, class E, DevicePath path>
+__global__ void __launch_bounds__(block_threads, least_blocks<Real>)
+    render_adaptive(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
+    using Intersector = typename PathTraits<Real, path>::Intersector;
+    __shared__ BlockRoom room;
+    PixelWork& own = room.work[threadIdx.x] = PixelWork();
+    PixelRecord& record = room.records[threadIdx.x];
+    const unsigned int columns = unsigned(job.width + tile_width - 1) / tile_width;
+    const unsigned int places = columns * unsigned(job.rows / tile_height) * warp_threads;
+    BranchStack<Real, typename Intersector::Media> stack;
+    LatticePixel pixel(job.frame.lattice);
+    int x = 0, y = 0;
+    bool busy = false;
+    for (;;) {
+        int column, row, slot;
+        while (!(busy && pixel.wants(column, row, slot))) {
+            if (busy) job.records[size_t(y) * size_t(job.width) + size_t(x)] = record;
+            busy = false;
+            const unsigned int place = next_place(job.next);
+            if (place >= places) break;
+            const unsigned int tile = place / warp_threads, in_tile = place % warp_threads;
+            x = int(tile % columns * tile_width + in_tile % tile_width);
+            y = int(tile / columns * tile_height + in_tile / tile_width);
+            const int film_row = (job.first_strip + y / strip_rows * job.strip_step) * strip_rows + y % strip_rows;
+            busy = x < job.width && film_row < job.height;
+            if (busy) pixel.begin(record);
+        }
+        if (!busy) break;
+        const int film_row = (job.first_strip + y / strip_rows * job.strip_step) * strip_rows + y % strip_rows;
+        render_wanted<Real, E>(scene, job.frame, Intersector{scene}, job.x + x, job.y + film_row, column, row, slot, pixel, own,
+                               stack);
+    }
+    __syncthreads();
+    add_to_tally(*job.tally, own.rays, own.flags);
+}
+
 /// Blocks of a grid that keeps the device full: passes over queues find out there how much there is to do.
 template <class Kernel>
 unsigned int filling_blocks(const Kernel& kernel) {
@@ -249,22 +288,26 @@ unsigned int filling_blocks(const Kernel& kernel) {
 
 /// The kernels of one mask of effects.
 template <class Real, int mask>
-void launch_mask(DevicePath path, bool branches, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
+void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
     using E = Effects<effect_masks[mask]>;
     const BlockShape block = BlockShape::of(job.frame);
     const dim3 grid(unsigned(job.width + block.width - 1) / unsigned(block.width), unsigned(job.rows / block.height));
-    const auto launch = [&](auto pixels_kernel, auto branches_kernel, const auto& own) {
-        if (branches)
-            branches_kernel<<<filling_blocks(branches_kernel), block_threads, 0, stream>>>(job, own);
+    const auto launch = [&](auto pixels, auto adaptive, auto branches, const auto& own) {
+        if (pass == Pass::pixels)
+            pixels<<<grid, block_threads, 0, stream>>>(job, own);
+        else if (pass == Pass::adaptive_pixels)
+            adaptive<<<filling_blocks(adaptive), block_threads, 0, stream>>>(job, own);
         else
-            pixels_kernel<<<grid, block_threads, 0, stream>>>(job, own);
+            branches<<<filling_blocks(branches), block_threads, 0, stream>>>(job, own);
     };
-    if (path == DevicePath::plain_loop)
-        launch(render_pixels<Real, E, DevicePath::plain_loop>, render_branches<Real, E, DevicePath::plain_loop>,
-               scene.small);
+    constexpr DevicePath loop = DevicePath::plain_loop, tree = DevicePath::tree;
+    if (path == loop)
+        launch(render_pixels<Real, E, loop>, render_adaptive<Real, E, loop>, render_branches<Real, E, loop>, scene.small);
     else
-        launch(render_pixels<Real, E, DevicePath::tree>, render_branches<Real, E, DevicePath::tree>, scene.view);
-    check_cuda(cudaGetLastError(), branches ? "launch of render_branches" : "launch of render_pixels");
+        launch(render_pixels<Real, E, tree>, render_adaptive<Real, E, tree>, render_branches<Real, E, tree>, scene.view);
+    check_cuda(cudaGetLastError(), pass == Pass::branches ? "launch of render_branches"
+                                   : pass == Pass::pixels ? "launch of render_pixels"
+                                                          : "launch of render_adaptive");
 }
 
 }  // namespace cistula

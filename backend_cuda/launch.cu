@@ -6,26 +6,14 @@
 namespace cistula {
 
 #define CISTULA_ELSEWHERE(mask)                                                                   \
-    extern template void launch_mask<float, mask>(DevicePath, bool, const DeviceScene<float>&, const FrameJob&, cudaStream_t); \
-    extern template void launch_mask<double, mask>(DevicePath, bool, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
+    extern template void launch_mask<float, mask>(DevicePath, Pass, const DeviceScene<float>&, const FrameJob&, cudaStream_t); \
+    extern template void launch_mask<double, mask>(DevicePath, Pass, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
 CISTULA_ELSEWHERE(0)
 CISTULA_ELSEWHERE(1)
 CISTULA_ELSEWHERE(2)
 CISTULA_ELSEWHERE(3)
 #undef CISTULA_ELSEWHERE
 static_assert(effect_mask_count == 4, "name the new masks above and in CMakeLists.txt");
-
-namespace {
-
-template <class Real>
-void launch(int mask, DevicePath path, bool branches, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
-    using Launch = void (*)(DevicePath, bool, const DeviceScene<Real>&, const FrameJob&, cudaStream_t);
-    static constexpr Launch table[effect_mask_count] = {launch_mask<Real, 0>, launch_mask<Real, 1>, launch_mask<Real, 2>,
-                                                        launch_mask<Real, 3>};
-    table[mask](path, branches, scene, job, stream);
-}
-
-}  // namespace
 
 template <class Real>
 size_t queued_branch_bytes(DevicePath path) {
@@ -35,19 +23,16 @@ size_t queued_branch_bytes(DevicePath path) {
 }
 
 template <class Real>
-void launch_pixels(int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
-    launch(mask, path, false, scene, job, stream);
-}
-template <class Real>
-void launch_branches(int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
-    launch(mask, path, true, scene, job, stream);
+void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
+    using Launch = void (*)(DevicePath, Pass, const DeviceScene<Real>&, const FrameJob&, cudaStream_t);
+    static constexpr Launch table[effect_mask_count] = {launch_mask<Real, 0>, launch_mask<Real, 1>, launch_mask<Real, 2>,
+                                                        launch_mask<Real, 3>};
+    table[mask](path, pass, scene, job, stream);
 }
 
 template size_t queued_branch_bytes<float>(DevicePath);
 template size_t queued_branch_bytes<double>(DevicePath);
-template void launch_pixels(int, DevicePath, const DeviceScene<float>&, const FrameJob&, cudaStream_t);
-template void launch_pixels(int, DevicePath, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
-template void launch_branches(int, DevicePath, const DeviceScene<float>&, const FrameJob&, cudaStream_t);
-template void launch_branches(int, DevicePath, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
+template void launch(Pass, int, DevicePath, const DeviceScene<float>&, const FrameJob&, cudaStream_t);
+template void launch(Pass, int, DevicePath, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
 
 }  // namespace cistula

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <utility>
 
+#include "cistula/adaptive_pixel.h"
 #include "scene/frame_view.h"
 
 namespace cistula {
@@ -35,8 +36,11 @@ bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const In
             for (int y = y0; y < y1; ++y)
                 for (int x = x0; x < x1; ++x) {
                     PixelWork own;
-                    render_pixel<Real, E>(scene, frame, intersector, rect.x + x, rect.y + y,
-                                          film.pixels[size_t(y) * size_t(rect.width) + size_t(x)], own);
+                    PixelRecord& pixel = film.pixels[size_t(y) * size_t(rect.width) + size_t(x)];
+                    if (frame.lattice.target > 0)
+                        render_adaptive_pixel<Real, E>(scene, frame, intersector, rect.x + x, rect.y + y, pixel, own);
+                    else
+                        render_pixel<Real, E>(scene, frame, intersector, rect.x + x, rect.y + y, pixel, own);
                     rays.add(own.rays);
                     flags |= own.flags;
                 }

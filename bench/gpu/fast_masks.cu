@@ -5,7 +5,7 @@ namespace cistula {
 
 #define CISTULA_LEFT_OUT(real, mask)                                                                                \
     template <>                                                                                                     \
-    void launch_mask<real, mask>(DevicePath, bool, const DeviceScene<real>&, const FrameJob&, cudaStream_t) {       \
+    void launch_mask<real, mask>(DevicePath, Pass, const DeviceScene<real>&, const FrameJob&, cudaStream_t) {       \
         throw Error(ExitCode::failed, "mask " #mask " of effects is not in this program: only the benchmark's, 1"); \
     }
 CISTULA_LEFT_OUT(float, 0)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cistula/camera.h"
+#include "cistula/lattice.h"
 #include "cistula/ray_tree.h"
 
 namespace cistula {
@@ -15,6 +16,7 @@ struct FrameView {
     int width = 0, height = 0;
     int supersample = 1;
     TreeSettings tree;
+    LatticeSettings lattice;  // with a target, of a grid of 16 x 16
 };
 
 /// The ray from the camera, from where it enters the sphere of radius 2 M (NUMERICS, 1), in double for either Real.
@@ -108,6 +110,27 @@ struct SampleRange {
     int first = 0, step = 1;
 };
 
+/// Sample (column, row) of the k x k grid of pixel (px, py), added to the record.
+template <class Real, class E, class Intersector, class Stack, class Scene>
+CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
+                                  int column, int row, bool middle, PixelRecord& record, PixelWork& work, Stack& stack) {
+    const int k = frame.supersample;
+    Ray<Real, typename Intersector::Media> ray;
+    // In half samples from the middle of the picture.
+    const int across = 2 * (px * k + column) + 1 - frame.width * k;
+    const int down = 2 * (py * k + row) + 1 - frame.height * k;
+    const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
+    PixelSums<Real> sums(frame.tree, scene.bound, record, work.flags);
+    ++work.rays.primary;
+    if (!primary_ray(scene, frame, direction, ray, work.start)) {
+        sums.add(scene.background);
+        return;
+    }
+    work.facing = dot(direction, frame.camera.forward);
+    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, work.rays, stack);
+    tree.trace(ray, FirstSeen<Real>{frame, work, record, middle});
+}
+
 /// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own. Branches that `stack` gives away are
 /// missing from the record: resume_branch adds them.
 template <class Real, class E, class Intersector, class Stack, class Scene>
@@ -118,22 +141,11 @@ CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, con
     const int k = frame.supersample;
     for (int sample = samples.first; sample < k * k; sample += samples.step) {
         const int row = k == 1 ? 0 : sample / k, column = sample - row * k;
-        Ray<Real, typename Intersector::Media> ray;
-        // In half samples from the middle of the picture.
-        const int across = 2 * (px * k + column) + 1 - frame.width * k;
-        const int down = 2 * (py * k + row) + 1 - frame.height * k;
-        const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
-        PixelSums<Real> sums(frame.tree, scene.bound, record, work.flags);
-        ++work.rays.primary;
-        if (!primary_ray(scene, frame, direction, ray, work.start)) {
-            sums.add(scene.background);
-            continue;
-        }
-        work.facing = dot(direction, frame.camera.forward);
-        RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, work.rays, stack);
-        tree.trace(ray, FirstSeen<Real>{frame, work, record, column == k / 2 && row == k / 2});
+        render_sample<Real, E>(scene, frame, intersector, px, py, column, row, column == k / 2 && row == k / 2, record, work,
+                               stack);
     }
     record.rays = work.rays.total();
+    record.samples = work.rays.primary;
 }
 
 /// All samples, with a stack of its own.

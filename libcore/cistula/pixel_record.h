@@ -61,6 +61,8 @@ struct PixelRecord {
     int32_t id;         // 1 + solid under the sample nearest the pixel's center; 0: none
     float z;            // that sample's distance along the view axis in scene units; infinity: none
     float normal[3];    // that sample's unit normal, toward the viewer, in world axes; 0: none
+    uint32_t samples : 31;  // that were rendered
+    uint32_t unmet : 1;     // adaptive sampling wanted more than it may have
 
     /// Takes other samples of the same pixel in.
     CISTULA_INLINE void add(const PixelRecord& o) {
@@ -71,6 +73,7 @@ struct PixelRecord {
         }
         hits += o.hits;
         rays += o.rays;
+        samples += o.samples;
         if (o.id == 0) return;
         id = o.id;
         z = o.z;

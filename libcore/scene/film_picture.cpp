@@ -89,7 +89,7 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
                 return half ? rounded_up_to_half(bound) : bound;
             });
         if (channels.id) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.id); });
-        if (channels.samples) fill([&film](const PixelRecord&) { return static_cast<float>(film.samples); });
+        if (channels.samples) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.samples); });
         if (channels.cost) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.rays); });
         if (channels.z) fill([](const PixelRecord& pixel) { return pixel.z; });
         for (int c = 0; c < 3 && channels.normal; ++c)

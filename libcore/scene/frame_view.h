@@ -8,6 +8,18 @@
 
 namespace cistula {
 
+/// Of a frame with a target error.
+template <class Real>
+void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings, LatticeSettings& lattice) {
+    /// Above this share of the bound a pixel's four corners do.
+    constexpr double coarse = 0x1p-8;
+    const double target = least(elementary::scaled(settings.target_error, -scene.radiance_exponent), 4.0);
+    lattice.target = greatest(int64_t(floor_of(elementary::scaled(target, color_bits))), int64_t(1));
+    lattice.most = settings.max_samples;
+    lattice.fine = target < coarse;
+    lattice.significant = target / 4;
+}
+
 /// All but the solids around the camera, which need an intersector (camera_solids).
 template <class Real>
 FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera, const FrameSettings& settings) {
@@ -17,6 +29,10 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     if (settings.supersample < 1 || settings.supersample > 64)
         refuse("supersample " + std::to_string(settings.supersample) + ": must be from 1 to 64");
     if (!(settings.cutoff >= 0)) refuse("cutoff: must be at least 0");
+    if (!(settings.target_error >= 0)) refuse("target error: must be at least 0");
+    if (settings.max_samples < least_lattice_samples || settings.max_samples > lattice_samples)
+        refuse("max samples " + std::to_string(settings.max_samples) + ": must be from " +
+               std::to_string(least_lattice_samples) + " to " + std::to_string(lattice_samples));
     const double unit = elementary::power_of_two(scene.scale);
     FrameView frame;
     frame.camera = camera.camera;
@@ -24,15 +40,16 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     frame.unit_length = 1 / unit;
     frame.width = settings.full_width;
     frame.height = settings.full_height;
-    frame.supersample = settings.supersample;
+    frame.supersample = settings.grid();
     frame.half_sample = frame.camera.tan_half_width / (double(frame.width) * frame.supersample);
     frame.tree.depth = settings.depth;
-    const int shift = fixed_shift(uint32_t(settings.supersample * settings.supersample));
+    const int shift = fixed_shift(uint32_t(frame.supersample * frame.supersample));
     frame.tree.fixed_scale = float(fixed_scale(shift));
     frame.tree.fixed_unit = float(fixed_scale(-shift));
     // A budget beyond the bound itself prunes everything either way.
-    const double budget = least(elementary::scaled(settings.cutoff, -scene.radiance_exponent), 16.0);
+    const double budget = least(elementary::scaled(settings.truncation(), -scene.radiance_exponent), 16.0);
     frame.tree.budget = int64_t(floor_of(least(budget * fixed_scale(shift), 0x1p62)));
+    if (settings.adaptive()) set_lattice(scene, settings, frame.lattice);
     return frame;
 }
 
@@ -42,7 +59,7 @@ inline void prepare_film(Film& film, const FrameSettings& settings, int radiance
     film.full_height = settings.full_height;
     film.rect = settings.crop;
     film.radiance_exponent = radiance_exponent;
-    film.samples = settings.supersample * settings.supersample;
+    film.samples = settings.grid() * settings.grid();
     film.fixed_shift = fixed_shift(uint32_t(film.samples));
     film.pixels.clear();
     film.pixels.resize(size_t(film.rect.width) * size_t(film.rect.height));

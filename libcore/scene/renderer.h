@@ -20,10 +20,17 @@ struct FrameSettings {
     int supersample = 1;       // k: a k x k grid per pixel
     int depth = 4;             // 1 to 1,024
     double cutoff = 0;         // error budget per pixel in the scene's radiance units
+    double target_error = 0;   // above 0: samples of the 16 x 16 lattice as needed, and a quarter of it for the cutoff
+    int max_samples = 256;     // of a pixel, where there is a target: 5 to 256
     uint32_t effects = 0;      // mask to run; 0: the least that contains what the scene requires
     int tile = 16;             // pixels along a tile's side; never changes the image
 
     bool operator==(const FrameSettings&) const = default;
+
+    bool adaptive() const { return target_error > 0; }
+    /// Along a pixel's side, of the lattice too.
+    int grid() const { return adaptive() ? 16 : supersample; }
+    double truncation() const { return adaptive() ? target_error / 4 : cutoff; }
 };
 
 /// Shared between the rendering threads and whoever watches; all members may be read at any time.

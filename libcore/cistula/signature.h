@@ -1,0 +1,83 @@
+// What a sample met, as a number: samples with the same one are alike but for gradual change. The sum of what is asked of an
+// intersector, so that the order of work does not show.
+#pragma once
+
+#include "cistula/effects.h"
+#include "cistula/ray_tree.h"
+
+namespace cistula {
+
+/// Of the ray tree under way. Branches too faint to matter leave it alone.
+struct Signature {
+    uint32_t value = 0;
+    bool counts = true;  // whether the branch under way matters
+
+    /// Any change of a, b or c changes all of what is added (Appleby's final mix of MurmurHash3, public domain).
+    CISTULA_INLINE void add(uint32_t a, uint32_t b, uint32_t c) {
+        uint32_t h = a * 0x9e3779b1u + b * 0x85ebca77u + c * 0xc2b2ae3du + 0x27d4eb2fu;
+        h = (h ^ h >> 16) * 0x85ebca6bu;
+        h = (h ^ h >> 13) * 0xc2b2ae35u;
+        value += h ^ h >> 16;
+    }
+};
+
+/// The faces that are hit and what arrives from lights. Where bodies absorb, that changes gradually, and only whether
+/// anything arrives tells.
+template <class Inner>
+struct SigningIntersector {
+    using Media = typename Inner::Media;
+    using Scene = typename Inner::Scene;
+    using Real = typename Scene::Scalar;
+    const Inner& inner;
+    Signature& signature;
+
+    CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
+        const Hit<Real> hit = inner.closest(ray);
+        if (signature.counts) signature.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
+        return hit;
+    }
+
+    template <class E>
+    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real, Media>& shadow) const {
+        const Vec3<Real> arrives = inner.template transmittance<E>(shadow);
+        if (signature.counts) {
+            const uint32_t light = uint32_t(shadow.light - inner.scene.lights.data);
+            signature.add(told_apart<E>(arrives.x) + 3 * told_apart<E>(arrives.y), 5 * told_apart<E>(arrives.z),
+                          light + 0x10000u);
+        }
+        return arrives;
+    }
+
+  private:
+    template <class E>
+    CISTULA_INLINE static uint32_t told_apart(Real share) {
+        if constexpr (E::has(effect_absorption)) return share > Real(0) ? 1 : 0;
+        return bits_as<uint32_t>(float(share));
+    }
+};
+
+/// A stack that tells which branches matter.
+template <class Inner, class Real>
+class SigningStack {
+  public:
+    CISTULA_INLINE SigningStack(Inner& inner, Signature& signature, Real significant)
+        : inner_(inner), signature_(signature), significant_(significant) {}
+
+    template <class Entry>
+    CISTULA_INLINE bool push(const Entry& branch) {
+        return inner_.push(branch);
+    }
+    template <class Entry>
+    CISTULA_INLINE bool pop(Entry& branch) {
+        if (!inner_.pop(branch)) return false;
+        signature_.counts = largest_component(branch.weight) >= significant_;
+        return true;
+    }
+
+  private:
+    Inner& inner_;
+    Signature& signature_;
+    const Real significant_;
+};
+
+}  // namespace cistula
