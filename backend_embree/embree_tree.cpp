@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "backend_embree/frame_loop.h"
-#include "scene/error.h"
 
 namespace cistula {
 
@@ -12,23 +11,11 @@ namespace {
 /// Up to this many primitives a plain loop is faster than any tree.
 constexpr uint32_t plain_loop_primitives = 16;
 
-void fail(const std::string& what) {
-    throw Error(ExitCode::device, "Embree: " + what);
-}
-
 }  // namespace
 
 template <class Real>
-EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options) {
-    device_.reset(rtcNewDevice(options.device_config.c_str()));
-    if (!device_) fail("no device for \"" + options.device_config + "\"");
-    rtcSetDeviceMemoryMonitorFunction(
-        device_.get(),
-        [](void* self, ssize_t bytes, bool) {
-            static_cast<EmbreeTree*>(self)->memory_ += bytes;
-            return true;
-        },
-        this);
+EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options)
+    : device_(options.device_config) {
     // Boxes are made here, before the commit, whose threads may run with flush-to-zero.
     const uint32_t primitives = scene.convex.size + scene.clusters.size;
     std::vector<PaddedBox> boxes(primitives);
@@ -62,8 +49,7 @@ EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& 
     rtcSetSceneBuildQuality(scene_.get(), quality);
     rtcAttachGeometry(scene_.get(), geometry);
     rtcCommitScene(scene_.get());
-    if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
-        fail("building the tree failed with error " + std::to_string(int(error)));
+    device_.check("building the tree");
 }
 
 template <class Real>

@@ -1,10 +1,9 @@
 // Embree's device and its tree over a scene's primitives.
 #pragma once
 
-#include <atomic>
 #include <memory>
-#include <string>
 
+#include "backend_embree/embree_device.h"
 #include "backend_embree/embree_intersector.h"
 #include "backend_embree/embree_renderer.h"
 
@@ -19,11 +18,10 @@ class EmbreeTree {
     EmbreeTree& operator=(const EmbreeTree&) = delete;
 
     RTCScene scene() const { return scene_.get(); }
-    size_t memory() const { return size_t(memory_.load()); }
+    size_t memory() const { return device_.memory(); }
 
   private:
-    std::atomic<ssize_t> memory_{0};  // first, since the device counts in it until it is gone
-    DevicePointer device_;
+    EmbreeDevice device_;
     ScenePointer scene_;
 };
 

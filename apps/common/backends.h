@@ -18,6 +18,9 @@ enum class Backend { embree, cuda };
 Backend parse_backend(const std::string& text);
 const char* backend_name(Backend backend);
 
+/// "exact" or "native", what --intersector says. Throws Error (usage), also for native on another backend than Embree.
+Intersection parse_intersection(const std::string& text, Backend backend);
+
 /// What --device says: these GPUs, or all that can be used.
 struct DeviceChoice {
     bool all = false;
@@ -45,10 +48,11 @@ std::vector<CudaDevice> pick_devices(const DeviceChoice& choice, const std::vect
 std::string list_devices_text();
 std::string list_devices_text(const std::vector<CudaDevice>& devices);
 
-/// Throws Error (device) where this build does not have the backend. Never another one instead.
+/// Throws Error (device) where this build does not have the backend. Never another one instead. Native intersection is
+/// Embree's: parse_intersection refuses it for any other.
 template <class Real>
 std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
-                                        const CudaOptions& options);
+                                        const CudaOptions& options, Intersection intersection = Intersection::exact);
 
 /// Whether this build has the CUDA backend; whether this machine has a GPU is another question.
 bool has_cuda_backend();

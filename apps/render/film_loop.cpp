@@ -31,7 +31,8 @@ LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
     picture.y = crop.y;
     picture.display_width = job.settings.full_width;
     picture.display_height = job.settings.full_height;
-    picture.attributes = header_attributes(job.scene_hash, job.settings, job.options.precision, camera);
+    picture.attributes =
+        header_attributes(job.scene_hash, job.settings, job.options.precision, camera, job.options.intersection);
     return picture;
 }
 
@@ -154,7 +155,8 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             }
             finished.path = job.output.for_frame(frame);
             finished.preview = job.preview.for_frame(frame);
-            finished.attributes = header_attributes(job.scene_hash, job.settings, options.precision, cameras[i]);
+            finished.attributes =
+                header_attributes(job.scene_hash, job.settings, options.precision, cameras[i], options.intersection);
             finished.stats = stats_of(finished.film, frame, finished.path, seconds, renderer.times());
             if (options.verbose)
                 report.say(fmt::format("render: frame {}: {:.3f} s, {} rays, {}", frame, seconds,

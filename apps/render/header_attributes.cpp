@@ -53,8 +53,8 @@ std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
 }
 
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
-                             const CameraFrame& camera) {
-    return {
+                             const CameraFrame& camera, Intersection intersection) {
+    Attributes attributes = {
         {"chromaticities", std::vector<float>{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
         {"cistula:cameraHash", camera_hash(camera.camera)},
         {"cistula:cutoff", settings.cutoff},
@@ -68,6 +68,8 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
         {"worldToCamera", world_to_camera(camera.camera)},
         {"worldToNDC", world_to_ndc(camera.camera, settings.full_width, settings.full_height)},
     };
+    if (intersection == Intersection::native) attributes["cistula:intersector"] = std::string("native");
+    return attributes;
 }
 
 bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected) {

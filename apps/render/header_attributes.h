@@ -16,9 +16,10 @@ namespace cistula {
 using Attributes = decltype(LayeredPicture::attributes);
 
 /// Scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera, worldToNDC,
-/// chromaticities (Rec. 709, D65). docs/programs.md says what each holds.
+/// chromaticities (Rec. 709, D65), and the intersector where it is not the exact one. docs/programs.md says what each
+/// holds.
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
-                             const CameraFrame& camera);
+                             const CameraFrame& camera, Intersection intersection = Intersection::exact);
 
 /// World to camera space (x right, y up, looking along -z), 16 numbers for row vectors: p' = p M.
 std::vector<float> world_to_camera(const Camera& camera);

@@ -42,7 +42,8 @@ std::unique_ptr<Renderer> prepare(const SceneDescription& scene, const RenderOpt
     stats.required_effects = compiled->effects;
     print_warnings(compiled->warnings, options);
     std::unique_ptr<Renderer> renderer;
-    stats.tree_seconds = seconds_of([&] { renderer = make_renderer<Real>(options.backend, compiled, cuda); });
+    stats.tree_seconds =
+        seconds_of([&] { renderer = make_renderer<Real>(options.backend, compiled, cuda, options.intersection); });
     return renderer;
 }
 

@@ -16,7 +16,8 @@ namespace {
 /// The options' texts as CLI11 leaves them.
 struct Texts {
     std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, threads, layers,
-        device, pixel, json, backend = "embree", precision = "float", bits = "float", progress = "auto";
+        device, pixel, json, backend = "embree", precision = "float", intersector = "exact", bits = "float",
+                             progress = "auto";
     bool explain = false, resume = false, quiet = false, verbose = false, version = false, print_template = false,
          list_devices = false;
 };
@@ -30,6 +31,8 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU)")->type_name("NAME");
     app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
         ->type_name("LIST");
+    app.add_option("--intersector", texts.intersector, "exact, or native: Embree's own triangles, approximate at edges")
+        ->type_name("NAME");
     app.add_flag("--list-devices", texts.list_devices, "print the GPUs, or why there is none, and exit");
     app.add_option("--res", texts.resolution, "full frame in pixels")->type_name("WxH");
     app.add_option("--crop", texts.crop, "render these pixels only; the file's data window")->type_name("WxH+X+Y");
@@ -74,6 +77,7 @@ void refuse_with_pixel(const Texts& texts) {
     refuse(texts.progress != "auto", "--progress", "one pixel takes no time");
     refuse(texts.explain, "--explain", "each prints a report of its own");
     refuse(texts.backend != "embree", "--backend", "the CPU follows the rays, and every backend gives the same bits");
+    refuse(texts.intersector != "exact", "--intersector", "the rays of the exact image are followed");
 }
 
 RenderOptions checked(const Texts& texts) {
@@ -94,6 +98,7 @@ RenderOptions checked(const Texts& texts) {
     options.json = texts.json;
     options.backend = parse_backend(texts.backend);
     options.devices = parse_devices(texts.device, options.backend);
+    options.intersection = parse_intersection(texts.intersector, options.backend);
     options.precision = chosen<Precision>("--precision", texts.precision,
                                           {{"float", Precision::single_}, {"double", Precision::double_}});
     options.progress = chosen<ProgressStyle>(

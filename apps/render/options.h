@@ -31,6 +31,7 @@ struct RenderOptions {
     std::vector<int> frames;     // empty: none given
     Backend backend = Backend::embree;
     DeviceChoice devices;  // of the CUDA backend
+    Intersection intersection = Intersection::exact;
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
     PixelPlace pixel;  // with Action::pixel

@@ -14,6 +14,9 @@ namespace cistula {
 
 enum class Precision { single_, double_ };
 
+/// exact: the one hit rule, the same bits everywhere. native: Embree's own triangles, approximate at edges.
+enum class Intersection { exact, native };
+
 struct FrameSettings {
     int full_width = 640, full_height = 480;
     PixelRect crop;            // the pixels to render; all: {0, 0, full_width, full_height}
@@ -62,7 +65,7 @@ class Renderer {
     /// The mask of effects that the last render ran.
     virtual uint32_t effects() const = 0;
 
-    /// "embree", "bvh", "brute", "cuda".
+    /// "embree", "native", "bvh", "brute", "cuda".
     virtual std::string intersector() const = 0;
 
     /// Of backends with devices of their own; else zeros.
