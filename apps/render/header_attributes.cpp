@@ -57,17 +57,21 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
     Attributes attributes = {
         {"chromaticities", std::vector<float>{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
         {"cistula:cameraHash", camera_hash(camera.camera)},
-        {"cistula:cutoff", settings.cutoff},
+        {"cistula:cutoff", settings.truncation()},
         {"cistula:depth", settings.depth},
         {"cistula:frame", camera.frame},
         {"cistula:precision", std::string(precision == Precision::double_ ? "double" : "float")},
         {"cistula:sceneHash", scene_hash},
-        {"cistula:supersample", settings.supersample},
+        {"cistula:supersample", settings.grid()},
         {"cistula:time", camera.time},
         {"cistula:version", std::string(CISTULA_VERSION)},
         {"worldToCamera", world_to_camera(camera.camera)},
         {"worldToNDC", world_to_ndc(camera.camera, settings.full_width, settings.full_height)},
     };
+    if (settings.adaptive()) {
+        attributes["cistula:maxSamples"] = settings.max_samples;
+        attributes["cistula:targetError"] = settings.target_error;
+    }
     if (intersection == Intersection::native) attributes["cistula:intersector"] = std::string("native");
     return attributes;
 }

@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -97,6 +98,15 @@ void print_summary(const RunStats& stats, const OutputName& image, double second
                format_rate(render_seconds > 0 ? static_cast<double>(rays) / render_seconds : 0));
 }
 
+/// Says how far it came. Throws Error (target) where pixels missed it.
+void judge_target(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
+    const bool reached =
+        std::all_of(stats.frames.begin(), stats.frames.end(), [](const auto& f) { return f.target.missed == 0; });
+    const std::string text = describe_target(stats.frames, settings);
+    if (!reached) throw Error(ExitCode::target, text);
+    if (!options.quiet) fmt::print(stderr, "render: {}\n", text);
+}
+
 void render_scene(const RenderOptions& options) {
     const bool explain = options.action == Action::explain;
     const ChosenDevices devices = explain ? ChosenDevices() : choose_devices(options.backend, options.devices);
@@ -147,6 +157,7 @@ void render_scene(const RenderOptions& options) {
         if (options.verbose && !stats.frames.empty())  // the renderer knows what ran
             fmt::print(stderr, "render: effects: {}\n", fmt::join(names_of_effects(stats.effects), ", "));
         if (!options.quiet) print_summary(stats, outputs.image, seconds);
+        if (settings.adaptive() && !stats.frames.empty()) judge_target(stats, settings, options);
     });
 }
 

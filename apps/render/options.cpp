@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
+#include "cistula/lattice.h"
 #include "frame_list.h"
 #include "scene/suggest.h"
 
@@ -15,9 +16,9 @@ namespace {
 
 /// The options' texts as CLI11 leaves them.
 struct Texts {
-    std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, threads, layers,
-        device, pixel, json, backend = "embree", precision = "float", intersector = "exact", bits = "float",
-                             progress = "auto";
+    std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, target_error,
+        max_samples, threads, layers, device, pixel, json, backend = "embree", precision = "float",
+                                                           intersector = "exact", bits = "float", progress = "auto";
     bool explain = false, resume = false, quiet = false, verbose = false, version = false, print_template = false,
          list_devices = false;
 };
@@ -40,6 +41,11 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--depth", texts.depth, "surfaces shaded along a path, 1 to 1024")->type_name("N");
     app.add_option("--cutoff", texts.cutoff, "radiance that dropping faint branches may cost a pixel; 0: none")
         ->type_name("E");
+    app.add_option("--target-error", texts.target_error,
+                   "radiance by which a pixel may be wrong: samples and branches as needed, whatever --supersample")
+        ->type_name("E");
+    app.add_option("--max-samples", texts.max_samples, "with --target-error: samples of a pixel, 5 to 256; 256")
+        ->type_name("N");
     app.add_option("--precision", texts.precision, "float or double")->type_name("NAME");
     app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
     app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
@@ -76,6 +82,7 @@ void refuse_with_pixel(const Texts& texts) {
     refuse(texts.resume, "--resume", no_image);
     refuse(texts.progress != "auto", "--progress", "one pixel takes no time");
     refuse(texts.explain, "--explain", "each prints a report of its own");
+    refuse(!texts.target_error.empty(), "--target-error", "it shows the samples of a grid; --supersample chooses one");
     refuse(texts.backend != "embree", "--backend", "the CPU follows the rays, and every backend gives the same bits");
     refuse(texts.intersector != "exact", "--intersector", "the rays of the exact image are followed");
 }
@@ -130,6 +137,26 @@ RenderOptions checked(const Texts& texts) {
             fail_usage(fmt::format("--cutoff {}: must be a number, 0 or above, in the scene's units of radiance",
                                    texts.cutoff));
     }
+    if (!texts.target_error.empty()) {
+        options.target_error = whole_number<double>(texts.target_error);
+        if (!options.target_error || !std::isfinite(*options.target_error) || !(*options.target_error > 0))
+            fail_usage(fmt::format("--target-error {}: must be a number above 0, in the scene's units of radiance",
+                                   one_line(texts.target_error)));
+        const auto refuse = [&](bool given, const char* option, const char* why) {
+            if (given)
+                fail_usage(fmt::format("--target-error {}: {} has no place here: {}; leave it out", texts.target_error,
+                                       option, why));
+        };
+        refuse(!texts.supersample.empty(), "--supersample", "pixels get as many samples as they need");
+        refuse(!texts.cutoff.empty(), "--cutoff", "a quarter of the target is the cutoff");
+    }
+    if (!texts.max_samples.empty()) {
+        options.max_samples =
+            integer_option("--max-samples", texts.max_samples, least_lattice_samples, lattice_samples);
+        if (!options.target_error)
+            fail_usage(fmt::format("--max-samples {}: is for --target-error E; a grid's are --supersample's",
+                                   texts.max_samples));
+    }
     if (options.scene.empty())
         fail_usage("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
     if (options.quiet && options.verbose) fail_usage("-q and -v exclude each other; give one");
@@ -179,6 +206,7 @@ Examples:
   render scenes/seed.json -o out/f%04d.exr -f 0-299x30,7 --res 320x180
   render scenes/glass.json -o g.exr --precision double --supersample 4 --aov error,id,Z,N
   render scenes/infinity.json -o corner.exr --crop 64x64+128+96 --cutoff 0.001 --stats corner.json
+  render scenes/infinity.json -o i.exr --target-error 0.004        as many samples and bounces as that takes
   render scenes/seed.json -o out/beauty.####.exr --backend cuda --device all
   render scenes/glass.json --pixel 640,300 --supersample 1 | less  why this pixel is what it is
   render - -o frame%d.out < input.txt                              the seed's input and frames
@@ -187,7 +215,8 @@ Examples:
 Without -o a scene is written to SCENE.exr in the working directory (SCENE.####.exr where -f names several frames), the
 seed's text input to the pattern on its third line. A name without a pattern holds one frame, -f's or the first.
 
-Exit codes: 0 done, 1 the image cannot be trusted, 2 command line or scene, 3 file, 4 device, 130 interrupted.)");
+Exit codes: 0 done, 1 the image cannot be trusted, 2 command line or scene, 3 file, 4 device,
+5 target error not met (the image is written), 130 interrupted.)");
     return app.help();
 }
 
@@ -253,6 +282,10 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     settings.supersample = options.supersample.value_or(scene.film.supersample);
     settings.depth = options.depth.value_or(scene.depth);
     settings.cutoff = options.cutoff.value_or(scene.cutoff);
+    settings.target_error = options.target_error.value_or(0);
+    settings.max_samples = options.max_samples.value_or(settings.max_samples);
+    // As deep as it takes, unless asked otherwise: the budget of truncation ends the trees.
+    if (settings.adaptive()) settings.depth = options.depth.value_or(largest_depth);
     settings.crop = options.crop.value_or(PixelRect{0, 0, settings.full_width, settings.full_height});
     const PixelRect& crop = settings.crop;
     if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)

@@ -37,7 +37,8 @@ struct RenderOptions {
     PixelPlace pixel;  // with Action::pixel
     std::string json;  // the same: a file, "-" or empty
     std::optional<int> supersample, depth;
-    std::optional<double> cutoff;
+    std::optional<double> cutoff, target_error;
+    std::optional<int> max_samples;  // with a target error
     Precision precision = Precision::single_;
     int threads = 0;          // 0: all
     OutputChannels channels;  // of --bits and --aov

@@ -46,7 +46,15 @@ Json ledger(const LedgerTotals& totals) {
     return {{"mean", totals.mean}, {"worst", totals.worst}};
 }
 
-Json frame_entry(const FrameStats& frame, bool has_device) {
+Json target_entry(const TargetReport& target) {
+    return {{"reached", target.missed == 0},
+            {"pixels_missed", target.missed},
+            {"pixels_truncated", target.truncated},
+            {"pixels_undersampled", target.undersampled},
+            {"worst_truncation", target.worst_truncation}};
+}
+
+Json frame_entry(const FrameStats& frame, const FrameSettings& settings, bool has_device) {
     Json entry = phase(fmt::format("frame/{}", frame.frame), frame.render_seconds);
     entry["frame"] = frame.frame;
     entry["file"] = frame.file;
@@ -66,6 +74,10 @@ Json frame_entry(const FrameStats& frame, bool has_device) {
                      {"total", frame.rays.total()}};
     entry["rays_per_second"] =
         frame.render_seconds > 0 ? static_cast<double>(frame.rays.total()) / frame.render_seconds : 0.0;
+    if (settings.adaptive()) {
+        entry["samples"] = frame.target.samples;
+        entry["target"] = target_entry(frame.target);
+    }
     entry["ledger"] = {{"pruned", ledger(frame.pruned)}, {"cut", ledger(frame.cut)}};
     return entry;
 }
@@ -108,9 +120,9 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
         {"threads", stats.threads},
         {"resolution", {settings.full_width, settings.full_height}},
         {"crop", {crop.x, crop.y, crop.width, crop.height}},
-        {"supersample", settings.supersample},
+        {"supersample", settings.grid()},
         {"depth", settings.depth},
-        {"cutoff", settings.cutoff},
+        {"cutoff", settings.truncation()},
         {"effects_required", names_of_effects(stats.required_effects)},
         {"effects", names_of_effects(stats.effects)},
         {"effects_mask", stats.effects},
@@ -118,6 +130,10 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
         {"peak_rss_bytes", peak_memory()},
         {"frames_resumed", stats.resumed},
     };
+    if (settings.adaptive()) {
+        context["target_error"] = settings.target_error;
+        context["max_samples"] = settings.max_samples;
+    }
     const bool has_device = !stats.devices.empty();
     if (has_device) {
         context["devices"] = stats.devices;
@@ -127,7 +143,7 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
     benchmarks.push_back(phase("read", stats.read_seconds));
     benchmarks.push_back(phase("compile", stats.compile_seconds));
     benchmarks.push_back(phase("tree", stats.tree_seconds));
-    for (const FrameStats& frame : stats.frames) benchmarks.push_back(frame_entry(frame, has_device));
+    for (const FrameStats& frame : stats.frames) benchmarks.push_back(frame_entry(frame, settings, has_device));
     const Json all = {{"context", context}, {"benchmarks", benchmarks}};
     return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

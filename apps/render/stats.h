@@ -10,6 +10,7 @@
 #include "options.h"
 #include "scene/film.h"
 #include "scene/renderer.h"
+#include "target.h"
 
 namespace cistula {
 
@@ -26,6 +27,7 @@ struct FrameStats {
     RenderTimes device;  // of a backend that has them
     RayCounts rays;
     LedgerTotals pruned, cut;  // by the cutoff, by the depth limit
+    TargetReport target;       // where there is a target error
 };
 
 struct RunStats {

@@ -1,5 +1,5 @@
-// Adaptive sampling of one fixed lattice of 16 x 16 samples a pixel (NUMERICS, 10): which of them a pixel needs. Decided in
-// integers from the pixel's own samples, so that crops, tiles and backends agree.
+// Adaptive sampling of one fixed lattice of 16 x 16 samples a pixel (NUMERICS, 10): which of them a pixel needs.
+// Decided in integers from the pixel's own samples, so that crops, tiles and backends agree.
 #pragma once
 
 #include "cistula/pixel_record.h"
@@ -14,10 +14,10 @@ inline constexpr int color_bits = 30, color_shift = 54 - color_bits;
 
 /// What a frame asks of adaptive sampling.
 struct LatticeSettings {
-    int64_t target = 0;  // error that sampling may leave, in units of 2^-color_bits; 0: no adaptive sampling
+    int64_t target = 0;          // error that sampling may leave, in units of 2^-color_bits; 0: no adaptive sampling
     int most = lattice_samples;  // samples of a pixel
-    bool fine = true;    // also looks at the middle of every pixel, and splits in four first: for small targets
-    double significant = 0;  // branches of less weight than this do not tell samples apart
+    bool fine = true;            // also looks at the middle of every pixel, and splits in four first: for small targets
+    double significant = 0;      // branches of less weight than this do not tell samples apart
 };
 
 /// One sample of a pixel. The sums are in units of 2^-54 (fixed_sum.h, 256 samples).
@@ -26,10 +26,10 @@ struct LatticeSample {
     uint32_t signature = 0;  // of its ray tree (signature.h)
 };
 
-/// Pixels, one after the other: ask for the next sample that it wants, render that into the place given, and so on. A rectangle of
-/// samples is known by its four corners; where these differ too much it is split, else they stand for all of it. A straight
-/// border through a rectangle parts its corners, so that it is never overlooked. All 256 samples give what the uniform
-/// 16 x 16 grid does. The children of a split share no sample, so that few are kept at a time.
+/// Pixels, one after the other: ask for the next sample that it wants, render that into the place given, and so on. A
+/// rectangle of samples is known by its four corners; where these differ too much it is split, else they stand for all
+/// of it. A straight border through a rectangle parts its corners, so that it is never overlooked. All 256 samples give
+/// what the uniform 16 x 16 grid does. The children of a split share no sample, so that few are kept at a time.
 class LatticePixel {
   public:
     CISTULA_INLINE explicit LatticePixel(const LatticeSettings& settings) : settings_(settings) {}
@@ -113,8 +113,7 @@ class LatticePixel {
     CISTULA_INLINE void settle(const Cell& cell) {
         const bool whole = is_whole(cell), has_middle = middle_ != nothing && whole;
         bool differs = has_middle && samples_[middle_].signature != samples_[cell.corner[0]].signature;
-        for (int i = 1; i < 4; ++i)
-            differs |= samples_[cell.corner[i]].signature != samples_[cell.corner[0]].signature;
+        for (int i = 1; i < 4; ++i) differs |= samples_[cell.corner[i]].signature != samples_[cell.corner[0]].signature;
         int64_t range = 0, bend = 0, across = 0, down = 0;
         for (int c = 0; c < 3; ++c) {
             const int64_t a = color(cell.corner[0], c), b = color(cell.corner[1], c), d = color(cell.corner[2], c),

@@ -1,5 +1,5 @@
-// What a sample met, as a number: samples with the same one are alike but for gradual change. The sum of what is asked of an
-// intersector, so that the order of work does not show.
+// What a sample met, as a number: samples with the same one are alike but for gradual change. The sum of what is asked
+// of an intersector, so that the order of work does not show.
 #pragma once
 
 #include "cistula/effects.h"
@@ -33,7 +33,8 @@ struct SigningIntersector {
 
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         const Hit<Real> hit = inner.closest(ray);
-        if (signature.counts) signature.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
+        if (signature.counts)
+            signature.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
         return hit;
     }
 

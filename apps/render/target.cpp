@@ -1,0 +1,59 @@
+#include "target.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats.h"
+
+namespace cistula {
+
+void TargetReport::add(const TargetReport& other) {
+    samples += other.samples;
+    truncated += other.truncated;
+    undersampled += other.undersampled;
+    missed += other.missed;
+    worst_truncation = std::max(worst_truncation, other.worst_truncation);
+}
+
+TargetReport target_report(const Film& film, const FrameSettings& settings) {
+    TargetReport report;
+    const double unit = std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / film.samples;
+    for (const PixelRecord& pixel : film.pixels) {
+        double truncation = 0;
+        for (int c = 0; c < 3; ++c)
+            truncation = std::max(truncation, static_cast<double>(pixel.pruned[c] + pixel.cut[c]) * unit);
+        const bool truncated = truncation > settings.truncation();
+        report.samples += pixel.samples;
+        report.truncated += truncated;
+        report.undersampled += pixel.unmet;
+        report.missed += truncated || pixel.unmet;
+        report.worst_truncation = std::max(report.worst_truncation, truncation);
+    }
+    return report;
+}
+
+std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings) {
+    TargetReport all;
+    uint64_t pixels = 0;
+    for (const FrameStats& frame : frames) {
+        all.add(frame.target);
+        pixels += static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
+    }
+    const std::string cost =
+        fmt::format("{:.3g} samples a pixel; truncation takes {:.3g} from a pixel at most",
+                    static_cast<double>(all.samples) / static_cast<double>(pixels), all.worst_truncation);
+    if (all.missed == 0) return fmt::format("target error {:g} reached: {}", settings.target_error, cost);
+    std::string text =
+        fmt::format("target error {:g} missed in {} of {} pixels: ", settings.target_error, all.missed, pixels);
+    if (all.truncated != 0)
+        text += fmt::format("{} lose more than a quarter of it below depth {}; a larger --depth may reach it{}",
+                            all.truncated, settings.depth, all.undersampled != 0 ? "; " : "");
+    if (all.undersampled != 0)
+        text +=
+            fmt::format("{} want more than {} samples; raise --max-samples", all.undersampled, settings.max_samples);
+    return text + " (" + cost + ")";
+}
+
+}  // namespace cistula

@@ -1,0 +1,31 @@
+// How far a frame with --target-error came: what is proven of truncation, and where sampling had to stop.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/film.h"
+#include "scene/renderer.h"
+
+namespace cistula {
+
+struct TargetReport {
+    uint64_t samples = 0;         // of all pixels
+    uint64_t truncated = 0;       // pixels whose ledger is above a quarter of the target, in any channel
+    uint64_t undersampled = 0;    // pixels that wanted more samples than they may have
+    uint64_t missed = 0;          // pixels of either kind
+    double worst_truncation = 0;  // the largest ledger of any pixel and channel, in the scene's units of radiance
+
+    void add(const TargetReport& other);
+};
+
+/// Of a film of a frame with a target.
+TargetReport target_report(const Film& film, const FrameSettings& settings);
+
+struct FrameStats;
+
+/// One line for all frames; says what would reach the target where it was missed.
+std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings);
+
+}  // namespace cistula

@@ -1,0 +1,313 @@
+// Adaptive sampling: the whole lattice gives what the uniform grid does, decisions are those of the pixel alone and the
+// same on every path, and what was asked for is reached.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+#include "cistula/lattice.h"
+#include "golden.h"
+#include "scene/frame_view.h"
+#include "scene/generated_scene.h"
+#include "support_scene.h"
+
+using namespace cistula;
+
+namespace {
+
+const std::filesystem::path scenes = std::string(CISTULA_SOURCE_DIR) + "/scenes";
+
+/// A pixel of made-up samples: value(column, row) is its radiance in all channels, signature(column, row) what it met.
+template <class Value, class Sign>
+PixelRecord sampled(const LatticeSettings& settings, const Value& value, const Sign& sign,
+                    std::set<std::pair<int, int>>* taken = nullptr) {
+    LatticePixel pixel(settings);
+    PixelRecord record;
+    pixel.begin(record);
+    for (int column, row, slot; pixel.wants(column, row, slot);) {
+        EXPECT_TRUE(column >= 0 && column < lattice_side && row >= 0 && row < lattice_side);
+        if (taken) EXPECT_TRUE(taken->insert({column, row}).second) << "twice: " << column << ", " << row;
+        LatticeSample& sample = pixel.at(slot);
+        sample.record = PixelRecord();
+        for (int c = 0; c < 3; ++c) {
+            sample.record.radiance[c] = value(column, row);
+            sample.record.pruned[c] = value(row, column) / 3;
+            sample.record.cut[c] = c;
+        }
+        sample.record.hits = 1;
+        sample.record.id = 100 + column + 16 * row;
+        sample.signature = sign(column, row);
+        pixel.took(column, row, slot);
+    }
+    return record;
+}
+
+LatticeSettings lattice(double target, bool fine, int most = lattice_samples) {
+    LatticeSettings settings;
+    settings.target = int64_t(target * 0x1p30);
+    settings.fine = fine;
+    settings.most = most;
+    return settings;
+}
+
+int64_t fixed(double radiance) {
+    return int64_t(radiance * 0x1p54);
+}
+
+uint32_t one_kind(int, int) {
+    return 7;
+}
+
+TEST(Lattice, AllDifferentTakesEverySampleOnceAndAddsThemUp) {
+    for (const bool fine : {true, false})
+        for (uint64_t seed = 0; seed < 50; ++seed) {
+            test::Random random(seed);
+            std::array<std::array<int64_t, 16>, 16> values;
+            for (auto& row : values)
+                for (int64_t& value : row) value = fixed(random.unit());
+            std::set<std::pair<int, int>> taken;
+            const PixelRecord record = sampled(
+                lattice(0x1p-29, fine), [&](int x, int y) { return values[size_t(y)][size_t(x)]; },
+                [](int x, int y) { return uint32_t(16 * y + x); }, &taken);
+            EXPECT_EQ(taken.size(), 256u);
+            EXPECT_EQ(record.samples, 256u);
+            EXPECT_EQ(record.unmet, 0u);
+            EXPECT_EQ(record.hits, 256u);
+            EXPECT_EQ(record.id, 100 + 8 + 16 * 8);
+            int64_t sum = 0, pruned = 0;
+            for (size_t y = 0; y < 16; ++y)
+                for (size_t x = 0; x < 16; ++x) sum += values[y][x], pruned += values[y][x] / 3;
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_EQ(record.radiance[c], sum);
+                EXPECT_EQ(record.pruned[c], pruned);
+                EXPECT_EQ(record.cut[c], 256 * c);
+            }
+        }
+}
+
+TEST(Lattice, WeightsAddUpToAllSamplesHoweverItSplits) {
+    for (const bool fine : {true, false})
+        for (const double target : {0.5, 0.1, 0.02, 0.004, 0.0005})
+            for (uint64_t seed = 0; seed < 100; ++seed) {
+                test::Random random(seed);
+                const double a = random.between(-1, 1), b = random.between(-1, 1), d = random.between(-16, 16);
+                const PixelRecord record = sampled(
+                    lattice(target, fine), [&](int x, int y) { return a * x + b * y < d ? fixed(0.75) : fixed(0.125); },
+                    [&](int x, int y) { return uint32_t(a * x + b * y < d); });
+                EXPECT_EQ(record.hits, 256u);
+                EXPECT_GE(record.samples, fine ? 5u : 4u);
+                EXPECT_LE(record.radiance[0], 256 * fixed(0.75));
+                EXPECT_GE(record.radiance[0], 256 * fixed(0.125));
+            }
+}
+
+TEST(Lattice, AlikeSamplesEndAtOnceAndAStraightBorderIsNeverOverlooked) {
+    const auto flat = [](int, int) { return fixed(0.5); };
+    EXPECT_EQ(sampled(lattice(0.004, true), flat, one_kind).samples, 5u);
+    EXPECT_EQ(sampled(lattice(0.004, false), flat, one_kind).samples, 4u);
+    EXPECT_EQ(sampled(lattice(0.004, true), flat, one_kind).radiance[0], 256 * fixed(0.5));
+    test::Random random(3);
+    for (int n = 0; n < 20000; ++n) {
+        const bool fine = n % 2;
+        const double angle = random.between(0, 6.283185307179586), a = std::cos(angle), b = std::sin(angle);
+        const double d = random.between(-24, 24);
+        const auto beyond = [&](int x, int y) { return a * x + b * y < d; };
+        int inside = 0;
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 16; ++x) inside += beyond(x, y);
+        const double target = 0x1p-6;
+        const PixelRecord record = sampled(
+            lattice(target, fine), [&](int x, int y) { return beyond(x, y) ? fixed(1) : 0; },
+            [&](int x, int y) { return uint32_t(beyond(x, y)); });
+        EXPECT_EQ(record.samples > 5u, inside != 0 && inside != 256) << n;
+        // Every cell that the border leaves undecided is worth at most half of the share that it may be worth; the
+        // border runs through few.
+        EXPECT_LE(std::abs(double(record.radiance[0]) * 0x1p-54 - inside) / 256, 2 * target) << n;
+    }
+}
+
+TEST(Lattice, SmoothShadingIsIntegratedWithinTheTarget) {
+    test::Random random(5);
+    for (int n = 0; n < 2000; ++n) {
+        const double target = n % 2 ? 0.004 : 0.03;
+        const bool fine = n % 2;
+        const double a = random.between(-0.2, 0.2), b = random.between(-0.2, 0.2), c = random.between(-0.1, 0.1),
+                     d = random.between(-0.1, 0.1);
+        const auto value = [&](int x, int y) {
+            const double u = (x - 7.5) / 8, v = (y - 7.5) / 8;
+            return fixed(0.5 + a * u + b * v + c * u * u + d * u * v);
+        };
+        double truth = 0;
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 16; ++x) truth += double(value(x, y)) * 0x1p-54 / 256;
+        const PixelRecord record = sampled(lattice(target, fine), value, one_kind);
+        EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, target) << n;
+        EXPECT_LT(record.samples, 256u);
+    }
+}
+
+TEST(Lattice, StopsAtTheMostSamplesAndSaysSo) {
+    test::Random random(7);
+    for (int most = least_lattice_samples; most <= 256; ++most) {
+        const auto noise = [&](int x, int y) { return fixed(test::Random(uint64_t(x * 16 + y)).unit()); };
+        const auto every = [](int x, int y) { return uint32_t(16 * y + x); };
+        for (const bool fine : {true, false}) {
+            const PixelRecord record = sampled(lattice(0.001, fine, most), noise, every);
+            EXPECT_LE(record.samples, unsigned(most));
+            EXPECT_EQ(record.hits, 256u);
+            EXPECT_EQ(record.unmet, most < 256 ? 1u : 0u) << most;
+        }
+        EXPECT_EQ(sampled(
+                      lattice(0.001, true, most), [](int, int) { return fixed(0.5); }, one_kind)
+                      .unmet,
+                  0u);
+    }
+}
+
+FrameSettings small(const SceneDescription& scene, int width = 96, int height = 54) {
+    FrameSettings settings;
+    settings.full_width = width;
+    settings.full_height = height;
+    settings.crop = {0, 0, width, height};
+    settings.depth = std::min(scene.depth, 6);
+    return settings;
+}
+
+void expect_equal(const Film& a, const Film& b, const std::string& what) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    size_t differ = 0;
+    for (size_t i = 0; i < a.pixels.size(); ++i) {
+        const PixelRecord &p = a.pixels[i], &q = b.pixels[i];
+        bool same = p.hits == q.hits && p.rays == q.rays && p.id == q.id && p.samples == q.samples &&
+                    p.unmet == q.unmet && bits_as<uint32_t>(p.z) == bits_as<uint32_t>(q.z);
+        for (int c = 0; c < 3; ++c)
+            same &= p.radiance[c] == q.radiance[c] && p.pruned[c] == q.pruned[c] && p.cut[c] == q.cut[c];
+        differ += !same;
+    }
+    EXPECT_EQ(differ, 0u) << what;
+    EXPECT_EQ(a.rays.total(), b.rays.total()) << what;
+}
+
+template <class Real>
+void expect_same_on_all_paths(const SceneDescription& scene, FrameSettings settings, const std::string& what) {
+    const std::shared_ptr<const CompiledScene<Real>> compiled = test::compile<Real>(scene, true);
+    EmbreeOptions with_tree;
+    with_tree.always_tree = true;
+    const auto embree = make_embree_renderer<Real>(compiled, with_tree);
+    const Film film = golden::render_with(*embree, scene, settings);
+    for (const HostIntersector other : {HostIntersector::brute, HostIntersector::bvh})
+        expect_equal(film, golden::render_with(*make_host_renderer<Real>(compiled, other), scene, settings), what);
+    // A crop of it, in other tiles: a pixel asks none of its neighbors.
+    FrameSettings part = settings;
+    part.crop = {settings.full_width / 3, settings.full_height / 4, settings.full_width / 2, settings.full_height / 2};
+    part.tile = 5;
+    const Film crop = golden::render_with(*embree, scene, part);
+    size_t differ = 0;
+    for (int y = 0; y < part.crop.height; ++y)
+        for (int x = 0; x < part.crop.width; ++x) {
+            const PixelRecord& p = crop.pixels[size_t(y * part.crop.width + x)];
+            const PixelRecord& q = film.pixels[size_t((y + part.crop.y) * settings.full_width + x + part.crop.x)];
+            differ += p.radiance[0] != q.radiance[0] || p.radiance[1] != q.radiance[1] || p.samples != q.samples;
+        }
+    EXPECT_EQ(differ, 0u) << what;
+}
+
+TEST(Adaptive, IsTheSameOnAllIntersectorsTilesAndCrops) {
+    for (const char* name : {"benchmark", "glass", "mesh"})
+        for (const double target : {0.1, 0.01}) {
+            const SceneDescription scene = read_scene(scenes / (std::string(name) + ".json"));
+            FrameSettings settings = small(scene, 48, 27);
+            settings.target_error = target;
+            expect_same_on_all_paths<float>(scene, settings, name);
+            if (target == 0.1) expect_same_on_all_paths<double>(scene, settings, name);
+        }
+    for (uint64_t seed = 0; seed < 12; ++seed) {
+        const SceneDescription scene = generated_scene(seed);
+        FrameSettings settings = small(scene, 24, 16);
+        settings.target_error = 0.02;
+        seed % 2 ? expect_same_on_all_paths<double>(scene, settings, "generated")
+                 : expect_same_on_all_paths<float>(scene, settings, "generated");
+    }
+}
+
+TEST(Adaptive, OfBackgroundAloneTakesTheFewest) {
+    SceneDescription scene;
+    test::add_solid(scene, PlatonicSolid::cube, {0, 0, 0}, 0.001);
+    test::add_light(scene, {0, 0, 9});
+    scene.background = {0.25, 0.5, 0.75};
+    scene.camera.position = {0, -5, 3};
+    scene.camera.target = {0, -50, 3};
+    FrameSettings settings = small(scene, 8, 8);
+    settings.target_error = 0.001;
+    const auto renderer = make_embree_renderer<float>(test::compile<float>(scene));
+    const Film film = golden::render_with(*renderer, scene, settings);
+    for (const PixelRecord& pixel : film.pixels) {
+        EXPECT_EQ(pixel.samples, 5u);
+        EXPECT_EQ(pixel.hits, 0u);
+        EXPECT_EQ(resolve<float>(pixel.radiance[1], film.fixed_shift, uint32_t(film.samples), film.radiance_exponent),
+                  0.5f);
+    }
+}
+
+/// Pixels that are further from the whole lattice than that, and the worst.
+struct Distance {
+    size_t over = 0;
+    double worst = 0, samples = 0;
+};
+Distance distance_of(const Film& film, const Film& whole, double limit) {
+    Distance distance;
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        double error = 0;
+        for (int c = 0; c < 3; ++c)
+            error = std::max(error, std::abs(double(film.pixels[i].radiance[c] - whole.pixels[i].radiance[c])) *
+                                        std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / 256);
+        distance.over += error > limit;
+        distance.worst = std::max(distance.worst, error);
+        distance.samples += film.pixels[i].samples / double(film.pixels.size());
+    }
+    return distance;
+}
+
+TEST(Adaptive, IsWithinItsTargetOfTheWholeLattice) {
+    for (const char* name : {"benchmark", "platonic", "glass"}) {
+        const SceneDescription scene = read_scene(scenes / (std::string(name) + ".json"));
+        const auto renderer = make_embree_renderer<float>(test::compile<float>(scene));
+        FrameSettings settings = small(scene, 1280, 720);
+        settings.depth = scene.depth;
+        settings.crop = {560, 330, 64, 24};
+        settings.tile = 4;
+        FrameSettings whole = settings;
+        whole.supersample = 16;
+        const Film reference = golden::render_with(*renderer, scene, whole);
+        settings.target_error = 1.0 / 255;
+        const Film film = golden::render_with(*renderer, scene, settings);
+        const Distance distance = distance_of(film, reference, 1.0 / 255);
+        std::cout << name << ": " << distance.samples << " samples a pixel, " << distance.over << " of "
+                  << film.pixels.size() << " pixels over 1/255, worst " << distance.worst << "\n";
+        EXPECT_LE(double(distance.over), 0.001 * double(film.pixels.size()) + 1) << name;
+        EXPECT_LT(distance.samples, 80) << name;
+        for (const PixelRecord& pixel : film.pixels)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_LE(double(pixel.pruned[c]) * std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / 256,
+                          settings.truncation());
+    }
+}
+
+TEST(Adaptive, RefusesWhatMakesNoSense) {
+    SceneDescription scene;
+    test::add_solid(scene, PlatonicSolid::cube);
+    const auto compiled = test::compile<float>(scene);
+    FrameSettings settings = small(scene, 4, 4);
+    settings.target_error = 0.1;
+    for (const int most : {4, 257, -1}) {
+        settings.max_samples = most;
+        EXPECT_THROW(frame_view(*compiled, camera_at(scene.camera, 0), settings), Error) << most;
+    }
+    settings.max_samples = 256;
+    for (const double target : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+        settings.target_error = target;
+        EXPECT_THROW(frame_view(*compiled, camera_at(scene.camera, 0), settings), Error) << target;
+    }
+}
+
+}  // namespace
