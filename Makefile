@@ -14,7 +14,7 @@ setup = $(if $(filter no,$(SETUP)),@true,@cmake/install-packages $(1))
 configure = @cmake/configure $(1) $(CMAKE_ARGS)
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-asan bench gpu-check golden install cuda-toolkit clean
+.PHONY: help render build test test-asan test-report bench gpu-check golden install cuda-toolkit clean
 
 help: ## this list
 	@echo 'make TARGET [PRESET=release|release-all|debug|asan] [SETUP=no] [CMAKE_ARGS=...]'
@@ -37,6 +37,14 @@ test: build ## build everything and run the tests
 
 test-asan: ## the tests under the address and undefined-behaviour sanitizers
 	@$(MAKE) --no-print-directory test PRESET=asan
+
+test-report: ## measure a small report, open it in headless Chromium and look for what is wrong; screenshots into out/report
+	$(call setup,packages.txt tests/report-packages.txt)
+	$(call configure,$(PRESET))
+	@cmake --build $(BUILD) --target render-report
+	@mkdir -p out/report
+	$(BUILD)/bin/render-report scenes/benchmark.json scenes/platonic.json --quick --res 96x54 --scaling -o out/report/small.html
+	tests/report-check out/report/small.html $(wildcard docs/report/*.html) --screenshots out/report
 
 bench: ## build the benchmarks and run them; JSON into out/bench
 	$(call setup,packages.txt bench/packages.txt)

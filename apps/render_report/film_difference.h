@@ -1,0 +1,18 @@
+// Two films, integer by integer.
+#pragma once
+
+#include <cstdint>
+
+#include "scene/film.h"
+
+namespace cistula::report {
+
+struct FilmDifference {
+    uint64_t compared = 0, differing = 0;
+};
+
+/// The sums, counts, ids and the bits of the floats of every pixel, then the counts and flags of the frame. Films of
+/// different sizes differ in everything.
+FilmDifference film_difference(const Film& a, const Film& b);
+
+}  // namespace cistula::report

@@ -1,0 +1,9 @@
+// render-report: what accuracy costs in time.
+#include "apps/common/command_line.h"
+#include "program.h"
+
+int main(int argc, char** argv) {
+    using namespace cistula;
+    return run_program("render-report", "a smaller --res needs less",
+                       [&] { return report::report_program(argc, argv); });
+}

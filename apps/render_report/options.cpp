@@ -1,0 +1,175 @@
+#include "options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <filesystem>
+
+#include "apps/common/command_line.h"
+#include "apps/render/options.h"
+#include "reference.h"
+#include "scene/suggest.h"
+
+namespace cistula::report {
+namespace {
+
+constexpr int quick_repetitions = 3;
+
+/// The options' texts as CLI11 leaves them.
+struct Texts {
+    std::vector<std::string> scenes, from;
+    std::string output, json, verify, seed_baseline, cache, backend, device, threads, resolution, repetitions, limit;
+    bool no_cache = false, quick = false, scaling = false, quiet = false, version = false;
+};
+
+void declare(CLI::App& app, Texts& texts) {
+    app.add_option("SCENE", texts.scenes, "scene files to measure")->type_name("");
+    app.add_option("--from", texts.from, "show records that --json wrote, on whatever machine; measures nothing")
+        ->type_name("FILE");
+    app.add_option("-o,--output", texts.output, "the report, one HTML file that needs nothing else")->type_name("FILE");
+    app.add_option("--json", texts.json, "write what was measured, for --from and for programs")->type_name("FILE");
+    app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU); embree")->type_name("NAME");
+    app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
+        ->type_name("LIST");
+    app.add_option("--threads", texts.threads, "threads; all")->type_name("N");
+    app.add_option("--res", texts.resolution, "frames of this many pixels; each scene's film")->type_name("WxH");
+    app.add_option("--repetitions", texts.repetitions, "timed runs of each setting after warm-up; 10, --quick 3")
+        ->type_name("N");
+    app.add_option("--limit", texts.limit, "leave out settings whose frames would take longer than S seconds; 2")
+        ->type_name("S");
+    app.add_flag("--quick", texts.quick, "fewer settings and runs: to try it out");
+    app.add_flag("--scaling", texts.scaling, "also time against triangles, lights, depth, pixels and GPUs");
+    app.add_option("--verify", texts.verify, "show the hard cases' verdicts from render-verify's --json")
+        ->type_name("FILE");
+    app.add_option("--seed-baseline", texts.seed_baseline,
+                   "show the seed's algorithm from seed_baseline's --json, and ours beside it")
+        ->type_name("FILE");
+    app.add_option("--cache", texts.cache, "keep references in DIR; ~/.cache/cistula")->type_name("DIR");
+    app.add_flag("--no-cache", texts.no_cache, "neither use nor keep references");
+    app.add_flag("-q,--quiet", texts.quiet, "errors only");
+    app.add_flag("--version", texts.version, "print the version and exit");
+    app.set_help_flag("-h,--help", "print this and exit");
+}
+
+void refuse(bool given, const char* option, const char* why) {
+    if (given) fail_usage(fmt::format("{}: {}", option, why));
+}
+
+void check_from(const Texts& texts) {
+    constexpr const char* why = "is for measuring; --from shows what was measured before";
+    if (!texts.scenes.empty())
+        fail_usage(fmt::format("{}: a scene and --from; measure the scene first with --json FILE, or leave --from out",
+                               one_line(texts.scenes.front())));
+    const std::pair<const char*, bool> measuring[] = {{"--backend", !texts.backend.empty()},
+                                                      {"--device", !texts.device.empty()},
+                                                      {"--threads", !texts.threads.empty()},
+                                                      {"--res", !texts.resolution.empty()},
+                                                      {"--limit", !texts.limit.empty()},
+                                                      {"--repetitions", !texts.repetitions.empty()},
+                                                      {"--quick", texts.quick},
+                                                      {"--scaling", texts.scaling},
+                                                      {"--cache", !texts.cache.empty()},
+                                                      {"--no-cache", texts.no_cache},
+                                                      {"--json", !texts.json.empty()}};
+    for (const auto& [option, given] : measuring) refuse(given, option, why);
+}
+
+double limit_option(const std::string& text) {
+    const std::optional<double> value = whole_number<double>(text);
+    if (!value || !std::isfinite(*value) || *value <= 0)
+        fail_usage(fmt::format("--limit {}: must be a number of seconds above 0, as in 2 or 0.5", one_line(text)));
+    return *value;
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    const auto real = [&](const std::string& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
+    };
+    return real(a) == real(b) || std::filesystem::equivalent(a, b, error);
+}
+
+/// What is written must not replace what is read, nor each other.
+void require_different_files(const ReportOptions& options) {
+    std::vector<std::string> read = options.scenes;
+    read.insert(read.end(), options.from.begin(), options.from.end());
+    read.insert(read.end(), {options.verify, options.seed_baseline});
+    const auto require = [](const std::string& written, const std::string& other, const char* what) {
+        if (!written.empty() && !other.empty() && is_same_file(written, other))
+            fail_usage(
+                fmt::format("{}: would be written and is {}; give it a file of its own", one_line(written), what));
+    };
+    for (const std::string& file : read) {
+        require(options.output, file, "read too");
+        require(options.json, file, "read too");
+    }
+    require(options.output, options.json, "--json too");
+}
+
+}  // namespace
+
+ReportOptions parse_report_options(int argc, const char* const* argv) {
+    CLI::App app;
+    Texts texts;
+    declare(app, texts);
+    ReportOptions options;
+    const bool whole = parse_command_line(
+        app, argc, argv, [](const std::string& extra) { return fmt::format("{}: unexpected", one_line(extra)); });
+    if (!whole || texts.version) {
+        options.action = whole ? Action::print_version : Action::print_help;
+        return options;
+    }
+    if (texts.scenes.empty() && texts.from.empty())
+        fail_usage("no scene is given; render-report SCENE... -o report.html, or --from FILE.json; --help tells more");
+    for (const std::string& scene : texts.scenes) refuse(scene == "-", "-", "a report names its scenes; give files");
+    if (!texts.from.empty()) check_from(texts);
+    if (texts.output.empty() && texts.json.empty())
+        fail_usage("nothing would be written; add -o FILE.html, or --json FILE");
+    refuse(texts.output.empty() && !texts.from.empty(), "--from", "is shown in a page; add -o FILE.html");
+    options.scenes = texts.scenes;
+    options.from = texts.from;
+    options.output = texts.output;
+    options.json = texts.json;
+    options.verify = texts.verify;
+    options.seed_baseline = texts.seed_baseline;
+    if (!texts.backend.empty()) options.backend = parse_backend(texts.backend);
+    options.devices = parse_devices(texts.device, options.backend);
+    if (!texts.threads.empty()) options.threads = integer_option("--threads", texts.threads, 1, 1024);
+    if (!texts.resolution.empty()) {
+        const PictureSize size = parse_size(texts.resolution);
+        options.width = size.width;
+        options.height = size.height;
+    }
+    options.quick = texts.quick;
+    options.scaling = texts.scaling;
+    options.quiet = texts.quiet;
+    options.repetitions = texts.repetitions.empty() ? (options.quick ? quick_repetitions : options.repetitions)
+                                                    : integer_option("--repetitions", texts.repetitions, 1, 1000);
+    if (!texts.limit.empty()) options.limit = limit_option(texts.limit);
+    refuse(texts.no_cache && !texts.cache.empty(), "--no-cache", "and --cache are opposites; leave one out");
+    if (!texts.no_cache) options.cache = texts.cache.empty() ? default_cache() : texts.cache;
+    require_different_files(options);
+    return options;
+}
+
+std::string report_help_text() {
+    CLI::App app(
+        "Measures what accuracy costs in time: every knob of a render alone and all together, against a reference, as "
+        "a "
+        "page.",
+        "render-report");
+    Texts texts;
+    declare(app, texts);
+    app.footer(R"(
+Examples:
+  render-report scenes/benchmark.json --quick --res 320x240 -o report.html
+  render-report scenes/*.json --backend cuda --scaling -o report.html --json report.json
+  render-report --from report.json --verify verify.json -o report.html       measured elsewhere
+
+Exit codes: 0 done, 1 a frame cannot be trusted, 2 command line or scene, 3 file, 4 device, 130 interrupted.)");
+    return app.help();
+}
+
+}  // namespace cistula::report

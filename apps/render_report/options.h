@@ -1,0 +1,33 @@
+// The command line of `render-report`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/common/backends.h"
+
+namespace cistula::report {
+
+enum class Action { report, print_help, print_version };
+
+struct ReportOptions {
+    Action action = Action::report;
+    std::vector<std::string> scenes;
+    std::vector<std::string> from;                           // records to show in place of measuring
+    std::string output, json, verify, seed_baseline, cache;  // files; empty: none
+    Backend backend = Backend::embree;
+    DeviceChoice devices;
+    int threads = 0;            // 0: all
+    int width = 0, height = 0;  // 0: each scene's film
+    int repetitions = 10;
+    double limit = 2;  // seconds a frame
+    bool quick = false, scaling = false, quiet = false;
+};
+
+/// Throws Error (usage).
+ReportOptions parse_report_options(int argc, const char* const* argv);
+
+/// What --help prints.
+std::string report_help_text();
+
+}  // namespace cistula::report

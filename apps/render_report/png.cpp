@@ -1,0 +1,81 @@
+#include "png.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "scene/srgb_codes.h"
+
+namespace cistula::report {
+namespace {
+
+/// 8-bit pixels in one of libpng's formats; `colors`: the map of an indexed one, RGB.
+Image encode(int width, int height, uint32_t format, const std::vector<uint8_t>& pixels,
+             const std::vector<uint8_t>& colors = {}) {
+    png_image image = {};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = static_cast<png_uint_32>(width);
+    image.height = static_cast<png_uint_32>(height);
+    image.format = format;
+    image.colormap_entries = static_cast<png_uint_32>(colors.size() / 3);
+    const void* map = colors.empty() ? nullptr : colors.data();
+    std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
+    png_alloc_size_t size = bytes.size();
+    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, map))
+        throw std::runtime_error(std::string("libpng: ") + image.message);
+    bytes.resize(size);
+    return {width, height, base64(bytes)};
+}
+
+}  // namespace
+
+Image to_image(const ColorPicture& linear) {
+    std::vector<uint8_t> pixels;
+    pixels.reserve(3 * linear.texels.size());
+    for (const glm::vec3& texel : linear.texels)
+        for (int c = 0; c < 3; ++c) pixels.push_back(srgb8_from_linear(texel[c]));
+    return encode(static_cast<int>(linear.width), static_cast<int>(linear.height), PNG_FORMAT_RGB, pixels);
+}
+
+std::array<uint8_t, 3> heat_color(double place) {
+    // Night blue, violet, red, orange, pale yellow: lightness rises evenly.
+    static constexpr double stops[][3] = {{10, 12, 40}, {84, 20, 110}, {186, 54, 85}, {249, 142, 9}, {252, 253, 191}};
+    const double at = std::clamp(place, 0.0, 1.0) * 4;
+    const int low = std::min(static_cast<int>(at), 3);
+    std::array<uint8_t, 3> color{};
+    for (size_t c = 0; c < 3; ++c)
+        color[c] = static_cast<uint8_t>(std::lround(stops[low][c] + (at - low) * (stops[low + 1][c] - stops[low][c])));
+    return color;
+}
+
+Image to_heat_image(int width, int height, const std::vector<double>& values) {
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    const double low = std::log(std::max(*least, 1.0)), high = std::log(std::max(*most, 1.0));
+    constexpr int shades = 64;  // few, so that the file is small
+    std::vector<uint8_t> colors, pixels;
+    for (int i = 0; i < shades; ++i)
+        for (const uint8_t c : heat_color(static_cast<double>(i) / (shades - 1))) colors.push_back(c);
+    pixels.reserve(values.size());
+    for (const double value : values) {
+        const double place = high > low ? (std::log(std::max(value, 1.0)) - low) / (high - low) : 0;
+        pixels.push_back(static_cast<uint8_t>(std::lround(place * (shades - 1))));
+    }
+    return encode(width, height, PNG_FORMAT_RGB_COLORMAP, pixels, colors);
+}
+
+std::string base64(const std::string& bytes) {
+    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t group = 0;
+        for (size_t k = 0; k < 3; ++k)
+            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+}  // namespace cistula::report

@@ -1,0 +1,135 @@
+#include "program.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <filesystem>
+
+#include "apps/common/command_line.h"
+#include "apps/render/interrupt.h"
+#include "html_page.h"
+#include "measure.h"
+#include "options.h"
+#include "scene/atomic_file.h"
+#include "scene/error.h"
+#include "scene/file_bytes.h"
+#include "scene/suggest.h"
+
+namespace cistula::report {
+namespace {
+
+/// render-verify's record.
+Json read_verdicts(const std::string& file) {
+    const std::string text = read_file(file);
+    try {
+        Json json = Json::parse(text);
+        for (const Json& one : json.at("cases"))
+            for (const char* key : {"case", "intersector", "precision", "worst", "bound", "unit", "holds", "exact"})
+                (void)one.at(key);
+        (void)json.at("context");
+        return json;
+    } catch (const std::exception& error) {
+        throw Error(ExitCode::file, fmt::format("{}: is no record of render-verify ({}); give what its --json wrote",
+                                                file, one_line(error.what())));
+    }
+}
+
+Record measure(const ReportOptions& options, int threads) {
+    const ChosenDevices devices = choose_devices(options.backend, options.devices);
+    Record record;
+    if (!options.verify.empty()) record.verify = read_verdicts(options.verify);
+    if (!options.seed_baseline.empty()) record.seed = read_seed_table(options.seed_baseline);
+
+    MeasureSettings settings;
+    settings.machine = {options.backend, devices.options};
+    settings.repetitions = options.repetitions;
+    settings.warm_ups = options.quick ? 1 : settings.warm_ups;
+    settings.quick = options.quick;
+    settings.limit = options.limit;
+    settings.width = options.width;
+    settings.height = options.height;
+    settings.cache = options.cache;
+    record.context = machine_context(backend_name(options.backend), devices.names, devices.driver);
+    record.context["threads"] = threads;
+    record.context["repetitions"] = settings.repetitions;
+    record.context["warm_ups"] = settings.warm_ups;
+    record.context["quick"] = settings.quick;
+    record.context["limit_seconds"] = settings.limit;
+
+    Progress progress(options.quiet);
+    InterruptGuard guard;
+    guard.watch(progress.render.stop);
+    for (const std::string& scene : options.scenes) measure_scene(scene, settings, progress, record);
+    if (record.seed) {
+        for (const std::string& scene : options.scenes)
+            if (std::filesystem::path(scene).stem() == record.seed->scene)
+                measure_seed_table(scene, settings, progress, record, *record.seed);
+    }
+    if (options.scaling) measure_scaling(options.scenes.front(), settings, progress, record);
+    return record;
+}
+
+std::vector<Record> read_records(const ReportOptions& options) {
+    std::vector<Record> records;
+    for (const std::string& file : options.from) records.push_back(parse_record(read_file(file), file));
+    if (!options.verify.empty()) records.front().verify = read_verdicts(options.verify);
+    if (!options.seed_baseline.empty()) {
+        SeedTable table = read_seed_table(options.seed_baseline);
+        for (Record& record : records)
+            if (record.seed && record.seed->scene == table.scene && record.seed->context == table.context)
+                return records;  // it is in there, with ours
+        records.front().seed = std::move(table);
+    }
+    return records;
+}
+
+/// Throws Error (file) where a file's values are not of the types that they should be.
+std::string page_of(const std::vector<Record>& records, const ReportOptions& options) {
+    try {
+        return report_page(records);
+    } catch (const Json::exception& error) {
+        std::vector<std::string> files = options.from;
+        for (const std::string& file : {options.verify, options.seed_baseline})
+            if (!file.empty()) files.push_back(file);
+        throw Error(ExitCode::file, fmt::format("{}: a value is not of its type ({}); give what --json wrote",
+                                                fmt::join(files, ", "), one_line(error.what())));
+    }
+}
+
+int run(const ReportOptions& options) {
+    // Before a long run rather than after it.
+    for (const std::string& file : {options.output, options.json})
+        if (!file.empty()) AtomicFile probe(file);
+    std::vector<Record> records;
+    if (!options.from.empty()) {
+        records = read_records(options);
+    } else {
+        const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+        tbb::task_arena arena(threads);
+        arena.execute([&] { records.push_back(measure(options, threads)); });
+    }
+    if (!options.json.empty()) write_file_atomically(options.json, record_text(records.front()));
+    if (!options.output.empty()) write_file_atomically(options.output, page_of(records, options));
+    return static_cast<int>(ExitCode::done);
+}
+
+}  // namespace
+
+int report_program(int argc, const char* const* argv) {
+    const ReportOptions options = parse_report_options(argc, argv);
+    switch (options.action) {
+        case Action::print_help:
+            print(report_help_text());
+            return 0;
+        case Action::print_version:
+            print("render-report (Cistula) " CISTULA_VERSION "\n");
+            return 0;
+        case Action::report:
+            break;
+    }
+    return run(options);
+}
+
+}  // namespace cistula::report

@@ -1,0 +1,159 @@
+#include "record.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <ctime>
+#include <thread>
+
+#include "apps/common/build_info.h"
+#include "apps/common/machine.h"
+#include "scene/error.h"
+#include "scene/suggest.h"
+
+namespace cistula::report {
+
+void to_json(Json& json, const Timing& timing) {
+    json = timing.runs;
+}
+void from_json(const Json& json, Timing& timing) {
+    json.get_to(timing.runs);
+}
+
+CISTULA_RECORD_FIELDS(Rays, primary, reflected, transmitted, shadow)
+CISTULA_RECORD_FIELDS(Yardstick, knob, setting, remainder, seconds, cached)
+CISTULA_RECORD_FIELDS(Share, what, material, value)
+CISTULA_RECORD_FIELDS(Stage, name, precision, time)
+CISTULA_RECORD_FIELDS(Level, depth, rays)
+CISTULA_RECORD_FIELDS(EffectCost, mask, added, time)
+CISTULA_RECORD_FIELDS(Image, width, height, png)
+CISTULA_RECORD_FIELDS(ParityCase, first, second, precision, compared, differing)
+CISTULA_RECORD_FIELDS(SceneRecord, name, file, hash, width, height, base, effects, strongest, mirror, reference,
+                      yardsticks, left_out, stages, levels, effect_costs, parity_depth, parity, first_renderer,
+                      second_renderer, first_image, second_image, heat, heat_mean, heat_most)
+CISTULA_RECORD_FIELDS(SeedRow, depth, grid, time)
+CISTULA_RECORD_FIELDS(OwnRow, depth, precision, time)
+CISTULA_RECORD_FIELDS(SeedTable, scene, width, height, context, same_machine, seed, ours)
+CISTULA_RECORD_FIELDS(ScalingPoint, value, time, rays)
+CISTULA_RECORD_FIELDS(ScalingSeries, name, what, points)
+
+void to_json(Json& json, const Entry& entry) {
+    const std::string name = entry.scene + "/" + setting_name(entry.setting);
+    json = {{"name", name},
+            {"run_name", name},
+            {"run_type", "iteration"},
+            {"iterations", entry.wall.runs.size()},
+            {"real_time", entry.wall.median()},
+            {"time_unit", "ms"},
+            {"repetition_times", entry.wall}};
+    if (!entry.kernel.empty()) json["kernel_ms"] = entry.kernel, json["transfer_ms"] = entry.transfer;
+    json["scene"] = entry.scene;
+    json["setting"] = entry.setting;
+    json["film_hash"] = entry.film_hash;
+    json["rays"] = entry.rays;
+    json["error"] = entry.error;
+    json["alone"] = entry.alone;
+}
+
+void from_json(const Json& json, Entry& entry) {
+    json.at("repetition_times").get_to(entry.wall);
+    if (json.contains("kernel_ms")) {
+        json.at("kernel_ms").get_to(entry.kernel);
+        json.at("transfer_ms").get_to(entry.transfer);
+    }
+    json.at("scene").get_to(entry.scene);
+    json.at("setting").get_to(entry.setting);
+    json.at("film_hash").get_to(entry.film_hash);
+    json.at("rays").get_to(entry.rays);
+    json.at("error").get_to(entry.error);
+    for (const auto& [knob, metrics] : json.at("alone").items()) metrics.get_to(entry.alone[knob]);
+}
+
+namespace {
+
+Json parity_totals(const Record& record) {
+    uint64_t compared = 0, differing = 0;
+    for (const SceneRecord& scene : record.scenes)
+        for (const ParityCase& one : scene.parity) compared += one.compared, differing += one.differing;
+    return {{"compared", compared}, {"differing", differing}};
+}
+
+void require(bool holds, const std::string& what) {
+    if (!holds) throw std::runtime_error(what);
+}
+
+/// What the page relies on, beyond the types.
+void check(const Record& record) {
+    require(record.context.is_object(), "its context is no object");
+    for (const Entry& entry : record.entries) {
+        require(!entry.wall.empty(), setting_name(entry.setting) + " has no times");
+        bool known = false;
+        for (const SceneRecord& scene : record.scenes) known = known || scene.name == entry.scene;
+        require(known, "no scene is called " + entry.scene);
+    }
+    for (const SceneRecord& scene : record.scenes)
+        require(scene.width > 0 && scene.height > 0, scene.name + " has no size");
+}
+
+}  // namespace
+
+const std::string& Record::text(const char* key) const {
+    static const std::string none;
+    const auto found = context.find(key);
+    return found != context.end() && found->is_string() ? found->get_ref<const std::string&>() : none;
+}
+
+Json machine_context(const std::string& backend, const std::vector<std::string>& devices, const std::string& driver) {
+    char host[256] = {};
+    if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
+    Json context = {{"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
+                    {"host_name", host},
+                    {"executable", "render-report"},
+                    {"cistula_version", CISTULA_VERSION},
+                    {"commit", build_commit()},
+                    {"cpu", processor_name()},
+                    {"num_cpus", std::thread::hardware_concurrency()},
+                    {"compiler", __VERSION__},
+                    {"flags", build_flags()},
+                    {"backend", backend}};
+    if (!devices.empty()) {
+        context["devices"] = devices;
+        context["driver"] = driver;
+        context["gpu_driver"] = gpu_driver_version();
+#ifdef CISTULA_CUDA_COMPILER
+        context["cuda_compiler"] = CISTULA_CUDA_COMPILER;
+        context["cuda_flags"] = CISTULA_CUDA_FLAGS;
+#endif
+    }
+    return context;
+}
+
+std::string record_text(const Record& record) {
+    Json json = {{"context", record.context}, {"benchmarks", record.entries}, {"scenes", record.scenes}};
+    json["parity"] = parity_totals(record);
+    json["scaling"] = record.scaling;
+    if (record.seed) json["seed"] = *record.seed;
+    if (record.verify) json["verify"] = *record.verify;
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Record parse_record(const std::string& text, const std::string& name) {
+    try {
+        const Json json = Json::parse(text);
+        Record record;
+        json.at("context").get_to(record.context);
+        json.at("benchmarks").get_to(record.entries);
+        json.at("scenes").get_to(record.scenes);
+        json.at("scaling").get_to(record.scaling);
+        if (json.contains("seed")) record.seed = json.at("seed").get<SeedTable>();
+        if (json.contains("verify")) record.verify = json.at("verify");
+        check(record);
+        return record;
+    } catch (const std::exception& error) {
+        throw Error(ExitCode::file, fmt::format("{}: is no record of render-report ({}); give what its --json wrote",
+                                                name, one_line(error.what())));
+    }
+}
+
+}  // namespace cistula::report

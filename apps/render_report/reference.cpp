@@ -1,0 +1,120 @@
+#include "reference.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "apps/common/build_info.h"
+#include "apps/render/header_attributes.h"
+#include "apps/render/stats.h"
+#include "scene/atomic_file.h"
+#include "scene/error.h"
+#include "scene/file_bytes.h"
+#include "scene/fnv128.h"
+#include "scene/suggest.h"
+
+namespace cistula::report {
+namespace {
+
+constexpr double worth_keeping = 1;  // seconds
+
+std::string hash_of(const std::string& bytes) {
+    Fnv128 hash;
+    hash.add_bytes(bytes.data(), bytes.size());
+    return hash.hex();
+}
+
+/// All that the picture depends on, the code included.
+std::string key_of(const Frames& frames, const std::string& scene_hash, const Setting& setting) {
+    const FrameSettings settings = frame_settings(setting, frames.width, frames.height);
+    const Attributes attributes = header_attributes(scene_hash, settings, setting.precision, frames.camera);
+    return fmt::format("{} {} {}x{} {} {} {}", scene_hash, std::get<std::string>(attributes.at("cistula:cameraHash")),
+                       frames.width, frames.height, setting_name(setting), CISTULA_VERSION, build_commit());
+}
+
+}  // namespace
+
+std::string default_cache() {
+    for (const auto& [variable, below] :
+         {std::pair("XDG_CACHE_HOME", "cistula"), std::pair("HOME", ".cache/cistula")}) {
+        const char* folder = std::getenv(variable);
+        if (folder != nullptr && folder[0] == '/') return std::filesystem::path(folder) / below;
+    }
+    return {};
+}
+
+// One line of JSON, which has the hash of the rest; then three doubles a pixel as they lie in memory.
+std::string pack_reference(const ReferencePicture& reference, const std::string& key) {
+    const Picture& picture = reference.picture;
+    std::string pixels(picture.pixels.size() * sizeof(picture.pixels[0]), '\0');
+    if (!pixels.empty()) std::memcpy(pixels.data(), picture.pixels.data(), pixels.size());
+    const Json head = {{"key", key},
+                       {"width", picture.width},
+                       {"height", picture.height},
+                       {"remainder", reference.yardstick.remainder},
+                       {"hash", hash_of(pixels)}};
+    return head.dump() + "\n" + pixels;
+}
+
+std::optional<ReferencePicture> unpack_reference(const std::string& bytes, const std::string& key) {
+    const size_t end = bytes.find('\n');
+    if (end == bytes.npos) return std::nullopt;
+    const Json head = Json::parse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
+    const std::string pixels = bytes.substr(end + 1);
+    if (!head.is_object() || head.value("key", "") != key || head.value("hash", "") != hash_of(pixels))
+        return std::nullopt;
+    ReferencePicture reference;
+    Picture& picture = reference.picture;
+    picture.width = head.value("width", 0);
+    picture.height = head.value("height", 0);
+    picture.pixels.resize(pixels.size() / sizeof(picture.pixels[0]));
+    if (picture.width < 1 || picture.pixels.size() * sizeof(picture.pixels[0]) != pixels.size() ||
+        picture.pixels.size() != static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height))
+        return std::nullopt;
+    std::memcpy(picture.pixels.data(), pixels.data(), pixels.size());
+    head.at("remainder").get_to(reference.yardstick.remainder);
+    return reference;
+}
+
+ReferencePicture reference_picture(Frames& frames, const std::string& scene_hash, const Setting& setting,
+                                   const std::string& cache) {
+    const std::string key = key_of(frames, scene_hash, setting);
+    const std::string file =
+        cache.empty() ? "" : (std::filesystem::path(cache) / (hash_of(key) + ".reference")).string();
+    ReferencePicture reference;
+    std::error_code ignored;
+    if (!file.empty() && std::filesystem::exists(file, ignored)) {
+        std::optional<ReferencePicture> found;
+        const double seconds = seconds_of([&] {
+            try {
+                found = unpack_reference(read_file(file), key);
+            } catch (const Error&) {  // rendered again
+            }
+        });
+        if (found) {
+            found->yardstick.setting = setting;
+            found->yardstick.seconds = seconds;
+            found->yardstick.cached = true;
+            return std::move(*found);
+        }
+    }
+    Film film;
+    frames.progress.frame(static_cast<uint64_t>(frames.width) * static_cast<uint64_t>(frames.height));
+    reference.yardstick.seconds = frames.render(setting, film);
+    reference.yardstick.setting = setting;
+    reference.yardstick.remainder = remainder_of(film);
+    reference.picture = resolve_picture(film);
+    if (file.empty() || reference.yardstick.seconds < worth_keeping) return reference;
+    try {
+        std::filesystem::create_directories(cache);
+        write_file_atomically(file, pack_reference(reference, key));
+    } catch (const std::exception& error) {
+        frames.progress.say(
+            fmt::format("render-report: warning: a reference was not kept: {}", one_line(error.what())));
+    }
+    return reference;
+}
+
+}  // namespace cistula::report

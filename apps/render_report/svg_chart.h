@@ -1,0 +1,70 @@
+// Small charts as inline SVG. Colors are classes (s0 to s4, see html_style.cpp), so that light and dark are the page's
+// business.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cistula::report {
+
+struct ChartPoint {
+    double x = 0, y = 0;
+    double low = 0, high = 0;  // of y; equal: no range is drawn
+    std::string tip;           // shown on hovering
+    bool faint = false;
+};
+
+struct ChartSeries {
+    std::string label;  // for the legend; empty: not in it
+    int color = 0;      // s0 ...
+    std::vector<ChartPoint> points;
+    bool line = true, dots = true;
+    bool dashed = false, square = false;
+};
+
+struct ChartAxis {
+    std::string label;
+    bool log = true;
+};
+
+/// A ring around a point, with a word beside it.
+struct ChartMark {
+    double x = 0, y = 0;
+    std::string word;
+};
+
+struct Chart {
+    std::string description;  // for those who cannot see it
+    ChartAxis x, y;
+    std::vector<ChartSeries> series;
+    std::vector<ChartMark> marks;
+    int width = 480, height = 330;  // units of the drawing; text is 14 high
+};
+
+/// Without its legend. Points that are not finite, and those at or below 0 on a logarithmic axis, are not drawn.
+std::string chart_svg(const Chart& chart);
+
+/// A list of the series that have a label; empty for fewer than two.
+std::string chart_legend(const Chart& chart);
+
+/// Columns of stacked parts.
+struct Stack {
+    std::string label;
+    std::vector<double> parts;  // by color
+};
+struct Stacks {
+    std::string description, x_label, y_label;
+    std::vector<std::string> names;  // of the parts
+    std::vector<Stack> columns;
+    int width = 480, height = 300;
+};
+std::string stacks_svg(const Stacks& stacks);
+
+/// "10³", "0.01", "500": what stands at ticks.
+std::string tick_text(double value);
+
+/// Round values from `low` to `high`.
+std::vector<double> ticks(double low, double high, bool log);
+
+}  // namespace cistula::report
