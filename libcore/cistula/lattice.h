@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cistula/pixel_record.h"
+#include "cistula/real.h"
 
 namespace cistula {
 
