@@ -41,6 +41,7 @@ class LatticePixel {
         record = PixelRecord();
         free_ = (1u << slot_count) - 1;
         depth_ = 1;
+        due_ = settings_.fine ? 5 : 4;
         cells_[0] = {0, 0, lattice_side, lattice_side, {nothing, nothing, nothing, nothing}};
     }
 
@@ -144,11 +145,13 @@ class LatticePixel {
             return;
         }
         const bool in_four = whole && settings_.fine;
-        if (record_->samples + (in_four ? 11u : 4u) > uint32_t(settings_.most)) {
+        const int more = in_four ? 11 : 4;  // the middle is one of sixteen
+        if (due_ + more > settings_.most) {
             record_->unmet = 1;
             add(cell, differs);
             return;
         }
+        due_ += more;
         const Cell parent = cell;
         --depth_;
         if (in_four) {
@@ -212,6 +215,7 @@ class LatticePixel {
     PixelRecord* record_ = nullptr;
     uint32_t free_ = 0;
     int depth_ = 0;
+    int due_ = 0;               // samples taken, and those that the cells still want
     uint8_t middle_ = nothing;  // the slot of the sample in the middle, while no cell has it
     Cell cells_[cell_count];
     LatticeSample samples_[slot_count];
