@@ -36,6 +36,7 @@ TEST(RenderOptions, Defaults) {
     EXPECT_EQ(options.progress, ProgressStyle::automatic);
     EXPECT_TRUE(options.output.empty() && options.frames.empty() && options.preview.empty() && options.stats.empty());
     EXPECT_FALSE(options.resolution || options.crop || options.supersample || options.depth || options.cutoff);
+    EXPECT_FALSE(options.target_error || options.max_samples);
     EXPECT_FALSE(options.channels.half || options.channels.error || options.resume || options.quiet || options.verbose);
     EXPECT_EQ(options.threads, 0);
 }
@@ -152,6 +153,60 @@ TEST(RenderOptions, Errors) {
     EXPECT_THROW(parse({"s", "-o"}), Error);
     EXPECT_THROW(parse({"s", "-o", ""}), Error);
     EXPECT_THROW(parse({"s", "--depth", "3", "--depth", "4"}), Error);
+}
+
+TEST(RenderOptions, TargetErrors) {
+    for (const char* part : {"--target-error", "--max-samples", "5 target error not met"})
+        EXPECT_NE(help_text().find(part), std::string::npos) << part;
+    for (const auto& [text, value] : {std::pair("0.004", 0.004), {"1e-3", 1e-3}, {"7", 7.0}, {"1e-300", 1e-300}}) {
+        const RenderOptions options = parse({"s", "--target-error", text});
+        EXPECT_EQ(options.target_error, value);
+        EXPECT_FALSE(options.max_samples.has_value());
+    }
+    for (const auto& [text, value] : {std::pair("5", 5), {"64", 64}, {"256", 256}})
+        EXPECT_EQ(parse({"s", "--target-error", "1", "--max-samples", text}).max_samples, value);
+    EXPECT_EQ(parse({"s", "--target-error", "1", "--depth", "3"}).depth, 3);
+    for (const char* target : {"0", "-0", "-1", "nan", "inf", "1e", "x", "0.1 ", "0,1"})
+        expect_refused(
+            {"s", "--target-error", target},
+            std::string("--target-error ") + target + ": must be a number above 0, in the scene's units of radiance");
+    for (const char* samples : {"0", "4", "257", "-5", "x", "8.0"})
+        expect_refused({"s", "--target-error", "1", "--max-samples", samples},
+                       std::string("--max-samples ") + samples + ": must be a whole number from 5 to 256");
+    expect_refused({"s", "--max-samples", "64"},
+                   "--max-samples 64: is for --target-error E; a grid's are --supersample's");
+    expect_refused({"s", "--target-error", "0.1", "--supersample", "2"},
+                   "--target-error 0.1: --supersample has no place here: pixels get as many samples as they need; "
+                   "leave it out");
+    expect_refused({"s", "--cutoff", "0", "--target-error", "0.1"},
+                   "--target-error 0.1: --cutoff has no place here: a quarter of the target is the cutoff; leave it "
+                   "out");
+    expect_refused({"s", "--target-error", "0.1", "--pixel", "1,2"},
+                   "--pixel 1,2: --target-error has no place here: it shows the samples of a grid; --supersample "
+                   "chooses one; leave it out");
+}
+
+TEST(RenderOptions, ATargetGoesAsDeepAsItTakes) {
+    SceneDescription scene;
+    scene.film.supersample = 3;
+    scene.depth = 7;
+    scene.cutoff = 0.25;
+    const FrameSettings target = frame_settings(parse({"s", "--target-error", "0.004"}), scene);
+    EXPECT_TRUE(target.adaptive());
+    EXPECT_EQ(target.target_error, 0.004);
+    EXPECT_EQ(target.truncation(), 0.001);  // whatever the scene's cutoff
+    EXPECT_EQ(target.grid(), 16);           // whatever the scene's grid
+    EXPECT_EQ(target.depth, largest_depth);
+    EXPECT_EQ(target.max_samples, 256);
+    const FrameSettings given =
+        frame_settings(parse({"s", "--target-error", "0.004", "--depth", "2", "--max-samples", "9"}), scene);
+    EXPECT_EQ(given.depth, 2);
+    EXPECT_EQ(given.max_samples, 9);
+    const FrameSettings fixed = frame_settings(parse({"s"}), scene);
+    EXPECT_FALSE(fixed.adaptive());
+    EXPECT_EQ(fixed.depth, 7);
+    EXPECT_EQ(fixed.grid(), 3);
+    EXPECT_EQ(fixed.truncation(), 0.25);
 }
 
 TEST(RenderOptions, Devices) {
@@ -339,6 +394,15 @@ TEST(HeaderAttributes, TellImagesApart) {
     other = settings;
     other.supersample = 2;
     EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    other = settings;
+    other.target_error = 0.01;
+    const Attributes target = header_attributes("abc", other, Precision::single_, camera);
+    EXPECT_TRUE(attributes_differ(target));
+    EXPECT_EQ(std::get<double>(target.at("cistula:targetError")), 0.01);
+    EXPECT_EQ(std::get<double>(target.at("cistula:cutoff")), 0.0025);
+    other.max_samples = 32;
+    EXPECT_EQ(std::get<int>(header_attributes("abc", other, Precision::single_, camera).at("cistula:maxSamples")), 32);
+    EXPECT_EQ(picture.attributes.count("cistula:targetError") + picture.attributes.count("cistula:maxSamples"), 0u);
     CameraFrame moved = camera;
     moved.frame = 1;
     EXPECT_TRUE(attributes_differ(header_attributes("abc", settings, Precision::single_, moved)));

@@ -323,6 +323,69 @@ TEST_F(RenderProgram, StatsAreJson) {
     EXPECT_LE(frame.at("ledger").at("pruned").at("worst").at(0).get<double>(), 0.05);
 }
 
+TEST_F(RenderProgram, ATargetIsReachedAndSaid) {
+    const ProgramResult result = run({"s.json", "-o", "a.exr", "--target-error", "0.02", "--aov", "samples,error",
+                                      "--stats", "s.stats.json", "--progress", "none"});
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_NE(result.error.find("render: target error 0.02 reached: "), std::string::npos) << result.error;
+    const LayeredPicture image = read_exr(file("a.exr"));
+    EXPECT_EQ(std::get<double>(image.attributes.at("cistula:targetError")), 0.02);
+    EXPECT_EQ(std::get<int>(image.attributes.at("cistula:maxSamples")), 256);
+    EXPECT_EQ(std::get<double>(image.attributes.at("cistula:cutoff")), 0.005);
+    EXPECT_EQ(std::get<int>(image.attributes.at("cistula:depth")), 1024);
+    EXPECT_EQ(std::get<int>(image.attributes.at("cistula:supersample")), 16);
+
+    const std::vector<float>& samples = channel(image, "samples");
+    const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
+    EXPECT_GE(*least, 4);
+    EXPECT_LT(*least, *most);
+    EXPECT_LE(*most, 256);
+    for (const char* name : {"error.R", "error.G", "error.B"})
+        for (const float error : channel(image, name)) ASSERT_LE(error, 0.005f * (1 + 0x1p-20f)) << name;
+
+    const auto stats = nlohmann::json::parse(bytes_of(file("s.stats.json")));
+    EXPECT_EQ(stats.at("context").at("target_error"), 0.02);
+    EXPECT_EQ(stats.at("context").at("max_samples"), 256);
+    EXPECT_EQ(stats.at("context").at("cutoff"), 0.005);
+    const auto& frame = stats.at("benchmarks").back();
+    double sum = 0;
+    for (const float value : samples) sum += value;
+    EXPECT_EQ(frame.at("samples").get<double>(), sum);
+    EXPECT_EQ(frame.at("rays").at("primary").get<double>(), sum);
+    const auto& target = frame.at("target");
+    EXPECT_EQ(target.at("reached"), true);
+    for (const char* key : {"pixels_missed", "pixels_truncated", "pixels_undersampled"}) EXPECT_EQ(target.at(key), 0);
+    EXPECT_LE(target.at("worst_truncation").get<double>(), 0.005);
+    EXPECT_GT(target.at("worst_truncation").get<double>(), 0);
+
+    expect_done({"s.json", "-q", "-o", "b.exr"});
+    EXPECT_EQ(read_exr(file("b.exr")).attributes.count("cistula:targetError"), 0u);
+    EXPECT_EQ(run({"s.json", "-q", "-o", "a.exr", "--target-error", "0.02"}).error, "");
+}
+
+TEST_F(RenderProgram, AMissedTargetIsCountedAndTheImageWritten) {
+    // Cut at once, the pixels of gem and floor lose what these mirror and transmit.
+    const Arguments shallow{"s.json", "-q",      "-o", "a.exr",   "--target-error",
+                            "0.02",   "--depth", "1",  "--stats", "s.stats.json"};
+    expect_refused(shallow, ExitCode::target, "render: target error 0.02 missed in ");
+    EXPECT_EQ(std::get<int>(read_exr(file("a.exr")).attributes.at("cistula:depth")), 1);
+    const auto target = nlohmann::json::parse(bytes_of(file("s.stats.json"))).at("benchmarks").back().at("target");
+    const uint64_t missed = target.at("pixels_missed");
+    EXPECT_EQ(target.at("reached"), false);
+    EXPECT_GT(missed, 0u);
+    EXPECT_LE(missed, 40u * 24);
+    EXPECT_EQ(target.at("pixels_truncated"), missed);
+    EXPECT_GT(target.at("worst_truncation").get<double>(), 0.005);
+    expect_refused(shallow, ExitCode::target,
+                   std::to_string(missed) + " of 960 pixels: " + std::to_string(missed) +
+                       " lose more than a quarter of it below depth 1; a larger --depth may reach it");
+
+    expect_refused({"s.json", "-q", "-o", "b.exr", "--target-error", "0.02", "--max-samples", "5"}, ExitCode::target,
+                   "want more than 5 samples; raise --max-samples");
+    EXPECT_EQ(std::get<int>(read_exr(file("b.exr")).attributes.at("cistula:maxSamples")), 5);
+    EXPECT_FALSE(has_part_files());
+}
+
 TEST_F(RenderProgram, NativeImagesSaySoAndAreNotResumedAsExactOnes) {
     const auto intersector = [&] {
         return nlohmann::json::parse(bytes_of(file("s.stats.json"))).at("context").at("intersector").get<std::string>();

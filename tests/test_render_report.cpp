@@ -15,6 +15,7 @@
 #include "apps/render_report/reference.h"
 #include "apps/render_report/svg_chart.h"
 #include "apps/render_report/sweep_plan.h"
+#include "apps/render_report/target_table.h"
 #include "expect_error.h"
 #include "run_program.h"
 
@@ -69,6 +70,26 @@ TEST(Metrics, OfThePictureItselfAreZero) {
     EXPECT_EQ(m.over_half_code, 0);
     EXPECT_TRUE(std::isinf(m.psnr()));
     EXPECT_EQ(Json(m).at("psnr"), "inf");
+}
+
+TEST(Metrics, AThousandthOfThePixelsMayLieBeyondTheQuantile) {
+    for (const size_t count : {size_t{999}, size_t{1000}, size_t{3000}}) {
+        std::vector<std::array<int64_t, 3>> sums(count, {0, 0, 0}), off = sums;
+        for (size_t i = 0; i < count; ++i) off[i][i % 3] = -static_cast<int64_t>(i);
+        const Metrics m = compare_with(resolve_picture(film_of(off)), resolve_picture(film_of(sums)));
+        EXPECT_EQ(m.max, static_cast<double>(count - 1) / 16);
+        EXPECT_EQ(m.p999, static_cast<double>(count - 1 - count / 1000) / 16) << count;
+        EXPECT_EQ(Json(m).get<Metrics>().p999, m.p999);
+    }
+}
+
+TEST(Metrics, ShareOverCountsPixelsOnceAndNotThoseOnTheLine) {
+    const Picture reference = resolve_picture(film_of({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}));
+    const Picture picture = resolve_picture(film_of({{0, 0, 0}, {8, 0, 0}, {9, -9, 9}, {0, 0, -16}}));
+    EXPECT_EQ(share_over(0.5, picture, reference), 0.5);
+    EXPECT_EQ(share_over(0.49, picture, reference), 0.75);
+    EXPECT_EQ(share_over(1, picture, reference), 0);
+    EXPECT_THROW(share_over(1, picture, resolve_picture(film_of({{0, 0, 0}}))), std::invalid_argument);
 }
 
 TEST(Metrics, RefusePicturesOfTwoSizes) {
@@ -171,6 +192,116 @@ TEST(Setting, CommandLineSaysAll) {
     EXPECT_EQ(Json(setting).get<Setting>(), setting);
 }
 
+TEST(Setting, ATargetStandsForSamplesAndCutoff) {
+    Setting setting;
+    setting.supersample = 3;
+    setting.cutoff = 0.5;
+    setting.intersector = "native";
+    EXPECT_EQ(setting_name(setting).rfind("depth:4/", 0), 0u);
+    setting = with_target(setting, 0.004);
+    EXPECT_EQ(setting_name(setting), "target:0.004/float/native");
+    EXPECT_EQ(setting_text(setting), "target error 0.004, float, native");
+    EXPECT_EQ(command_line("a.json", 64, 48, setting, "embree"),
+              "render a.json --res 64x48 --target-error 0.004 --precision float --intersector native");
+    setting.intersector = "exact";
+    setting.precision = Precision::double_;
+    EXPECT_EQ(command_line("a.json", 64, 48, setting, "cuda"),
+              "render a.json --res 64x48 --target-error 0.004 --precision double --backend cuda");
+    EXPECT_EQ(Json(setting).get<Setting>(), setting);
+    const FrameSettings frame = frame_settings(setting, 64, 48);
+    EXPECT_EQ(frame.target_error, 0.004);
+    EXPECT_EQ(frame.depth, 1024);
+    EXPECT_EQ(frame.truncation(), 0.001);
+    EXPECT_EQ(frame.grid(), 16);
+    EXPECT_EQ(frame_settings(Setting(), 64, 48).target_error, 0);
+}
+
+TEST(Intersectors, NativeIsEmbreesAlone) {
+    std::map<std::string, const Intersector*> by_name;
+    for (const Intersector& one : intersectors()) by_name[one.name] = &one;
+    ASSERT_EQ(by_name.count("native"), 1u);
+    EXPECT_TRUE(by_name["native"]->offered(Backend::embree));
+    EXPECT_FALSE(by_name["native"]->offered(Backend::cuda));
+    EXPECT_TRUE(by_name["exact"]->offered(Backend::cuda));
+}
+
+// ---- targets beside fixed settings
+
+Entry entry_of(const Setting& setting, double rmse, double time, double samples) {
+    Entry entry;
+    entry.setting = setting;
+    entry.error.rmse = rmse;
+    entry.wall.runs = {time};
+    entry.samples = samples;
+    if (setting.adaptive()) entry.target = TargetOutcome{0.25, 3};
+    return entry;
+}
+
+Entry grid_entry(int supersample, double rmse, double time) {
+    Setting setting;
+    setting.supersample = supersample;
+    return entry_of(setting, rmse, time, supersample * supersample);
+}
+
+Entry target_entry(double target, double rmse, double time, double samples) {
+    return entry_of(with_target(Setting(), target), rmse, time, samples);
+}
+
+TargetTable table_of(const std::vector<Entry>& entries) {
+    std::vector<const Entry*> all;
+    for (const Entry& entry : entries) all.push_back(&entry);
+    return target_table(all);
+}
+
+TEST(TargetTable, FindsTheQuickestFixedSettingThatIsAsClose) {
+    const std::vector<Entry> entries = {grid_entry(1, 0.1, 1),  grid_entry(2, 0.05, 4),  target_entry(0.01, 0.01, 8, 6),
+                                        grid_entry(3, 0.05, 3), grid_entry(4, 0.02, 16), target_entry(0.1, 0.05, 6, 4)};
+    const TargetTable table = table_of(entries);
+    ASSERT_EQ(table.rows.size(), 2u);
+    EXPECT_EQ(table.rows[0].entry, &entries[5]);  // the larger target first
+    EXPECT_EQ(table.rows[0].fixed, &entries[3]);
+    EXPECT_EQ(table.rows[0].ratio(), 2);
+    EXPECT_EQ(table.rows[1].entry, &entries[2]);
+    EXPECT_EQ(table.rows[1].fixed, nullptr);
+    const Json json = table;
+    EXPECT_EQ(json.at("rows").at(0).at("fixed"), "depth:4/cutoff:0/float/samples:3x3");
+    EXPECT_EQ(json.at("rows").at(0).at("ratio"), 2);
+    EXPECT_EQ(json.at("rows").at(0).at("over_target"), 0.25);
+    EXPECT_EQ(json.at("rows").at(1).at("fixed"), "none");
+    EXPECT_FALSE(json.at("rows").at(1).contains("ratio"));
+}
+
+TEST(TargetTable, InterpolatesTheSamplesForTheErrorOfAGrid) {
+    // The error falls by four while the samples double: half of that, in the logarithm, is at 8 / sqrt(2).
+    std::vector<Entry> entries = {grid_entry(4, 0.02, 16), grid_entry(8, 0.001, 64), grid_entry(4, 0.03, 15),
+                                  target_entry(0.1, 0.04, 6, 4), target_entry(0.01, 0.01, 8, 8)};
+    TargetTable table = table_of(entries);
+    ASSERT_TRUE(table.uniform.has_value());
+    EXPECT_EQ(table.uniform->uniform, &entries[0]);
+    EXPECT_EQ(table.uniform->farther, &entries[3]);
+    EXPECT_EQ(table.uniform->closer, &entries[4]);
+    EXPECT_NEAR(table.uniform->samples, 8 / std::sqrt(2.0), 1e-12);
+    EXPECT_EQ(Json(table).at("uniform").at("adaptive"), "interpolated");
+
+    entries[3].error.rmse = 0.015;  // the first is closer already
+    table = table_of(entries);
+    EXPECT_EQ(table.uniform->closer, &entries[3]);
+    EXPECT_EQ(table.uniform->samples, 4);
+    EXPECT_EQ(Json(table).at("uniform").at("adaptive"), "first target");
+
+    entries[3].error.rmse = entries[4].error.rmse = 0.05;  // none is
+    table = table_of(entries);
+    EXPECT_EQ(table.uniform->closer, nullptr);
+    EXPECT_EQ(Json(table).at("uniform").at("adaptive"), "none");
+    EXPECT_FALSE(Json(table).at("uniform").contains("adaptive_samples"));
+
+    entries[3].error.rmse = 0.04;
+    entries[4].error.rmse = 0;  // without a logarithm
+    EXPECT_EQ(table_of(entries).uniform->samples, 8);
+    EXPECT_FALSE(table_of({entries[3]}).uniform.has_value());
+    EXPECT_TRUE(table_of({entries[0]}).rows.empty());
+}
+
 // ---- the cache
 
 TEST(Reference, ComesBackFromItsBytes) {
@@ -229,6 +360,19 @@ TEST(Chart, LeavesOutWhatCannotBeDrawn) {
     size_t dots = 0;
     for (size_t at = 0; (at = svg.find("<circle", at)) != svg.npos; ++at) ++dots;
     EXPECT_EQ(dots, 2u);
+}
+
+TEST(Chart, DiamondsStandApart) {
+    Chart chart;
+    ChartSeries series;
+    series.points.push_back({1, 1, 0, 0, "here", false});
+    series.shape = DotShape::diamond;
+    series.label = "a";
+    series.color = 6;
+    chart.series = {series, series};
+    EXPECT_EQ(chart_svg(chart).find("<circle"), std::string::npos);
+    EXPECT_NE(chart_svg(chart).find("<path class=\"dot s6\""), std::string::npos);
+    EXPECT_NE(chart_legend(chart).find("key s6 diamond"), std::string::npos);
 }
 
 TEST(Png, IsOneAndBase64IsRight) {
@@ -309,15 +453,37 @@ TEST_F(Program, MeasuresASmallSceneAndShowsItFromItsRecord) {
     ASSERT_EQ(record.scenes.size(), 1u);
     const SceneRecord& scene = record.scenes[0];
     std::map<int, double> by_depth;
+    size_t native = 0;
     for (const Entry& entry : record.entries) {
         EXPECT_EQ(entry.wall.runs.size(), 3u);
-        EXPECT_EQ(entry.rays.primary, 32u * 18 * unsigned(entry.setting.supersample * entry.setting.supersample));
+        EXPECT_DOUBLE_EQ(static_cast<double>(entry.rays.primary), 32 * 18 * entry.samples);
+        if (!entry.setting.adaptive()) {
+            EXPECT_EQ(entry.samples, entry.setting.supersample * entry.setting.supersample);
+        }
+        if (entry.setting.intersector == "native") ++native;
         if (entry.alone.count("depth")) by_depth[entry.setting.depth] = entry.alone.at("depth").rmse;
     }
     ASSERT_GE(by_depth.size(), 4u);
     for (auto at = std::next(by_depth.begin()); at != by_depth.end(); ++at)
         EXPECT_LE(at->second, std::prev(at)->second) << "depth " << at->first;
     EXPECT_GT(by_depth.begin()->second, 0);
+    EXPECT_GE(native, 4u);
+    const Json table = Json::parse(text).at("targets").at("small");
+    std::vector<const Entry*> entries;
+    for (const Entry& entry : record.entries) entries.push_back(&entry);
+    EXPECT_EQ(Json(target_table(entries)), table);
+    ASSERT_EQ(table.at("rows").size(), 4u);
+    for (size_t i = 0; i < 4; ++i) {
+        const Json& row = table.at("rows").at(i);
+        EXPECT_GE(row.at("samples"), 4);
+        EXPECT_LE(row.at("samples"), 256);
+        EXPECT_EQ(row.at("missed"), 0);
+        EXPECT_LE(row.at("rmse"), row.at("target_error"));
+        if (i == 0) continue;
+        EXPECT_LT(row.at("rmse"), table.at("rows").at(i - 1).at("rmse"));
+        EXPECT_GT(row.at("samples"), table.at("rows").at(i - 1).at("samples"));
+    }
+    EXPECT_EQ(table.at("uniform").at("samples"), 16);
     uint64_t rays = 0;
     for (const Level& level : scene.levels) rays += level.rays.total();
     for (const Entry& entry : record.entries) {
@@ -342,6 +508,9 @@ TEST_F(Program, MeasuresASmallSceneAndShowsItFromItsRecord) {
     }
     EXPECT_NE(page.find("lang=\"en\""), page.npos);
     EXPECT_NE(page.find("render small.json --res 32x18"), page.npos);
+    for (const char* part : {"dot s6", "error = target", "quickest fixed setting as close", "Beside a uniform grid",
+                             "Intersector: native against the exact one"})
+        EXPECT_NE(page.find(part), page.npos) << part;
     EXPECT_LT(page.size(), 400000u);
 }
 

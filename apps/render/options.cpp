@@ -206,7 +206,7 @@ Examples:
   render scenes/seed.json -o out/f%04d.exr -f 0-299x30,7 --res 320x180
   render scenes/glass.json -o g.exr --precision double --supersample 4 --aov error,id,Z,N
   render scenes/infinity.json -o corner.exr --crop 64x64+128+96 --cutoff 0.001 --stats corner.json
-  render scenes/infinity.json -o i.exr --target-error 0.004        as many samples and bounces as that takes
+  render scenes/benchmark.json -o b.exr --target-error 0.004       as many samples and bounces as that takes
   render scenes/seed.json -o out/beauty.####.exr --backend cuda --device all
   render scenes/glass.json --pixel 640,300 --supersample 1 | less  why this pixel is what it is
   render - -o frame%d.out < input.txt                              the seed's input and frames

@@ -75,10 +75,12 @@ std::string percent_text(double share) {
 }
 
 std::string setting_text(const Setting& s) {
-    return fmt::format("{}×{} samples, depth {}, {}{}{}", s.supersample, s.supersample, s.depth,
-                       s.cutoff > 0 ? "cutoff " + number_text(s.cutoff) : "no cutoff",
-                       s.precision == Precision::double_ ? ", double" : ", float",
-                       s.intersector == "exact" ? "" : ", " + s.intersector);
+    const std::string accuracy = s.adaptive()
+                                     ? "target error " + number_text(s.target_error)
+                                     : fmt::format("{}×{} samples, depth {}, {}", s.supersample, s.supersample, s.depth,
+                                                   s.cutoff > 0 ? "cutoff " + number_text(s.cutoff) : "no cutoff");
+    return accuracy + (s.precision == Precision::double_ ? ", double" : ", float") +
+           (s.intersector == "exact" ? "" : ", " + s.intersector);
 }
 
 Table::Table(std::vector<std::string> heads, std::string caption)
@@ -125,6 +127,10 @@ double Shown::rmse(const Entry& entry) const {
 
 double Shown::max(const Entry& entry) const {
     return entry.error.max + (tight ? 0 : scene->reference.remainder.max);
+}
+
+double Shown::p999(const Entry& entry) const {
+    return entry.error.p999 + (tight ? 0 : scene->reference.remainder.max);
 }
 
 std::vector<Shown> all_shown(const std::vector<Record>& records) {

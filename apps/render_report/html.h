@@ -56,8 +56,12 @@ struct Shown {
     /// The error as stated: what was measured, and the reference's remainder where that could matter.
     double rmse(const Entry& entry) const;
     double max(const Entry& entry) const;
+    double p999(const Entry& entry) const;
 };
 std::vector<Shown> all_shown(const std::vector<Record>& records);
+
+/// What targets cost and whether they are met; for the section of the knobs.
+std::string target_html(const Shown& shown);
 
 // The sections, each empty if there is nothing to show.
 std::string pareto_section(const std::vector<Shown>& scenes);

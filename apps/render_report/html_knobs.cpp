@@ -187,6 +187,7 @@ std::string knob_html(const Shown& shown, const Knob& knob, const Alone& alone) 
                             {"Intersector: " + name + " against the exact one, one sample", "RMSE of " + name, name,
                              "exact", [](Setting& setting) { setting.intersector = "exact"; }});
     }
+    if (knob.name == "target") return target_html(shown);
     return pair_of_charts(shown, knob, alone);
 }
 
@@ -203,15 +204,17 @@ std::string knobs_section(const std::vector<Shown>& scenes) {
         }
         if (parts.empty()) continue;
         text += fmt::format("<h3 id=\"{}-knobs\">{}</h3>\n", shown.id, escaped(shown.title));
-        text += fmt::format("<p>The others stay at {}; only the cutoff is turned at depth {}.</p>\n",
-                            setting_text(shown.scene->base), deepest);
+        text += fmt::format(
+            "<p>The others stay at {}; only the cutoff is turned at depth {}, and "
+            "a target error chooses samples and depth by itself.</p>\n",
+            setting_text(shown.scene->base), deepest);
         text += parts;
     }
     return text.empty()
                ? ""
                : "<p>Each knob alone is measured against the same frame without that knob's error: depth and cutoff "
                  "against whole trees of one sample, samples against the full 16×16 lattice, float against "
-                 "double.</p>\n" +
+                 "double; a target error, which is about all of them, against the reference.</p>\n" +
                      text;
 }
 

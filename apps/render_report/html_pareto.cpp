@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "html.h"
 #include "pareto.h"
@@ -51,19 +52,22 @@ Chart chart_of(const Shown& shown, const Front& front, int width, int height) {
     for (const size_t i : front.front)
         line.points.push_back({front.points[i].time, front.points[i].error, 0, 0, "", false});
     chart.series.push_back(line);
-    std::map<std::pair<int, Precision>, ChartSeries> groups;
+    std::map<std::tuple<bool, int, Precision>, ChartSeries> groups;
     std::map<int, int> colors;
-    for (const Entry* entry : shown.entries) colors[entry->setting.supersample] = 0;
+    for (const Entry* entry : shown.entries)
+        if (!entry->setting.adaptive()) colors[entry->setting.supersample] = 0;
     int next = 0;
     for (auto& [samples, color] : colors) color = std::min(next++, 4);
     for (size_t i = 0; i < shown.entries.size(); ++i) {
         const Setting& setting = shown.entries[i]->setting;
-        ChartSeries& group = groups[{setting.supersample, setting.precision}];
+        ChartSeries& group = groups[{setting.adaptive(), setting.supersample, setting.precision}];
         const bool twice = setting.precision == Precision::double_;
-        group.color = colors[setting.supersample];
+        group.color = setting.adaptive() ? 6 : colors.at(setting.supersample);
         group.line = false;
-        group.square = twice;
-        group.label = fmt::format("{}×{}{}", setting.supersample, setting.supersample, twice ? ", double" : "");
+        group.shape = setting.adaptive() ? DotShape::diamond : twice ? DotShape::square : DotShape::circle;
+        group.label =
+            (setting.adaptive() ? "target error" : fmt::format("{}×{}", setting.supersample, setting.supersample)) +
+            (twice ? ", double" : "");
         const bool on_front = std::find(front.front.begin(), front.front.end(), i) != front.front.end();
         group.points.push_back({front.points[i].time, front.points[i].error, 0, 0,
                                 fmt::format("{}: {}, RMSE {}", setting_text(setting), time_text(front.points[i].time),
@@ -137,7 +141,7 @@ std::string pareto_section(const std::vector<Shown>& scenes) {
         const Chart wide = chart_of(shown, front, 860, 440), narrow = chart_of(shown, front, 400, 400);
         std::string caption = fmt::format(
             "{}×{} pixels, {} settings; the {} on the front are joined, what they dominate is faint. Color: samples "
-            "per pixel.",
+            "per pixel; diamonds choose their own, for a target error.",
             shown.scene->width, shown.scene->height, shown.entries.size(), front.front.size());
         if (front.digit)
             caption += fmt::format(" Along the front, one more digit of RMSE costs {} times the time.",

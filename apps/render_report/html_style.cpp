@@ -6,11 +6,11 @@ const char* const page_style = R"(
 :root { color-scheme: light dark;
   --ink: #17202b; --soft: #566273; --paper: #fbfbfa; --card: #fff; --line: #dfe3e8; --accent: #2f55d4; --code: #f0f2f5;
   --good: #0d6b3c; --bad: #b3261e; --badpaper: #fdecea; --chosen: #eef3ff;
-  --s0: #2f55d4; --s1: #0b8f77; --s2: #c9580a; --s3: #a02c86; --s4: #7a6a12; --s5: #8591a1; }
+  --s0: #2f55d4; --s1: #0b8f77; --s2: #c9580a; --s3: #a02c86; --s4: #7a6a12; --s5: #8591a1; --s6: #17202b; }
 @media (prefers-color-scheme: dark) { :root {
   --ink: #e3e8ee; --soft: #9aa7b6; --paper: #12161b; --card: #191f26; --line: #2d3640; --accent: #8fa9ff; --code: #202831;
   --good: #6fd7a0; --bad: #ff8f85; --badpaper: #3a1f1d; --chosen: #1e2740;
-  --s0: #8fa9ff; --s1: #4fd1b5; --s2: #ffa561; --s3: #e78fd3; --s4: #dac85a; --s5: #748292; } }
+  --s0: #8fa9ff; --s1: #4fd1b5; --s2: #ffa561; --s3: #e78fd3; --s4: #dac85a; --s5: #748292; --s6: #e3e8ee; } }
 * { box-sizing: border-box; }
 html { -webkit-text-size-adjust: 100%; }
 body { margin: 0 auto; padding: 0 1.25rem 4rem; max-width: 74rem; color: var(--ink); background: var(--paper);
@@ -38,13 +38,13 @@ img { display: block; max-width: 100%; height: auto; border-radius: 6px; margin:
 .range { stroke-width: 1.5; opacity: .6; fill: none; } .dot.faint, .range.faint { opacity: .28; } .ring { fill: none; stroke: var(--ink); stroke-width: 2; }
 .dot { stroke: var(--card); stroke-width: 1; }
 .line.s0, .range.s0 { stroke: var(--s0); } .line.s1, .range.s1 { stroke: var(--s1); } .line.s2, .range.s2 { stroke: var(--s2); }
-.line.s3, .range.s3 { stroke: var(--s3); } .line.s4, .range.s4 { stroke: var(--s4); } .line.s5, .range.s5 { stroke: var(--s5); }
+.line.s3, .range.s3 { stroke: var(--s3); } .line.s4, .range.s4 { stroke: var(--s4); } .line.s5, .range.s5 { stroke: var(--s5); } .line.s6, .range.s6 { stroke: var(--s6); }
 .dot.s0, .bar.s0 { fill: var(--s0); } .dot.s1, .bar.s1 { fill: var(--s1); } .dot.s2, .bar.s2 { fill: var(--s2); }
-.dot.s3, .bar.s3 { fill: var(--s3); } .dot.s4, .bar.s4 { fill: var(--s4); } .dot.s5, .bar.s5 { fill: var(--s5); }
+.dot.s3, .bar.s3 { fill: var(--s3); } .dot.s4, .bar.s4 { fill: var(--s4); } .dot.s5, .bar.s5 { fill: var(--s5); } .dot.s6, .bar.s6 { fill: var(--s6); }
 .legend { display: flex; flex-wrap: wrap; gap: .15rem 1rem; list-style: none; margin: 0 0 .5rem; padding: 0; font-size: .88rem; }
 .key { display: inline-block; width: .72em; height: .72em; border-radius: 50%; margin-right: .4em; background: var(--k); }
-.key.square, .key.block { border-radius: 2px; } .key.dashed { border-radius: 0; width: 1.6em; height: 0; background: none; border-top: 2px dashed var(--k); vertical-align: .25em; }
-.key.s0 { --k: var(--s0); } .key.s1 { --k: var(--s1); } .key.s2 { --k: var(--s2); } .key.s3 { --k: var(--s3); } .key.s4 { --k: var(--s4); } .key.s5 { --k: var(--s5); }
+.key.square, .key.block { border-radius: 2px; } .key.diamond { border-radius: 1px; transform: rotate(45deg); } .key.dashed { border-radius: 0; width: 1.6em; height: 0; background: none; border-top: 2px dashed var(--k); vertical-align: .25em; }
+.key.s0 { --k: var(--s0); } .key.s1 { --k: var(--s1); } .key.s2 { --k: var(--s2); } .key.s3 { --k: var(--s3); } .key.s4 { --k: var(--s4); } .key.s5 { --k: var(--s5); } .key.s6 { --k: var(--s6); }
 .scroll { overflow-x: auto; margin: 0 0 1.2rem; border: 1px solid var(--line); border-radius: 12px; background: var(--card); }
 table { border-collapse: collapse; width: 100%; font-size: .92rem; } caption { caption-side: top; text-align: left; padding: .7rem .8rem .3rem; color: var(--soft); }
 caption span { position: sticky; left: .8rem; display: inline-block; max-width: min(100%, calc(100vw - 4rem)); }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <random>
 
+#include "apps/render/target.h"
 #include "measure.h"
 #include "reference.h"
 #include "scene/film_picture.h"
@@ -13,16 +14,26 @@
 namespace cistula::report {
 namespace {
 
+/// At least, of a pixel.
+double least_samples(const Setting& setting) {
+    return setting.adaptive() ? 4 : static_cast<double>(setting.supersample) * setting.supersample;
+}
+
+/// How many times as long a frame takes at least as that of `other`; 0: nothing is known.
+double least_ratio(const Setting& setting, const Setting& other) {
+    const auto cutoff = [](const Setting& s) { return frame_settings(s, 1, 1).truncation(); };
+    if (other.depth > setting.depth || cutoff(other) < cutoff(setting) || other.precision > setting.precision ||
+        other.intersector != setting.intersector)
+        return 0;
+    if (other.adaptive()) return setting.adaptive() ? 1 : 0;  // the cutoffs are the targets'
+    const double ratio = least_samples(setting) / least_samples(other);
+    return ratio >= 1 ? ratio : 0;
+}
+
 /// How long a frame will take at least, from what is known of easier ones; 0: nothing is.
 double predicted_seconds(const Setting& setting, const std::vector<std::pair<Setting, double>>& known) {
     double most = 0;
-    for (const auto& [other, seconds] : known) {
-        const bool easier = other.depth <= setting.depth && other.cutoff >= setting.cutoff &&
-                            other.supersample <= setting.supersample && other.precision <= setting.precision &&
-                            other.intersector == setting.intersector;
-        const double ratio = static_cast<double>(setting.supersample) / other.supersample;
-        if (easier) most = std::max(most, seconds * ratio * ratio);
-    }
+    for (const auto& [other, seconds] : known) most = std::max(most, seconds * least_ratio(setting, other));
     return most;
 }
 
@@ -51,7 +62,7 @@ class Sweep {
         // Easier ones first, so that they tell of harder ones.
         std::stable_sort(plan_.begin(), plan_.end(), [](const PlannedSetting& a, const PlannedSetting& b) {
             const auto effort = [](const Setting& s) {
-                return std::tuple(s.supersample, s.precision, -s.cutoff, s.depth);
+                return std::tuple(s.adaptive(), -s.target_error, s.supersample, s.precision, -s.cutoff, s.depth);
             };
             return effort(a.setting) < effort(b.setting);
         });
@@ -66,16 +77,16 @@ class Sweep {
 
   private:
     void find_yardsticks() {
+        frames_.progress.begin(scene_.name + ": reference", 1);
+        reference_ =
+            reference_picture(frames_, scene_.hash, reference_setting(scene_.base, settings_.quick), settings_.cache);
+        scene_.reference = reference_.yardstick;
         std::vector<std::pair<std::string, Setting>> wanted;
         for (const PlannedSetting& planned : plan_)
             for (const auto& [knob, setting] : planned.alone)
                 if (yardstick_of(setting) == nullptr &&
                     std::none_of(wanted.begin(), wanted.end(), [&](const auto& one) { return one.second == setting; }))
                     wanted.emplace_back(knob, setting);
-        frames_.progress.begin(scene_.name + ": reference", 1);
-        reference_ =
-            reference_picture(frames_, scene_.hash, reference_setting(scene_.base, settings_.quick), settings_.cache);
-        scene_.reference = reference_.yardstick;
         frames_.progress.begin(scene_.name + ": references of single knobs", static_cast<double>(wanted.size()));
         for (const auto& [knob, setting] : wanted) {
             yardsticks_.push_back(reference_picture(frames_, scene_.hash, setting, settings_.cache));
@@ -86,6 +97,7 @@ class Sweep {
     }
 
     const ReferencePicture* yardstick_of(const Setting& setting) const {
+        if (reference_.yardstick.setting == setting) return &reference_;
         for (const ReferencePicture& one : yardsticks_)
             if (one.yardstick.setting == setting) return &one;
         return nullptr;
@@ -109,6 +121,7 @@ class Sweep {
             entry.rays = Rays(film.rays);
             const Picture picture = resolve_picture(film);
             entry.error = compare_with(picture, reference_.picture);
+            note_samples(film, picture, entry);
             for (const auto& [knob, setting] : planned.alone)
                 entry.alone[knob] = compare_with(picture, yardstick_of(setting)->picture);
             entries.push_back(std::move(entry));
@@ -116,6 +129,14 @@ class Sweep {
         }
         seconds_.clear();
         for (const auto& [setting, seconds] : known) seconds_.push_back(seconds);
+    }
+
+    void note_samples(const Film& film, const Picture& picture, Entry& entry) const {
+        const FrameSettings frame = frame_settings(entry.setting, frames_.width, frames_.height);
+        const TargetReport report = target_report(film, frame);
+        entry.samples = static_cast<double>(report.samples) / static_cast<double>(film.pixels.size());
+        if (entry.setting.adaptive())
+            entry.target = {share_over(entry.setting.target_error, picture, reference_.picture), report.missed};
     }
 
     /// One run of each a round, in another order every time: what disturbs the machine for a while disturbs all alike.

@@ -12,6 +12,18 @@ double unit_of(const Film& film) {
     return std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / film.samples;
 }
 
+/// Of every pixel, in the channel where it is largest.
+std::vector<double> largest_differences(const Picture& picture, const Picture& reference) {
+    if (picture.width != reference.width || picture.height != reference.height || picture.pixels.empty() ||
+        picture.pixels.size() != reference.pixels.size())
+        throw std::invalid_argument("two pictures of one size are compared");
+    std::vector<double> largest(picture.pixels.size());
+    for (size_t i = 0; i < largest.size(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            largest[i] = std::max(largest[i], std::abs(picture.pixels[i][c] - reference.pixels[i][c]));
+    return largest;
+}
+
 }  // namespace
 
 double Metrics::psnr() const {
@@ -46,24 +58,20 @@ Remainder remainder_of(const Film& film) {
 }
 
 Metrics compare_with(const Picture& picture, const Picture& reference) {
-    if (picture.width != reference.width || picture.height != reference.height || picture.pixels.empty() ||
-        picture.pixels.size() != reference.pixels.size())
-        throw std::invalid_argument("compare_with: two pictures of one size");
+    std::vector<double> largest = largest_differences(picture, reference);
     Metrics metrics;
     double squares = 0, relative = 0;
     size_t over = 0, worst = 0;
     for (size_t i = 0; i < picture.pixels.size(); ++i) {
-        double largest = 0;
         for (size_t c = 0; c < 3; ++c) {
             const double here = picture.pixels[i][c], there = reference.pixels[i][c];
             const double square = (here - there) * (here - there);
-            largest = std::max(largest, std::abs(here - there));
             squares += square;
             relative += square / (there * there + relative_epsilon);
             metrics.peak = std::max(metrics.peak, there);
         }
-        if (largest > half_code) ++over;
-        if (largest > metrics.max) metrics.max = largest, worst = i;
+        if (largest[i] > half_code) ++over;
+        if (largest[i] > metrics.max) metrics.max = largest[i], worst = i;
     }
     const double pixels = static_cast<double>(picture.pixels.size());
     metrics.rmse = std::sqrt(squares / (3 * pixels));
@@ -73,12 +81,23 @@ Metrics compare_with(const Picture& picture, const Picture& reference) {
     metrics.worst_y = static_cast<int>(worst / static_cast<size_t>(picture.width));
     metrics.worst_here = picture.pixels[worst];
     metrics.worst_reference = reference.pixels[worst];
+    const size_t others = largest.size() / 1000;  // a thousandth of the pixels may differ by more
+    const auto place = largest.end() - 1 - static_cast<std::ptrdiff_t>(others);
+    std::nth_element(largest.begin(), place, largest.end());
+    metrics.p999 = *place;
     return metrics;
+}
+
+double share_over(double error, const Picture& picture, const Picture& reference) {
+    const std::vector<double> largest = largest_differences(picture, reference);
+    const auto over = std::count_if(largest.begin(), largest.end(), [error](double one) { return one > error; });
+    return static_cast<double>(over) / static_cast<double>(largest.size());
 }
 
 void to_json(Json& json, const Metrics& metrics) {
     json = {{"max", metrics.max},
             {"rmse", metrics.rmse},
+            {"p999", metrics.p999},
             {"relative_mse", metrics.relative_mse},
             {"peak", metrics.peak},
             {"over_half_code", metrics.over_half_code},
@@ -96,6 +115,7 @@ void to_json(Json& json, const Metrics& metrics) {
 void from_json(const Json& json, Metrics& metrics) {
     json.at("max").get_to(metrics.max);
     json.at("rmse").get_to(metrics.rmse);
+    json.at("p999").get_to(metrics.p999);
     json.at("relative_mse").get_to(metrics.relative_mse);
     json.at("peak").get_to(metrics.peak);
     json.at("over_half_code").get_to(metrics.over_half_code);

@@ -23,6 +23,7 @@ struct Remainder {
 /// Of a picture against a reference; over all channels of all pixels unless said otherwise.
 struct Metrics {
     double max = 0, rmse = 0;
+    double p999 = 0;               // 99.9 % of the pixels differ by no more in any channel
     double relative_mse = 0;       // mean of (a - b)^2 / (b^2 + relative_epsilon), b the reference
     double peak = 1;               // the reference's largest value, at least 1
     double over_half_code = 0;     // share of the pixels that differ by more than 0.5/255 in some channel
@@ -41,6 +42,9 @@ Remainder remainder_of(const Film& film);
 
 /// The pictures must have one size.
 Metrics compare_with(const Picture& picture, const Picture& reference);
+
+/// The share of the pixels that differ by more than `error` in some channel. The pictures must have one size.
+double share_over(double error, const Picture& picture, const Picture& reference);
 
 void to_json(Json& json, const Metrics& metrics);
 void from_json(const Json& json, Metrics& metrics);

@@ -11,6 +11,7 @@
 #include "apps/common/machine.h"
 #include "scene/error.h"
 #include "scene/suggest.h"
+#include "target_table.h"
 
 namespace cistula::report {
 
@@ -22,6 +23,7 @@ void from_json(const Json& json, Timing& timing) {
 }
 
 CISTULA_RECORD_FIELDS(Rays, primary, reflected, transmitted, shadow)
+CISTULA_RECORD_FIELDS(TargetOutcome, over, missed)
 CISTULA_RECORD_FIELDS(Yardstick, knob, setting, remainder, seconds, cached)
 CISTULA_RECORD_FIELDS(Share, what, material, value)
 CISTULA_RECORD_FIELDS(Stage, name, precision, time)
@@ -52,6 +54,8 @@ void to_json(Json& json, const Entry& entry) {
     json["setting"] = entry.setting;
     json["film_hash"] = entry.film_hash;
     json["rays"] = entry.rays;
+    json["samples"] = entry.samples;
+    if (entry.target) json["target"] = *entry.target;
     json["error"] = entry.error;
     json["alone"] = entry.alone;
 }
@@ -66,6 +70,8 @@ void from_json(const Json& json, Entry& entry) {
     json.at("setting").get_to(entry.setting);
     json.at("film_hash").get_to(entry.film_hash);
     json.at("rays").get_to(entry.rays);
+    json.at("samples").get_to(entry.samples);
+    if (json.contains("target")) entry.target = json.at("target").get<TargetOutcome>();
     json.at("error").get_to(entry.error);
     for (const auto& [knob, metrics] : json.at("alone").items()) metrics.get_to(entry.alone[knob]);
 }
@@ -79,6 +85,18 @@ Json parity_totals(const Record& record) {
     return {{"compared", compared}, {"differing", differing}};
 }
 
+/// By scene, for programs: the page makes its own from the entries.
+Json target_tables(const Record& record) {
+    Json tables = Json::object();
+    for (const SceneRecord& scene : record.scenes) {
+        std::vector<const Entry*> entries;
+        for (const Entry& entry : record.entries)
+            if (entry.scene == scene.name) entries.push_back(&entry);
+        tables[scene.name] = target_table(entries);
+    }
+    return tables;
+}
+
 void require(bool holds, const std::string& what) {
     if (!holds) throw std::runtime_error(what);
 }
@@ -88,6 +106,8 @@ void check(const Record& record) {
     require(record.context.is_object(), "its context is no object");
     for (const Entry& entry : record.entries) {
         require(!entry.wall.empty(), setting_name(entry.setting) + " has no times");
+        require(entry.setting.adaptive() == entry.target.has_value(),
+                setting_name(entry.setting) + ": a target is met or missed, and nothing else is");
         bool known = false;
         for (const SceneRecord& scene : record.scenes) known = known || scene.name == entry.scene;
         require(known, "no scene is called " + entry.scene);
@@ -132,6 +152,7 @@ Json machine_context(const std::string& backend, const std::vector<std::string>&
 std::string record_text(const Record& record) {
     Json json = {{"context", record.context}, {"benchmarks", record.entries}, {"scenes", record.scenes}};
     json["parity"] = parity_totals(record);
+    json["targets"] = target_tables(record);
     json["scaling"] = record.scaling;
     if (record.seed) json["seed"] = *record.seed;
     if (record.verify) json["verify"] = *record.verify;

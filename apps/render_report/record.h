@@ -25,6 +25,12 @@ struct Rays {
     uint64_t total() const { return primary + reflected + transmitted + shadow; }
 };
 
+/// Of a setting with a target.
+struct TargetOutcome {
+    double over = 0;      // share of the pixels that are farther than the target from the reference
+    uint64_t missed = 0;  // pixels that say so themselves: see apps/render/target.h
+};
+
 /// A setting of the sweep, measured.
 struct Entry {
     std::string scene;  // SceneRecord::name
@@ -32,6 +38,8 @@ struct Entry {
     Timing wall, kernel, transfer;  // ms; the latter two empty where the backend has no device of its own
     std::string film_hash;
     Rays rays;
+    double samples = 0;  // per pixel, in the mean
+    std::optional<TargetOutcome> target;
     Metrics error;                         // against the scene's reference: all knobs together
     std::map<std::string, Metrics> alone;  // knob -> against the same frame without that knob's error
 };

@@ -14,6 +14,11 @@ std::unique_ptr<Renderer> make_exact(const Machine& machine, std::shared_ptr<con
     return make_renderer<Real>(machine.backend, std::move(scene), machine.cuda);
 }
 
+template <class Real>
+std::unique_ptr<Renderer> make_native(const Machine& machine, std::shared_ptr<const CompiledScene<Real>> scene) {
+    return make_renderer<Real>(machine.backend, std::move(scene), machine.cuda, Intersection::native);
+}
+
 Stage stage(const char* name, Precision precision, double seconds) {
     return {name, precision_name(precision), {{seconds * 1e3}}};
 }
@@ -23,6 +28,7 @@ Stage stage(const char* name, Precision precision, double seconds) {
 const std::vector<Intersector>& intersectors() {
     static const std::vector<Intersector> all = {
         {"exact", [](Backend) { return true; }, make_exact<float>, make_exact<double>},
+        {"native", [](Backend backend) { return backend == Backend::embree; }, make_native<float>, make_native<double>},
     };
     return all;
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/render/options.h"
+
 namespace cistula::report {
 
 void to_json(Json& json, const Setting& setting) {
@@ -9,7 +11,8 @@ void to_json(Json& json, const Setting& setting) {
             {"cutoff", setting.cutoff},
             {"precision", precision_name(setting.precision)},
             {"supersample", setting.supersample},
-            {"intersector", setting.intersector}};
+            {"intersector", setting.intersector},
+            {"target_error", setting.target_error}};
 }
 
 void from_json(const Json& json, Setting& setting) {
@@ -18,6 +21,15 @@ void from_json(const Json& json, Setting& setting) {
     setting.precision = json.at("precision") == "double" ? Precision::double_ : Precision::single_;
     setting.supersample = json.at("supersample");
     setting.intersector = json.at("intersector");
+    setting.target_error = json.at("target_error");
+}
+
+Setting with_target(Setting setting, double target_error) {
+    setting.target_error = target_error;
+    setting.depth = largest_depth;
+    setting.cutoff = 0;
+    setting.supersample = 1;
+    return setting;
 }
 
 FrameSettings frame_settings(const Setting& setting, int width, int height) {
@@ -26,21 +38,27 @@ FrameSettings frame_settings(const Setting& setting, int width, int height) {
     settings.full_height = height;
     settings.crop = {0, 0, width, height};
     settings.supersample = setting.supersample;
-    settings.depth = setting.depth;
+    settings.depth = setting.adaptive() ? largest_depth : setting.depth;
     settings.cutoff = setting.cutoff;
+    settings.target_error = setting.target_error;
     return settings;
 }
 
 std::string setting_name(const Setting& setting) {
+    const std::string intersector = setting.intersector == "exact" ? "" : "/" + setting.intersector;
+    if (setting.adaptive())
+        return fmt::format("target:{}/{}{}", setting.target_error, precision_name(setting.precision), intersector);
     return fmt::format("depth:{}/cutoff:{}/{}/samples:{}x{}{}", setting.depth, setting.cutoff,
-                       precision_name(setting.precision), setting.supersample, setting.supersample,
-                       setting.intersector == "exact" ? "" : "/" + setting.intersector);
+                       precision_name(setting.precision), setting.supersample, setting.supersample, intersector);
 }
 
 std::string command_line(const std::string& scene, int width, int height, const Setting& setting,
                          const std::string& backend) {
-    return fmt::format("render {} --res {}x{} --supersample {} --depth {} --cutoff {} --precision {}{}{}", scene, width,
-                       height, setting.supersample, setting.depth, setting.cutoff, precision_name(setting.precision),
+    const std::string accuracy = setting.adaptive() ? fmt::format("--target-error {}", setting.target_error)
+                                                    : fmt::format("--supersample {} --depth {} --cutoff {}",
+                                                                  setting.supersample, setting.depth, setting.cutoff);
+    return fmt::format("render {} --res {}x{} {} --precision {}{}{}", scene, width, height, accuracy,
+                       precision_name(setting.precision),
                        setting.intersector == "exact" ? "" : " --intersector " + setting.intersector,
                        backend == "embree" ? "" : " --backend " + backend);
 }

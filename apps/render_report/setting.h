@@ -15,16 +15,23 @@ struct Setting {
     Precision precision = Precision::single_;
     int supersample = 1;
     std::string intersector = "exact";  // see renderers.h
+    double target_error = 0;            // above 0: adaptive samples; supersample and cutoff then say nothing
 
+    bool adaptive() const { return target_error > 0; }
     bool operator==(const Setting&) const = default;
 };
 
 void to_json(Json& json, const Setting& setting);
 void from_json(const Json& json, Setting& setting);
 
+/// Of a setting with a target, depth 1024.
 FrameSettings frame_settings(const Setting& setting, int width, int height);
 
-/// "depth:4/cutoff:0/float/samples:1x1"; names of intersectors other than the exact ones are added.
+/// As deep as a render goes, one sample and no cutoff: what they say is the target's business.
+Setting with_target(Setting setting, double target_error);
+
+/// "depth:4/cutoff:0/float/samples:1x1", or "target:0.01/float"; names of intersectors other than the exact ones are
+/// added.
 std::string setting_name(const Setting& setting);
 
 /// The command that renders this: "render scenes/platonic.json --res 1280x720 --depth 4 ...".

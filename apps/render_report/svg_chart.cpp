@@ -75,9 +75,16 @@ std::string open_svg(int width, int height, const std::string& description) {
                        escaped(description));
 }
 
+const char* key_shape(DotShape shape) {
+    return shape == DotShape::square ? " square" : shape == DotShape::diamond ? " diamond" : "";
+}
+
 std::string dot(const ChartSeries& series, const ChartPoint& point, double x, double y) {
     const char* faint = point.faint ? " faint" : "";
-    if (series.square)
+    if (series.shape == DotShape::diamond)
+        return fmt::format("<path class=\"dot s{}{}\" d=\"M{:.1f} {:.1f}l6 6l-6 6l-6 -6z\">{}</path>", series.color,
+                           faint, x, y - 6, tip_of(point.tip));
+    if (series.shape == DotShape::square)
         return fmt::format("<rect class=\"dot s{}{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"8\" height=\"8\">{}</rect>",
                            series.color, faint, x - 4, y - 4, tip_of(point.tip));
     return fmt::format("<circle class=\"dot s{}{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4.4\">{}</circle>", series.color,
@@ -168,7 +175,7 @@ std::string chart_legend(const Chart& chart) {
         if (series.label.empty()) continue;
         ++count;
         items += fmt::format("<li><span class=\"key s{}{}{}\"></span>{}</li>", series.color,
-                             series.dashed ? " dashed" : "", series.square ? " square" : "", escaped(series.label));
+                             series.dashed ? " dashed" : "", key_shape(series.shape), escaped(series.label));
     }
     return count < 2 ? "" : "<ul class=\"legend\">" + items + "</ul>\n";
 }

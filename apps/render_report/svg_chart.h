@@ -1,4 +1,4 @@
-// Small charts as inline SVG. Colors are classes (s0 to s4, see html_style.cpp), so that light and dark are the page's
+// Small charts as inline SVG. Colors are classes (s0 to s6, see html_style.cpp), so that light and dark are the page's
 // business.
 #pragma once
 
@@ -15,12 +15,15 @@ struct ChartPoint {
     bool faint = false;
 };
 
+enum class DotShape { circle, square, diamond };
+
 struct ChartSeries {
     std::string label;  // for the legend; empty: not in it
     int color = 0;      // s0 ...
     std::vector<ChartPoint> points;
     bool line = true, dots = true;
-    bool dashed = false, square = false;
+    bool dashed = false;
+    DotShape shape = DotShape::circle;
 };
 
 struct ChartAxis {

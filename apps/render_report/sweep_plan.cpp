@@ -42,6 +42,7 @@ const std::vector<Knob>& knobs() {
         {"precision", "Precision", "surfaces along a path", false, [](const Setting& s) { return double(s.depth); }},
         {"intersector", "Intersector", "surfaces along a path", false,
          [](const Setting& s) { return double(s.depth); }},
+        {"target", "Target error", "target error", true, [](const Setting& s) { return s.target_error; }},
     };
     return all;
 }
@@ -89,6 +90,10 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
             setting.intersector = other;
             plan.add(setting).alone["intersector"] = exact;
         }
+    // A target is about all of the error.
+    for (const double target : quick ? std::vector<double>{0.1, 0.03, 0.01, 0.004}
+                                     : std::vector<double>{0.1, 0.03, 0.01, 0.004, 0.002, 0.001})
+        plan.add(with_target(base, target)).alone["target"] = reference_setting(base, quick);
     return plan.all;
 }
 
