@@ -70,6 +70,30 @@ TYPED_TEST(Cuda, GoldenScenesAreEqual) {
     }
 }
 
+TYPED_TEST(Cuda, AdaptiveFramesAreEqual) {
+    CISTULA_NEEDS_GPU();
+    std::vector<SceneDescription> all = {scene_of("benchmark"), scene_of("glass"), scene_of("mesh")};
+    for (uint64_t seed = 3; seed < generated_scene_count; seed += 31)
+        all.push_back(generated_scene(seed, source + "/scenes"));
+    for (const SceneDescription& scene : all) {
+        FrameSettings settings = golden::settings_for(scene);
+        settings.full_width = 100;  // no multiple of a tile
+        settings.full_height = 57;
+        settings.crop = {3, 5, 90, 50};
+        settings.depth = std::min(scene.depth, 6);
+        for (const double target : {0.1, 0.01}) {
+            settings.target_error = target;
+            settings.max_samples = target == 0.1 ? 256 : 40;
+            CudaOptions options;
+            for (const bool always_tree : {false, true}) {
+                options.always_tree = always_tree;
+                EXPECT_EQ(render(*this->gpu(scene, options), scene, settings), this->expected(scene, settings))
+                    << scene.source << ", target " << target;
+            }
+        }
+    }
+}
+
 TYPED_TEST(Cuda, GeneratedScenesAreEqualWhateverThePath) {
     CISTULA_NEEDS_GPU();
     for (uint64_t seed = 5; seed < generated_scene_count; seed += 16) {
