@@ -251,6 +251,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     const unsigned int places = columns * unsigned(job.rows / tile_height) * warp_threads;
     BranchStack<Real, typename Intersector::Media> stack;
     LatticePixel pixel(job.frame.lattice);
+    const bool gradual = shades_gradually(scene);
     int x = 0, y = 0;
     bool busy = false;
     for (;;) {
@@ -269,7 +270,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
         }
         if (!busy) break;
         const int film_row = (job.first_strip + y / strip_rows * job.strip_step) * strip_rows + y % strip_rows;
-        render_wanted<Real, E>(scene, job.frame, Intersector{scene}, job.x + x, job.y + film_row, column, row, slot, pixel, own,
+        render_wanted<Real, E>(scene, job.frame, Intersector{scene}, job.x + x, job.y + film_row, column, row, slot, gradual, pixel, own,
                                stack);
     }
     __syncthreads();

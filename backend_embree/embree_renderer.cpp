@@ -11,17 +11,17 @@ template <class Real>
 class EmbreeRenderer : public Renderer {
   public:
     EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, std::shared_ptr<const EmbreeTree<Real>> tree)
-        : scene_(std::move(scene)), view_(scene_->view()), tree_(std::move(tree)) {}
+        : scene_(std::move(scene)), view_(scene_->view()), tree_(std::move(tree)) {
+        if (!tree_) plain_ = make_host_renderer<Real>(scene_, HostIntersector::brute);
+    }
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
-        if (!tree_)
-            return render_frame(*scene_, view_, BruteIntersector<Real>{view_}, camera, settings, film, progress,
-                                effects_);
+        if (plain_) return plain_->render(camera, settings, film, progress);
         return render_frame(*scene_, view_, EmbreeIntersector<Real>{view_, tree_->scene()}, camera, settings, film,
                             progress, effects_);
     }
-    uint32_t effects() const override { return effects_; }
+    uint32_t effects() const override { return plain_ ? plain_->effects() : effects_; }
     std::string intersector() const override { return "embree"; }
     size_t memory() const override { return scene_->memory() + (tree_ ? tree_->memory() : 0); }
 
@@ -29,6 +29,7 @@ class EmbreeRenderer : public Renderer {
     std::shared_ptr<const CompiledScene<Real>> scene_;
     SceneView<Real> view_;
     std::shared_ptr<const EmbreeTree<Real>> tree_;
+    std::unique_ptr<Renderer> plain_;  // where a loop over the few primitives there are does without a tree
     uint32_t effects_ = 0;
 };
 

@@ -19,9 +19,9 @@ inline void use_default_rounding() {
     _mm_setcsr(0x1f80);
 }
 
-template <class Real, class E, class Intersector>
-bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
-                  const FrameSettings& settings, Film& film, RenderProgress& progress) {
+/// Calls render(x, y, record, work) for every pixel of the film, in tiles.
+template <class Render>
+bool for_each_pixel(const FrameSettings& settings, Film& film, RenderProgress& progress, const Render& render) {
     const PixelRect rect = film.rect;
     const int tile = settings.tile, columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
     std::mutex totals;
@@ -36,11 +36,7 @@ bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const In
             for (int y = y0; y < y1; ++y)
                 for (int x = x0; x < x1; ++x) {
                     PixelWork own;
-                    PixelRecord& pixel = film.pixels[size_t(y) * size_t(rect.width) + size_t(x)];
-                    if (frame.lattice.target > 0)
-                        render_adaptive_pixel<Real, E>(scene, frame, intersector, rect.x + x, rect.y + y, pixel, own);
-                    else
-                        render_pixel<Real, E>(scene, frame, intersector, rect.x + x, rect.y + y, pixel, own);
+                    render(rect.x + x, rect.y + y, film.pixels[size_t(y) * size_t(rect.width) + size_t(x)], own);
                     rays.add(own.rays);
                     flags |= own.flags;
                 }
@@ -54,6 +50,24 @@ bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const In
     return !progress.stop.load();
 }
 
+template <class Real, class E, class Intersector>
+bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
+                  const FrameSettings& settings, Film& film, RenderProgress& progress) {
+    return for_each_pixel(settings, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+        render_pixel<Real, E>(scene, frame, intersector, x, y, pixel, own);
+    });
+}
+
+/// Of a frame with a target error.
+template <class Real, class E, class Intersector>
+bool render_adaptive_tiles(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
+                           const FrameSettings& settings, Film& film, RenderProgress& progress) {
+    const bool gradual = shades_gradually(scene);
+    return for_each_pixel(settings, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+        render_adaptive_pixel<Real, E>(scene, frame, intersector, x, y, gradual, pixel, own);
+    });
+}
+
 /// Runs the least instantiated mask that contains settings.effects (0: what the scene requires); `ran` tells which.
 template <class Real, class Intersector>
 bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, const Intersector& intersector,
@@ -62,14 +76,20 @@ bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& sc
     use_default_rounding();
     FrameView frame = frame_view(compiled, camera, settings);
     prepare_film(film, settings, compiled.radiance_exponent);
-    if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media)) film.flags |= flag_media_overflow;
+    if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media))
+        film.flags |= flag_media_overflow;
+    if (settings.adaptive()) {  // one mask for all: what it would save is less than what compiling more takes
+        ran = all_effects;
+        return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
+    }
     const int index = least_mask(settings.effects | compiled.effects);
     ran = effect_masks[index];
     using Render = bool (*)(const SceneView<Real>&, const FrameView&, const Intersector&, const FrameSettings&, Film&,
                             RenderProgress&);
     static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
         return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
-    }(std::make_index_sequence<effect_mask_count>());
+    }
+    (std::make_index_sequence<effect_mask_count>());
     return table[size_t(index)](scene, frame, intersector, settings, film, progress);
 }
 

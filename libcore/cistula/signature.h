@@ -21,8 +21,16 @@ struct Signature {
     }
 };
 
-/// The faces that are hit and what arrives from lights. Where bodies absorb, that changes gradually, and only whether
-/// anything arrives tells.
+/// Whether any body absorbs: what arrives of a light then changes gradually. Asked of the scene, not of the effects
+/// that are compiled in, so that these leave the image alone.
+template <class Scene>
+CISTULA_INLINE bool shades_gradually(const Scene& scene) {
+    bool any = false;
+    for (uint32_t i = 0; i < scene.materials.size; ++i) any |= largest_component(scene.materials[i].absorption) > 0;
+    return any;
+}
+
+/// The faces that are hit and what arrives from lights: of what changes gradually only whether any does.
 template <class Inner>
 struct SigningIntersector {
     using Media = typename Inner::Media;
@@ -30,6 +38,7 @@ struct SigningIntersector {
     using Real = typename Scene::Scalar;
     const Inner& inner;
     Signature& signature;
+    bool gradual;  // shades_gradually
 
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         const Hit<Real> hit = inner.closest(ray);
@@ -43,17 +52,15 @@ struct SigningIntersector {
         const Vec3<Real> arrives = inner.template transmittance<E>(shadow);
         if (signature.counts) {
             const uint32_t light = uint32_t(shadow.light - inner.scene.lights.data);
-            signature.add(told_apart<E>(arrives.x) + 3 * told_apart<E>(arrives.y), 5 * told_apart<E>(arrives.z),
+            signature.add(told_apart(arrives.x) + 3 * told_apart(arrives.y), 5 * told_apart(arrives.z),
                           light + 0x10000u);
         }
         return arrives;
     }
 
   private:
-    template <class E>
-    CISTULA_INLINE static uint32_t told_apart(Real share) {
-        if constexpr (E::has(effect_absorption)) return share > Real(0) ? 1 : 0;
-        return bits_as<uint32_t>(float(share));
+    CISTULA_INLINE uint32_t told_apart(Real share) const {
+        return gradual ? (share > Real(0) ? 1u : 0u) : bits_as<uint32_t>(float(share));
     }
 };
 
