@@ -68,8 +68,8 @@ TEST(FilmPicture, ChannelsAndWindows) {
 
 TEST(FilmPicture, Values) {
     const int64_t one = int64_t(1) << 60;  // four samples
-    PixelRecord lit = {{4 * one, 2 * one, one}, {one, 0, 0}, {one, 3 * one, 0}, 3, 77, 5, 2.5f, {0, 0.6f, -0.8f}};
-    PixelRecord empty = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, 4, 0, infinity, {0, 0, 0}};
+    PixelRecord lit = {{4 * one, 2 * one, one}, {one, 0, 0}, {one, 3 * one, 0}, 3, 77, 5, 2.5f, {0, 0.6f, -0.8f}, 4, 0};
+    PixelRecord empty = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, 4, 0, infinity, {0, 0, 0}, 9, 0};
     const Film film = film_of(4, 3, {lit, empty});
     const LayeredPicture picture = to_layers(film, everything);
     const auto expect = [&](const char* name, float first, float second) {
@@ -83,7 +83,7 @@ TEST(FilmPicture, Values) {
     expect("error.G", 6, 0);
     expect("error.B", 0, 0);
     expect("id", 5, 0);
-    expect("samples", 4, 4);
+    expect("samples", 4, 9);  // each pixel's own
     expect("cost", 77, 4);
     expect("Z", 2.5f, infinity);
     expect("N.X", 0, 0);
