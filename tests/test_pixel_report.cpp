@@ -359,8 +359,9 @@ TEST_F(PixelReports, RefuseInOneLine) {
 /// The sample in the documentation is what the program prints.
 TEST(PixelDocs, ShowWhatIsPrinted) {
     const std::string docs = bytes_of(std::string(CISTULA_SOURCE_DIR) + "/docs/programs.md");
-    const size_t command = docs.find("$ render scenes/");
-    ASSERT_NE(command, docs.npos);
+    const size_t option = docs.find(" --pixel ", docs.find("$ render scenes/glass.json --pixel"));
+    ASSERT_NE(option, docs.npos);
+    const size_t command = docs.rfind("$ render", option);
     const size_t end_of_line = docs.find('\n', command), end = docs.find("```", command);
     std::istringstream words(docs.substr(command + 2, end_of_line - command - 2));
     Arguments arguments;
