@@ -209,7 +209,7 @@ void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
         const int together = part.strip_step == 1 ? std::max(int(copy_bytes / row_bytes), 1) : 1;
         tbb::parallel_for(0, (count + together - 1) / together, [&](int i) {
             const int begin = i * together, row = first + begin;
-            const int y = (part.first_strip + row / strip_rows * part.strip_step) * strip_rows + row % strip_rows;
+            const int y = row_of_strips(part.first_strip, part.strip_step, row);
             const int rows_here = std::min({together, count - begin, part.rect.height - y});
             if (rows_here > 0)
                 std::memcpy(&film.pixels[size_t(y) * width], from + size_t(begin) * width, size_t(rows_here) * row_bytes);

@@ -11,6 +11,11 @@ namespace cistula {
 /// Rows of a frame come in strips of this many, so that several devices can take turns.
 inline constexpr int strip_rows = 8;
 
+/// The row of a rectangle on which row `row` of every step-th strip from `first_strip` on lies.
+CISTULA_INLINE int row_of_strips(int first_strip, int strip_step, int row) {
+    return (first_strip + row / strip_rows * strip_step) * strip_rows + row % strip_rows;
+}
+
 /// Ray counts and flags, added up by many blocks: spread over slots, so that they do not queue for one.
 struct DeviceTally {
     static constexpr int slots = 64;

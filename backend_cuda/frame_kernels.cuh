@@ -187,7 +187,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     const int left = int(blockIdx.x) * block.width, top = int(blockIdx.y) * block.height;
     const int place = shares ? int(threadIdx.x) : r * block.width + c;
     const int column = left + c, row = top + r;
-    const int film_row = (job.first_strip + row / strip_rows * job.strip_step) * strip_rows + row % strip_rows;
+    const int film_row = row_of_strips(job.first_strip, job.strip_step, row);
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
     PixelRecord& record = room.records[place];
     if (column < job.width && row < job.rows && film_row < job.height) {
@@ -252,7 +252,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     BranchStack<Real, typename Intersector::Media> stack;
     LatticePixel pixel(job.frame.lattice);
     const bool gradual = shades_gradually(scene);
-    int x = 0, y = 0;
+    int x = 0, y = 0, film_row = 0;
     bool busy = false;
     for (;;) {
         int column, row, slot;
@@ -264,14 +264,13 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
             const unsigned int tile = place / warp_threads, in_tile = place % warp_threads;
             x = int(tile % columns * tile_width + in_tile % tile_width);
             y = int(tile / columns * tile_height + in_tile / tile_width);
-            const int film_row = (job.first_strip + y / strip_rows * job.strip_step) * strip_rows + y % strip_rows;
+            film_row = row_of_strips(job.first_strip, job.strip_step, y);
             busy = x < job.width && film_row < job.height;
             if (busy) pixel.begin(record);
         }
         if (!busy) break;
-        const int film_row = (job.first_strip + y / strip_rows * job.strip_step) * strip_rows + y % strip_rows;
-        render_wanted<Real, E>(scene, job.frame, Intersector{scene}, job.x + x, job.y + film_row, column, row, slot, gradual, pixel, own,
-                               stack);
+        render_wanted<Real, E>(scene, job.frame, Intersector{scene}, job.x + x, job.y + film_row, column, row, slot, gradual,
+                               pixel, own, stack);
     }
     __syncthreads();
     add_to_tally(*job.tally, own.rays, own.flags);

@@ -28,6 +28,39 @@ struct ShadowQuery {
 };
 
 template <class Real>
+void set_ray(RTCRay& out, const Ray<Real>& ray, float near_t, float far_t) {
+    out.org_x = float(ray.origin.x);
+    out.org_y = float(ray.origin.y);
+    out.org_z = float(ray.origin.z);
+    out.dir_x = float(ray.direction.x);
+    out.dir_y = float(ray.direction.y);
+    out.dir_z = float(ray.direction.z);
+    out.tnear = near_t;
+    out.tfar = far_t;
+    out.time = 0.0f;
+    out.mask = ~0u;
+    out.id = 0;
+    out.flags = 0;
+}
+
+/// Calls back for what may lie after ray.after.
+template <class Real>
+void walk_closest(RTCScene tree, EmbreeContext& context, const Ray<Real>& ray) {
+    RTCRayHit rayhit;
+    set_ray(rayhit.ray, ray, tree_near(ray.after.t), RealTraits<float>::infinity);
+    rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    embree_intersect(tree, context, rayhit);
+}
+
+/// Calls back for what may lie before the light.
+template <class Real>
+void walk_shadow(RTCScene tree, EmbreeContext& context, const ShadowRay<Real>& shadow) {
+    RTCRay ray;
+    set_ray(ray, shadow.ray, 0.0f, tree_far(shadow.distance));
+    embree_occluded(tree, context, ray);
+}
+
+template <class Real>
 struct EmbreeIntersector {
     using Media = MediaList;
     using Scene = SceneView<Real>;
@@ -42,10 +75,7 @@ struct EmbreeIntersector {
         query.scene = &scene;
         query.ray = &ray;
         query.triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
-        RTCRayHit rayhit;
-        set_ray(rayhit.ray, ray, tree_near(ray.after.t), RealTraits<float>::infinity);
-        rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        embree_intersect(tree, query.context, rayhit);
+        walk_closest(tree, query.context, ray);
         return query.best;
     }
 
@@ -61,25 +91,8 @@ struct EmbreeIntersector {
             shadow_primitive<Real, E>(*q.scene, primitive, *q.shadow, q.triangle_ray, q.sum);
         };
         shadow_start<Real, E>(scene, shadow, query.sum);
-        RTCRay ray;
-        set_ray(ray, shadow.ray, 0.0f, tree_far(shadow.distance));
-        embree_occluded(tree, query.context, ray);
+        walk_shadow(tree, query.context, shadow);
         return query.sum.template share<E, Real>();
-    }
-
-    static void set_ray(RTCRay& out, const Ray<Real>& ray, float near_t, float far_t) {
-        out.org_x = float(ray.origin.x);
-        out.org_y = float(ray.origin.y);
-        out.org_z = float(ray.origin.z);
-        out.dir_x = float(ray.direction.x);
-        out.dir_y = float(ray.direction.y);
-        out.dir_z = float(ray.direction.z);
-        out.tnear = near_t;
-        out.tfar = far_t;
-        out.time = 0.0f;
-        out.mask = ~0u;
-        out.id = 0;
-        out.flags = 0;
     }
 
     /// RTCIntersectFunctionN of the one user geometry.

@@ -88,8 +88,7 @@ bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& sc
                             RenderProgress&);
     static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
         return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
-    }
-    (std::make_index_sequence<effect_mask_count>());
+    }(std::make_index_sequence<effect_mask_count>());
     return table[size_t(index)](scene, frame, intersector, settings, film, progress);
 }
 

@@ -58,7 +58,8 @@ struct NativeShadow {
     template <class E>
     void add(const NativeTriangle& triangle, Real t, bool enters) {
         const Ray<Real>& ray = shadow.ray;
-        if (!(t < shadow.distance) || leaves_behind(scene, ray, triangle, t) || holds_light(triangle)) return;
+        if (!(t < shadow.distance) || leaves_behind(scene, ray, triangle, t)) return;
+        if (lies_on(scene, *shadow.light, triangle.solid, triangle.face)) return;
         const Solid& solid = scene.solids[triangle.solid];
         if (solid.kind == SolidKind::convex && enters && ray.media.contains(triangle.solid)) return;
         const Material<Real>& material = scene.materials[solid.material];
@@ -78,14 +79,6 @@ struct NativeShadow {
                                     scene.extent);
             });
     }
-
-    bool holds_light(const NativeTriangle& triangle) const {
-        for (uint32_t i = 0; i < shadow.light->incident_count; ++i) {
-            const Incident& face = scene.incidents[shadow.light->first_incident + i];
-            if (face.solid == triangle.solid && face.face == triangle.face) return true;
-        }
-        return false;
-    }
 };
 
 template <class Real>
@@ -99,10 +92,7 @@ struct NativeIntersector {
         NativeClosest<Real> query{{}, scene, ray, {}};
         if (!is_finite(ray)) return query.best;
         embree_init(query.context);
-        RTCRayHit rayhit;
-        EmbreeIntersector<Real>::set_ray(rayhit.ray, ray, tree_near(ray.after.t), RealTraits<float>::infinity);
-        rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        embree_intersect(tree, query.context, rayhit);
+        walk_closest(tree, query.context, ray);
         return query.best;
     }
 
@@ -115,9 +105,7 @@ struct NativeIntersector {
             }};
         embree_init(query.context);
         query.template start<E>();
-        RTCRay ray;
-        EmbreeIntersector<Real>::set_ray(ray, shadow.ray, 0.0f, tree_far(shadow.distance));
-        embree_occluded(tree, query.context, ray);
+        walk_shadow(tree, query.context, shadow);
         return query.sum.template share<E, Real>();
     }
 

@@ -1,33 +1,16 @@
 #include "backend_embree/native_triangles.h"
 
+#include "scene/solid_planes.h"
+
 namespace cistula {
 namespace {
 
 using Point = Vec3<double>;
 using Polygon = std::vector<Point>;
 
-/// normal.x <= offset.
-struct HalfSpace {
-    Point normal;
-    double offset;
-    uint32_t face;
-};
-
-template <class Real>
-std::vector<HalfSpace> half_spaces(const SceneView<Real>& scene, const Solid& solid) {
-    std::vector<HalfSpace> all;
-    for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
-        const Point normal(slab.normal);
-        if (slab.low > -RealTraits<Real>::infinity) all.push_back({-normal, -double(slab.low), 2 * i});
-        all.push_back({normal, double(slab.high), 2 * i + 1});
-    }
-    return all;
-}
-
 /// A square in the plane about the point below `center`, larger than any solid, counter-clockwise seen against the
 /// normal.
-Polygon square_on(const HalfSpace& plane, const Point& center, double half) {
+Polygon square_on(const SolidPlane& plane, const Point& center, double half) {
     const Point& n = plane.normal;
     const Point axis = magnitude(n.x) < 0.5 ? Point(1, 0, 0) : Point(0, 1, 0);
     const Point a = normalized(cross(axis, n)), b = cross(n, a);
@@ -36,7 +19,7 @@ Polygon square_on(const HalfSpace& plane, const Point& center, double half) {
 }
 
 /// What of a convex polygon is in the half-space (Sutherland and Hodgman 1974).
-Polygon clipped(const Polygon& polygon, const HalfSpace& by) {
+Polygon clipped(const Polygon& polygon, const SolidPlane& by) {
     Polygon kept;
     for (size_t i = 0; i < polygon.size(); ++i) {
         const Point &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
@@ -67,12 +50,12 @@ class Corners {
 template <class Real>
 void append_convex(const SceneView<Real>& scene, uint32_t index, std::vector<NativeTriangle>& triangles) {
     const Solid& solid = scene.solids[index];
-    const std::vector<HalfSpace> planes = half_spaces(scene, solid);
+    const std::vector<SolidPlane> planes = solid_planes(scene, solid);
     const double extent = double(scene.extent);
     Corners corners(double(incidence<Real>) * extent);
-    for (const HalfSpace& plane : planes) {
+    for (const SolidPlane& plane : planes) {
         Polygon polygon = square_on(plane, Point(solid.center), 4 * extent);
-        for (const HalfSpace& other : planes)
+        for (const SolidPlane& other : planes)
             if (other.face != plane.face) polygon = clipped(polygon, other);
         Polygon face;
         for (const Point& p : polygon)

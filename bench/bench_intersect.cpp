@@ -95,7 +95,7 @@ class Theirs {
         EmbreeContext context;
         embree_init(context);
         RTCRayHit rayhit;
-        EmbreeIntersector<float>::set_ray(rayhit.ray, ray, 0.0f, RealTraits<float>::infinity);
+        set_ray(rayhit.ray, ray, 0.0f, RealTraits<float>::infinity);
         rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         embree_intersect(scene_, context, rayhit);
         return rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? RealTraits<float>::infinity : rayhit.ray.tfar;

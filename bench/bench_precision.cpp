@@ -17,9 +17,7 @@ CameraFrame camera;
 void time_frame(benchmark::State& state, Precision precision, int depth, uint32_t effects) {
     Renderer& renderer = *renderers[size_t(precision)];
     FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
+    settings.set_size(width, height);
     settings.depth = depth;
     settings.effects = effects;
     Film film;

@@ -1,7 +1,6 @@
 // seed_baseline: times the course work's algorithm on scenes/benchmark.json, on the GPU or in its loop on the CPU.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -74,10 +73,8 @@ void check(Options& options) {
 }
 
 Json context_of(const Options& options) {
-    char host[256] = {};
-    if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
     Json context = {{"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
-                    {"host_name", host},
+                    {"host_name", host_name()},
                     {"executable", "seed_baseline"},
                     {"num_cpus", std::thread::hardware_concurrency()},
                     {"cpu", processor_name()},

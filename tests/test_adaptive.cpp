@@ -173,9 +173,7 @@ TEST(Lattice, StopsAtTheMostSamplesAndSaysSo) {
 
 FrameSettings small(const SceneDescription& scene, int width = 96, int height = 54) {
     FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
+    settings.set_size(width, height);
     settings.depth = std::min(scene.depth, 6);
     return settings;
 }
@@ -267,7 +265,7 @@ Distance distance_of(const Film& film, const Film& whole, double limit) {
         double error = 0;
         for (int c = 0; c < 3; ++c)
             error = std::max(error, std::abs(double(film.pixels[i].radiance[c] - whole.pixels[i].radiance[c])) *
-                                        std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / 256);
+                                        film.unit());
         distance.over += error > limit;
         distance.worst = std::max(distance.worst, error);
         distance.samples += film.pixels[i].samples / double(film.pixels.size());
@@ -295,7 +293,7 @@ TEST(Adaptive, IsWithinItsTargetOfTheWholeLattice) {
         EXPECT_LT(distance.samples, 80) << name;
         for (const PixelRecord& pixel : film.pixels)
             for (int c = 0; c < 3; ++c)
-                EXPECT_LE(double(pixel.pruned[c]) * std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / 256,
+                EXPECT_LE(double(pixel.pruned[c]) * film.unit(),
                           settings.truncation());
     }
 }

@@ -197,9 +197,7 @@ TYPED_TEST(Cuda, StopsInTheMiddleAndGoesOnAfterwards) {
     CISTULA_NEEDS_GPU();
     const SceneDescription scene = scene_of("benchmark");
     FrameSettings large = golden::settings_for(scene);
-    large.full_width = 1920;
-    large.full_height = 1080;
-    large.crop = {0, 0, 1920, 1080};
+    large.set_size(1920, 1080);
     large.supersample = 8;
     CudaOptions options;
     options.memory_limit = size_t{16} << 20;  // many parts

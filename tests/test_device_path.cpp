@@ -179,9 +179,7 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
     for (const std::string& name : golden::scene_names(source + "/scenes")) {
         const SceneDescription scene = read_scene(source + "/scenes/" + name + ".json");
         FrameSettings settings = golden::settings_for(scene);
-        settings.full_width = 64;
-        settings.full_height = 36;
-        settings.crop = {0, 0, 64, 36};
+        settings.set_size(64, 36);
         settings.cutoff = 0;
         settings.depth = std::min(settings.depth, 8);
         check<TypeParam>(name, scene, settings, done);
@@ -196,8 +194,7 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
     for (const ObjectDescription& object : scene.objects)
         if (const auto* solid = std::get_if<SolidObject>(&object.shape)) scene.camera.position = solid->center;
     FrameSettings settings = golden::settings_for(scene);
-    settings.full_width = settings.full_height = 32;
-    settings.crop = {0, 0, 32, 32};
+    settings.set_size(32, 32);
     check<TypeParam>("benchmark from within", scene, settings, done);
     EXPECT_GT(done.given, 1000u) << "hardly a tree was split";
     EXPECT_GT(done.plain_loops, 0);

@@ -29,9 +29,7 @@ SceneDescription load(const std::string& name) {
 
 FrameSettings small_frame(const SceneDescription& scene, int depth = 0) {
     FrameSettings settings = golden::settings_for(scene);
-    settings.full_width = 160;
-    settings.full_height = 90;
-    settings.crop = {0, 0, 160, 90};
+    settings.set_size(160, 90);
     if (depth > 0) settings.depth = depth;
     return settings;
 }

@@ -17,9 +17,7 @@ const std::filesystem::path scenes = std::string(CISTULA_SOURCE_DIR) + "/scenes"
 
 /// A frame of the same view of at most so many pixels a side.
 FrameSettings smaller(FrameSettings settings, int width, int height) {
-    settings.full_width = std::min(settings.full_width, width);
-    settings.full_height = std::min(settings.full_height, height);
-    settings.crop = {0, 0, settings.full_width, settings.full_height};
+    settings.set_size(std::min(settings.full_width, width), std::min(settings.full_height, height));
     settings.tile = 4;  // so that all threads have part in small frames
     return settings;
 }

@@ -52,9 +52,7 @@ struct Seen {
 template <class Real>
 Seen look(const SceneDescription& scene) {
     FrameSettings settings;
-    settings.full_width = 120;
-    settings.full_height = 90;
-    settings.crop = {0, 0, 120, 90};
+    settings.set_size(120, 90);
     settings.depth = 2;
     Seen seen;
     const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(scene));

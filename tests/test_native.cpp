@@ -39,9 +39,7 @@ Pair render_both(const SceneDescription& scene, const FrameSettings& settings) {
 
 FrameSettings frame_of(const SceneDescription& scene, int width, int height) {
     FrameSettings settings = golden::settings_for(scene);
-    settings.full_width = std::min(settings.full_width, width);
-    settings.full_height = std::min(settings.full_height, height);
-    settings.crop = {0, 0, settings.full_width, settings.full_height};
+    settings.set_size(std::min(settings.full_width, width), std::min(settings.full_height, height));
     return settings;
 }
 

@@ -11,6 +11,7 @@
 #include "apps/render/header_attributes.h"
 #include "apps/render/progress.h"
 #include "apps/render/stats.h"
+#include "cistula/ray_tree.h"
 #include "expect_error.h"
 
 namespace cistula {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <regex>
 
-#include "apps/render_report/film_difference.h"
 #include "apps/render_report/html.h"
 #include "apps/render_report/html_page.h"
 #include "apps/render_report/measure.h"
@@ -18,6 +17,7 @@
 #include "apps/render_report/target_table.h"
 #include "expect_error.h"
 #include "run_program.h"
+#include "scene/film_difference.h"
 
 namespace cistula::report {
 namespace {

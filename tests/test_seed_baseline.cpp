@@ -27,9 +27,7 @@ ColorPicture by_the_baseline(const SceneDescription& description) {
 
 ColorPicture by_embree(const SceneDescription& description, int depth) {
     FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
+    settings.set_size(width, height);
     settings.depth = depth;
     const auto renderer = make_embree_renderer<double>(compile_scene<double>(description));
     return to_color(golden::render_with(*renderer, description, settings));

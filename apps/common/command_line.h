@@ -49,6 +49,9 @@ T chosen(const char* option, const std::string& text, const std::vector<std::pai
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
                         const std::function<std::string(const std::string&)>& extra_positional);
 
+/// Whether two paths lead to one file, which need not be there yet.
+bool is_same_file(const std::string& a, const std::string& b);
+
 /// Writes to standard output. Throws Error (file).
 void print(const std::string& text);
 

@@ -29,9 +29,7 @@ inline std::vector<std::string> scene_names(const std::filesystem::path& scenes)
 
 inline FrameSettings settings_for(const SceneDescription& scene) {
     FrameSettings settings;
-    settings.full_width = std::min(width, scene.film.width);
-    settings.full_height = std::min(height, scene.film.height);
-    settings.crop = {0, 0, settings.full_width, settings.full_height};
+    settings.set_size(std::min(width, scene.film.width), std::min(height, scene.film.height));
     settings.depth = scene.depth;
     settings.cutoff = scene.cutoff;
     return settings;

@@ -1,5 +1,7 @@
 #include "apps/common/machine.h"
 
+#include <unistd.h>
+
 #include <fstream>
 #include <sstream>
 
@@ -19,6 +21,11 @@ std::string table_value(const char* file, const std::string& key) {
 std::string processor_name() {
     const std::string name = table_value("/proc/cpuinfo", "model name");
     return name.empty() ? "unknown" : name;
+}
+
+std::string host_name() {
+    char name[256] = {};
+    return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
 }
 
 std::string gpu_driver_version() {

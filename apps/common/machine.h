@@ -11,6 +11,9 @@ std::string table_value(const char* file, const std::string& key);
 /// As the kernel names it; "unknown" where it does not.
 std::string processor_name();
 
+/// "unknown" where it has none.
+std::string host_name();
+
 /// NVIDIA's kernel driver, "580.159.04"; "unknown" where there is none.
 std::string gpu_driver_version();
 

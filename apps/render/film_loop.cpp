@@ -158,7 +158,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             finished.attributes =
                 header_attributes(job.scene_hash, job.settings, options.precision, cameras[i], options.intersection);
             finished.stats = stats_of(finished.film, frame, finished.path, seconds, renderer.times());
-            if (job.settings.adaptive()) finished.stats.target = target_report(finished.film, job.settings);
+            finished.settings = job.settings;
             if (options.verbose)
                 report.say(fmt::format("render: frame {}: {:.3f} s, {} rays, {}", frame, seconds,
                                        finished.film.rays.total(),

@@ -136,6 +136,7 @@ void FrameWriter::write(Task& task) {
         if (!raw) layers = to_layers(frame.film, channels_);
         layers.attributes = std::move(frame.attributes);
     });
+    if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
     if (measure_) {
         stats.hash = film_hash(frame.film);
         stats.pruned = ledger_totals(frame.film, &PixelRecord::pruned);

@@ -24,7 +24,8 @@ struct FinishedFrame {
     Film film;
     Attributes attributes;
     std::string path, preview;  // empty preview: none
-    FrameStats stats;           // the writer adds the ledger, the hash and its times
+    FrameStats stats;           // the writer adds the ledger, the hash, its times, and how far a target was reached
+    FrameSettings settings;
 };
 
 /// How much a FrameWriter may have in work.

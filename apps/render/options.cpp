@@ -8,6 +8,7 @@
 
 #include "apps/common/command_line.h"
 #include "cistula/lattice.h"
+#include "cistula/ray_tree.h"
 #include "frame_list.h"
 #include "scene/suggest.h"
 
@@ -65,12 +66,16 @@ void declare(CLI::App& app, Texts& texts) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
+/// Of an option that has no meaning beside another one.
+void refuse_beside(const char* other, const std::string& value, bool given, const char* option, const char* why) {
+    if (given)
+        fail_usage(fmt::format("{} {}: {} has no place here: {}; leave it out", other, one_line(value), option, why));
+}
+
 /// What has no meaning where one pixel is taken apart.
 void refuse_with_pixel(const Texts& texts) {
     const auto refuse = [&](bool given, const char* option, const char* why) {
-        if (given)
-            fail_usage(
-                fmt::format("--pixel {}: {} has no place here: {}; leave it out", one_line(texts.pixel), option, why));
+        refuse_beside("--pixel", texts.pixel, given, option, why);
     };
     constexpr const char* no_image = "no image is written";
     refuse(!texts.output.empty(), "-o", no_image);
@@ -143,9 +148,7 @@ RenderOptions checked(const Texts& texts) {
             fail_usage(fmt::format("--target-error {}: must be a number above 0, in the scene's units of radiance",
                                    one_line(texts.target_error)));
         const auto refuse = [&](bool given, const char* option, const char* why) {
-            if (given)
-                fail_usage(fmt::format("--target-error {}: {} has no place here: {}; leave it out", texts.target_error,
-                                       option, why));
+            refuse_beside("--target-error", texts.target_error, given, option, why);
         };
         refuse(!texts.supersample.empty(), "--supersample", "pixels get as many samples as they need");
         refuse(!texts.cutoff.empty(), "--cutoff", "a quarter of the target is the cutoff");

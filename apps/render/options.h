@@ -48,7 +48,6 @@ struct RenderOptions {
 
 inline constexpr int largest_side = 65536;      // pixels
 inline constexpr int largest_supersample = 64;  // k
-inline constexpr int largest_depth = 1024;
 
 /// Throws Error (usage); the message names the option, what is wrong and what would be right.
 RenderOptions parse_options(int argc, const char* const* argv);

@@ -1,31 +1,21 @@
 #include "stats.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <thread>
 
-#include "apps/common/build_info.h"
-#include "apps/common/machine.h"
+#include "apps/common/run_context.h"
 #include "scene/required_effects.h"
 
 namespace cistula {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string host_name() {
-    char name[256] = {};
-    return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
 
 /// Bytes: the largest resident set of this process so far.
 uint64_t peak_memory() {
@@ -86,7 +76,7 @@ Json frame_entry(const FrameStats& frame, const FrameSettings& settings, bool ha
 
 LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) {
     LedgerTotals totals;
-    const double unit = std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / film.samples;
+    const double unit = film.unit();
     for (size_t c = 0; c < 3; ++c) {
         double sum = 0, worst = 0;
         for (const PixelRecord& pixel : film.pixels) {
@@ -102,16 +92,8 @@ LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) 
 
 std::string stats_json(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
     const PixelRect& crop = settings.crop;
-    Json context = {
-        {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
-        {"host_name", host_name()},
-        {"executable", "render"},
-        {"num_cpus", std::thread::hardware_concurrency()},
-        {"cpu", processor_name()},
-        {"compiler", __VERSION__},
-        {"flags", build_flags()},
-        {"commit", build_commit()},
-        {"cistula_version", CISTULA_VERSION},
+    Json context = run_context("render");
+    context.update({
         {"scene", stats.scene},
         {"scene_hash", stats.scene_hash},
         {"backend", backend_name(options.backend)},
@@ -129,7 +111,7 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
         {"scene_bytes", stats.scene_bytes},
         {"peak_rss_bytes", peak_memory()},
         {"frames_resumed", stats.resumed},
-    };
+    });
     if (settings.adaptive()) {
         context["target_error"] = settings.target_error;
         context["max_samples"] = settings.max_samples;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "stats.h"
 
@@ -19,7 +18,7 @@ void TargetReport::add(const TargetReport& other) {
 
 TargetReport target_report(const Film& film, const FrameSettings& settings) {
     TargetReport report;
-    const double unit = std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / film.samples;
+    const double unit = film.unit();
     for (const PixelRecord& pixel : film.pixels) {
         double truncation = 0;
         for (int c = 0; c < 3; ++c)

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include <cmath>
-#include <filesystem>
 
 #include "apps/common/command_line.h"
 #include "scene/file_bytes.h"
@@ -51,14 +50,6 @@ double number_option(const char* option, const std::string& text, double high, c
 
 void refuse(bool given, const char* option, const char* why) {
     if (given) fail_usage(fmt::format("{}: {}", option, why));
-}
-
-bool is_same_file(const std::string& a, const std::string& b) {
-    std::error_code error;
-    const auto real = [&](const std::string& path) {
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
-    };
-    return real(a) == real(b) || std::filesystem::equivalent(a, b, error);
 }
 
 /// What is written must not replace what is read, nor each other.

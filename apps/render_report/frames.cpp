@@ -27,6 +27,11 @@ double Frames::render(const Setting& setting, Film& film, uint32_t effects) {
     return render(renderers.of(setting), settings, film);
 }
 
+double Frames::kernel_ms(const Setting& setting, double seconds) {
+    const double kernel = renderers.of(setting).times().kernel;
+    return 1e3 * (kernel > 0 ? kernel : seconds);
+}
+
 double Frames::render(Renderer& renderer, const FrameSettings& settings, Film& film) {
     check_interrupt(progress);
     progress.render.pixels_done = 0;

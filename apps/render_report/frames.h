@@ -16,6 +16,9 @@ class Frames {
     double render(const Setting& setting, Film& film, uint32_t effects = 0);
     double render(Renderer& renderer, const FrameSettings& settings, Film& film);
 
+    /// Milliseconds of the frame just rendered: of its kernels where the renderer tells, else all `seconds`.
+    double kernel_ms(const Setting& setting, double seconds);
+
     Renderers renderers;
     const SceneDescription& scene;
     const CameraFrame camera;

@@ -12,12 +12,18 @@ std::string samples_text(double samples) {
     return fmt::format("{:.3g}", samples);
 }
 
+/// Without its series. `what` is for readers of the description, `axis` for those of the drawing.
+Chart chart_against_target(const Shown& shown, const std::string& what, const std::string& axis) {
+    Chart chart;
+    chart.description = shown.title + ": " + what + " against target error";
+    chart.x = {"target error", true};
+    chart.y = {axis, true};
+    return chart;
+}
+
 /// Largest error, 99.9th percentile and RMSE, and the line on which an error is the target.
 Chart error_chart(const Shown& shown, const TargetTable& table) {
-    Chart chart;
-    chart.description = shown.title + ": error against target error";
-    chart.x = {"target error", true};
-    chart.y = {"error", true};
+    Chart chart = chart_against_target(shown, "error", "error");
     ChartSeries rmse, most, largest, target;
     rmse.label = "RMSE";
     most.label = "99.9 % of the pixels";
@@ -44,10 +50,7 @@ Chart error_chart(const Shown& shown, const TargetTable& table) {
 }
 
 Chart samples_chart(const Shown& shown, const TargetTable& table) {
-    Chart chart;
-    chart.description = shown.title + ": samples per pixel against target error";
-    chart.x = {"target error", true};
-    chart.y = {"samples per pixel", true};
+    Chart chart = chart_against_target(shown, "samples per pixel", "samples per pixel");
     ChartSeries samples;
     samples.color = 3;
     for (const TargetRow& row : table.rows) {
@@ -60,10 +63,7 @@ Chart samples_chart(const Shown& shown, const TargetTable& table) {
 }
 
 Chart time_chart(const Shown& shown, const TargetTable& table) {
-    Chart chart;
-    chart.description = shown.title + ": time against target error";
-    chart.x = {"target error", true};
-    chart.y = {"time of a frame, ms", true};
+    Chart chart = chart_against_target(shown, "time", "time of a frame, ms");
     ChartSeries time;
     time.color = 1;
     for (const TargetRow& row : table.rows) {

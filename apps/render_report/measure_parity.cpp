@@ -1,8 +1,8 @@
 // The same frame by every renderer that this machine has.
 #include "backend_embree/embree_renderer.h"
-#include "film_difference.h"
 #include "measure.h"
 #include "png.h"
+#include "scene/film_difference.h"
 #include "scene/film_picture.h"
 #include "small_frame.h"
 

@@ -73,8 +73,7 @@ class Scaling {
         double last = 0;
         for (int round = 0; round < settings_.warm_ups + settings_.repetitions; ++round) {
             last = frames.render(setting, film);
-            const double kernel = frames.renderers.of(setting).times().kernel;
-            if (round >= settings_.warm_ups) point.time.runs.push_back(1e3 * (kernel > 0 ? kernel : last));
+            if (round >= settings_.warm_ups) point.time.runs.push_back(frames.kernel_ms(setting, last));
             progress_.advance();
         }
         point.rays = film.rays.total();

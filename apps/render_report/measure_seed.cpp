@@ -83,8 +83,8 @@ void measure_seed_table(const std::string& scene_file, const MeasureSettings& se
             OwnRow row{depth, precision_name(precision), {}};
             for (int round = 0; round < rounds; ++round) {
                 const double seconds = frames.render(setting, film);
-                const double kernel = frames.renderers.of(setting).times().kernel;  // the seed's times are kernels' too
-                if (round >= settings.warm_ups) row.time.runs.push_back(1e3 * (kernel > 0 ? kernel : seconds));
+                if (round >= settings.warm_ups)  // the seed's times are kernels' too
+                    row.time.runs.push_back(frames.kernel_ms(setting, seconds));
                 progress.advance();
             }
             table.ours.push_back(std::move(row));

@@ -108,8 +108,7 @@ void measure_effects(Frames& frames, const MeasureSettings& settings, SceneRecor
     for (int round = 0; round < rounds; ++round)
         for (EffectCost& cost : scene.effect_costs) {
             const double seconds = frames.render(scene.base, film, cost.mask);
-            const double kernel = frames.renderers.of(scene.base).times().kernel;
-            if (round >= settings.warm_ups) cost.time.runs.push_back(1e3 * (kernel > 0 ? kernel : seconds));
+            if (round >= settings.warm_ups) cost.time.runs.push_back(frames.kernel_ms(scene.base, seconds));
             frames.progress.advance();
         }
 }

@@ -7,11 +7,6 @@
 namespace cistula::report {
 namespace {
 
-/// One unit of a film's sums, as radiance of the pixel's mean.
-double unit_of(const Film& film) {
-    return std::ldexp(1.0, film.radiance_exponent - film.fixed_shift) / film.samples;
-}
-
 /// Of every pixel, in the channel where it is largest.
 std::vector<double> largest_differences(const Picture& picture, const Picture& reference) {
     if (picture.width != reference.width || picture.height != reference.height || picture.pixels.empty() ||
@@ -31,7 +26,7 @@ double Metrics::psnr() const {
 }
 
 Picture resolve_picture(const Film& film) {
-    const double unit = unit_of(film);
+    const double unit = film.unit();
     Picture picture{film.rect.width, film.rect.height, {}};
     picture.pixels.reserve(film.pixels.size());
     for (const PixelRecord& pixel : film.pixels)
@@ -42,7 +37,7 @@ Picture resolve_picture(const Film& film) {
 }
 
 Remainder remainder_of(const Film& film) {
-    const double unit = unit_of(film);
+    const double unit = film.unit();
     Remainder remainder;
     double sum = 0, squares = 0;
     for (const PixelRecord& pixel : film.pixels)

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include <cmath>
-#include <filesystem>
 
 #include "apps/common/command_line.h"
 #include "apps/render/options.h"
@@ -81,14 +80,6 @@ double limit_option(const std::string& text) {
     if (!value || !std::isfinite(*value) || *value <= 0)
         fail_usage(fmt::format("--limit {}: must be a number of seconds above 0, as in 2 or 0.5", one_line(text)));
     return *value;
-}
-
-bool is_same_file(const std::string& a, const std::string& b) {
-    std::error_code error;
-    const auto real = [&](const std::string& path) {
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
-    };
-    return real(a) == real(b) || std::filesystem::equivalent(a, b, error);
 }
 
 /// What is written must not replace what is read, nor each other.

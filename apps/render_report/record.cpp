@@ -1,14 +1,8 @@
 #include "record.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <ctime>
-#include <thread>
-
-#include "apps/common/build_info.h"
-#include "apps/common/machine.h"
+#include "apps/common/run_context.h"
 #include "scene/error.h"
 #include "scene/suggest.h"
 #include "target_table.h"
@@ -125,18 +119,8 @@ const std::string& Record::text(const char* key) const {
 }
 
 Json machine_context(const std::string& backend, const std::vector<std::string>& devices, const std::string& driver) {
-    char host[256] = {};
-    if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
-    Json context = {{"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
-                    {"host_name", host},
-                    {"executable", "render-report"},
-                    {"cistula_version", CISTULA_VERSION},
-                    {"commit", build_commit()},
-                    {"cpu", processor_name()},
-                    {"num_cpus", std::thread::hardware_concurrency()},
-                    {"compiler", __VERSION__},
-                    {"flags", build_flags()},
-                    {"backend", backend}};
+    Json context = run_context("render-report");
+    context["backend"] = backend;
     if (!devices.empty()) {
         context["devices"] = devices;
         context["driver"] = driver;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "cistula/ray_tree.h"
+
 #include "apps/render/options.h"
 
 namespace cistula::report {
@@ -34,9 +36,7 @@ Setting with_target(Setting setting, double target_error) {
 
 FrameSettings frame_settings(const Setting& setting, int width, int height) {
     FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
+    settings.set_size(width, height);
     settings.supersample = setting.supersample;
     settings.depth = setting.adaptive() ? largest_depth : setting.depth;
     settings.cutoff = setting.cutoff;

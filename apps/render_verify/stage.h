@@ -31,9 +31,7 @@ class Stage {
     }
     Film render(const SceneDescription& scene, int width, int height) const {
         FrameSettings settings;
-        settings.full_width = width;
-        settings.full_height = height;
-        settings.crop = {0, 0, width, height};
+        settings.set_size(width, height);
         settings.depth = scene.depth;
         settings.cutoff = scene.cutoff;
         return render(scene, settings);

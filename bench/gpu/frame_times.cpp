@@ -14,9 +14,7 @@ namespace {
 
 FrameSettings settings_of(int width, int height, int depth, int supersample) {
     FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
+    settings.set_size(width, height);
     settings.depth = depth;
     settings.supersample = supersample;
     return settings;

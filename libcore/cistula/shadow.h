@@ -151,18 +151,24 @@ CISTULA_INLINE bool behind_shadow(const Scene& scene, uint32_t index, uint32_t t
     return lies_at_start(scene, ray, Hit<Real>{c.t, make_key(kind, index, triangle), c.u(), c.v(), slot, c.enters()});
 }
 
+/// Whether a light lies on a face of a solid.
+template <class Real, class Scene>
+CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32_t solid, uint32_t face) {
+    bool lies = false;
+    for (uint32_t i = 0; i < light.incident_count; ++i) {
+        const Incident& incident = scene.incidents[light.first_incident + i];
+        lies |= incident.solid == solid && incident.face == face;
+    }
+    return lies;
+}
+
 /// Takes an accepted crossing of a triangle into the sum if it lies before the light.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
     if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
     if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
-    bool holds_light = false;
-    for (uint32_t i = 0; i < shadow.light->incident_count; ++i) {
-        const Incident& face = scene.incidents[shadow.light->first_incident + i];
-        holds_light |= face.solid == index && face.face == triangle;
-    }
-    if (holds_light) return;
+    if (lies_on(scene, *shadow.light, index, triangle)) return;
     if constexpr (Media::meshes)
         if (behind_shadow(scene, index, triangle, slot, c, shadow.ray)) return;
     const Solid& solid = scene.solids[index];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -52,6 +53,9 @@ struct Film {
     std::vector<PixelRecord, UnsetAllocator<PixelRecord>> pixels;
     RayCounts rays;
     uint32_t flags = 0;         // RenderFlag bits of all pixels
+
+    /// What one unit of a pixel's sums adds to its mean, in the scene's units of radiance.
+    double unit() const { return std::ldexp(1.0, radiance_exponent - fixed_shift) / samples; }
 };
 
 }  // namespace cistula

@@ -605,9 +605,7 @@ SceneDescription generated_scene(uint64_t seed, const std::string& files) {
 
 FrameSettings generated_settings(const SceneDescription& scene) {
     FrameSettings settings;
-    settings.full_width = scene.film.width;
-    settings.full_height = scene.film.height;
-    settings.crop = {0, 0, scene.film.width, scene.film.height};
+    settings.set_size(scene.film.width, scene.film.height);
     settings.supersample = scene.film.supersample;
     settings.depth = scene.depth;
     settings.cutoff = scene.cutoff;

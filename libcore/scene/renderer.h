@@ -30,6 +30,13 @@ struct FrameSettings {
 
     bool operator==(const FrameSettings&) const = default;
 
+    /// A frame of this size, all of it.
+    void set_size(int width, int height) {
+        full_width = width;
+        full_height = height;
+        crop = {0, 0, width, height};
+    }
+
     bool adaptive() const { return target_error > 0; }
     /// Along a pixel's side, of the lattice too.
     int grid() const { return adaptive() ? 16 : supersample; }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "scene/solid_planes.h"
+
 namespace cistula {
 namespace {
 
@@ -46,36 +48,20 @@ bool apart(const Body& a, const Body& b) {
     return false;
 }
 
-struct Plane {
-    dvec3 normal;
-    double offset;  // normal.x <= offset
-};
-
-template <class Real>
-std::vector<Plane> planes_of(const SceneView<Real>& scene, const Solid& solid) {
-    std::vector<Plane> planes;
-    for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
-        planes.push_back({dvec3(slab.normal), double(slab.high)});
-        if (slab.low > -RealTraits<Real>::infinity) planes.push_back({-dvec3(slab.normal), -double(slab.low)});
-    }
-    return planes;
-}
-
 /// The points of three planes that lie clearly outside of none: all corners, and perhaps a few close to them.
-std::vector<dvec3> corners_of(const std::vector<Plane>& planes) {
+std::vector<dvec3> corners_of(const std::vector<SolidPlane>& planes) {
     std::vector<dvec3> corners;
     for (size_t i = 0; i < planes.size(); ++i)
         for (size_t j = 0; j < i; ++j)
             for (size_t k = 0; k < j; ++k) {
-                const Plane &p = planes[i], &q = planes[j], &r = planes[k];
+                const SolidPlane &p = planes[i], &q = planes[j], &r = planes[k];
                 const double volume = dot(p.normal, cross(q.normal, r.normal));
                 if (std::abs(volume) < 0x1p-40) continue;  // more of a needle than any rounding resolves
                 const dvec3 corner = (cross(q.normal, r.normal) * p.offset + cross(r.normal, p.normal) * q.offset +
                                       cross(p.normal, q.normal) * r.offset) /
                                      volume;
                 if (std::all_of(planes.begin(), planes.end(),
-                                [&](const Plane& s) { return dot(s.normal, corner) < s.offset + margin / 2; }))
+                                [&](const SolidPlane& s) { return dot(s.normal, corner) < s.offset + margin / 2; }))
                     corners.push_back(corner);
             }
     return corners;
@@ -86,7 +72,7 @@ Body body_of(const SceneView<Real>& scene, uint32_t index) {
     const Solid& solid = scene.solids[index];
     Body body;
     if (solid.kind == SolidKind::convex) {
-        if (solid.slab_count <= most_slabs) body.points = corners_of(planes_of(scene, solid));
+        if (solid.slab_count <= most_slabs) body.points = corners_of(solid_planes(scene, solid));
         if (body.points.empty()) body = {{dvec3(solid.center)}, std::sqrt(double(solid.padded_square))};
         return body;
     }
@@ -110,7 +96,7 @@ void plan_shadows(const SceneView<Real>& scene, ShadowPlan& plan) {
         for (uint32_t i = 0; i < scene.solids.size; ++i) {
             const Solid& from = scene.solids[i];
             if (from.kind == SolidKind::convex)
-                for (const Plane& plane : planes_of(scene, from))
+                for (const SolidPlane& plane : solid_planes(scene, from))
                     if (dot(plane.normal, light) > plane.offset + margin) plan.beyond[l] |= 1u << i;
             if (bodies[i].points.empty()) continue;
             Body way = bodies[i];

@@ -21,9 +21,7 @@ int main(int argc, char** argv) try {
     const std::shared_ptr<const cistula::CompiledScene<float>> scene = cistula::compile_scene<float>(description);
     const auto renderer = cistula::make_embree_renderer<float>(scene);
     cistula::FrameSettings settings;
-    settings.full_width = 32;
-    settings.full_height = 24;
-    settings.crop = {0, 0, 32, 24};
+    settings.set_size(32, 24);
     cistula::Film film;
     cistula::RenderProgress progress;
     if (!renderer->render(cistula::camera_at(description.camera, 0), settings, film, progress)) return 1;

@@ -92,9 +92,7 @@ inline TrianglesObject sheet(const std::array<glm::dvec3, 4>& corners) {
 
 inline FrameSettings frame_of(int width, int height, int supersample = 1, int depth = 2) {
     FrameSettings settings;
-    settings.full_width = width;
-    settings.full_height = height;
-    settings.crop = {0, 0, width, height};
+    settings.set_size(width, height);
     settings.supersample = supersample;
     settings.depth = depth;
     return settings;

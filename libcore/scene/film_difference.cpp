@@ -1,13 +1,14 @@
-#include "film_difference.h"
+#include "scene/film_difference.h"
 
 #include <algorithm>
 #include <bit>
 
-namespace cistula::report {
+namespace cistula {
 namespace {
 
-constexpr uint64_t values_of_pixel = 16, values_of_frame = 5;
+constexpr uint64_t values_of_pixel = 16, values_of_frame = 5;  // ... of a frame: ray counts and flags
 
+/// Integers and floats of a pixel that are not the same, bit for bit.
 uint64_t differing_values(const PixelRecord& a, const PixelRecord& b) {
     uint64_t count = 0;
     for (int c = 0; c < 3; ++c)
@@ -26,10 +27,14 @@ FilmDifference film_difference(const Film& a, const Film& b) {
         d.differing = d.compared;
         return d;
     }
-    for (size_t i = 0; i < a.pixels.size(); ++i) d.differing += differing_values(a.pixels[i], b.pixels[i]);
+    for (size_t i = 0; i < a.pixels.size(); ++i) {
+        const uint64_t count = differing_values(a.pixels[i], b.pixels[i]);
+        if (count != 0 && !d.first) d.first = i;
+        d.differing += count;
+    }
     d.differing += (a.rays.primary != b.rays.primary) + (a.rays.reflected != b.rays.reflected) +
                    (a.rays.transmitted != b.rays.transmitted) + (a.rays.shadow != b.rays.shadow) + (a.flags != b.flags);
     return d;
 }
 
-}  // namespace cistula::report
+}  // namespace cistula

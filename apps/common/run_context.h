@@ -1,0 +1,29 @@
+// What the records of programs begin with: when, on what and by which build they were made.
+#pragma once
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include <ctime>
+#include <thread>
+
+#include "apps/common/build_info.h"
+#include "apps/common/machine.h"
+
+namespace cistula {
+
+inline nlohmann::ordered_json run_context(const char* executable) {
+    return {{"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
+            {"host_name", host_name()},
+            {"executable", executable},
+            {"num_cpus", std::thread::hardware_concurrency()},
+            {"cpu", processor_name()},
+            {"compiler", __VERSION__},
+            {"flags", build_flags()},
+            {"commit", build_commit()},
+            {"cistula_version", CISTULA_VERSION}};
+}
+
+}  // namespace cistula
