@@ -17,6 +17,8 @@ constexpr size_t queued_per_pixel = 2, most_queued = size_t{1} << 21;
 /// From so many pixels on the warps of a block interleave: all four then do much the same at a time and share the
 /// instructions that are fetched. Of fewer, the few that take longest are better kept apart.
 constexpr size_t many_pixels = size_t{1} << 19;
+/// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
+constexpr int most_blocks = 6;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -47,6 +49,19 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     }
 }
 
+/// For as many blocks as the device can have at work, or half as many until there is memory.
+template <class Real>
+void DeviceWorker<Real>::reserve_rooms() {
+    if (room_blocks_ != 0) return;
+    int multiprocessors = 0;
+    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
+    constexpr size_t block = block_pixels * sizeof(LatticeRoom);
+    unsigned int blocks = unsigned(multiprocessors * most_blocks);
+    while (blocks > 1 && !rooms_.try_reserve(blocks * block)) blocks /= 2;
+    rooms_.reserve(blocks * block);
+    room_blocks_ = blocks;
+}
+
 /// A kernel's first launch takes memory for its threads' stacks: over a gigabyte on a large device. It must come before the
 /// pixels', which can do with less.
 template <class Real>
@@ -61,6 +76,9 @@ void DeviceWorker<Real>::prime(int mask, Pass first) {
     job.rows = strip_rows;  // of a rectangle without height: no pixel is rendered
     job.tally = slot.tally.as<DeviceTally>();
     job.next = counters_.as<unsigned int>();
+    if (first == Pass::adaptive_pixels) reserve_rooms();
+    job.rooms = rooms_.as<LatticeRoom>();
+    job.room_blocks = room_blocks_;
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.next, 0, sizeof(unsigned int), compute_));
     launch(first, mask, path_, scene_, job, compute_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
@@ -124,6 +142,8 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     };
     bool more = give(0);
     job.next = counters_.as<unsigned int>() + passes;
+    job.rooms = rooms_.as<LatticeRoom>();
+    job.room_blocks = room_blocks_;
     launch(part.first, part.mask, path_, scene_, job, compute_);
     for (int pass = 1; more; ++pass) {
         job.from = queue(pass - 1);

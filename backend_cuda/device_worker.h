@@ -67,6 +67,7 @@ class DeviceWorker {
     static constexpr int counters = passes + 1;  // sizes of queues, and the next pixel
 
     void prime(int mask, Pass first);
+    void reserve_rooms();
     void copy_rows(const PartSlot& slot, Film& film);
     void copy_straight(const PartSlot& slot, Film& film);
 
@@ -76,6 +77,8 @@ class DeviceWorker {
     DeviceMemory arena_, queue_[2], counters_;
     PinnedMemory staging_[2];
     CudaEvent staged_[2];
+    DeviceMemory rooms_;
+    unsigned int room_blocks_ = 0;  // 0: rooms_ is empty
     size_t queue_capacity_ = 0;
     uint32_t primed_ = 0;  // bit 2 m: that mask m's kernel over pixels has run; 2 m + 1: its adaptive one
     DeviceScene<Real> scene_;

@@ -32,6 +32,14 @@ struct BranchQueue {
 
 inline constexpr int whole_trees = 0x7fffffff;
 
+/// A pixel that is sampled adaptively.
+struct LatticeRoom {
+    LatticePixel pixel;
+    LatticeSample samples[lattice_samples];
+};
+/// Such pixels that a block has at work at a time: between them they want a sample for every thread.
+inline constexpr int block_pixels = 32;
+
 /// Rows of the frame's rectangle: strip s of the job is strip first_strip + s * strip_step of the rectangle.
 struct FrameJob {
     FrameView frame;
@@ -44,7 +52,9 @@ struct FrameJob {
     DeviceTally* tally = nullptr;
     BranchQueue from, to;  // passes after the first read `from`
     int split_depth = whole_trees;  // branches of this depth and more go `to` the queue
-    unsigned int* next = nullptr;   // of adaptive sampling: the pixel that the next free thread takes
+    unsigned int* next = nullptr;   // of adaptive sampling: the pixel that the next free warp takes,
+    LatticeRoom* rooms = nullptr;   // ... block_pixels for each of room_blocks
+    unsigned int room_blocks = 0;
 };
 
 /// Which intersector and which form of media the kernels use. Never changes the image.

@@ -1,41 +1,13 @@
 // The device's launcher: render_pixel over the pixels of a job, a thread a pixel, then what their trees left waiting.
 #pragma once
 
+#include "backend_cuda/adaptive_kernel.cuh"
 #include "backend_cuda/cuda_check.h"
-#include "backend_cuda/frame_job.h"
-#include "cistula/adaptive_pixel.h"
-#include "cistula/bvh.h"
 
 namespace cistula {
 
-inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_threads * block_warps;
-/// A warp renders 8 x 4 pixels, next to each other or every other one: neighbors see the same things.
-inline constexpr int tile_width = 8, tile_height = 4;
 static_assert(sizeof(PixelRecord) % sizeof(uint2) == 0 && 2 * sizeof(PixelRecord) % sizeof(uint4) == 0);
 static_assert(strip_rows % tile_height == 0);
-
-/// What a block keeps of its pixels while it renders them: registers are dearer.
-struct alignas(16) BlockRoom {
-    PixelRecord records[block_threads];
-    PixelWork work[block_threads];
-};
-
-/// Blocks that share a multiprocessor: what bounds the registers of a thread, at 80 and 128. Others were slower on an H200.
-template <class Real>
-inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? 6 : 4;
-
-template <class Real, DevicePath path>
-struct PathTraits;
-template <class Real>
-struct PathTraits<Real, DevicePath::plain_loop> {
-    using Scene = SmallScene<Real>;
-    using Intersector = BruteIntersector<Real, OneMedium, Scene>;
-};
-template <class Real>
-struct PathTraits<Real, DevicePath::tree> {
-    using Scene = SceneView<Real>;
-    using Intersector = BvhIntersector<Real, MediaList, Scene>;
-};
 
 template <class Real, class Media>
 struct QueuedBranch {
@@ -93,34 +65,6 @@ class GivingBranchStack {
     unsigned int record_;
     int count_ = 0;
 };
-
-/// Over all lanes, for every one.
-__device__ inline unsigned int warp_sum(unsigned int value) {
-#if __CUDA_ARCH__ >= 800
-    return __reduce_add_sync(0xffffffffu, value);
-#else
-    for (int step = warp_threads / 2; step > 0; step /= 2) value += __shfl_xor_sync(0xffffffffu, value, step);
-    return value;
-#endif
-}
-
-/// Sums over the warp first, in words; where they could overflow, each lane by itself.
-__device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, unsigned int flags) {
-    const unsigned int counts[4] = {rays.primary, rays.reflected, rays.transmitted, rays.shadow};
-    unsigned long long* to = tally.rays[(blockIdx.x + blockIdx.y * 7u) % DeviceTally::slots];
-    if (__any_sync(0xffffffffu, (counts[0] | counts[1] | counts[2] | counts[3]) >> 27 != 0)) {
-        for (int i = 0; i < 4; ++i) atomicAdd(to + i, (unsigned long long)counts[i]);
-    } else {
-        const int lane = threadIdx.x % warp_threads;
-        unsigned int sum = 0;
-        for (int i = 0; i < 4; ++i) {
-            const unsigned int whole = warp_sum(counts[i]);
-            if (lane == i) sum = whole;
-        }
-        if (lane < 4 && sum != 0) atomicAdd(to + lane, (unsigned long long)sum);
-    }
-    if (flags != 0) atomicOr(&tally.flags, flags);
-}
 
 /// Where pixels have several samples, all warps of a block share one tile's, so that no thread is long at work.
 __host__ __device__ inline bool shares_tiles(const FrameView& frame) {
@@ -238,44 +182,6 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     add_to_tally(*job.tally, rays, flags);
 }
 
-/// Pixels of a frame with a target error want from 4 samples to 256. A thread that is done with one takes the next, so that
-/// all lanes of a warp have a sample to render.
-template <class Real, class E, DevicePath path>
-__global__ void __launch_bounds__(block_threads, least_blocks<Real>)
-    render_adaptive(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
-    using Intersector = typename PathTraits<Real, path>::Intersector;
-    __shared__ BlockRoom room;
-    PixelWork& own = room.work[threadIdx.x] = PixelWork();
-    PixelRecord& record = room.records[threadIdx.x];
-    const unsigned int columns = unsigned(job.width + tile_width - 1) / tile_width;
-    const unsigned int places = columns * unsigned(job.rows / tile_height) * warp_threads;
-    BranchStack<Real, typename Intersector::Media> stack;
-    LatticePixel pixel(job.frame.lattice);
-    const bool gradual = shades_gradually(scene);
-    int x = 0, y = 0, film_row = 0;
-    bool busy = false;
-    for (;;) {
-        int column, row, slot;
-        while (!(busy && pixel.wants(column, row, slot))) {
-            if (busy) job.records[size_t(y) * size_t(job.width) + size_t(x)] = record;
-            busy = false;
-            const unsigned int place = next_place(job.next);
-            if (place >= places) break;
-            const unsigned int tile = place / warp_threads, in_tile = place % warp_threads;
-            x = int(tile % columns * tile_width + in_tile % tile_width);
-            y = int(tile / columns * tile_height + in_tile / tile_width);
-            film_row = row_of_strips(job.first_strip, job.strip_step, y);
-            busy = x < job.width && film_row < job.height;
-            if (busy) pixel.begin(record);
-        }
-        if (!busy) break;
-        render_wanted<Real, E>(scene, job.frame, Intersector{scene}, job.x + x, job.y + film_row, column, row, slot, gradual,
-                               pixel, own, stack);
-    }
-    __syncthreads();
-    add_to_tally(*job.tally, own.rays, own.flags);
-}
-
 /// Blocks of a grid that keeps the device full: passes over queues find out there how much there is to do.
 template <class Kernel>
 unsigned int filling_blocks(const Kernel& kernel) {
@@ -296,7 +202,7 @@ void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, con
         if (pass == Pass::pixels)
             pixels<<<grid, block_threads, 0, stream>>>(job, own);
         else if (pass == Pass::adaptive_pixels)
-            adaptive<<<filling_blocks(adaptive), block_threads, 0, stream>>>(job, own);
+            adaptive<<<least(filling_blocks(adaptive), job.room_blocks), block_threads, 0, stream>>>(job, own);
         else
             branches<<<filling_blocks(branches), block_threads, 0, stream>>>(job, own);
     };

@@ -20,27 +20,37 @@ const std::filesystem::path scenes = std::string(CISTULA_SOURCE_DIR) + "/scenes"
 /// A pixel of made-up samples: value(column, row) is its radiance in all channels, signature(column, row) what it met.
 template <class Value, class Sign>
 PixelRecord sampled(const LatticeSettings& settings, const Value& value, const Sign& sign,
-                    std::set<std::pair<int, int>>* taken = nullptr) {
-    LatticePixel pixel(settings);
-    PixelRecord record;
-    pixel.begin(record);
-    for (int column, row, slot; pixel.wants(column, row, slot);) {
-        EXPECT_TRUE(column >= 0 && column < lattice_side && row >= 0 && row < lattice_side);
-        if (taken) {
-            EXPECT_TRUE(taken->insert({column, row}).second) << "twice: " << column << ", " << row;
+                    std::set<std::pair<int, int>>* taken = nullptr, uint32_t rays = 1) {
+    LatticePixel pixel;
+    LatticeSample samples[lattice_samples];
+    PixelRecord record = PixelRecord();
+    for (pixel.begin(settings); pixel.wanted() > 0;) {
+        for (int i = 0; i < pixel.wanted(); ++i) {
+            const int slot = pixel.wanted(i), column = slot % lattice_side, row = slot / lattice_side;
+            EXPECT_TRUE(slot >= 0 && slot < lattice_samples);
+            if (taken) {
+                EXPECT_TRUE(taken->insert({column, row}).second) << "twice: " << column << ", " << row;
+            }
+            PixelRecord sample = PixelRecord();
+            for (int c = 0; c < 3; ++c) {
+                sample.radiance[c] = value(column, row);
+                sample.pruned[c] = value(row, column) / 3;
+                sample.cut[c] = c;
+            }
+            sample.hits = 1;
+            sample.rays = rays;
+            samples[slot].keep(sample, sign(column, row));
+            if (LatticePixel::is_chosen(settings, slot)) record.id = 100 + slot;
         }
-        LatticeSample& sample = pixel.at(slot);
-        sample.record = PixelRecord();
-        for (int c = 0; c < 3; ++c) {
-            sample.record.radiance[c] = value(column, row);
-            sample.record.pruned[c] = value(row, column) / 3;
-            sample.record.cut[c] = c;
-        }
-        sample.record.hits = 1;
-        sample.record.id = 100 + column + 16 * row;
-        sample.signature = sign(column, row);
-        pixel.took(column, row, slot);
+        for (int i = pixel.cells(); i-- > 0;) pixel.judge(settings, samples, i);  // in any order
+        pixel.divide(settings);
+        for (int i = pixel.judged(); i-- > 0;)
+            pixel.settle(settings, i, [&](int slot, int weight) {
+                samples[slot].give(record, weight, [](auto& to, auto more) { to += more; });
+            });
     }
+    record.samples = uint32_t(pixel.taken());
+    record.unmet = pixel.unmet();
     return record;
 }
 
@@ -171,6 +181,34 @@ TEST(Lattice, StopsAtTheMostSamplesAndSaysSo) {
     }
 }
 
+TEST(Lattice, BushyTreesAreNotTrustedToBeAlike) {
+    const auto flat = [](int, int) { return fixed(0.5); };
+    EXPECT_EQ(sampled(lattice(0.001, true), flat, one_kind, nullptr, bushy_tree - 1).samples, 5u);
+    EXPECT_EQ(sampled(lattice(0.001, true), flat, one_kind, nullptr, bushy_tree).samples, 32u);
+    EXPECT_EQ(sampled(lattice(0.1, false), flat, one_kind, nullptr, bushy_tree).samples, 4u);
+    const PixelRecord few = sampled(lattice(0.001, true, 20), flat, one_kind, nullptr, bushy_tree);
+    EXPECT_EQ(few.samples, 20u);
+    EXPECT_EQ(few.unmet, 1u);
+}
+
+TEST(Lattice, SpendsWhatItMayInAllQuartersAlike) {
+    for (int most : {16, 32, 64, 128}) {
+        std::set<std::pair<int, int>> taken;
+        sampled(
+            lattice(0.001, true, most), [](int x, int y) { return (x ^ y) & 1 ? fixed(1) : 0; },
+            [](int x, int y) { return uint32_t(16 * y + x); }, &taken);
+        int least = 256, greatest = 0;
+        for (int quarter = 0; quarter < 4; ++quarter) {
+            int count = 0;
+            for (const auto& [x, y] : taken) count += (x >= 8) == (quarter & 1) && (y >= 8) == (quarter >> 1);
+            least = std::min(least, count);
+            greatest = std::max(greatest, count);
+        }
+        EXPECT_LE(greatest - least, 4 * most / 16) << most;
+        EXPECT_GT(least, 0) << most;
+    }
+}
+
 FrameSettings small(const SceneDescription& scene, int width = 96, int height = 54) {
     FrameSettings settings;
     settings.set_size(width, height);
@@ -264,8 +302,8 @@ Distance distance_of(const Film& film, const Film& whole, double limit) {
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         double error = 0;
         for (int c = 0; c < 3; ++c)
-            error = std::max(error, std::abs(double(film.pixels[i].radiance[c] - whole.pixels[i].radiance[c])) *
-                                        film.unit());
+            error = std::max(error,
+                             std::abs(double(film.pixels[i].radiance[c] - whole.pixels[i].radiance[c])) * film.unit());
         distance.over += error > limit;
         distance.worst = std::max(distance.worst, error);
         distance.samples += film.pixels[i].samples / double(film.pixels.size());
@@ -292,10 +330,29 @@ TEST(Adaptive, IsWithinItsTargetOfTheWholeLattice) {
         EXPECT_LE(double(distance.over), 0.001 * double(film.pixels.size()) + 1) << name;
         EXPECT_LT(distance.samples, 80) << name;
         for (const PixelRecord& pixel : film.pixels)
-            for (int c = 0; c < 3; ++c)
-                EXPECT_LE(double(pixel.pruned[c]) * film.unit(),
-                          settings.truncation());
+            for (int c = 0; c < 3; ++c) EXPECT_LE(double(pixel.pruned[c]) * film.unit(), settings.truncation());
     }
+}
+
+TEST(Adaptive, TreesWithoutEndAreGivenUpAndTheLedgerSaysSo) {
+    const SceneDescription scene = read_scene(scenes / "hard/furnace.json");
+    FrameSettings settings = small(scene, 24, 14);
+    settings.depth = largest_depth;
+    settings.target_error = 0.01;
+    expect_same_on_all_paths<float>(scene, settings, "furnace");
+    const Film film = golden::render_with(*make_embree_renderer<float>(test::compile<float>(scene)), scene, settings);
+    size_t beyond = 0;
+    for (const PixelRecord& pixel : film.pixels) {
+        // The world is white, and nothing loses light: what is missing is in the ledger.
+        for (int c = 0; c < 3; ++c) {
+            const double shown = double(pixel.radiance[c]) * film.unit(), lost = double(pixel.pruned[c]) * film.unit();
+            EXPECT_GE(shown + lost, 1 - 1e-5);
+            EXPECT_LE(shown, 1 + 1e-5);
+        }
+        beyond += double(pixel.pruned[0]) * film.unit() > settings.truncation();
+    }
+    EXPECT_GT(beyond, 0u);
+    EXPECT_LT(beyond, film.pixels.size() / 10);
 }
 
 TEST(Adaptive, RefusesWhatMakesNoSense) {

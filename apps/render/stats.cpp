@@ -40,6 +40,7 @@ Json target_entry(const TargetReport& target) {
     return {{"reached", target.missed == 0},
             {"pixels_missed", target.missed},
             {"pixels_truncated", target.truncated},
+            {"pixels_bushy", target.bushy},
             {"pixels_undersampled", target.undersampled},
             {"worst_truncation", target.worst_truncation}};
 }

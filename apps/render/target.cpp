@@ -1,9 +1,11 @@
 #include "target.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "cistula/signature.h"
 #include "stats.h"
 
 namespace cistula {
@@ -11,6 +13,7 @@ namespace cistula {
 void TargetReport::add(const TargetReport& other) {
     samples += other.samples;
     truncated += other.truncated;
+    bushy += other.bushy;
     undersampled += other.undersampled;
     missed += other.missed;
     worst_truncation = std::max(worst_truncation, other.worst_truncation);
@@ -20,12 +23,15 @@ TargetReport target_report(const Film& film, const FrameSettings& settings) {
     TargetReport report;
     const double unit = film.unit();
     for (const PixelRecord& pixel : film.pixels) {
-        double truncation = 0;
-        for (int c = 0; c < 3; ++c)
+        double truncation = 0, pruned = 0;
+        for (int c = 0; c < 3; ++c) {
+            pruned = std::max(pruned, static_cast<double>(pixel.pruned[c]) * unit);
             truncation = std::max(truncation, static_cast<double>(pixel.pruned[c] + pixel.cut[c]) * unit);
+        }
         const bool truncated = truncation > settings.truncation();
         report.samples += pixel.samples;
         report.truncated += truncated;
+        report.bushy += pruned > settings.truncation();
         report.undersampled += pixel.unmet;
         report.missed += truncated || pixel.unmet;
         report.worst_truncation = std::max(report.worst_truncation, truncation);
@@ -44,15 +50,19 @@ std::string describe_target(const std::vector<FrameStats>& frames, const FrameSe
         fmt::format("{:.3g} samples a pixel; truncation takes {:.3g} from a pixel at most",
                     static_cast<double>(all.samples) / static_cast<double>(pixels), all.worst_truncation);
     if (all.missed == 0) return fmt::format("target error {:g} reached: {}", settings.target_error, cost);
-    std::string text =
+    const std::string text =
         fmt::format("target error {:g} missed in {} of {} pixels: ", settings.target_error, all.missed, pixels);
-    if (all.truncated != 0)
-        text += fmt::format("{} lose more than a quarter of it below depth {}; a larger --depth may reach it{}",
-                            all.truncated, settings.depth, all.undersampled != 0 ? "; " : "");
+    std::vector<std::string> reasons;
+    if (all.truncated > all.bushy)
+        reasons.push_back(fmt::format("{} lose more than a quarter of it below depth {}; a larger --depth may reach it",
+                                      all.truncated - all.bushy, settings.depth));
+    if (all.bushy != 0)
+        reasons.push_back(fmt::format("{} have ray trees of more than {} branches; no setting reaches it there",
+                                      all.bushy, most_branches));
     if (all.undersampled != 0)
-        text +=
-            fmt::format("{} want more than {} samples; raise --max-samples", all.undersampled, settings.max_samples);
-    return text + " (" + cost + ")";
+        reasons.push_back(
+            fmt::format("{} want more than {} samples; raise --max-samples", all.undersampled, settings.max_samples));
+    return fmt::format("{}{} ({})", text, fmt::join(reasons, "; "), cost);
 }
 
 }  // namespace cistula

@@ -13,6 +13,7 @@ namespace cistula {
 struct TargetReport {
     uint64_t samples = 0;         // of all pixels
     uint64_t truncated = 0;       // pixels whose ledger is above a quarter of the target, in any channel
+    uint64_t bushy = 0;           // of these, pixels with trees of more branches than are followed
     uint64_t undersampled = 0;    // pixels that wanted more samples than they may have
     uint64_t missed = 0;          // pixels of either kind
     double worst_truncation = 0;  // the largest ledger of any pixel and channel, in the scene's units of radiance

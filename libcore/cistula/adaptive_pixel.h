@@ -1,4 +1,4 @@
-// One adaptively sampled pixel: the body of both backends' loops where a frame has a target.
+// One adaptively sampled pixel: what both backends do where a frame has a target.
 #pragma once
 
 #include "cistula/pixel.h"
@@ -6,34 +6,61 @@
 
 namespace cistula {
 
-/// The sample that pixel (px, py) wants in `slot`. `gradual`: shades_gradually(scene), found once. `work` is the
-/// thread's own.
+/// Takes sample `slot` of pixel (px, py): its sums into `record` first, then into `sample`. A tree of more than
+/// most_branches is walked again with four times the budget, and so on: the ledger says so. `gradual`:
+/// shades_gradually(scene), found once. `work` is the thread's own.
 template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void render_wanted(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
-                                  int py, int column, int row, int slot, bool gradual, LatticePixel& pixel,
-                                  PixelWork& work, Stack& stack) {
-    LatticeSample& sample = pixel.at(slot);
-    sample.record = PixelRecord();
-    sample.record.z = RealTraits<float>::infinity;
-    Signature signature;
+CISTULA_INLINE void take_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
+                                int py, int slot, bool gradual, PixelRecord& record, LatticeSample& sample,
+                                PixelWork& work, Stack& stack) {
     const uint32_t before = work.rays.total();
-    SigningStack<Stack, Real> signing(stack, signature, Real(frame.lattice.significant));
-    render_sample<Real, E>(scene, frame, SigningIntersector<Intersector>{intersector, signature, gradual}, px, py,
-                           column, row, true, sample.record, work, signing);
-    sample.record.rays = work.rays.total() - before;
-    sample.signature = signature.value;
-    pixel.took(column, row, slot);
+    TreeSettings settings = frame.tree;
+    for (bool whole = false; !whole; settings.budget = 4 * greatest(settings.budget, int64_t(1))) {
+        record = PixelRecord();
+        record.z = RealTraits<float>::infinity;
+        Signature signature;
+        SigningStack<Stack, Real> signing(stack, signature, Real(frame.lattice.significant));
+        render_sample<Real, E>(scene, frame, settings, SigningIntersector<Intersector>{intersector, signature, gradual},
+                               px, py, slot % lattice_side, slot / lattice_side, true, record, work, signing);
+        record.rays = work.rays.total() - before;
+        sample.keep(record, signature.value);
+        whole = !signing.drop();
+    }
 }
 
-/// All that it wants, with a stack of its own.
+/// Copies what is one sample's alone.
+CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel) {
+    pixel.id = sample.id;
+    pixel.z = sample.z;
+    for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
+}
+
+/// All that the pixel wants, with room of its own.
 template <class Real, class E, class Intersector, class Scene>
 CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
                                           int px, int py, bool gradual, PixelRecord& record, PixelWork& work) {
+    const LatticeSettings& settings = frame.lattice;
     BranchStack<Real, typename Intersector::Media> stack;
-    LatticePixel pixel(frame.lattice);
-    pixel.begin(record);
-    for (int column, row, slot; pixel.wants(column, row, slot);)
-        render_wanted<Real, E>(scene, frame, intersector, px, py, column, row, slot, gradual, pixel, work, stack);
+    LatticeSample samples[lattice_samples];
+    PixelRecord taken;
+    LatticePixel pixel;
+    record = PixelRecord();
+    for (pixel.begin(settings); pixel.wanted() > 0;) {
+        for (int i = 0; i < pixel.wanted(); ++i) {
+            const int slot = pixel.wanted(i);
+            take_sample<Real, E>(scene, frame, intersector, px, py, slot, gradual, taken, samples[slot], work, stack);
+            record.rays += taken.rays;
+            if (LatticePixel::is_chosen(settings, slot)) choose_sample(taken, record);
+        }
+        for (int i = 0; i < pixel.cells(); ++i) pixel.judge(settings, samples, i);
+        pixel.divide(settings);
+        for (int i = 0; i < pixel.judged(); ++i)
+            pixel.settle(settings, i, [&](int slot, int weight) {
+                samples[slot].give(record, weight, [](auto& to, auto value) { to += value; });
+            });
+    }
+    record.samples = uint32_t(pixel.taken());
+    record.unmet = pixel.unmet();
 }
 
 }  // namespace cistula

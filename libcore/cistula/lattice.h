@@ -8,8 +8,13 @@
 namespace cistula {
 
 inline constexpr int lattice_side = 16, lattice_samples = lattice_side * lattice_side;
+/// Sample (column, row) is slot 16 row + column; the middle of the pixel is the corner of all quadrants.
+inline constexpr int lattice_middle = lattice_side / 2 * (lattice_side + 1);
 /// The fewest that a pixel can do with: its corners and its middle.
 inline constexpr int least_lattice_samples = 5;
+/// Rays of a tree that sees many things, and the largest cell of such trees that may stand undivided.
+inline constexpr uint32_t bushy_tree = 96;
+inline constexpr int bushy_area = lattice_samples / 8;
 /// Colors are compared in units of 2^-30 of the radiance bound's power of two.
 inline constexpr int color_bits = 30, color_shift = 54 - color_bits;
 
@@ -21,108 +26,77 @@ struct LatticeSettings {
     double significant = 0;      // branches of less weight than this do not tell samples apart
 };
 
-/// One sample of a pixel. The sums are in units of 2^-54 (fixed_sum.h, 256 samples).
+/// What one sample of a pixel adds, in units of 2^-54 (fixed_sum.h, 256 samples), and what it met.
 struct LatticeSample {
-    PixelRecord record;
-    uint32_t signature = 0;  // of its ray tree (signature.h)
+    int64_t radiance[3], pruned[3], cut[3];
+    uint32_t hits, rays;
+    uint32_t signature;  // of its ray tree (signature.h)
+
+    CISTULA_INLINE void keep(const PixelRecord& record, uint32_t met) {
+        for (int c = 0; c < 3; ++c) {
+            radiance[c] = record.radiance[c];
+            pruned[c] = record.pruned[c];
+            cut[c] = record.cut[c];
+        }
+        hits = record.hits;
+        rays = record.rays;
+        signature = met;
+    }
+
+    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice.
+    template <class Add>
+    CISTULA_INLINE void give(PixelRecord& record, int weight, const Add& add) const {
+        for (int c = 0; c < 3; ++c) {
+            add(record.radiance[c], weight * radiance[c]);
+            add(record.pruned[c], weight * pruned[c]);
+            add(record.cut[c], weight * cut[c]);
+        }
+        add(record.hits, uint32_t(weight) * hits);
+    }
 };
 
-/// Pixels, one after the other: ask for the next sample that it wants, render that into the place given, and so on. A
-/// rectangle of samples is known by its four corners; where these differ too much it is split, else they stand for all
-/// of it. A straight border through a rectangle parts its corners, so that it is never overlooked. All 256 samples give
-/// what the uniform 16 x 16 grid does. The children of a split share no sample, so that few are kept at a time.
+/// A pixel, in rounds: all samples that it wants are taken, all cells judged and those that differ divided, whose
+/// children want the next. A cell, a rectangle of samples, is known by its four corners; where these differ too much it
+/// is split, else they stand for all of it. A straight border through a rectangle parts its corners, so that it is
+/// never overlooked. All 256 samples give what the uniform 16 x 16 grid does. The children of a split share no sample.
+/// In each of a round's steps the work on one sample or cell may be any thread's. The samples lie with the caller, by
+/// slot.
 class LatticePixel {
   public:
-    CISTULA_INLINE explicit LatticePixel(const LatticeSettings& settings) : settings_(settings) {}
-
-    /// The next pixel, whose record this will be. Only where the one before is done.
-    CISTULA_INLINE void begin(PixelRecord& record) {
-        record_ = &record;
-        record = PixelRecord();
-        free_ = (1u << slot_count) - 1;
-        depth_ = 1;
-        due_ = settings_.fine ? 5 : 4;
-        cells_[0] = {0, 0, lattice_side, lattice_side, {nothing, nothing, nothing, nothing}};
+    CISTULA_INLINE void begin(const LatticeSettings& settings) {
+        round_ = 0;
+        unmet_ = 0;
+        count_[0] = 1;
+        cells_[0][0] = {0, 0, lattice_side, lattice_side, Split::none, 0};
+        wanted_ = 0;
+        for (int c = 0; c < 4; ++c) want(corner(cells_[0][0], c));
+        if (settings.fine) want(lattice_middle);
+        due_ = wanted_;
     }
 
-    /// The sample to render next, into at(slot); false if the pixel is done.
-    CISTULA_INLINE bool wants(int& column, int& row, int& slot) {
-        while (depth_ > 0) {
-            Cell& cell = cells_[depth_ - 1];
-            for (int c = 0; c < 4; ++c) {
-                if (cell.corner[c] != nothing) continue;
-                column = cell.x + (c & 1 ? cell.width - 1 : 0);
-                row = cell.y + (c & 2 ? cell.height - 1 : 0);
-                if (middle_ != nothing && column == middle && row == middle) {
-                    cell.corner[c] = middle_;
-                    middle_ = nothing;
-                    continue;
-                }
-                slot = cell.corner[c] = take_slot();
-                return true;
-            }
-            if (settings_.fine && is_whole(cell) && middle_ == nothing) {
-                column = row = middle;
-                slot = middle_ = take_slot();
-                return true;
-            }
-            settle(cell);
-        }
-        return false;
-    }
+    /// The slots of the samples that this round wants, none if the pixel is done: wanted(0) to wanted(wanted() - 1).
+    CISTULA_INLINE int wanted() const { return wanted_; }
+    CISTULA_INLINE int wanted(int i) const { return slots_[i]; }
 
-    CISTULA_INLINE LatticeSample& at(int slot) { return samples_[slot]; }
+    /// Cells that wait to be judged, once all that was wanted is there.
+    CISTULA_INLINE int cells() const { return count_[round_ & 1]; }
 
-    /// at(slot) holds the sample (column, row) now.
-    CISTULA_INLINE void took(int column, int row, int slot) {
-        const PixelRecord& sample = samples_[slot].record;
-        ++record_->samples;
-        record_->rays += sample.rays;
-        // What stands for the pixel where no mean makes sense: the sample in its middle, if that is taken.
-        if ((column | row) != 0 && (column != middle || row != middle)) return;
-        record_->id = sample.id;
-        record_->z = sample.z;
-        for (int c = 0; c < 3; ++c) record_->normal[c] = sample.normal[c];
-    }
-
-  private:
-    static constexpr int middle = lattice_side / 2;
-    static constexpr uint8_t nothing = 0xff;
-    /// A split adds one cell, or three at first; four follow in either direction until cells are 2 x 2.
-    static constexpr int cell_count = 10;
-    /// Four of the cell at hand, two of each that waits (one where it waits since the first split), and the middle.
-    static constexpr int slot_count = 20;
-
-    struct Cell {
-        uint8_t x, y, width, height;
-        uint8_t corner[4];  // slots; bit 0: right, bit 1: lower
-    };
-
-    CISTULA_INLINE static bool is_whole(const Cell& cell) {
-        return cell.width == lattice_side && cell.height == lattice_side;
-    }
-
-    CISTULA_INLINE uint8_t take_slot() {
-        const uint32_t slot = lowest_bit(free_);
-        free_ &= free_ - 1;
-        return uint8_t(slot);
-    }
-
-    /// Of the sample in the slot, of channel c.
-    CISTULA_INLINE int64_t color(uint8_t slot, int c) const { return samples_[slot].record.radiance[c] >> color_shift; }
-
-    /// Splits the cell on top, or lets its samples stand for it.
-    CISTULA_INLINE void settle(const Cell& cell) {
-        const bool whole = is_whole(cell), has_middle = middle_ != nothing && whole;
-        bool differs = has_middle && samples_[middle_].signature != samples_[cell.corner[0]].signature;
-        for (int i = 1; i < 4; ++i) differs |= samples_[cell.corner[i]].signature != samples_[cell.corner[0]].signature;
+    /// Whether cell i should be split.
+    CISTULA_INLINE void judge(const LatticeSettings& settings, const LatticeSample* samples, int i) {
+        Cell& cell = cells_[round_ & 1][i];
+        const LatticeSample* at[4];
+        for (int c = 0; c < 4; ++c) at[c] = samples + corner(cell, c);
+        const bool whole = is_whole(cell), has_middle = settings.fine && whole;
+        bool differs = has_middle && samples[lattice_middle].signature != at[0]->signature;
+        for (int c = 1; c < 4; ++c) differs |= at[c]->signature != at[0]->signature;
+        // A bushy tree sees so much that some of it may well lie between a few samples that agree.
+        const bool bushy = settings.fine && cell.width * cell.height > bushy_area && at[0]->rays >= bushy_tree;
         int64_t range = 0, bend = 0, across = 0, down = 0;
         for (int c = 0; c < 3; ++c) {
-            const int64_t a = color(cell.corner[0], c), b = color(cell.corner[1], c), d = color(cell.corner[2], c),
-                          e = color(cell.corner[3], c);
+            const int64_t a = color(*at[0], c), b = color(*at[1], c), d = color(*at[2], c), e = color(*at[3], c);
             int64_t low = least(least(a, b), least(d, e)), high = greatest(greatest(a, b), greatest(d, e));
             if (has_middle) {
-                const int64_t m = color(middle_, c);
+                const int64_t m = color(samples[lattice_middle], c);
                 low = least(low, m);
                 high = greatest(high, m);
                 // Beside the mean of the corners; four times that, and half as much counts as below.
@@ -134,36 +108,94 @@ class LatticePixel {
             across = greatest(across, greatest(magnitude_of(a - b), magnitude_of(d - e)));
             down = greatest(down, greatest(magnitude_of(a - d), magnitude_of(b - e)));
         }
-        const int64_t area = int64_t(cell.width) * cell.height, allowed = settings_.target * lattice_samples;
+        const int64_t area = int64_t(cell.width) * cell.height, allowed = settings.target * lattice_samples;
         // What a border through it can be worth: its range times its area. Rays that meet the same things bend little
         // between, unless a texture does.
-        const int64_t fineness = settings_.fine && !whole ? 8 : 4;
-        const bool wanted = (differs && fineness * range * area > allowed) || bend * area > allowed ||
-                            (settings_.fine ? 8 : 4) * range * area > 3 * allowed;
-        if (!wanted || (cell.width == 2 && cell.height == 2)) {
-            add(cell, differs);
-            return;
-        }
-        const bool in_four = whole && settings_.fine;
-        const int more = in_four ? 11 : 4;  // the middle is one of sixteen
-        if (due_ + more > settings_.most) {
-            record_->unmet = 1;
-            add(cell, differs);
-            return;
-        }
-        due_ += more;
-        const Cell parent = cell;
-        --depth_;
-        if (in_four) {
-            for (int i = 3; i >= 0; --i) push(parent, i & 1 ? 1 : -1, i & 2 ? 1 : -1);
-        } else if (is_split_across(parent, across, down)) {
-            push(parent, 1, 0);
-            push(parent, -1, 0);
-        } else {
-            push(parent, 0, 1);
-            push(parent, 0, -1);
+        const int64_t fineness = settings.fine && !whole ? 8 : 4;
+        const bool wants_split = bushy || (differs && fineness * range * area > allowed) || bend * area > allowed ||
+                                 (settings.fine ? 8 : 4) * range * area > 3 * allowed;
+        cell.differs = differs;
+        cell.split = !wants_split || area == 4             ? Split::none
+                     : has_middle                          ? Split::in_four
+                     : is_split_across(cell, across, down) ? Split::across
+                                                           : Split::down;
+    }
+
+    /// Splits those of the judged cells that should be and still may.
+    CISTULA_INLINE void divide(const LatticeSettings& settings) {
+        Cell* judged = cells_[round_ & 1];
+        const int count = cells();
+        ++round_;
+        count_[round_ & 1] = wanted_ = 0;
+        for (int i = 0; i < count; ++i) {
+            const Cell cell = judged[i];
+            if (cell.split == Split::none) continue;
+            const int more = cell.split == Split::in_four ? 11 : 4;  // the middle is one of sixteen
+            if (due_ + more > settings.most) {
+                unmet_ = 1;
+                judged[i].split = Split::none;
+                continue;
+            }
+            due_ += more;
+            if (cell.split == Split::in_four)
+                for (int q = 0; q < 4; ++q) add_child(cell, q & 1 ? 1 : -1, q & 2 ? 1 : -1);
+            else if (cell.split == Split::across)
+                add_child(cell, -1, 0), add_child(cell, 1, 0);
+            else
+                add_child(cell, 0, -1), add_child(cell, 0, 1);
         }
     }
+
+    /// The cells that were judged before the last divide().
+    CISTULA_INLINE int judged() const { return count_[~round_ & 1]; }
+
+    /// stand(slot, weight): samples that stand for judged cell i; none if it was split.
+    template <class Stand>
+    CISTULA_INLINE void settle(const LatticeSettings& settings, int i, const Stand& stand) const {
+        const Cell& cell = cells_[~round_ & 1][i];
+        if (cell.split != Split::none) return;
+        int each = cell.width * cell.height / 4;
+        if (settings.fine && is_whole(cell)) {
+            // Simpson's rule, near enough, where all is smooth.
+            each = cell.differs ? 32 : 24;
+            stand(lattice_middle, lattice_samples - 4 * each);
+        }
+        for (int c = 0; c < 4; ++c) stand(corner(cell, c), each);
+    }
+
+    /// Samples taken.
+    CISTULA_INLINE int taken() const { return due_; }
+    CISTULA_INLINE bool unmet() const { return unmet_ != 0; }
+
+    /// Whether the sample is the one that stands for the pixel where no mean makes sense: of those taken the one in its
+    /// middle, else the first.
+    CISTULA_INLINE static bool is_chosen(const LatticeSettings& settings, int slot) {
+        return slot == lattice_middle || (slot == 0 && !settings.fine);
+    }
+
+  private:
+    static constexpr int most_cells = lattice_samples / 4;
+
+    enum class Split : uint8_t { none, across, down, in_four };
+    struct Cell {
+        uint8_t x, y, width, height;
+        Split split;
+        uint8_t differs;
+    };
+
+    CISTULA_INLINE static bool is_whole(const Cell& cell) {
+        return cell.width == lattice_side && cell.height == lattice_side;
+    }
+    /// Bit 0 of c: right; bit 1: lower.
+    CISTULA_INLINE static int corner(const Cell& cell, int c) {
+        return (cell.y + (c & 2 ? cell.height - 1 : 0)) * lattice_side + cell.x + (c & 1 ? cell.width - 1 : 0);
+    }
+    CISTULA_INLINE void want(int slot) { slots_[wanted_++] = uint8_t(slot); }
+
+    CISTULA_INLINE static int64_t color(const LatticeSample& sample, int c) {
+        return sample.radiance[c] >> color_shift;
+    }
+    CISTULA_INLINE static int64_t magnitude_of(int64_t a) { return a < 0 ? -a : a; }
 
     /// Where the colors differ more, unless that makes needles.
     CISTULA_INLINE static bool is_split_across(const Cell& cell, int64_t across, int64_t down) {
@@ -172,53 +204,27 @@ class LatticePixel {
         return across != down ? across > down : cell.width >= cell.height;
     }
 
-    /// The left or right half (-1, 1; 0: both) of the upper or lower half, with the corners that it inherits.
-    CISTULA_INLINE void push(const Cell& parent, int right, int lower) {
+    /// The left or right half (-1, 1; 0: both) of the upper or lower half; wants the corners that it does not inherit.
+    CISTULA_INLINE void add_child(const Cell& parent, int right, int lower) {
         Cell child = parent;
         if (right != 0) child.width /= 2;
         if (lower != 0) child.height /= 2;
         if (right > 0) child.x = uint8_t(child.x + child.width);
         if (lower > 0) child.y = uint8_t(child.y + child.height);
-        for (int i = 0; i < 4; ++i)
-            if ((right != 0 && (i & 1 ? 1 : -1) != right) || (lower != 0 && (i & 2 ? 1 : -1) != lower))
-                child.corner[i] = nothing;
-        cells_[depth_++] = child;
-    }
-
-    /// The corners, and the middle where there is one, stand for the cell.
-    CISTULA_INLINE void add(const Cell& cell, bool differs) {
-        int each = cell.width * cell.height / 4;
-        if (middle_ != nothing && is_whole(cell)) {
-            // Simpson's rule, near enough, where all is smooth.
-            each = differs ? 32 : 24;
-            add(middle_, lattice_samples - 4 * each);
-            middle_ = nothing;
+        for (int c = 0; c < 4; ++c) {
+            const bool inherits =
+                (right == 0 || (c & 1 ? 1 : -1) == right) && (lower == 0 || (c & 2 ? 1 : -1) == lower);
+            const bool is_middle = parent.split == Split::in_four && corner(child, c) == lattice_middle;
+            if (!inherits && !is_middle) want(corner(child, c));
         }
-        for (int i = 0; i < 4; ++i) add(cell.corner[i], each);
-        --depth_;
+        cells_[round_ & 1][count_[round_ & 1]++] = child;
     }
 
-    CISTULA_INLINE void add(uint8_t slot, int weight) {
-        const PixelRecord& sample = samples_[slot].record;
-        for (int c = 0; c < 3; ++c) {
-            record_->radiance[c] += weight * sample.radiance[c];
-            record_->pruned[c] += weight * sample.pruned[c];
-            record_->cut[c] += weight * sample.cut[c];
-        }
-        record_->hits += uint32_t(weight) * sample.hits;
-        free_ |= 1u << slot;
-    }
-
-    CISTULA_INLINE static int64_t magnitude_of(int64_t a) { return a < 0 ? -a : a; }
-
-    const LatticeSettings& settings_;
-    PixelRecord* record_ = nullptr;
-    uint32_t free_ = 0;
-    int depth_ = 0;
-    int due_ = 0;               // samples taken, and those that the cells still want
-    uint8_t middle_ = nothing;  // the slot of the sample in the middle, while no cell has it
-    Cell cells_[cell_count];
-    LatticeSample samples_[slot_count];
+    int round_, count_[2];  // this round's cells, and those of the last or the next
+    int due_, wanted_;      // samples taken and wanted, and of these the latter
+    int unmet_;
+    uint8_t slots_[lattice_samples / 2];
+    Cell cells_[2][most_cells];
 };
 
 }  // namespace cistula

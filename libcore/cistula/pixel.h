@@ -110,24 +110,25 @@ struct SampleRange {
     int first = 0, step = 1;
 };
 
-/// Sample (column, row) of the k x k grid of pixel (px, py), added to the record.
+/// Sample (column, row) of the k x k grid of pixel (px, py), added to the record. `settings`: frame.tree, or a budget of
+/// the sample's own.
 template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
-                                  int column, int row, bool middle, PixelRecord& record, PixelWork& work, Stack& stack) {
+CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, const TreeSettings& settings,
+                                  const Intersector& intersector, int px, int py, int column, int row, bool middle, PixelRecord& record, PixelWork& work, Stack& stack) {
     const int k = frame.supersample;
     Ray<Real, typename Intersector::Media> ray;
     // In half samples from the middle of the picture.
     const int across = 2 * (px * k + column) + 1 - frame.width * k;
     const int down = 2 * (py * k + row) + 1 - frame.height * k;
     const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
-    PixelSums<Real> sums(frame.tree, scene.bound, record, work.flags);
+    PixelSums<Real> sums(settings, scene.bound, record, work.flags);
     ++work.rays.primary;
     if (!primary_ray(scene, frame, direction, ray, work.start)) {
         sums.add(scene.background);
         return;
     }
     work.facing = dot(direction, frame.camera.forward);
-    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, work.rays, stack);
+    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, settings.depth, sums, work.rays, stack);
     tree.trace(ray, FirstSeen<Real>{frame, work, record, middle});
 }
 
@@ -141,7 +142,7 @@ CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, con
     const int k = frame.supersample;
     for (int sample = samples.first; sample < k * k; sample += samples.step) {
         const int row = k == 1 ? 0 : sample / k, column = sample - row * k;
-        render_sample<Real, E>(scene, frame, intersector, px, py, column, row, column == k / 2 && row == k / 2, record, work,
+        render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row, column == k / 2 && row == k / 2, record, work,
                                stack);
     }
     record.rays = work.rays.total();

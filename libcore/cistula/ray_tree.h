@@ -69,6 +69,8 @@ class BranchStack {
         pending_.get(--count_, branch);
         return true;
     }
+    CISTULA_INLINE bool empty() const { return count_ == 0; }
+    CISTULA_INLINE void clear() { count_ = 0; }
 
   private:
     BranchRoom<Real, Media, branch_stack> pending_;

@@ -64,7 +64,11 @@ struct SigningIntersector {
     }
 };
 
-/// A stack that tells which branches matter.
+/// Branches of a tree that are followed while a frame has a target. Where little is lost at every bounce and much goes
+/// both ways, a tree is as good as endless: then more is dropped (take_sample).
+inline constexpr uint32_t most_branches = 1u << 12;
+
+/// A stack that tells which branches matter, and ends trees that are too large.
 template <class Inner, class Real>
 class SigningStack {
   public:
@@ -77,15 +81,24 @@ class SigningStack {
     }
     template <class Entry>
     CISTULA_INLINE bool pop(Entry& branch) {
-        if (!inner_.pop(branch)) return false;
+        if (followed_ == most_branches || !inner_.pop(branch)) return false;
+        ++followed_;
         signature_.counts = largest_component(branch.weight) >= significant_;
         return true;
+    }
+
+    /// Empties the stack. False if it was: the tree was followed to its end.
+    CISTULA_INLINE bool drop() {
+        const bool any = !inner_.empty();
+        inner_.clear();
+        return any;
     }
 
   private:
     Inner& inner_;
     Signature& signature_;
     const Real significant_;
+    uint32_t followed_ = 0;
 };
 
 }  // namespace cistula

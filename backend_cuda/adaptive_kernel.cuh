@@ -1,0 +1,183 @@
+// The device's launcher of adaptively sampled pixels. They want from 4 samples to 256 of trees of all sizes: a warp has
+// a few pixels at work, next to each other, and its lanes take what these want at the time, so that no lane waits for
+// one pixel.
+#pragma once
+
+#include "backend_cuda/kernel_parts.cuh"
+#include "cistula/adaptive_pixel.h"
+
+namespace cistula {
+
+inline constexpr int warp_pixels = block_pixels / block_warps;
+inline constexpr unsigned int whole_warp = 0xffffffffu;
+
+/// Work of a warp's pixels, counted through: lane s knows how many pieces come before pixel s's.
+struct WarpDeal {
+    int before, total;
+
+    /// `count`: lane s's is pixel s's, others' are 0.
+    __device__ static WarpDeal of(int count) {
+        const int lane = threadIdx.x % warp_threads;
+        int sum = count;
+        for (int step = 1; step < warp_pixels; step *= 2) {
+            const int other = __shfl_up_sync(whole_warp, sum, step);
+            if (lane >= step) sum += other;
+        }
+        return {sum - count, __shfl_sync(whole_warp, sum, warp_pixels - 1)};
+    }
+
+    /// Piece j < total is piece i of `pixel`. All lanes must ask.
+    __device__ void find(int j, int& pixel, int& i) const {
+        for (int s = 0; s < warp_pixels; ++s) {
+            const int first = __shfl_sync(whole_warp, before, s);
+            if (first <= j) pixel = s, i = j - first;
+        }
+    }
+
+    /// visit(pixel, i) for all pieces, each in one lane.
+    template <class Visit>
+    __device__ void for_each(const Visit& visit) const {
+        for (int j = threadIdx.x % warp_threads; __any_sync(whole_warp, j < total); j += warp_threads) {
+            int pixel = 0, i = 0;
+            find(j, pixel, i);
+            if (j < total) visit(pixel, i);
+        }
+        __syncwarp();
+    }
+};
+
+/// Adds to what other lanes add to.
+struct AtomicAdd {
+    __device__ void operator()(int64_t& to, int64_t value) const {
+        if (value != 0) atomicAdd(reinterpret_cast<unsigned long long*>(&to), (unsigned long long)value);
+    }
+    __device__ void operator()(uint32_t& to, uint32_t value) const {
+        if (value != 0) atomicAdd(&to, value);
+    }
+};
+
+/// The pixels that a warp has at work: lane s < warp_pixels has the s-th.
+class WarpPixels {
+  public:
+    __device__ WarpPixels(const FrameJob& job)
+        : job_(job),
+          lane_(threadIdx.x % warp_threads),
+          rooms_(job.rooms + (blockIdx.x * block_warps + threadIdx.x / warp_threads) * warp_pixels) {}
+
+    /// New pixels for those that are done, while less than a sample a lane is wanted.
+    __device__ void refill() {
+        const unsigned int columns = unsigned(job_.width + tile_width - 1) / tile_width;
+        const unsigned int places = columns * unsigned(job_.rows / tile_height) * warp_threads;
+        while (more_) {
+            const int waiting = int(warp_sum(unsigned(wanted_ - given_)));
+            const unsigned int free = __ballot_sync(whole_warp, lane_ < warp_pixels && wanted_ == 0);
+            if (waiting >= warp_threads || free == 0) break;
+            const int take =
+                least(__popc(free), (warp_threads - waiting + least_lattice_samples - 1) / least_lattice_samples);
+            unsigned int first = 0;
+            if (lane_ == 0) first = atomicAdd(job_.next, unsigned(take));
+            first = __shfl_sync(whole_warp, first, 0);
+            more_ = first + unsigned(take) < places;
+            const int rank = __popc(free & ((1u << lane_) - 1u));
+            if ((free >> lane_ & 1u) != 0 && rank < take && first + unsigned(rank) < places)
+                begin(first + unsigned(rank), columns);
+        }
+        __syncwarp();
+    }
+
+    /// take(x, y, room, slot, record) for one wanted sample a lane; false if there is none for any.
+    template <class Take>
+    __device__ bool take_samples(const Take& take) {
+        const WarpDeal deal = WarpDeal::of(wanted_ - given_);
+        if (deal.total == 0) return false;
+        int pixel = 0, i = 0;
+        deal.find(lane_, pixel, i);
+        const int x = __shfl_sync(whole_warp, x_, pixel), y = __shfl_sync(whole_warp, y_, pixel);
+        const unsigned int record = __shfl_sync(whole_warp, record_, pixel);
+        i += __shfl_sync(whole_warp, given_, pixel);
+        if (lane_ < deal.total) take(x, y, rooms_[pixel], rooms_[pixel].pixel.wanted(i), job_.records[record]);
+        __syncwarp();
+        given_ += clamped(warp_threads - deal.before, 0, wanted_ - given_);
+        return true;
+    }
+
+    /// Lets those that have all that they wanted in their round decide what they want next.
+    __device__ void settle() {
+        const bool ready = wanted_ != 0 && given_ == wanted_;
+        if (!__any_sync(whole_warp, ready)) return;
+        const LatticeSettings& settings = job_.frame.lattice;
+        const WarpDeal cells = WarpDeal::of(ready ? rooms_[lane_].pixel.cells() : 0);
+        cells.for_each([&](int pixel, int i) { rooms_[pixel].pixel.judge(settings, rooms_[pixel].samples, i); });
+        if (ready) rooms_[lane_].pixel.divide(settings);
+        __syncwarp();
+        // The same number as before, as they are the same.
+        const unsigned int record = record_;
+        for (int j = lane_; __any_sync(whole_warp, j < cells.total); j += warp_threads) {
+            int pixel = 0, i = 0;
+            cells.find(j, pixel, i);
+            PixelRecord& to = job_.records[__shfl_sync(whole_warp, record, pixel)];
+            if (j < cells.total)
+                rooms_[pixel].pixel.settle(settings, i, [&](int slot, int weight) {
+                    rooms_[pixel].samples[slot].give(to, weight, AtomicAdd());
+                });
+        }
+        if (!ready) return;
+        const LatticePixel& pixel = rooms_[lane_].pixel;
+        given_ = 0;
+        wanted_ = pixel.wanted();
+        if (wanted_ != 0) return;
+        job_.records[record_].samples = uint32_t(pixel.taken());
+        job_.records[record_].unmet = pixel.unmet();
+    }
+
+  private:
+    __device__ void begin(unsigned int place, unsigned int columns) {
+        const unsigned int tile = place / warp_threads, in_tile = place % warp_threads;
+        const int column = int(tile % columns * tile_width + in_tile % tile_width);
+        const int row = int(tile / columns * tile_height + in_tile / tile_width);
+        const int film_row = row_of_strips(job_.first_strip, job_.strip_step, row);
+        if (column >= job_.width || film_row >= job_.height) return;
+        x_ = job_.x + column;
+        y_ = job_.y + film_row;
+        record_ = unsigned(row) * unsigned(job_.width) + unsigned(column);
+        job_.records[record_] = PixelRecord();
+        rooms_[lane_].pixel.begin(job_.frame.lattice);
+        given_ = 0;
+        wanted_ = rooms_[lane_].pixel.wanted();
+    }
+
+    const FrameJob& job_;
+    const int lane_;
+    LatticeRoom* const rooms_;
+    bool more_ = true;  // pixels that nobody has begun
+    int x_ = 0, y_ = 0;
+    unsigned int record_ = 0;
+    int given_ = 0, wanted_ = 0;  // samples of this round, and those of them that lanes took; none wanted: no pixel
+};
+
+template <class Real, class E, DevicePath path>
+__global__ void __launch_bounds__(block_threads, least_blocks<Real>)
+    render_adaptive(const __grid_constant__ FrameJob job,
+                    const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
+    using Intersector = typename PathTraits<Real, path>::Intersector;
+    __shared__ BlockRoom room;
+    PixelWork& own = room.work[threadIdx.x] = PixelWork();
+    PixelRecord& taken = room.records[threadIdx.x];
+    BranchStack<Real, typename Intersector::Media> stack;
+    const bool gradual = shades_gradually(scene);
+    WarpPixels pixels(job);
+    for (;;) {
+        pixels.refill();
+        const bool any = pixels.take_samples([&](int x, int y, LatticeRoom& pixel, int slot, PixelRecord& record) {
+            take_sample<Real, E>(scene, job.frame, Intersector{scene}, x, y, slot, gradual, taken, pixel.samples[slot],
+                                 own, stack);
+            AtomicAdd()(record.rays, taken.rays);
+            if (LatticePixel::is_chosen(job.frame.lattice, slot)) choose_sample(taken, record);
+        });
+        if (!any) break;
+        pixels.settle();
+    }
+    add_to_tally(*job.tally, own.rays, own.flags);
+}
+
+}  // namespace cistula

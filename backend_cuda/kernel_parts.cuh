@@ -1,0 +1,65 @@
+// What the kernels share: the shape of blocks, the intersectors of a path, counting.
+#pragma once
+
+#include "backend_cuda/frame_job.h"
+#include "cistula/bvh.h"
+
+namespace cistula {
+
+inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_threads * block_warps;
+/// A warp renders 8 x 4 pixels, next to each other or every other one: neighbors see the same things.
+inline constexpr int tile_width = 8, tile_height = 4;
+
+/// What a block keeps of its pixels while it renders them: registers are dearer.
+struct alignas(16) BlockRoom {
+    PixelRecord records[block_threads];
+    PixelWork work[block_threads];
+};
+
+/// Blocks that share a multiprocessor: what bounds the registers of a thread, at 80 and 128. Others were slower on an
+/// H200.
+template <class Real>
+inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? 6 : 4;
+
+template <class Real, DevicePath path>
+struct PathTraits;
+template <class Real>
+struct PathTraits<Real, DevicePath::plain_loop> {
+    using Scene = SmallScene<Real>;
+    using Intersector = BruteIntersector<Real, OneMedium, Scene>;
+};
+template <class Real>
+struct PathTraits<Real, DevicePath::tree> {
+    using Scene = SceneView<Real>;
+    using Intersector = BvhIntersector<Real, MediaList, Scene>;
+};
+
+/// Over all lanes, for every one.
+__device__ inline unsigned int warp_sum(unsigned int value) {
+#if __CUDA_ARCH__ >= 800
+    return __reduce_add_sync(0xffffffffu, value);
+#else
+    for (int step = warp_threads / 2; step > 0; step /= 2) value += __shfl_xor_sync(0xffffffffu, value, step);
+    return value;
+#endif
+}
+
+/// Sums over the warp first, in words; where they could overflow, each lane by itself.
+__device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, unsigned int flags) {
+    const unsigned int counts[4] = {rays.primary, rays.reflected, rays.transmitted, rays.shadow};
+    unsigned long long* to = tally.rays[(blockIdx.x + blockIdx.y * 7u) % DeviceTally::slots];
+    if (__any_sync(0xffffffffu, (counts[0] | counts[1] | counts[2] | counts[3]) >> 27 != 0)) {
+        for (int i = 0; i < 4; ++i) atomicAdd(to + i, (unsigned long long)counts[i]);
+    } else {
+        const int lane = threadIdx.x % warp_threads;
+        unsigned int sum = 0;
+        for (int i = 0; i < 4; ++i) {
+            const unsigned int whole = warp_sum(counts[i]);
+            if (lane == i) sum = whole;
+        }
+        if (lane < 4 && sum != 0) atomicAdd(to + lane, (unsigned long long)sum);
+    }
+    if (flags != 0) atomicOr(&tally.flags, flags);
+}
+
+}  // namespace cistula
