@@ -20,6 +20,12 @@ constexpr size_t many_pixels = size_t{1} << 19;
 /// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
 constexpr int most_blocks = 6;
 
+/// Strips are whole but for a rectangle's last.
+int rows_of_last_strip(const FramePart& part) {
+    const int top = (part.first_strip + (part.strips - 1) * part.strip_step) * strip_rows;
+    return std::clamp(part.rect.height - top, 0, strip_rows);
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -189,10 +195,7 @@ template <class Real>
 void DeviceWorker<Real>::copy_straight(const PartSlot& slot, Film& film) {
     const FramePart& part = slot.part;
     const size_t width = size_t(part.rect.width), strip = strip_rows * width, strip_bytes = strip * sizeof(PixelRecord);
-    const auto rows_of = [&](int i) {
-        return std::clamp(part.rect.height - (part.first_strip + i * part.strip_step) * strip_rows, 0, strip_rows);
-    };
-    const int whole = rows_of(part.strips - 1) == strip_rows ? part.strips : part.strips - 1;
+    const int last_rows = rows_of_last_strip(part), whole = last_rows == strip_rows ? part.strips : part.strips - 1;
     const PixelRecord* from = slot.records.as<PixelRecord>();
     PixelRecord* to = film.pixels.data() + size_t(part.first_strip) * strip;
     if (whole > 0)
@@ -200,7 +203,7 @@ void DeviceWorker<Real>::copy_straight(const PartSlot& slot, Film& film) {
                                              size_t(whole), cudaMemcpyDeviceToHost, copy_));
     if (whole < part.strips)
         CISTULA_CUDA_CHECK(cudaMemcpyAsync(to + size_t(whole * part.strip_step) * strip, from + size_t(whole) * strip,
-                                           size_t(rows_of(whole)) * width * sizeof(PixelRecord), cudaMemcpyDeviceToHost,
+                                           size_t(last_rows) * width * sizeof(PixelRecord), cudaMemcpyDeviceToHost,
                                            copy_));
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(copy_));
 }
@@ -210,8 +213,9 @@ template <class Real>
 void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
     const FramePart& part = slot.part;
     const size_t width = size_t(part.rect.width), row_bytes = width * sizeof(PixelRecord);
+    const int rows = (part.strips - 1) * strip_rows + rows_of_last_strip(part);
     // No more than there is: to lock pages takes longer than to render a small frame.
-    const int rows = part.strips * strip_rows, batch = std::min(int(std::max<size_t>(staging_bytes / row_bytes, 1)), rows);
+    const int batch = std::min(int(std::max<size_t>(staging_bytes / row_bytes, 1)), rows);
     for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * row_bytes);
     const auto fill = [&](int first, int buffer) {
         CISTULA_CUDA_CHECK(cudaMemcpyAsync(staging_[buffer].as<void>(),
@@ -230,9 +234,8 @@ void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
         tbb::parallel_for(0, (count + together - 1) / together, [&](int i) {
             const int begin = i * together, row = first + begin;
             const int y = row_of_strips(part.first_strip, part.strip_step, row);
-            const int rows_here = std::min({together, count - begin, part.rect.height - y});
-            if (rows_here > 0)
-                std::memcpy(&film.pixels[size_t(y) * width], from + size_t(begin) * width, size_t(rows_here) * row_bytes);
+            std::memcpy(&film.pixels[size_t(y) * width], from + size_t(begin) * width,
+                        size_t(std::min(together, count - begin)) * row_bytes);
         });
     }
 }

@@ -82,9 +82,9 @@ def judge(log):
 def read_sanitizer(folder):
     runs = []
     for path in sorted(glob.glob(f"{folder}/sanitizer/*.log")):
-        tool, scene, precision = os.path.basename(path)[:-len(".log")].split("-")
+        tool, scene, precision, sampling = os.path.basename(path)[:-len(".log")].split("-")
         with open(path, errors="replace") as file:
-            runs.append({"tool": tool, "scene": scene, "precision": precision, **judge(file.read())})
+            runs.append({"tool": tool, "scene": scene, "precision": precision, "sampling": sampling, **judge(file.read())})
     return runs
 
 
@@ -229,13 +229,13 @@ def main():
     device_bars(bars, parts["times"])
     bars.print()
     for run in sanitizer:
-        print(f"compute-sanitizer {run['tool']:<9} {run['scene']}.json, {run['precision']:<6} {run['result']:<8} {run['summary']}")
+        print(f"compute-sanitizer {run['tool']:<9} {run['scene']}.json, {run['precision']:<6} {run['sampling']:<8} {run['result']:<8} {run['summary']}")
 
     compared = sum(b["compared"] for b in bars.all if "compared" in b)
     differing = sum(b["value"] or 0 for b in bars.all if "compared" in b)
     failed = [f"{step}: exit code {code}" for step, code in steps.items() if code != 0]
     failed += [f"{b['bar']}: nothing was compared" for b in bars.all if b.get("compared") == 0 and b["step"] in steps]
-    failed += [f"{r['tool']} on {r['scene']}.json in {r['precision']}: {r['result']}" for r in sanitizer
+    failed += [f"{r['tool']} on {r['scene']}.json in {r['precision']}, {r['sampling']}: {r['result']}" for r in sanitizer
                if r["result"] in ("found", "failed")]
     first = next((part.context for part in parts.values() if part.context), {})
     others = {step: {key: value for key, value in part.context.items() if first.get(key) != value} for step, part in parts.items()}

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <vector>
 
 #include "apps/common/golden.h"
 #include "backend_cuda/cuda_renderer.h"
@@ -27,11 +28,12 @@ Json first_pixel(const FilmDifference& difference, const Film& cpu, const Film& 
 template <class Real>
 void check(GpuRecord& record, const std::string& name, const SceneDescription& scene, const FrameSettings& settings,
            const std::string& hash) {
+    const std::vector<int> splits = settings.adaptive() ? std::vector<int>{0} : std::vector<int>{0, 1, 3};
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
     const Film cpu = golden::render_with(*make_embree_renderer<Real>(compiled), scene, settings);
     const char* precision = sizeof(Real) == sizeof(float) ? "float" : "double";
     for (const bool always_tree : {false, true})
-        for (const int split : {0, 1, 3}) {
+        for (const int split : splits) {
             CudaOptions options;
             options.always_tree = always_tree;
             options.split = split;
@@ -46,6 +48,15 @@ void check(GpuRecord& record, const std::string& name, const SceneDescription& s
         }
 }
 
+/// Small frames, as their pixels take many samples.
+void check_adaptive(GpuRecord& record, const std::string& name, const SceneDescription& scene, FrameSettings settings,
+                    double target) {
+    settings.set_size(settings.full_width / 2, settings.full_height / 2);
+    settings.target_error = target;
+    check<float>(record, name + "/adaptive", scene, settings, "");
+    check<double>(record, name + "/adaptive", scene, settings, "");
+}
+
 }  // namespace
 
 void check_scenes(GpuRecord& record, const std::string& folder) {
@@ -55,6 +66,7 @@ void check_scenes(GpuRecord& record, const std::string& folder) {
         const FrameSettings settings = golden::settings_for(scene);
         check<float>(record, "scenes/" + name, scene, settings, golden["float"]["hash"]);
         check<double>(record, "scenes/" + name, scene, settings, golden["double"]["hash"]);
+        check_adaptive(record, "scenes/" + name, scene, settings, 0.01);
     }
 }
 
@@ -64,6 +76,7 @@ void check_generated(GpuRecord& record, const std::string& folder, uint64_t coun
         const FrameSettings settings = generated_settings(scene);
         check<float>(record, fmt::format("generated/{}", seed), scene, settings, "");
         check<double>(record, fmt::format("generated/{}", seed), scene, settings, "");
+        if (seed % 4 == 0) check_adaptive(record, fmt::format("generated/{}", seed), scene, settings, 0.05);
     }
 }
 

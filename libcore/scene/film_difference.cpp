@@ -6,7 +6,7 @@
 namespace cistula {
 namespace {
 
-constexpr uint64_t values_of_pixel = 16, values_of_frame = 5;  // ... of a frame: ray counts and flags
+constexpr uint64_t values_of_pixel = 18, values_of_frame = 5;  // ... of a frame: ray counts and flags
 
 /// Integers and floats of a pixel that are not the same, bit for bit.
 uint64_t differing_values(const PixelRecord& a, const PixelRecord& b) {
@@ -14,8 +14,8 @@ uint64_t differing_values(const PixelRecord& a, const PixelRecord& b) {
     for (int c = 0; c < 3; ++c)
         count += (a.radiance[c] != b.radiance[c]) + (a.pruned[c] != b.pruned[c]) + (a.cut[c] != b.cut[c]) +
                  (std::bit_cast<uint32_t>(a.normal[c]) != std::bit_cast<uint32_t>(b.normal[c]));
-    return count + (a.hits != b.hits) + (a.rays != b.rays) + (a.id != b.id) +
-           (std::bit_cast<uint32_t>(a.z) != std::bit_cast<uint32_t>(b.z));
+    return count + (a.hits != b.hits) + (a.rays != b.rays) + (a.id != b.id) + (a.samples != b.samples) +
+           (a.unmet != b.unmet) + (std::bit_cast<uint32_t>(a.z) != std::bit_cast<uint32_t>(b.z));
 }
 
 }  // namespace
