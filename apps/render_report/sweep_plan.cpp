@@ -90,6 +90,9 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
             setting.intersector = other;
             plan.add(setting).alone["intersector"] = exact;
         }
+    // What small errors take without a target.
+    for (const double cutoff : cutoffs)
+        if (cutoff > 0) plan.add(with(base, deepest, cutoff, single, reference_supersample));
     // A target is about all of the error.
     for (const double target : quick ? std::vector<double>{0.1, 0.03, 0.01, 0.004}
                                      : std::vector<double>{0.1, 0.03, 0.01, 0.004, 0.002, 0.001})
