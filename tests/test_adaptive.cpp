@@ -143,10 +143,10 @@ TEST(Lattice, SmoothShadingIsIntegratedWithinTheTarget) {
     for (int n = 0; n < 2000; ++n) {
         const double target = n % 2 ? 0.004 : 0.03;
         const bool fine = n % 2;
-        // What bends alike to both sides is seen in the middle only, at which coarse targets do not look. Twice this
-        // bend within a pixel exceeds the target by up to a tenth: it is an estimate.
+        // What bends alike to both sides is seen in the middle only, at which coarse targets do not look. A bend of
+        // more than 0.05 within a pixel exceeds the target by up to a tenth: it is an estimate.
         const double a = random.between(-0.2, 0.2), b = random.between(-0.2, 0.2),
-                     c = fine ? random.between(-0.05, 0.05) : 0, d = random.between(-0.1, 0.1);
+                     c = fine ? random.between(-0.1, 0.1) : 0, d = random.between(-0.1, 0.1);
         const auto value = [&](int x, int y) {
             const double u = (x - 7.5) / 8, v = (y - 7.5) / 8;
             return fixed(0.5 + a * u + b * v + c * u * u + d * u * v);
@@ -155,7 +155,8 @@ TEST(Lattice, SmoothShadingIsIntegratedWithinTheTarget) {
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x) truth += double(value(x, y)) * 0x1p-54 / 256;
         const PixelRecord record = sampled(lattice(target, fine), value, one_kind);
-        EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, target) << n;
+        const double allowed = std::abs(c) <= 0.05 ? target : 1.1 * target;
+        EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, allowed) << n;
     }
     // Shading that hardly changes costs no more than none.
     const auto gentle = [](int x, int y) { return fixed(0.5 + 0.00004 * x - 0.00002 * y); };

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "cistula/ray_tree.h"
-
 #include "apps/render/options.h"
+#include "cistula/ray_tree.h"
 
 namespace cistula::report {
 

@@ -110,11 +110,12 @@ struct SampleRange {
     int first = 0, step = 1;
 };
 
-/// Sample (column, row) of the k x k grid of pixel (px, py), added to the record. `settings`: frame.tree, or a budget of
-/// the sample's own.
+/// Sample (column, row) of the k x k grid of pixel (px, py), added to the record. `settings`: frame.tree, or a budget
+/// of the sample's own.
 template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, const TreeSettings& settings,
-                                  const Intersector& intersector, int px, int py, int column, int row, bool middle, PixelRecord& record, PixelWork& work, Stack& stack) {
+                                  const Intersector& intersector, int px, int py, int column, int row, bool middle,
+                                  PixelRecord& record, PixelWork& work, Stack& stack) {
     const int k = frame.supersample;
     Ray<Real, typename Intersector::Media> ray;
     // In half samples from the middle of the picture.
@@ -142,8 +143,8 @@ CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, con
     const int k = frame.supersample;
     for (int sample = samples.first; sample < k * k; sample += samples.step) {
         const int row = k == 1 ? 0 : sample / k, column = sample - row * k;
-        render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row, column == k / 2 && row == k / 2, record, work,
-                               stack);
+        render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row,
+                               column == k / 2 && row == k / 2, record, work, stack);
     }
     record.rays = work.rays.total();
     record.samples = work.rays.primary;
