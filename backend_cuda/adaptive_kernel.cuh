@@ -163,7 +163,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     __shared__ BlockRoom room;
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
     PixelRecord& taken = room.records[threadIdx.x];
-    BranchStack<Real, typename Intersector::Media> stack;
+    StackOf<Real, E, typename Intersector::Media> stack;
     const bool gradual = shades_gradually(scene);
     WarpPixels pixels(job);
     for (;;) {

@@ -155,7 +155,7 @@ class CudaRenderer : public Renderer {
         frame.fits = path_ == DevicePath::tree
                          ? camera_solids(view_, BvhIntersector<Real>{view_}, position, frame.view.camera_media)
                          : camera_solids(view_, BruteIntersector<Real>{view_}, position, frame.view.camera_media);
-        frame.mask = least_mask(settings.effects | scene_->effects);
+        frame.mask = least_mask(settings.effects | scene_->effects | camera_effects(frame.view), settings.adaptive());
         effects_ = effect_masks[frame.mask];
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
@@ -164,7 +164,7 @@ class CudaRenderer : public Renderer {
         const int per_device = (frame.strips + devices() - 1) / devices();
         int wanted = int(std::clamp<size_t>(part_samples / (strip_pixels * samples), 1, size_t(per_device)));
         if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / strip_pixels, 1, size_t(wanted)));
-        frame.split_depth = split_depth(settings, frame.view.tree, size_t(per_device) * strip_pixels * samples);
+        frame.split_depth = split_depth(settings, frame, size_t(per_device) * strip_pixels * samples);
         frame.part_strips = reserve(wanted, strip_pixels, frame);
         frame.parts = (per_device + frame.part_strips - 1) / frame.part_strips;
         frame.first_slot = slot % DeviceWorker<Real>::slots;
@@ -173,12 +173,12 @@ class CudaRenderer : public Renderer {
     }
 
     /// Of a frame of few samples the last threads would be long alone with the deepest trees; others keep the device busy
-    /// meanwhile. A budget of truncation is spent in the order of one thread's stack.
-    int split_depth(const FrameSettings& settings, const TreeSettings& tree, size_t samples_per_device) const {
-        if (settings.adaptive()) return 0;
+    /// meanwhile. Trees without forks cannot be split. A budget of truncation is spent in the order of one thread's stack.
+    int split_depth(const FrameSettings& settings, const Frame& frame, size_t samples_per_device) const {
+        if (settings.adaptive() || !splits_trees(frame.mask)) return 0;
         const int chosen = samples_per_device <= few_samples && settings.depth > deep ? split_levels : 0;
         const int split = options_.split != CudaOptions::automatic ? options_.split : chosen;
-        return tree.budget == 0 && split > 0 && split < settings.depth ? split : 0;
+        return frame.view.tree.budget == 0 && split > 0 && split < settings.depth ? split : 0;
     }
 
     /// Memory for parts of `strips`, or of half as many until it is enough.

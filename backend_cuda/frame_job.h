@@ -3,6 +3,9 @@
 
 #include <cuda_runtime_api.h>
 
+#include <vector>
+
+#include "backend_cuda/cuda_renderer.h"
 #include "cistula/pixel.h"
 #include "cistula/small_scene.h"
 
@@ -78,7 +81,12 @@ size_t queued_branch_bytes(DevicePath path);
 /// What a kernel goes over: all pixels of the job, those of a frame with a target error, or the branches of job.from.
 enum class Pass { pixels, adaptive_pixels, branches };
 
-/// Enqueues a pass. `mask` is an index of effect_masks. Throws Error (device).
+/// Whether Pass::branches is compiled for a mask: only what passes a face makes trees fork.
+constexpr bool splits_trees(int mask) {
+    return (effect_masks[mask] & effect_transmission) != 0;
+}
+
+/// Enqueues a pass that is compiled for the mask. `mask` is an index of effect_masks. Throws Error (device).
 template <class Real>
 void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream);
 

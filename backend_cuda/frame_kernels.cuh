@@ -9,9 +9,9 @@ namespace cistula {
 static_assert(sizeof(PixelRecord) % sizeof(uint2) == 0 && 2 * sizeof(PixelRecord) % sizeof(uint4) == 0);
 static_assert(strip_rows % tile_height == 0);
 
-template <class Real, class Media>
+template <class Entry>
 struct QueuedBranch {
-    Branch<Real, Media> branch;
+    Entry branch;
     unsigned long long record;  // no padding behind it: that would be copied unset
 };
 
@@ -26,12 +26,11 @@ __device__ inline unsigned int next_place(unsigned int* size) {
 
 /// The branches that wait, in the thread's own memory; from a depth on they go to the queue while that has room, so that
 /// deep trees are split over many threads. The sums being integers, the order of work never shows.
-template <class Real, class Media>
+template <class Entry>
 class GivingBranchStack {
   public:
-    using Entry = Branch<Real, Media>;
     /// Apart from the rest, so that this stays in registers.
-    using Room = BranchRoom<Real, Media, branch_stack>;
+    using Room = BranchRoom<Entry, branch_stack>;
 
     __device__ GivingBranchStack(Room& room, const FrameJob& job, unsigned int record)
         : room_(room), job_(job), record_(record) {}
@@ -53,10 +52,10 @@ class GivingBranchStack {
     __device__ __noinline__ static bool give_away(const Room* room, int i, const BranchQueue* queue, unsigned int record) {
         const unsigned int place = next_place(queue->size);
         if (place >= queue->capacity) return false;
-        QueuedBranch<Real, Media> item;
+        QueuedBranch<Entry> item;
         room->get(i, item.branch);
         item.record = record;
-        static_cast<QueuedBranch<Real, Media>*>(queue->items)[place] = item;
+        static_cast<QueuedBranch<Entry>*>(queue->items)[place] = item;
         return true;
     }
 
@@ -65,6 +64,18 @@ class GivingBranchStack {
     unsigned int record_;
     int count_ = 0;
 };
+
+/// The same of trees that do not fork.
+template <class Entry>
+class KeepingBranch : public OneBranch<Entry> {
+  public:
+    struct Room {};
+    __device__ KeepingBranch(Room&, const FrameJob&, unsigned int) {}
+};
+
+template <class Real, class E, class Media>
+using DeviceStack = std::conditional_t<E::has(effect_transmission), GivingBranchStack<BranchOf<Real, E, Media>>,
+                                       KeepingBranch<BranchOf<Real, E, Media>>>;
 
 /// Where pixels have several samples, all warps of a block share one tile's, so that no thread is long at work.
 __host__ __device__ inline bool shares_tiles(const FrameView& frame) {
@@ -120,7 +131,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     render_pixels(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, path>::Intersector;
     using Media = typename Intersector::Media;
-    using Stack = GivingBranchStack<Real, Media>;
+    using Stack = DeviceStack<Real, E, Media>;
     __shared__ BlockRoom room;
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
     const bool shares = shares_tiles(job.frame);
@@ -155,12 +166,13 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     render_branches(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, path>::Intersector;
     using Media = typename Intersector::Media;
-    using Stack = GivingBranchStack<Real, Media>;
+    using Item = QueuedBranch<BranchOf<Real, E, Media>>;
+    using Stack = DeviceStack<Real, E, Media>;
     const unsigned int count = min(*job.from.size, job.from.capacity);
     PixelRays rays;  // of many pixels, and yet far from 2^32: a part of a frame
     unsigned int flags = 0;
     for (unsigned int i = blockIdx.x * block_threads + threadIdx.x; i < count; i += gridDim.x * block_threads) {
-        QueuedBranch<Real, Media> item = static_cast<const QueuedBranch<Real, Media>*>(job.from.items)[i];
+        Item item = static_cast<const Item*>(job.from.items)[i];
         PixelRecord part;
         PixelWork own;
         typename Stack::Room room;
@@ -192,25 +204,65 @@ unsigned int filling_blocks(const Kernel& kernel) {
     return unsigned(multiprocessors) * unsigned(blocks > 0 ? blocks : 1);
 }
 
+template <class Kernel>
+KernelResources resources_of(const char* name, const Kernel& kernel) {
+    cudaFuncAttributes attributes;
+    CISTULA_CUDA_CHECK(cudaFuncGetAttributes(&attributes, kernel));
+    int device = 0, blocks = 0, threads = 0;
+    CISTULA_CUDA_CHECK(cudaGetDevice(&device));
+    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, device));
+    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, block_threads, 0));
+    KernelResources r{};
+    r.name = name;
+    r.registers = attributes.numRegs;
+    r.local_bytes = attributes.localSizeBytes;
+    r.blocks = blocks;
+    r.occupancy = double(blocks) * block_threads / threads;
+    return r;
+}
+
+template <class Real, int mask, DevicePath path>
+void list_resources(std::vector<KernelResources>& list) {
+    using E = Effects<effect_masks[mask]>;
+    const auto add = [&](KernelResources r) {
+        r.precision = RealTraits<Real>::name;
+        r.path = path == DevicePath::plain_loop ? "loop" : "tree";
+        r.mask = E::mask;
+        list.push_back(r);
+    };
+    add(resources_of("render_pixels", render_pixels<Real, E, path>));
+    if constexpr (samples_adaptively(mask)) add(resources_of("render_adaptive", render_adaptive<Real, E, path>));
+    if constexpr (splits_trees(mask)) add(resources_of("render_branches", render_branches<Real, E, path>));
+}
+
+/// Of the kernels of one mask of effects.
+template <class Real, int mask>
+void list_resources_of_mask(std::vector<KernelResources>& list) {
+    list_resources<Real, mask, DevicePath::plain_loop>(list);
+    list_resources<Real, mask, DevicePath::tree>(list);
+}
+
 /// The kernels of one mask of effects.
 template <class Real, int mask>
 void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
     using E = Effects<effect_masks[mask]>;
     const BlockShape block = BlockShape::of(job.frame);
     const dim3 grid(unsigned(job.width + block.width - 1) / unsigned(block.width), unsigned(job.rows / block.height));
-    const auto launch = [&](auto pixels, auto adaptive, auto branches, const auto& own) {
-        if (pass == Pass::pixels)
-            pixels<<<grid, block_threads, 0, stream>>>(job, own);
-        else if (pass == Pass::adaptive_pixels)
-            adaptive<<<least(filling_blocks(adaptive), job.room_blocks), block_threads, 0, stream>>>(job, own);
-        else
-            branches<<<filling_blocks(branches), block_threads, 0, stream>>>(job, own);
+    const auto launch = [&]<DevicePath here>(const auto& own) {
+        if (pass == Pass::pixels) render_pixels<Real, E, here><<<grid, block_threads, 0, stream>>>(job, own);
+        if constexpr (samples_adaptively(mask))
+            if (pass == Pass::adaptive_pixels)
+                render_adaptive<Real, E, here>
+                    <<<least(filling_blocks(render_adaptive<Real, E, here>), job.room_blocks), block_threads, 0, stream>>>(job, own);
+        if constexpr (splits_trees(mask))
+            if (pass == Pass::branches)
+                render_branches<Real, E, here>
+                    <<<filling_blocks(render_branches<Real, E, here>), block_threads, 0, stream>>>(job, own);
     };
-    constexpr DevicePath loop = DevicePath::plain_loop, tree = DevicePath::tree;
-    if (path == loop)
-        launch(render_pixels<Real, E, loop>, render_adaptive<Real, E, loop>, render_branches<Real, E, loop>, scene.small);
+    if (path == DevicePath::plain_loop)
+        launch.template operator()<DevicePath::plain_loop>(scene.small);
     else
-        launch(render_pixels<Real, E, tree>, render_adaptive<Real, E, tree>, render_branches<Real, E, tree>, scene.view);
+        launch.template operator()<DevicePath::tree>(scene.view);
     check_cuda(cudaGetLastError(), pass == Pass::branches ? "launch of render_branches"
                                    : pass == Pass::pixels ? "launch of render_pixels"
                                                           : "launch of render_adaptive");

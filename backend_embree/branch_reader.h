@@ -283,7 +283,7 @@ class BranchReader {
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
         const auto note = [&](uint32_t solid, uint32_t slot) {
             if (std::find(solids.begin(), solids.end(), solid) != solids.end()) return;
-            ShadowSum sum;
+            ShadowSum<E> sum;
             if (scene_.solids[solid].kind == SolidKind::convex)
                 shadow_convex<Real, E>(scene_, solid, shadow, sum);
             else

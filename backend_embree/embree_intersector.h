@@ -16,15 +16,19 @@ struct ClosestQuery {
     Hit<Real> best;
 };
 
-/// The same for shadows; `visit` adds one primitive to the sum, with the effects of the mask that asks.
+/// The same for shadows; `visit` adds one primitive to the sum and tells whether all is dark then.
 template <class Real>
 struct ShadowQuery {
     EmbreeContext context;
     const SceneView<Real>* scene;
     const ShadowRay<Real>* shadow;
     TriangleRay<Real> triangle_ray;
-    ShadowSum sum;
-    void (*visit)(ShadowQuery&, uint32_t primitive);
+    bool (*visit)(ShadowQuery&, uint32_t primitive);
+};
+/// Of the mask that asks.
+template <class Real, class E>
+struct SummedShadowQuery : ShadowQuery<Real> {
+    ShadowSum<E> sum;
 };
 
 template <class Real>
@@ -67,6 +71,7 @@ struct EmbreeIntersector {
     const SceneView<Real>& scene;
     RTCScene tree;
 
+    template <class = Effects<all_effects>>  // none matters to it
     Hit<Real> closest(const Ray<Real>& ray) const {
         ClosestQuery<Real> query;
         query.best = Hit<Real>();
@@ -80,19 +85,22 @@ struct EmbreeIntersector {
     }
 
     template <class E>
-    Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
-        if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
-        ShadowQuery<Real> query;
+    Share<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
+        using Query = SummedShadowQuery<Real, E>;
+        Query query;
         embree_init(query.context);
         query.scene = &scene;
         query.shadow = &shadow;
         query.triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
         query.visit = [](ShadowQuery<Real>& q, uint32_t primitive) {
-            shadow_primitive<Real, E>(*q.scene, primitive, *q.shadow, q.triangle_ray, q.sum);
+            ShadowSum<E>& sum = static_cast<Query&>(q).sum;
+            shadow_primitive<Real, E>(*q.scene, primitive, *q.shadow, q.triangle_ray, sum);
+            return sum.dark();
         };
         shadow_start<Real, E>(scene, shadow, query.sum);
         walk_shadow(tree, query.context, shadow);
-        return query.sum.template share<E, Real>();
+        return query.sum.template share<Real>();
     }
 
     /// RTCIntersectFunctionN of the one user geometry.
@@ -111,8 +119,7 @@ struct EmbreeIntersector {
     static void on_occluded(const RTCOccludedFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<ShadowQuery<Real>*>(arguments->context);
-        query.visit(query, arguments->primID);
-        if (query.sum.dark()) reinterpret_cast<RTCRay*>(arguments->ray)->tfar = -RealTraits<float>::infinity;
+        if (query.visit(query, arguments->primID)) reinterpret_cast<RTCRay*>(arguments->ray)->tfar = -RealTraits<float>::infinity;
     }
 };
 

@@ -78,11 +78,12 @@ bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& sc
     prepare_film(film, settings, compiled.radiance_exponent);
     if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media))
         film.flags |= flag_media_overflow;
+    const uint32_t required = settings.effects | compiled.effects | camera_effects(frame);
     if (settings.adaptive()) {  // one mask for all: what it would save is less than what compiling more takes
         ran = all_effects;
         return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
     }
-    const int index = least_mask(settings.effects | compiled.effects);
+    const int index = least_mask(required);
     ran = effect_masks[index];
     using Render = bool (*)(const SceneView<Real>&, const FrameView&, const Intersector&, const FrameSettings&, Film&,
                             RenderProgress&);

@@ -52,10 +52,13 @@ struct NativeShadow {
     EmbreeContext context;
     const SceneView<Real>& scene;
     const ShadowRay<Real>& shadow;
-    ShadowSum sum;
-    void (*visit)(NativeShadow&, const NativeTriangle&, Real t, bool enters);
+    bool (*visit)(NativeShadow&, const NativeTriangle&, Real t, bool enters);  // tells whether all is dark
+};
+template <class Real, class E>
+struct SummedNativeShadow : NativeShadow<Real> {
+    using NativeShadow<Real>::scene, NativeShadow<Real>::shadow;
+    ShadowSum<E> sum{};
 
-    template <class E>
     void add(const NativeTriangle& triangle, Real t, bool enters) {
         const Ray<Real>& ray = shadow.ray;
         if (!(t < shadow.distance) || leaves_behind(scene, ray, triangle, t)) return;
@@ -63,14 +66,13 @@ struct NativeShadow {
         const Solid& solid = scene.solids[triangle.solid];
         if (solid.kind == SolidKind::convex && enters && ray.media.contains(triangle.solid)) return;
         const Material<Real>& material = scene.materials[solid.material];
-        sum.cross<E>(material);
+        sum.cross(material);
         if constexpr (E::has(effect_absorption))
             if (solid.kind != SolidKind::sheet)
                 sum.absorb_rest(material, shadow.distance - t, enters ? 1 : -1, scene.extent);
     }
 
     /// What solids that contain the start of the ray add.
-    template <class E>
     void start() {
         if constexpr (E::has(effect_absorption))
             shadow.ray.media.for_each([&](uint32_t index, int count) {
@@ -88,6 +90,7 @@ struct NativeIntersector {
     const SceneView<Real>& scene;
     RTCScene tree;
 
+    template <class = Effects<all_effects>>  // none matters to it
     Hit<Real> closest(const Ray<Real>& ray) const {
         NativeClosest<Real> query{{}, scene, ray, {}};
         if (!is_finite(ray)) return query.best;
@@ -97,16 +100,18 @@ struct NativeIntersector {
     }
 
     template <class E>
-    Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
-        if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
-        NativeShadow<Real> query{
-            {}, scene, shadow, {}, [](auto& q, const NativeTriangle& triangle, Real t, bool enters) {
-                q.template add<E>(triangle, t, enters);
-            }};
+    Share<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
+        using Query = SummedNativeShadow<Real, E>;
+        Query query{{{}, scene, shadow, [](NativeShadow<Real>& q, const NativeTriangle& triangle, Real t, bool enters) {
+                         auto& own = static_cast<Query&>(q);
+                         own.add(triangle, t, enters);
+                         return own.sum.dark();
+                     }}};
         embree_init(query.context);
-        query.template start<E>();
+        query.start();
         walk_shadow(tree, query.context, shadow);
-        return query.sum.template share<E, Real>();
+        return query.sum.template share<Real>();
     }
 
     /// RTCFilterFunctionN of rtcIntersect1: refused hits do not end the search.
@@ -122,8 +127,7 @@ struct NativeIntersector {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<NativeShadow<Real>*>(arguments->context);
         const Found found(arguments);
-        query.visit(query, found.triangle, found.t, found.enters());
-        if (!query.sum.dark()) arguments->valid[0] = 0;
+        if (!query.visit(query, found.triangle, found.t, found.enters())) arguments->valid[0] = 0;
     }
 
   private:

@@ -60,14 +60,15 @@ struct ObservedIntersector {
     const Inner& inner;
     SampleRecorder<Real, Inner>& recorder;
 
+    template <class E = Effects<all_effects>>
     Hit<Real> closest(const Ray<Real>& ray) const {
-        const Hit<Real> hit = inner.closest(ray);
+        const Hit<Real> hit = inner.template closest<E>(ray);
         recorder.looked(ray, hit);
         return hit;
     }
     template <class E>
-    Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
-        const Vec3<Real> arrives = inner.template transmittance<E>(shadow);
+    Share<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        const Share<Real, E> arrives = inner.template transmittance<E>(shadow);
         recorder.shadowed(shadow, arrives);
         return arrives;
     }
@@ -92,7 +93,7 @@ class ObservedStack {
 
   private:
     SampleRecorder<Real, Inner>& recorder_;
-    BranchStack<Real, MediaList> inner_;
+    BranchStack<Branch<Real>> inner_;
 };
 
 /// What is below each branch, from what each is by itself.

@@ -183,7 +183,7 @@ TYPED_TEST(BouncesTest, LeavingOutTheFaceAloneLosesRays) {
 template <class Real>
 double seen_through(const SceneView<Real>& scene, const Ray<Real>& ray, uint32_t& flags) {
     using Intersector = BvhIntersector<Real>;
-    using Stack = BranchStack<Real, MediaList>;
+    using Stack = BranchStack<Branch<Real>>;
     TreeSettings settings;
     settings.fixed_scale = 0x1p62;
     settings.fixed_unit = 0x1p-62;

@@ -17,18 +17,17 @@ namespace {
 
 const std::string source = CISTULA_SOURCE_DIR;
 
-template <class Real, class Media>
+template <class Entry>
 struct Waiting {
-    Branch<Real, Media> branch;
+    Entry branch;
     size_t record;
 };
 
 /// What backend_cuda's GivingBranchStack does: branches of `depth` and more go to the queue while that has room.
-template <class Real, class Media>
+template <class Entry>
 class GivingStack {
   public:
-    using Entry = Branch<Real, Media>;
-    using Queue = std::vector<Waiting<Real, Media>>;
+    using Queue = std::vector<Waiting<Entry>>;
 
     GivingStack(int depth, Queue& queue, size_t capacity, size_t record)
         : queue_(queue), capacity_(capacity), record_(record), depth_(depth) {}
@@ -69,7 +68,7 @@ struct Split {
 template <class Real, class E, class Scene, class Intersector>
 void render_split(const Scene& scene, const FrameView& frame, const Intersector& intersector, Split split, Film& film,
                   uint64_t& given) {
-    using Stack = GivingStack<Real, typename Intersector::Media>;
+    using Stack = GivingStack<BranchOf<Real, E, typename Intersector::Media>>;
     typename Stack::Queue queue, next;
     const size_t width = size_t(film.rect.width);
     for (size_t i = 0; i < film.pixels.size(); ++i) {
@@ -115,7 +114,7 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
         film.flags |= flag_media_overflow;
     const Intersector intersector{scene};
     // Two masks stand for all, which spares the compiler half of its work; tests of their own compare masks.
-    constexpr int middle = 1;
+    constexpr int middle = 3;
     if (least_mask(settings.effects | compiled.effects) <= middle)
         render_split<Real, Effects<effect_masks[middle]>>(scene, frame, intersector, split, film, given);
     else

@@ -103,13 +103,14 @@ struct Record {
     std::vector<std::pair<Ray<Real>, Hit<Real>>> closest;
     struct Shadow {
         ShadowRay<Real> ray;
-        Vec3<Real> all, opaque;
+        Vec3<Real> all;
+        Real opaque;
     };
     std::vector<Shadow> shadows;
 };
 
 using AllEffects = Effects<all_effects>;
-using OpaqueOnly = Effects<effect_masks[0]>;
+using OpaqueOnly = Effects<opaque_bodies>;
 
 template <class Real>
 Record<Real> record(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, int paths) {

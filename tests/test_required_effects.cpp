@@ -48,45 +48,54 @@ TEST(RequiredEffects, EveryEffectIsExplainedInOrder) {
 TEST(RequiredEffects, AnUnlitSceneNeedsNone) {
     SceneDescription scene = empty_scene();
     add_object(scene, solid(PlatonicSolid::cube));
-    EXPECT_EQ(effects_of(scene), 0u);
+    EXPECT_EQ(effects_of(scene), uint32_t(effect_solids));
     add_light(scene, {0, 0, 3}, glm::dvec3{0}).radius = 0.5;
-    EXPECT_EQ(effects_of(scene), effect_visible_lights);
+    EXPECT_EQ(effects_of(scene), effect_solids | effect_visible_lights);
     EXPECT_EQ(because(scene, effect_visible_lights), "the light /lights/0 is seen");
     EXPECT_EQ(because(scene, effect_diffuse), "no light has an intensity above 0");
 }
 
 TEST(RequiredEffects, AnOpaqueCubeUnderALamp) {
     SceneDescription scene = lit_cube();
-    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows);
+    EXPECT_EQ(effects_of(scene), effect_solids | effect_diffuse | effect_opaque_shadows);
+    EXPECT_EQ(because(scene, effect_solids), "material plain of /objects/0 is on a convex solid");
+    EXPECT_EQ(because(scene, effect_triangles), "there is neither mesh nor sheet");
+    EXPECT_EQ(because(scene, effect_insides), "no closed body lets rays pass; a camera in one adds it");
     EXPECT_EQ(because(scene, effect_diffuse), "material plain of /objects/0 has kd 1");
     EXPECT_EQ(because(scene, effect_opaque_shadows), "material plain of /objects/0 has kt 0");
     EXPECT_EQ(because(scene, effect_refraction), "no material lets rays pass");
     scene.materials[0].specular = 0.5;
-    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_specular | effect_opaque_shadows);
+    EXPECT_EQ(effects_of(scene), opaque_solids);
     scene.materials[0].diffuse = 0;
-    EXPECT_EQ(effects_of(scene), effect_specular | effect_opaque_shadows);
+    EXPECT_EQ(effects_of(scene), opaque_solids & ~effect_diffuse);
 }
 
 TEST(RequiredEffects, MirrorsAndGlass) {
     SceneDescription scene = lit_cube();
     auto& m = scene.materials[0];
     m.reflection = 0.1;
-    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows | effect_reflection);
+    EXPECT_EQ(effects_of(scene), effect_solids | effect_diffuse | effect_opaque_shadows | effect_reflection);
     EXPECT_EQ(because(scene, effect_reflection), "material plain of /objects/0 has kr 0.1");
     m.transmission = 0.5;
-    const uint32_t glassy = effect_diffuse | effect_transparent_shadows | effect_reflection | effect_transmission;
+    const uint32_t glassy = effect_solids | effect_diffuse | effect_transparent_shadows | effect_reflection |
+                            effect_transmission | effect_insides;
+    EXPECT_EQ(effects_of(scene), glassy);
+    EXPECT_EQ(because(scene, effect_insides), "material plain of /objects/0 lets rays into a closed body");
+    EXPECT_EQ(because(scene, effect_tint), "what passes keeps its color");
+    m.tint = glm::dvec3{0.5};
     EXPECT_EQ(effects_of(scene), glassy);
     EXPECT_EQ(because(scene, effect_opaque_shadows), "every material lets every color pass");
     EXPECT_EQ(because(scene, effect_refraction), "no solid has an index other than 1");
     m.tint = {1, 1, 0};
-    EXPECT_EQ(effects_of(scene), glassy | effect_opaque_shadows);
+    EXPECT_EQ(effects_of(scene), glassy | effect_opaque_shadows | effect_tint);
+    EXPECT_EQ(because(scene, effect_tint), "material plain of /objects/0 has a tint");
     m.index = 1.5;
-    EXPECT_EQ(effects_of(scene), glassy | effect_opaque_shadows | effect_refraction);
+    EXPECT_EQ(effects_of(scene), glassy | effect_opaque_shadows | effect_tint | effect_refraction);
     EXPECT_EQ(because(scene, effect_refraction), "material plain of /objects/0 has index 1.5");
     m.absorption.y = 1;
     m.fresnel = true;
     EXPECT_EQ(effects_of(scene),
-              glassy | effect_opaque_shadows | effect_refraction | effect_absorption | effect_fresnel);
+              glassy | effect_opaque_shadows | effect_tint | effect_refraction | effect_absorption | effect_fresnel);
 }
 
 TEST(RequiredEffects, TotalReflectionAndFresnelCallForReflectionToo) {
@@ -111,10 +120,11 @@ TEST(RequiredEffects, SheetsHaveNoInside) {
     m.index = 1.5;
     m.absorption.x = 1;
     add_object(scene, square());
-    EXPECT_EQ(effects_of(scene), effect_transmission);
+    EXPECT_EQ(effects_of(scene), effect_triangles | effect_transmission);
     EXPECT_EQ(compile_scene<float>(scene)->warnings.size(), 1u);
     add_object(scene, torus(2, 0.5, 8, 6));
-    EXPECT_EQ(effects_of(scene), effect_transmission | effect_reflection | effect_refraction | effect_absorption);
+    EXPECT_EQ(effects_of(scene), effect_triangles | effect_insides | effect_transmission | effect_reflection |
+                                     effect_refraction | effect_absorption);
 }
 
 TEST(RequiredEffects, TexturesWhereTheyShow) {
@@ -123,13 +133,13 @@ TEST(RequiredEffects, TexturesWhereTheyShow) {
     auto& m = scene.materials[0];
     m.texture = 0;
     add_object(scene, square());
-    EXPECT_EQ(effects_of(scene), effect_texture);  // by ambient light
+    EXPECT_EQ(effects_of(scene), effect_triangles | effect_texture);  // by ambient light
     scene.ambient = glm::dvec3{0};
-    EXPECT_EQ(effects_of(scene), 0u);
+    EXPECT_EQ(effects_of(scene), uint32_t(effect_triangles));
     add_light(scene, {0, 0, 2});
-    EXPECT_EQ(effects_of(scene), effect_texture | effect_diffuse | effect_opaque_shadows);
+    EXPECT_EQ(effects_of(scene), effect_triangles | effect_texture | effect_diffuse | effect_opaque_shadows);
     m.reflection = 1;
-    EXPECT_EQ(effects_of(scene), uint32_t(effect_reflection));
+    EXPECT_EQ(effects_of(scene), effect_triangles | effect_reflection);
 }
 
 TEST(RequiredEffects, LightsOnEdgesAndFalloff) {
@@ -138,16 +148,17 @@ TEST(RequiredEffects, LightsOnEdgesAndFalloff) {
     object.edge_lights.count = 2;
     object.edge_lights.radius = 0.05;
     add_object(scene, object);
-    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows | effect_visible_lights);
+    const uint32_t seen = effect_solids | effect_diffuse | effect_opaque_shadows | effect_visible_lights;
+    EXPECT_EQ(effects_of(scene), seen);
     EXPECT_EQ(because(scene, effect_visible_lights), "the lights on the edges of /objects/0 are seen");
     std::get<SolidObject>(scene.objects[0].shape).edge_lights.falloff = true;
-    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows | effect_visible_lights | effect_light_falloff);
+    EXPECT_EQ(effects_of(scene), seen | effect_light_falloff);
 }
 
 TEST(RequiredEffects, UnusedMaterialsCallForNothing) {
     SceneDescription scene = lit_cube();
     scene.materials.push_back(samples::material("glass", 0.5, 0.5));
-    EXPECT_EQ(effects_of(scene), effect_diffuse | effect_opaque_shadows);
+    EXPECT_EQ(effects_of(scene), effect_solids | effect_diffuse | effect_opaque_shadows);
 }
 
 }  // namespace

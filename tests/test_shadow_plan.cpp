@@ -20,7 +20,7 @@ class ShadowPlans : public ::testing::Test {
   public:
     using Small = SmallScene<Real>;
     using Intersector = BruteIntersector<Real, OneMedium, Small>;
-    using E = Effects<effect_masks[1]>;
+    using E = Effects<clear_bodies>;
 
     /// The same scene without a plan and with one; false where it is none for the plain loop.
     bool load(const SceneDescription& description) {
@@ -54,7 +54,7 @@ class ShadowPlans : public ::testing::Test {
             if (change != 0 && !beyond.add(key_solid(hit.key), change)) continue;
             Surface<Real> back = s;
             back.normal = -s.normal;
-            back.viewer_side = far_side(*blind_, hit, s.point, s.normal);
+            back.viewer_side = far_side<E>(*blind_, hit, s.point, s.normal);
             compared += compare(blind, planned, back, hit, beyond);
         }
         return compared;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
+#include "cistula/effects.h"
 #include "cistula/lattice.h"
 #include "cistula/ray_tree.h"
 #include "frame_list.h"
@@ -19,7 +20,8 @@ namespace {
 struct Texts {
     std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, target_error,
         max_samples, threads, layers, device, pixel, json, backend = "embree", precision = "float",
-                                                           intersector = "exact", bits = "float", progress = "auto";
+                                                           intersector = "exact", effects = "auto", bits = "float",
+                                                           progress = "auto";
     bool explain = false, resume = false, quiet = false, verbose = false, version = false, print_template = false,
          list_devices = false;
 };
@@ -47,6 +49,8 @@ void declare(CLI::App& app, Texts& texts) {
         ->type_name("E");
     app.add_option("--max-samples", texts.max_samples, "with --target-error: samples of a pixel, 5 to 256; 256")
         ->type_name("N");
+    app.add_option("--effects", texts.effects, "auto: compiled are those the scene calls for; all: every one, to compare")
+        ->type_name("NAME");
     app.add_option("--precision", texts.precision, "float or double")->type_name("NAME");
     app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
     app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
@@ -113,6 +117,7 @@ RenderOptions checked(const Texts& texts) {
     options.intersection = parse_intersection(texts.intersector, options.backend);
     options.precision = chosen<Precision>("--precision", texts.precision,
                                           {{"float", Precision::single_}, {"double", Precision::double_}});
+    options.all_effects = chosen<bool>("--effects", texts.effects, {{"auto", false}, {"all", true}});
     options.progress = chosen<ProgressStyle>(
         "--progress", texts.progress,
         {{"auto", ProgressStyle::automatic}, {"plain", ProgressStyle::plain}, {"none", ProgressStyle::none}});
@@ -287,6 +292,7 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     settings.cutoff = options.cutoff.value_or(scene.cutoff);
     settings.target_error = options.target_error.value_or(0);
     settings.max_samples = options.max_samples.value_or(settings.max_samples);
+    settings.effects = options.all_effects ? all_effects : 0;
     // As deep as it takes, unless asked otherwise: the budget of truncation ends the trees.
     if (settings.adaptive()) settings.depth = options.depth.value_or(largest_depth);
     settings.crop = options.crop.value_or(PixelRect{0, 0, settings.full_width, settings.full_height});

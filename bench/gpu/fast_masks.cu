@@ -3,17 +3,21 @@
 
 namespace cistula {
 
-#define CISTULA_LEFT_OUT(real, mask)                                                                                \
-    template <>                                                                                                     \
-    void launch_mask<real, mask>(DevicePath, Pass, const DeviceScene<real>&, const FrameJob&, cudaStream_t) {       \
-        throw Error(ExitCode::failed, "mask " #mask " of effects is not in this program: only the benchmark's, 1"); \
+#define CISTULA_LEFT_OUT(mask)                                                                                         \
+    template <>                                                                                                        \
+    void launch_mask<float, mask>(DevicePath, Pass, const DeviceScene<float>&, const FrameJob&, cudaStream_t) {        \
+        throw Error(ExitCode::failed, "mask " #mask " of effects is not in this program: only the benchmark's, 3");    \
+    }                                                                                                                  \
+    template <>                                                                                                        \
+    void launch_mask<double, mask>(DevicePath, Pass, const DeviceScene<double>&, const FrameJob&, cudaStream_t) {      \
+        throw Error(ExitCode::failed, "mask " #mask " of effects is not in this program: only the benchmark's, 3");    \
     }
-CISTULA_LEFT_OUT(float, 0)
-CISTULA_LEFT_OUT(float, 2)
-CISTULA_LEFT_OUT(float, 3)
-CISTULA_LEFT_OUT(double, 0)
-CISTULA_LEFT_OUT(double, 2)
-CISTULA_LEFT_OUT(double, 3)
+CISTULA_LEFT_OUT(0)
+CISTULA_LEFT_OUT(1)
+CISTULA_LEFT_OUT(2)
+CISTULA_LEFT_OUT(4)
+CISTULA_LEFT_OUT(5)
+CISTULA_LEFT_OUT(6)
 #undef CISTULA_LEFT_OUT
 
 }  // namespace cistula

@@ -252,7 +252,7 @@ struct ConvexShadowCase {
             closest_convex(scene, 0, shadow.ray, hit);
             shadow.distance = hit.t;
         }
-        ShadowSum sum;
+        ShadowSum<> sum;
         shadow_convex<Real, Effects<all_effects>>(scene, 0, shadow, sum);
         add_shadow<Real>(sum, out);
     }

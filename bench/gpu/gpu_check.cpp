@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "backend_cuda/cuda_renderer.h"
+#include "bench/gpu/effect_times.h"
 #include "bench/gpu/film_times.h"
 #include "bench/gpu/frame_times.h"
 #include "bench/gpu/function_parity.h"
@@ -20,13 +21,14 @@ namespace {
 struct Options {
     std::string folder = ".", json;
     uint64_t functions = 0, generated = 0;
-    bool scenes = false, times = false, rays = false, devices = false;
+    bool scenes = false, times = false, effects = false, rays = false, devices = false;
     int runs = 20, split = CudaOptions().split, film = 0;
 };
 
 int run(const Options& options) {
     GpuRecord record;
     if (options.times) time_frames(record, options.folder, options.runs, options.split);
+    if (options.effects) time_effects(record, options.folder, options.runs);
     if (options.devices) time_devices(record, options.folder, 5);
     if (options.rays) time_rays(record, options.runs);
     if (options.film > 0) time_film(record, options.folder, options.film);
@@ -53,6 +55,7 @@ int main(int argc, char** argv) {
     app.add_flag("--scenes", options.scenes, "compare all of scenes/, and with golden/");
     app.add_option("--generated", options.generated, "generated scenes to compare");
     app.add_flag("--times", options.times, "time frames");
+    app.add_flag("--effects", options.effects, "time scenes with the effects they call for, and with all");
     app.add_flag("--devices", options.devices, "time a heavy frame on one GPU, two, ... all");
     app.add_flag("--rays", options.rays, "time rays on a mesh, and compare their hits");
     app.add_option("--film", options.film, "frames of a film to time, rendered and written");

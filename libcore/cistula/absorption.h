@@ -55,8 +55,8 @@ struct Absorption<false> {
     CISTULA_INLINE void begin(const Scene&, const Media&, Real) {}
     template <class Real, class Scene>
     CISTULA_INLINE void cross(const Scene&, uint64_t, Real) {}
-    template <class Real, class Media, class Scene>
-    CISTULA_INLINE void dim(const Scene&, const Media&, Real, Vec3<Real>&) {}
+    template <class Real, class Media, class Weight, class Scene>
+    CISTULA_INLINE void dim(const Scene&, const Media&, Real, Weight&) {}
 };
 
 }  // namespace cistula

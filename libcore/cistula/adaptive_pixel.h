@@ -40,7 +40,7 @@ template <class Real, class E, class Intersector, class Scene>
 CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
                                           int px, int py, bool gradual, PixelRecord& record, PixelWork& work) {
     const LatticeSettings& settings = frame.lattice;
-    BranchStack<Real, typename Intersector::Media> stack;
+    StackOf<Real, E, typename Intersector::Media> stack;
     LatticeSample samples[lattice_samples];
     PixelRecord taken;
     LatticePixel pixel;

@@ -5,11 +5,17 @@
 
 namespace cistula {
 
+/// No question where only one kind is compiled in.
+template <class E, class Scene>
+CISTULA_INLINE bool is_solid(const Scene& scene, uint32_t primitive) {
+    return E::has(effect_solids) && (!E::has(effect_triangles) || primitive < scene.convex.size);
+}
+
 /// The exact test of one primitive against one ray; trees and Embree only choose which ones to call it on.
-template <class Real, class Media, class Scene>
+template <class E = Effects<all_effects>, class Real, class Media, class Scene>
 CISTULA_INLINE void closest_primitive(const Scene& scene, uint32_t primitive, const Ray<Real, Media>& ray,
                                       const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
-    if (primitive < scene.convex.size)
+    if (is_solid<E>(scene, primitive))
         closest_convex(scene, scene.convex[primitive], ray, best);
     else
         closest_cluster(scene, primitive - scene.convex.size, ray, triangle_ray, best);
@@ -17,8 +23,8 @@ CISTULA_INLINE void closest_primitive(const Scene& scene, uint32_t primitive, co
 
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_primitive(const Scene& scene, uint32_t primitive, const ShadowRay<Real, Media>& shadow,
-                                     const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
-    if (primitive < scene.convex.size)
+                                     const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
+    if (is_solid<E>(scene, primitive))
         shadow_convex<Real, E>(scene, scene.convex[primitive], shadow, sum);
     else
         shadow_cluster<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, sum);
@@ -31,16 +37,55 @@ struct BruteIntersector {
     const Scene& scene;
 
     /// The least (t, key) after ray.after that the primitive tests accept.
+    template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
         if (!is_finite(ray)) return best;
+        if constexpr (E::has(effect_solids))
+            if (closest_solid<E>(ray, best)) return best;
+        // The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
+        if constexpr (E::has(effect_triangles))
+            for (uint32_t i = 0; i < scene.clusters.size; ++i)
+                if (!misses_flat(scene, i, ray, best.t))
+                    closest_cluster(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
+        return best;
+    }
+
+    /// The share of the light's intensity that reaches the ray's origin.
+    template <class E>
+    CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
+        ShadowSum<E> sum;
+        if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
+        shadow_start<Real, E>(scene, shadow, sum);
         if constexpr (Media::contacts) {
-            if (closest_enclosed(scene, ray, best)) return best;
+            for (uint32_t i = 0; E::has(effect_solids) && i < scene.convex.size && !sum.dark(); ++i)
+                shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
+            for (uint32_t i = 0; E::has(effect_triangles) && i < scene.clusters.size && !sum.dark(); ++i)
+                if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
+        } else {
+            const uint32_t light = uint32_t(shadow.light - scene.lights.data), from = shadow.ray.from_solid;
+            const uint32_t near = from == no_solid ? ~0u : scene.plan.near[from][light];
+            if constexpr (E::has(effect_solids)) add_planned_solids(near, light, shadow, sum);
+            for (uint32_t left = E::has(effect_triangles) ? near & scene.plan.all_clusters : 0; left != 0 && !sum.dark();
+                 left &= left - 1) {
+                const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
+                if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
+            }
+        }
+        return sum.template share<Real>();
+    }
+
+  private:
+    /// True if the ray's own way out comes first, since that solid stands alone.
+    template <class E>
+    CISTULA_INLINE bool closest_solid(const Ray<Real, Media>& ray, Hit<Real>& best) const {
+        if constexpr (Media::contacts) {
+            if (closest_enclosed(scene, ray, best)) return true;
             for (const uint32_t index : scene.convex) closest_convex(scene, index, ray, best);
         } else {
-            const uint32_t around = ray.media.only();
+            const uint32_t around = E::has(effect_insides) ? ray.media.only() : no_solid;
             if (around != no_solid) closest_exit(scene, around, ray, best);
-            if (around != no_solid && scene.solids[around].alone) return best;
+            if (around != no_solid && scene.solids[around].alone) return true;
             for (uint32_t i = 0; i < scene.convex.size; ++i) {
                 const NumberedSolid& next = scene.convex[i];
                 // All conditions in one, so that their values are waited for but once.
@@ -49,51 +94,32 @@ struct BruteIntersector {
                     closest_entry(scene, next.index, next.solid, ray, best);
             }
         }
-        // The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
-        for (uint32_t i = 0; i < scene.clusters.size; ++i)
-            if (!misses_flat(scene, i, ray, best.t))
-                closest_cluster(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
-        return best;
+        return false;
     }
 
-    /// The share of the light's intensity that reaches the ray's origin, per channel.
+    /// Those among `near`, and the one around the ray.
     template <class E>
-    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real, Media>& shadow) const {
-        ShadowSum sum;
-        if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
-        shadow_start<Real, E>(scene, shadow, sum);
-        if constexpr (Media::contacts) {
-            for (uint32_t i = 0; i < scene.convex.size && !sum.dark(); ++i)
-                shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
-            for (uint32_t i = 0; i < scene.clusters.size && !sum.dark(); ++i)
-                if (!misses_flat(scene, i, shadow.ray, shadow.distance))
-                    shadow_cluster<Real, E>(scene, i, shadow,
-                                            TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
-        } else {
-            const uint32_t light = uint32_t(shadow.light - scene.lights.data);
-            const uint32_t around = shadow.ray.media.only(), from = shadow.ray.from_solid;
-            if (around != no_solid) {
-                // From its own face, as lines from other faces may start a little off theirs.
-                if (!E::has(effect_absorption) && from == around && (scene.plan.beyond[light] >> around & 1u) != 0)
-                    sum.cross<E>(scene.materials[scene.solids[around].material]);
-                else
-                    shadow_exit<Real, E>(scene, around, shadow, sum);
-            }
-            const uint32_t near = from == no_solid ? ~0u : scene.plan.near[from][light];
-            for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.dark(); left &= left - 1) {
-                const NumberedSolid& next = scene.convex[lowest_bit(left)];
-                if ((next.index != around) & (next.index != from) &
-                    !passes_by(next.solid, shadow.ray.origin, shadow.ray.direction, shadow.distance))
-                    shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);
-            }
-            for (uint32_t left = near & scene.plan.all_clusters; left != 0 && !sum.dark(); left &= left - 1) {
-                const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
-                if (!misses_flat(scene, i, shadow.ray, shadow.distance))
-                    shadow_cluster<Real, E>(scene, i, shadow,
-                                            TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
-            }
+    CISTULA_INLINE void add_planned_solids(uint32_t near, uint32_t light, const ShadowRay<Real, Media>& shadow,
+                                           ShadowSum<E>& sum) const {
+        const uint32_t around = E::has(effect_insides) ? shadow.ray.media.only() : no_solid, from = shadow.ray.from_solid;
+        if (around != no_solid) {
+            // From its own face, as lines from other faces may start a little off theirs.
+            if (!E::has(effect_absorption) && from == around && (scene.plan.beyond[light] >> around & 1u) != 0)
+                sum.cross(scene.materials[scene.solids[around].material]);
+            else
+                shadow_exit<Real, E>(scene, around, shadow, sum);
         }
-        return sum.template share<E, Real>();
+        for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.dark(); left &= left - 1) {
+            const NumberedSolid& next = scene.convex[lowest_bit(left)];
+            if ((next.index != around) & (next.index != from) &
+                !passes_by(next.solid, shadow.ray.origin, shadow.ray.direction, shadow.distance))
+                shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);
+        }
+    }
+
+    template <class E>
+    CISTULA_INLINE void add_cluster(uint32_t i, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) const {
+        shadow_cluster<Real, E>(scene, i, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
     }
 };
 

@@ -48,14 +48,14 @@ CISTULA_INLINE float tree_near(Real t) {
     return greatest(float(t) * (1.0f - tree_slack_relative) - tree_slack_absolute, 0.0f);
 }
 
-/// Calls visit(item) for the candidates of box_ray, nearer boxes first; visit returns the new far limit.
+/// Calls visit(item) for the candidates of box_ray below node `root`, nearer boxes first; visit returns the new far limit.
 template <class Visit>
 CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>& items, BoxRay box_ray,
-                              const Visit& visit) {
+                              const Visit& visit, int32_t root = 0) {
     if (nodes.empty()) return;
     int32_t pending[max_tree_depth + 1];
     int depth = 0;
-    int32_t node = 0;
+    int32_t node = root;
     for (;;) {
         const TreeNode n = nodes[uint32_t(node)];  // whole: wide loads
         const float t0 = box_ray.enter(n.low[0], n.high[0]), t1 = box_ray.enter(n.low[1], n.high[1]);
@@ -90,28 +90,29 @@ struct BvhIntersector {
     using Scene = SceneKind;
     const Scene& scene;
 
+    template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
-        if (!is_finite(ray) || closest_enclosed(scene, ray, best)) return best;
+        if (!is_finite(ray) || (E::has(effect_insides) && closest_enclosed(scene, ray, best))) return best;
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
         BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
         box_ray.near_limit = tree_near(ray.after.t);
         box_ray.far_limit = RealTraits<float>::infinity;
         const uint32_t left = flat_start(scene, ray);
         walk_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
-            if (primitive >= scene.convex.size && !scene.facets.empty())
+            if (!is_solid<E>(scene, primitive) && !scene.facets.empty())
                 closest_facet(scene, primitive - scene.convex.size, ray, triangle_ray, left, best);
             else
-                closest_primitive(scene, primitive, ray, triangle_ray, best);
+                closest_primitive<E>(scene, primitive, ray, triangle_ray, best);
             return tree_far(best.t);
         });
         return best;
     }
 
     template <class E>
-    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real, Media>& shadow) const {
-        ShadowSum sum;
-        if (!is_finite(shadow.ray)) return Vec3<Real>(Real(0));
+    CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
+        ShadowSum<E> sum;
+        if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
         shadow_start<Real, E>(scene, shadow, sum);
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
         BoxRay box_ray = BoxRay::of(shadow.ray.origin, shadow.ray.direction);
@@ -119,13 +120,13 @@ struct BvhIntersector {
         box_ray.far_limit = tree_far(shadow.distance);
         const uint32_t left = flat_start(scene, shadow.ray);
         walk_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
-            if (primitive >= scene.convex.size && !scene.facets.empty())
+            if (!is_solid<E>(scene, primitive) && !scene.facets.empty())
                 shadow_facet<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, left, sum);
             else
                 shadow_primitive<Real, E>(scene, primitive, shadow, triangle_ray, sum);
             return sum.dark() ? -1.0f : tree_far(shadow.distance);
         });
-        return sum.template share<E, Real>();
+        return sum.template share<Real>();
     }
 };
 

@@ -1,7 +1,9 @@
 // The effects a scene may call for, as bits, and the compile-time masks that leave the rest out.
 #pragma once
 
-#include "cistula/portable.h"
+#include <type_traits>
+
+#include "cistula/vec.h"
 
 namespace cistula {
 
@@ -18,14 +20,19 @@ enum Effect : uint32_t {
     effect_absorption = 1u << 9,
     effect_visible_lights = 1u << 10,
     effect_light_falloff = 1u << 11,
+    effect_tint = 1u << 12,       // what passes a face keeps a share that differs between colors
+    effect_solids = 1u << 13,     // convex ones, which are planes
+    effect_triangles = 1u << 14,  // of meshes and sheets
+    effect_insides = 1u << 15,    // rays inside of closed solids
 };
-inline constexpr int effect_count = 12;
+inline constexpr int effect_count = 16;
 inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// The names that --explain, --stats and the documentation use, in the order of the bits.
 inline constexpr const char* effect_names[effect_count] = {
     "texture",      "diffuse",    "specular", "opaque-shadows", "transparent-shadows", "reflection",
-    "transmission", "refraction", "fresnel",  "absorption",     "visible-lights",      "light-falloff"};
+    "transmission", "refraction", "fresnel",  "absorption",     "visible-lights",      "light-falloff",
+    "tint",         "solids",     "triangles", "insides"};
 
 /// The effects that are compiled in; `if constexpr (E::has(...))` removes the others.
 template <uint32_t Mask>
@@ -34,21 +41,39 @@ struct Effects {
     CISTULA_HD static constexpr bool has(uint32_t effects) { return (Mask & effects) != 0; }
 };
 
-/// The masks that are instantiated, each a superset of what some common kind of scene needs, ordered by size.
+/// What is left of light after some bounces: a share per color, or one for all where no color is treated apart.
+template <class Real, class E>
+using Share = std::conditional_t<E::has(effect_tint | effect_absorption), Vec3<Real>, Real>;
+
+/// Bodies that light falls on and passes by: planes alone; any; mirrors too.
+inline constexpr uint32_t opaque_solids = effect_diffuse | effect_specular | effect_opaque_shadows | effect_solids;
+inline constexpr uint32_t opaque_bodies = opaque_solids | effect_texture | effect_triangles;
+inline constexpr uint32_t mirrors = opaque_bodies | effect_reflection;
+/// What passes them goes straight on, all colors alike.
+inline constexpr uint32_t clear_bodies = mirrors | effect_transparent_shadows | effect_transmission | effect_insides;
+
+/// The masks that are instantiated, each a superset of what some common kind of scene needs, ordered by size
+/// (docs/effects.md has what was measured).
 inline constexpr uint32_t effect_masks[] = {
-    effect_diffuse | effect_specular | effect_opaque_shadows | effect_texture,
-    effect_diffuse | effect_specular | effect_opaque_shadows | effect_texture | effect_reflection |
-        effect_transparent_shadows | effect_transmission,
-    effect_diffuse | effect_specular | effect_opaque_shadows | effect_texture | effect_reflection |
-        effect_transparent_shadows | effect_transmission | effect_visible_lights | effect_light_falloff,
+    opaque_solids,
+    opaque_bodies,
+    mirrors,
+    clear_bodies,
+    clear_bodies | effect_visible_lights,
+    clear_bodies | effect_visible_lights | effect_tint,
     all_effects,
 };
 inline constexpr int effect_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
 
+/// Adaptive sampling is for scenes that are worth it: it is not compiled for masks whose rays pass nothing.
+constexpr bool samples_adaptively(int mask) {
+    return (effect_masks[mask] & effect_transmission) != 0;
+}
+
 /// The index in effect_masks of the least mask that contains `required`.
-constexpr int least_mask(uint32_t required) {
+constexpr int least_mask(uint32_t required, bool adaptive = false) {
     for (int i = 0; i < effect_mask_count; ++i)
-        if ((required & ~effect_masks[i]) == 0) return i;
+        if ((required & ~effect_masks[i]) == 0 && (!adaptive || samples_adaptively(i))) return i;
     return effect_mask_count - 1;
 }
 

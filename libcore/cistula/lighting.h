@@ -25,7 +25,7 @@ CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Rea
 template <class Real, class E, class Intersector, class Media, class Scene>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector,
                                     const Ray<Real, Media>& ray, const Hit<Real>& hit, const Surface<Real>& s,
-                                    const Vec3<Real>& weight, PixelSums<Real>& sums, PixelRays& rays) {
+                                    const Share<Real, E>& weight, PixelSums<Real>& sums, PixelRays& rays) {
     const Material<Real>& m = scene.materials[s.material];
     sums.add(weight * (s.color * m.ambient));
     if constexpr (E::has(effect_diffuse | effect_specular)) {
@@ -40,7 +40,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             if (!(n_l > Real(0))) continue;
             const Vec3<Real> lit = phong<Real, E>(m, s.color, light, s.normal, to_light, -ray.direction, n_l, distance);
             if (lit == Vec3<Real>(Real(0))) continue;
-            Vec3<Real> arrives(Real(1));
+            Share<Real, E> arrives(Real(1));
             if constexpr (E::has(effect_opaque_shadows | effect_transparent_shadows)) {
                 const ShadowRay<Real, Media> shadow{spawned(s.viewer_side, to_light, hit, ray.media), distance, &light};
                 ++rays.shadow;

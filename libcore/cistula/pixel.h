@@ -154,7 +154,7 @@ CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, con
 template <class Real, class E, class Intersector, class Scene>
 CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
                                  PixelRecord& record, PixelWork& work) {
-    BranchStack<Real, typename Intersector::Media> stack;
+    StackOf<Real, E, typename Intersector::Media> stack;
     render_pixel<Real, E>(scene, frame, intersector, px, py, SampleRange(), record, work, stack);
 }
 
@@ -162,7 +162,7 @@ CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, con
 template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void resume_branch(const Scene& scene, const FrameView& frame,
                                          const Intersector& intersector,
-                                         Branch<Real, typename Intersector::Media>& branch, PixelRecord& record,
+                                         BranchOf<Real, E, typename Intersector::Media>& branch, PixelRecord& record,
                                          PixelWork& work, Stack& stack) {
     record = PixelRecord();
     PixelSums<Real> sums(frame.tree, scene.bound, record, work.flags);

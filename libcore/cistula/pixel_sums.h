@@ -30,7 +30,7 @@ CISTULA_INLINE auto greatest_word(const Vec3<Real>& a) {
 template <class Real>
 class PixelSums {
   public:
-    /// For one sample. `bound` is the scene's radiance bound B per channel.
+    /// For one sample. Weights have a share per color, or one for all. `bound` is the scene's radiance bound B per channel.
     CISTULA_INLINE PixelSums(const TreeSettings& settings, const Vec3<Real>& bound, PixelRecord& record, uint32_t& flags)
         : settings_(settings), bound_(bound), record_(record), flags_(flags), left_(settings.budget) {}
 
@@ -44,7 +44,8 @@ class PixelSums {
 
     /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of the
     /// budget that is left, and what could add one unit of the sums at most.
-    CISTULA_INLINE bool afford(const Vec3<Real>& weight) {
+    template <class Share>
+    CISTULA_INLINE bool afford(const Share& weight) {
         if (left_ == 0 && clearly_counts(weight)) return true;
         int64_t most[3];
         const int64_t worst = most_of(weight, most);
@@ -55,7 +56,8 @@ class PixelSums {
     }
 
     /// A branch beyond the depth.
-    CISTULA_INLINE void cut(const Vec3<Real>& weight) {
+    template <class Share>
+    CISTULA_INLINE void cut(const Share& weight) {
         int64_t most[3];
         most_of(weight, most);
         for (int c = 0; c < 3; ++c) record_.cut[c] += most[c];
@@ -66,17 +68,19 @@ class PixelSums {
   private:
     /// Whether the branch could add more than one unit of the sums; what is not finite or beyond the bound is left to
     /// most_of.
-    CISTULA_INLINE bool clearly_counts(const Vec3<Real>& weight) const {
+    template <class Share>
+    CISTULA_INLINE bool clearly_counts(const Share& weight) const {
         const auto most = greatest_word(weight * bound_);
         return most <= word_of(Real(1)) && most > word_of(Real(settings_.fixed_unit));
     }
 
     /// The most a branch can add, rounded up; B's slack of 2^-10 covers the rounding of all weights below it.
-    CISTULA_INLINE int64_t most_of(const Vec3<Real>& weight, int64_t most[3]) {
+    template <class Share>
+    CISTULA_INLINE int64_t most_of(const Share& weight, int64_t most[3]) {
         int64_t worst = 0;
         for (int c = 0; c < 3; ++c) {
             most[c] = 0;
-            if (!to_fixed_up(weight[c] * bound_[c], settings_.fixed_scale, most[c])) flags_ |= flag_not_finite;
+            if (!to_fixed_up(channel(weight, c) * bound_[c], settings_.fixed_scale, most[c])) flags_ |= flag_not_finite;
             worst = most[c] > worst ? most[c] : worst;
         }
         return worst;

@@ -16,35 +16,35 @@ inline constexpr int largest_crossings = 1 << 20;
 /// The branch that is followed while k others wait weighs at most 2^-k, and one under 2^-62 is dropped.
 inline constexpr int branch_stack = 67;
 
-/// Part of a tree that is still to be followed: `weight` times what `ray` sees.
-template <class Real, class Media = MediaList>
+/// Part of a tree that is still to be followed: `weight`, a Share, times what `ray` sees.
+template <class Real, class Media = MediaList, class Weight = Vec3<Real>>
 struct Branch {
     Ray<Real, Media> ray;
-    Vec3<Real> weight;
+    Weight weight;
     uint32_t depth : 31 = 0;  // surfaces above it
     uint32_t mirrored : 1 = 0;
 };
 
 /// A branch as it lies in memory, unset until then.
-template <class Real, class Media>
-struct alignas(Branch<Real, Media>) BranchWords {
-    static constexpr int count = sizeof(Branch<Real, Media>) / sizeof(uint32_t);
-    static_assert(sizeof(Branch<Real, Media>) % sizeof(uint32_t) == 0);
+template <class Entry>
+struct alignas(Entry) BranchWords {
+    static constexpr int count = sizeof(Entry) / sizeof(uint32_t);
+    static_assert(sizeof(Entry) % sizeof(uint32_t) == 0);
 
     uint32_t word[count];
 
-    CISTULA_INLINE static BranchWords of(const Branch<Real, Media>& branch) { return bits_as<BranchWords>(branch); }
-    CISTULA_INLINE void give(Branch<Real, Media>& branch) const { memcpy(&branch, word, sizeof branch); }
+    CISTULA_INLINE static BranchWords of(const Entry& branch) { return bits_as<BranchWords>(branch); }
+    CISTULA_INLINE void give(Entry& branch) const { memcpy(&branch, word, sizeof branch); }
 };
 
 /// Room for branches, unset: a Branch sets itself, and most trees need a few.
-template <class Real, class Media, int size>
+template <class Entry, int size>
 class BranchRoom {
   public:
-    using Words = BranchWords<Real, Media>;
+    using Words = BranchWords<Entry>;
 
-    CISTULA_INLINE void put(int i, const Branch<Real, Media>& branch) { entries_[i] = Words::of(branch); }
-    CISTULA_INLINE void get(int i, Branch<Real, Media>& branch) const {
+    CISTULA_INLINE void put(int i, const Entry& branch) { entries_[i] = Words::of(branch); }
+    CISTULA_INLINE void get(int i, Entry& branch) const {
         const Words copy = entries_[i];  // in words: memcpy from an unknown place goes byte by byte
         copy.give(branch);
     }
@@ -54,17 +54,17 @@ class BranchRoom {
 };
 
 /// The branches that wait, in the thread's own memory.
-template <class Real, class Media>
+template <class Entry>
 class BranchStack {
   public:
     /// False if there is no room.
-    CISTULA_INLINE bool push(const Branch<Real, Media>& branch) {
+    CISTULA_INLINE bool push(const Entry& branch) {
         if (count_ == branch_stack) return false;
         pending_.put(count_++, branch);
         return true;
     }
     /// The latest; false if there is none.
-    CISTULA_INLINE bool pop(Branch<Real, Media>& branch) {
+    CISTULA_INLINE bool pop(Entry& branch) {
         if (count_ == 0) return false;
         pending_.get(--count_, branch);
         return true;
@@ -73,15 +73,47 @@ class BranchStack {
     CISTULA_INLINE void clear() { count_ = 0; }
 
   private:
-    BranchRoom<Real, Media, branch_stack> pending_;
+    BranchRoom<Entry, branch_stack> pending_;
     int count_ = 0;
 };
+
+/// The same where no ray passes a face: a branch has one child at most, which is followed next.
+template <class Entry>
+class OneBranch {
+  public:
+    CISTULA_INLINE bool push(const Entry& branch) {
+        branch_ = branch;
+        waits_ = true;
+        return true;
+    }
+    CISTULA_INLINE bool pop(Entry& branch) {
+        if (!waits_) return false;
+        branch = branch_;
+        waits_ = false;
+        return true;
+    }
+    CISTULA_INLINE bool empty() const { return !waits_; }
+    CISTULA_INLINE void clear() { waits_ = false; }
+
+  private:
+    Entry branch_;
+    bool waits_ = false;
+};
+
+/// The branches of a mask's trees, and what keeps them.
+template <class Real, class E, class Media>
+using BranchOf = Branch<Real, Media, Share<Real, E>>;
+template <class Real, class E, class Media>
+using StackOf = std::conditional_t<E::has(effect_transmission), BranchStack<BranchOf<Real, E, Media>>,
+                                   OneBranch<BranchOf<Real, E, Media>>>;
 
 template <class Real, class E, class Intersector, class Stack>
 class RayTree {
   public:
     using Media = typename Intersector::Media;
     using Scene = typename Intersector::Scene;
+    using Weight = Share<Real, E>;
+    using Entry = BranchOf<Real, E, Media>;
 
     CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth,
                            PixelSums<Real>& sums, PixelRays& rays, Stack& stack)
@@ -91,12 +123,12 @@ class RayTree {
     /// first.nothing(light) where that is no surface but perhaps a seen light.
     template <class First>
     CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
-        Branch<Real, Media> branch{primary, Vec3<Real>(Real(1))};
+        Entry branch{primary, Weight(Real(1))};
         walk(branch, first);
     }
 
     /// Goes on with a branch of another tree, which that one left. In any order only where the budget of truncation is 0.
-    CISTULA_INLINE void resume(Branch<Real, Media>& branch) {
+    CISTULA_INLINE void resume(Entry& branch) {
         if (follow(branch)) walk(branch, Unnoted());
     }
 
@@ -107,9 +139,10 @@ class RayTree {
     };
 
     template <class First>
-    CISTULA_INLINE void walk(Branch<Real, Media>& branch, const First& first) {
+    CISTULA_INLINE void walk(Entry& branch, const First& first) {
         bool at_first = true;
         do {
+            if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
             Meeting<Real, Media> meeting;  // within the loop, as all that only some rays have: it holds no registers elsewhere
             bool light = false;
             if (next_surface(branch, meeting, light)) {
@@ -124,14 +157,15 @@ class RayTree {
     }
 
     /// The latest of the branches that wait and are worth it; false if there is none.
-    CISTULA_INLINE bool next(Branch<Real, Media>& branch) {
+    CISTULA_INLINE bool next(Entry& branch) {
+        if constexpr (!E::has(effect_reflection | effect_transmission)) return false;
         do {
             if (!stack_.pop(branch)) return false;
         } while (!follow(branch));
         return true;
     }
 
-    CISTULA_INLINE bool follow(const Branch<Real, Media>& branch) {
+    CISTULA_INLINE bool follow(const Entry& branch) {
         if (!sums_.afford(branch.weight)) return false;
         rays_.reflected += branch.mirrored;
         rays_.transmitted += 1 - branch.mirrored;
@@ -169,6 +203,7 @@ class RayTree {
 
     /// A crossing with nothing to shade: inside a medium of higher priority, or of a clear face between equal media.
     CISTULA_INLINE bool invisible(const Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting) {
+        if constexpr (!E::has(effect_transmission | effect_insides)) return false;
         const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
         if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
         if (!scene_.materials[scene_.solids[solid].material].clear) return false;
@@ -177,13 +212,13 @@ class RayTree {
     }
 
     /// Goes on to the next face that has anything to shade. Otherwise adds the light or background that the ray ends on.
-    CISTULA_INLINE bool next_surface(Branch<Real, Media>& branch, Meeting<Real, Media>& meeting, bool& light) {
+    CISTULA_INLINE bool next_surface(Entry& branch, Meeting<Real, Media>& meeting, bool& light) {
         Absorption<E::has(effect_absorption)> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
         for (int crossings = 0;; ++crossings) {
-            const Hit<Real> hit = intersector_.closest(branch.ray);
+            const Hit<Real> hit = intersector_.template closest<E>(branch.ray);
             if constexpr (E::has(effect_visible_lights)) {
-                const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, hit.t);
+                const SeenHit<Real> seen = closest_seen_light<Real, E>(scene_, branch.ray, hit.t);
                 if (seen.light != no_light) {
                     light = true;
                     absorption.dim(scene_, branch.ray.media, seen.t, branch.weight);
@@ -213,7 +248,7 @@ class RayTree {
 
     /// Adds a face's local light. What it sends on waits, before the lights are looked at: nothing of the branch has to be
     /// kept at hand for later then.
-    CISTULA_INLINE void shade(const Branch<Real, Media>& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
+    CISTULA_INLINE void shade(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
         if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
         if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, meeting, s);
         const Real local = scene_.materials[s.material].local;
@@ -222,16 +257,20 @@ class RayTree {
     }
 
     /// Pushes the heavier of the branch's children and then the lighter, which is next.
-    CISTULA_INLINE void send_on(const Branch<Real, Media>& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
+    CISTULA_INLINE void send_on(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
         const bool sheet = key_kind(meeting.hit.key) == CrossingKind::sheet;
-        const Shares<Real> shares = split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal,
+        const Shares<Real, Weight> shares = split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal,
                                                       branch.ray.media, meeting.beyond, sheet);
-        const Vec3<Real> mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
-        // Sums over channels, so that a child that is not the heavier is at most half its parent.
-        const Real mirrored_size = mirrored.x + mirrored.y + mirrored.z, through_size = through.x + through.y + through.z;
+        const Weight mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
+        // Sums over colors, so that a child that is not the heavier is at most half its parent.
+        const Real mirrored_size = total(mirrored), through_size = E::has(effect_transmission) ? total(through) : Real(0);
         if (int(branch.depth) + 1 >= depth_) {
             if (mirrored_size > Real(0)) sums_.cut(mirrored);
             if (through_size > Real(0)) sums_.cut(through);
+            return;
+        }
+        if constexpr (!E::has(effect_transmission)) {
+            if (mirrored_size > Real(0)) stack_.push(child_of(branch, meeting, s, shares, false, mirrored));
             return;
         }
         bool goes_through = through_size >= mirrored_size;
@@ -246,10 +285,9 @@ class RayTree {
     }
 
     /// The ray that goes through, or the mirrored one.
-    CISTULA_INLINE Branch<Real, Media> child_of(const Branch<Real, Media>& parent, const Meeting<Real, Media>& meeting,
-                                                const Surface<Real>& s, const Shares<Real>& shares, bool goes_through,
-                                                const Vec3<Real>& weight) {
-        Branch<Real, Media> child;
+    CISTULA_INLINE Entry child_of(const Entry& parent, const Meeting<Real, Media>& meeting, const Surface<Real>& s,
+                                  const Shares<Real, Weight>& shares, bool goes_through, const Weight& weight) {
+        Entry child;
         child.depth = parent.depth + 1;
         child.weight = weight;
         child.mirrored = !goes_through;
@@ -257,7 +295,7 @@ class RayTree {
             child.ray =
                 spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
         } else if (shares.bends) {
-            child.ray = spawned(far_side(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
+            child.ray = spawned(far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
         } else {
             child.ray = parent.ray;
             Absorption<false> later;  // counted from there on

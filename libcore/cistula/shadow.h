@@ -16,28 +16,30 @@ struct ShadowRay {
     const Light<Real>* light;
 };
 
-/// What has been met so far on the way to a light.
+/// What has been met so far on the way to a light, for every color or for all at once (Share).
+template <class E = Effects<all_effects>>
 struct ShadowSum {
-    uint64_t loss[3] = {0, 0, 0};
-    PathSum path[3];      // absorption inside meshes
-    uint32_t opaque = 0;  // bit c: channel c is stopped
+    static constexpr int channels = std::is_same_v<Share<float, E>, float> ? 1 : 3;
+    uint64_t loss[channels] = {};
+    PathSum path[channels];  // absorption inside meshes
+    uint32_t opaque = 0;     // bit c: color c is stopped
 
     CISTULA_INLINE bool dark() const { return opaque == 7u; }
 
-    template <class E, class Real>
+    template <class Real>
     CISTULA_INLINE void cross(const Material<Real>& material) {
         if constexpr (!E::has(effect_transparent_shadows)) {
             opaque = 7u;
         } else {
             opaque |= material.opaque;
-            for (int c = 0; c < 3; ++c) loss[c] = saturating_add(loss[c], material.filter_loss[c]);
+            for (int c = 0; c < channels; ++c) loss[c] = saturating_add(loss[c], material.filter_loss[c]);
         }
     }
 
     /// A stretch of length >= 0 inside a convex solid.
     template <class Real>
     CISTULA_INLINE void absorb(const Material<Real>& material, Real length) {
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < channels; ++c)
             if (material.absorption[c] > Real(0))
                 loss[c] = saturating_add(loss[c], absorption_loss(double(material.absorption[c]) * double(length)));
     }
@@ -46,24 +48,27 @@ struct ShadowSum {
     /// its crossings is the length inside.
     template <class Real>
     CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real remaining, int sign, Real extent) {
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < channels; ++c)
             path[c].add(sign, double(material.absorption[c]), double(remaining), 4 * double(extent));
     }
 
-    template <class E, class Real>
-    CISTULA_INLINE Vec3<Real> share() const {
-        Vec3<Real> result;
-        uint64_t known = 0;  // a loss and its share, as colorless scenes have one for all channels
+    template <class Real>
+    CISTULA_INLINE Share<Real, E> share() const {
+        Real shares[channels];
+        uint64_t known = 0;  // a loss and its share, as gray materials have one for all colors
         Real known_share = 1;
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < channels; ++c) {
             if constexpr (E::has(effect_transparent_shadows)) {
                 uint64_t total = loss[c];
                 if constexpr (E::has(effect_absorption)) total = saturating_add(total, path[c].loss());
                 if (total != known) known = total, known_share = share_of<Real>(total);
             }
-            result[c] = opaque >> c & 1u ? Real(0) : known_share;
+            shares[c] = opaque >> c & 1u ? Real(0) : known_share;
         }
-        return result;
+        if constexpr (channels == 1)
+            return shares[0];
+        else
+            return {shares[0], shares[1], shares[2]};
     }
 };
 
@@ -94,7 +99,7 @@ CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const Sh
 /// A convex solid that the ray starts in. A light on its own face is never beyond that, whatever the rounding of two
 /// nearly equal distances says.
 template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
+CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
     const Solid& solid = scene.solids[index];
     const Material<Real>& material = scene.materials[solid.material];
@@ -102,7 +107,7 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     if (light_side(scene, index, shadow) == LightSide::none) {
         const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
         leave = greatest(convex_exit(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
-        if (leave < shadow.distance) sum.cross<E>(material);
+        if (leave < shadow.distance) sum.cross(material);
     }
     if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance), Real(0)));
 }
@@ -110,7 +115,7 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
 /// One that it neither starts in nor left, nor passes by. With a light on its face half-spaces decide.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid& solid, const ShadowRay<Real, Media>& shadow,
-                                 ShadowSum& sum) {
+                                 ShadowSum<E>& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
     const LightSide side = light_side(scene, index, shadow);
     if (side == LightSide::outside) return;
@@ -124,15 +129,15 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid
         if constexpr (Media::contacts)
             if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction)) return;
         leave = greatest(interval.leave, Real(0));
-        if (leave < shadow.distance) sum.cross<E>(material);
+        if (leave < shadow.distance) sum.cross(material);
     }
-    sum.cross<E>(material);
+    sum.cross(material);
     if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance) - enter, Real(0)));
 }
 
 template <class Real, class E, class Media, class Scene>
 CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                  ShadowSum& sum) {
+                                  ShadowSum<E>& sum) {
     if (shadow.ray.media.contains(index))
         shadow_exit<Real, E>(scene, index, shadow, sum);
     else if (shadow.ray.from_solid != index &&
@@ -165,7 +170,7 @@ CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32
 /// Takes an accepted crossing of a triangle into the sum if it lies before the light.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
-                                    const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
+                                    const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
     if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
     if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
     if (lies_on(scene, *shadow.light, index, triangle)) return;
@@ -173,7 +178,7 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
         if (behind_shadow(scene, index, triangle, slot, c, shadow.ray)) return;
     const Solid& solid = scene.solids[index];
     const Material<Real>& material = scene.materials[solid.material];
-    sum.cross<E>(material);
+    sum.cross(material);
     if constexpr (E::has(effect_absorption))
         if (solid.kind == SolidKind::mesh)
             sum.absorb_rest(material, shadow.distance - c.t, c.enters() ? 1 : -1, scene.extent);
@@ -181,7 +186,7 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
 
 template <class Real, class E, class Media, class Scene>
 CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                   const TriangleRay<Real>& triangle_ray, ShadowSum& sum) {
+                                   const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
     if (leaves_flat(scene, index, shadow.ray)) return;
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
@@ -193,7 +198,7 @@ CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const Sha
 /// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                 const TriangleRay<Real>& triangle_ray, uint32_t left, ShadowSum& sum) {
+                                 const TriangleRay<Real>& triangle_ray, uint32_t left, ShadowSum<E>& sum) {
     const Facet<Real>& facet = scene.facets[index];
     TriangleCrossing<Real> c;
     if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
@@ -202,7 +207,7 @@ CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const Shado
 
 /// What meshes that contain the start of the ray add.
 template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, ShadowSum& sum) {
+CISTULA_INLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
     if constexpr (E::has(effect_absorption)) {
         shadow.ray.media.for_each([&](uint32_t index, int count) {
             const Solid& solid = scene.solids[index];

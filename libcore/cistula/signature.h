@@ -40,20 +40,21 @@ struct SigningIntersector {
     Signature& signature;
     bool gradual;  // shades_gradually
 
+    template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
-        const Hit<Real> hit = inner.closest(ray);
+        const Hit<Real> hit = inner.template closest<E>(ray);
         if (signature.counts)
             signature.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
         return hit;
     }
 
     template <class E>
-    CISTULA_INLINE Vec3<Real> transmittance(const ShadowRay<Real, Media>& shadow) const {
-        const Vec3<Real> arrives = inner.template transmittance<E>(shadow);
+    CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
+        const Share<Real, E> arrives = inner.template transmittance<E>(shadow);
         if (signature.counts) {
             const uint32_t light = uint32_t(shadow.light - inner.scene.lights.data);
-            signature.add(told_apart(arrives.x) + 3 * told_apart(arrives.y), 5 * told_apart(arrives.z),
-                          light + 0x10000u);
+            signature.add(told_apart(channel(arrives, 0)) + 3 * told_apart(channel(arrives, 1)),
+                          5 * told_apart(channel(arrives, 2)), light + 0x10000u);
         }
         return arrives;
     }

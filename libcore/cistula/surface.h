@@ -16,6 +16,12 @@ struct Surface {
     uint32_t material;
 };
 
+/// No question where only one kind is compiled in.
+template <class E>
+CISTULA_INLINE bool is_convex(const Solid& solid) {
+    return E::has(effect_solids) && (!E::has(effect_triangles) || solid.kind == SolidKind::convex);
+}
+
 /// From a point on a triangle toward the apex over its centroid, by about 8 u M: the segment crosses no other triangle
 /// (NUMERICS, 2), so that the new origin is on the right side of all of them.
 template <class Real>
@@ -68,21 +74,21 @@ CISTULA_INLINE Vec3<Real> off_triangle(const Scene& scene, const Hit<Real>& hit,
 }
 
 /// Where rays that bend into the other side of a face start.
-template <class Real, class Scene>
+template <class E, class Real, class Scene>
 CISTULA_INLINE Vec3<Real> far_side(const Scene& scene, const Hit<Real>& hit, const Vec3<Real>& point,
                                    const Vec3<Real>& normal) {
-    if (scene.solids[key_solid(hit.key)].kind == SolidKind::convex) return point;
+    if (is_convex<E>(scene.solids[key_solid(hit.key)])) return point;
     Vec3<Real> corner[3];
     triangle_corners(scene, hit, corner);
     return off_triangle(scene, hit, point, corner, -normal, !hit.enters);
 }
 
 /// The unit normal on the viewer's side.
-template <class Real, class Scene>
+template <class E = Effects<all_effects>, class Real, class Scene>
 CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     const uint32_t face = key_face(hit.key);
-    if (solid.kind == SolidKind::convex) {
+    if (is_convex<E>(solid)) {
         const Vec3<Real>& normal = scene.slabs[solid.first_slab + face / 2].normal;
         const bool outward = (face & 1u) != 0;  // the high side's outward normal is the slab's
         return outward == hit.enters ? normal : -normal;
@@ -108,8 +114,8 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     s.material = solid.material;
     const Material<Real>& material = scene.materials[s.material];
     s.color = material.color;
-    s.normal = normal_at(scene, hit);
-    if (solid.kind == SolidKind::convex) {
+    s.normal = normal_at<E>(scene, hit);
+    if (is_convex<E>(solid)) {
         s.point = along(ray.origin, hit.t, ray.direction);
         s.viewer_side = s.point;
         return s;

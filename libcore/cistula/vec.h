@@ -7,6 +7,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <type_traits>
+
 #include "cistula/real.h"
 
 namespace cistula {
@@ -51,6 +53,35 @@ CISTULA_INLINE bool is_finite(const Vec3<Real>& a) {
     return a.x * Real(0) + a.y * Real(0) + a.z * Real(0) == Real(0);
 }
 
+template <class Real>
+CISTULA_INLINE Real channel(const Vec3<Real>& a, int c) {
+    return a[c];
+}
+/// A number stands for three that are alike.
+CISTULA_INLINE float channel(float a, int) {
+    return a;
+}
+CISTULA_INLINE double channel(double a, int) {
+    return a;
+}
+template <class To, class Real>
+CISTULA_INLINE To share_as(const Vec3<Real>& a) {
+    if constexpr (std::is_same_v<To, Real>)
+        return a.x;
+    else
+        return a;
+}
+template <class Share>
+CISTULA_INLINE auto total(const Share& a) {
+    return channel(a, 0) + channel(a, 1) + channel(a, 2);
+}
+
+CISTULA_INLINE float largest_component(float a) {
+    return a;
+}
+CISTULA_INLINE double largest_component(double a) {
+    return a;
+}
 template <class Real>
 CISTULA_INLINE Real largest_component(const Vec3<Real>& a) {
     return greatest(a.x, greatest(a.y, a.z));

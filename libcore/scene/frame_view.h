@@ -53,6 +53,11 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     return frame;
 }
 
+/// The effects that the place of the camera adds to the scene's. After camera_solids.
+inline uint32_t camera_effects(const FrameView& frame) {
+    return frame.camera_media.empty() ? 0u : uint32_t(effect_insides);
+}
+
 /// A film of the right size for a frame, its pixels unset.
 inline void prepare_film(Film& film, const FrameSettings& settings, int radiance_exponent) {
     film.full_width = settings.full_width;

@@ -104,6 +104,19 @@ class Explainer {
             if (!l.lights || !l.falloff || !lit_) return "";
             return l.several ? " fall off with distance" : " falls off with distance";
         });
+        by_material(effect_tint, passing_ ? "what passes keeps its color" : "no material lets rays pass",
+                    [](const MaterialUse& u) {
+                        const dvec3& tint = u.material->tint;
+                        const bool gray = tint.x == tint.y && tint.y == tint.z;
+                        return passes(*u.material) && !gray ? std::string("has a tint") : std::string();
+                    });
+        by_material(effect_solids, "there is no convex solid",
+                    [](const MaterialUse& u) { return u.convex ? std::string("is on a convex solid") : std::string(); });
+        by_material(effect_triangles, "there is neither mesh nor sheet",
+                    [](const MaterialUse& u) { return u.convex ? std::string() : std::string("is on triangles"); });
+        by_material(effect_insides, "no closed body lets rays pass; a camera in one adds it", [](const MaterialUse& u) {
+            return u.closed && passes(*u.material) ? std::string("lets rays into a closed body") : std::string();
+        });
         return std::move(reasons_);
     }
 
@@ -174,7 +187,7 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene) {
     std::vector<MaterialUse> uses;
     for (const SourceSolid& solid : source.solids)
         uses.push_back({&source.materials[solid.material], solid.place,
-                        solid.platonic != nullptr || find_topology(solid.mesh).closed});
+                        solid.platonic != nullptr || find_topology(solid.mesh).closed, solid.platonic != nullptr});
     return explain_effects(scene, uses);
 }
 

@@ -16,11 +16,12 @@ struct EffectReason {
     std::string because;
 };
 
-/// A material as it is used: by which object, and whether that has an inside.
+/// A material as it is used: by which object, and of what kind that is.
 struct MaterialUse {
     const MaterialDescription* material = nullptr;
-    std::string place;  // "/objects/2"
-    bool closed = true;
+    std::string place;    // "/objects/2"
+    bool closed = true;   // it has an inside
+    bool convex = false;  // a solid of planes; else triangles
 };
 
 /// One entry per effect, in the order of the bits. `uses` in file order; lights are those that light or are seen.

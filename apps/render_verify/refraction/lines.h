@@ -30,6 +30,7 @@ struct Watched {
     const Intersector& inner;
     Lines<Real>& lines;
 
+    template <class E>
     CISTULA_HD Hit<Real> closest(const Ray<Real>& ray) const {
         const Hit<Real> hit = inner.closest(ray);
         const int last = lines.count - 1;
@@ -45,8 +46,8 @@ struct Watched {
         return hit;
     }
     template <class E>
-    CISTULA_HD Vec3<Real> transmittance(const ShadowRay<Real>&) const {
-        return Vec3<Real>(Real(0));
+    CISTULA_HD Share<Real, E> transmittance(const ShadowRay<Real>&) const {
+        return Share<Real, E>(Real(0));
     }
 };
 
@@ -60,8 +61,10 @@ struct Unnoted {
 template <class Real, class Intersector>
 CISTULA_HD inline void trace(const Setup<Real>& setup, const Intersector& intersector, const Ray<Real>& ray,
                              Lines<Real>& lines) {
-    using Glass = Effects<effect_reflection | effect_transmission | effect_refraction>;
-    using Tree = RayTree<Real, Glass, Watched<Real, Intersector>, BranchStack<Real, MediaList>>;
+    using Glass = Effects<effect_reflection | effect_transmission | effect_refraction | effect_solids | effect_triangles |
+                          effect_insides>;
+    using Stack = StackOf<Real, Glass, MediaList>;
+    using Tree = RayTree<Real, Glass, Watched<Real, Intersector>, Stack>;
     TreeSettings settings;
     settings.depth = Lines<Real>::capacity;
     settings.fixed_scale = 0x1p62;
@@ -70,7 +73,7 @@ CISTULA_HD inline void trace(const Setup<Real>& setup, const Intersector& inters
     const Vec3<Real> bound(Real(1));
     PixelSums<Real> sums(settings, bound, record, lines.flags);
     PixelRays rays;
-    BranchStack<Real, MediaList> stack;
+    Stack stack;
     lines.count = 0;
     const Watched<Real, Intersector> watched{setup.scene, intersector, lines};
     Tree(setup.scene, watched, settings.depth, sums, rays, stack).trace(ray, Unnoted());

@@ -1,4 +1,4 @@
-// Thousands of lights that are seen: which one a ray meets, and what a picture shows of them.
+// Many lights that are seen: which one a ray meets, and what a picture shows of them.
 #pragma once
 
 #include "apps/render_verify/shadows/local_light.h"
@@ -10,7 +10,7 @@ namespace cistula::verify::shadows {
 /// A tree over lights against the plain loop.
 struct SeenLightTree {
     static constexpr const char* name = "shadows/seen-lights/tree";
-    static constexpr const char* exact = "(t, light) of a tree over 4,096 seen lights equals a plain loop's";
+    static constexpr const char* exact = "(t, light) of trees over seen lights, anywhere or on edges, equals a plain loop's";
     static constexpr Bound bound = no_failures("rays");
     static constexpr bool own_traversal = true, needs_witness = true;
 
@@ -33,12 +33,27 @@ struct SeenLightTree {
             }
             plan.add("radius " + std::to_string(radius), scene, SeenLightTree(), points, plan.rays(100'000, 2500));
         }
+        // On the edges of several solids, which one finds through their planes.
+        for (const double radius : {0x1p-4, 0x1p-8, 0x1p-14}) {
+            SceneDescription scene = lit_scene();
+            std::vector<glm::dvec3> centers;
+            for (const PlatonicSolid shape : {PlatonicSolid::tetrahedron, PlatonicSolid::cube, PlatonicSolid::octahedron,
+                                              PlatonicSolid::dodecahedron, PlatonicSolid::icosahedron}) {
+                const double k = double(centers.size());
+                SolidObject solid = solid_object(shape, {k - 2, k * 0.25 - 0.5, 0.125 * k}, 0.5, {17 * k, 41, 73});
+                solid.edge_lights = {6, glm::dvec3(0), glm::dvec3(1), radius, false};
+                centers.push_back(solid.center);
+                add_solid(scene, Shape::planes, solid);
+            }
+            plan.add("on edges, radius " + std::to_string(radius), scene, SeenLightTree(), centers,
+                     plan.rays(100'000, 2500));
+        }
     }
 
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector&, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const uint32_t aim = draw.below(setup.points.size);
+        const uint32_t aim = draw.below(setup.scene.seen_lights.size);
         const SeenLight<Real>& light = setup.scene.seen_lights[aim];
         const Vec3<double> from = in_ball(draw);
         const Vec3<double> aside = on_sphere(draw);

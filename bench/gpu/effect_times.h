@@ -1,0 +1,14 @@
+// What the effects cost that a scene does not call for, and what each mask's kernels take of a GPU.
+#pragma once
+
+#include <string>
+
+#include "bench/gpu/record.h"
+
+namespace cistula::bench {
+
+/// Every scene of effect_scenes at 1280x720, one sample a pixel, with the mask it calls for and with the largest, in turns:
+/// medians of `runs`, and that the integers are the same. Then the resources of all kernels.
+void time_effects(GpuRecord& record, const std::string& folder, int runs);
+
+}  // namespace cistula::bench
