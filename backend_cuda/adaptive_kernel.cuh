@@ -174,7 +174,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
             AtomicAdd()(record.rays, taken.rays);
             if (LatticePixel::is_chosen(job.frame.lattice, slot)) choose_sample(taken, record);
         });
-        if (!any) break;
+        if (!any || __any_sync(whole_warp, stopped(job))) break;
         pixels.settle();
     }
     add_to_tally(*job.tally, own.rays, own.flags);

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 
 #include "backend_cuda/device_worker.h"
@@ -15,7 +16,7 @@ namespace {
 
 /// Up to this many primitives a plain loop is faster than any tree.
 constexpr uint32_t plain_loop_primitives = 16;
-/// Samples of a part: the longest that Ctrl-C waits for.
+/// Samples of a part: what is copied while the next is in the kernels.
 constexpr size_t part_samples = size_t{1} << 25;
 /// Frames of up to so many samples split trees of more surfaces than `deep`, after so many levels.
 constexpr size_t few_samples = size_t{1} << 19;
@@ -54,13 +55,20 @@ class CudaRenderer : public Renderer {
         }
     }
 
+    ~CudaRenderer() override {
+        try {
+            drop();  // or freeing memory would wait for a frame that nobody wants
+        } catch (...) {
+        }
+    }
+
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
         notes_.clear();
         times_ = {};
         prepare_film(film, settings, scene_->radiance_exponent);
         if (!begun_ || !same(begun_->camera, camera) || begun_->settings != settings) {
-            drop_begun();
+            if (begun_) drop();
             begun_ = begin(camera, settings);
         }
         Frame frame = *begun_;
@@ -83,9 +91,14 @@ class CudaRenderer : public Renderer {
             else if (expected_ && expected_->settings == settings)  // others may need memory that this one still has
                 begun_ = begin(expected_->camera, expected_->settings, frame.first_slot + part + 1);
             const int slot = (frame.first_slot + part) % DeviceWorker<Real>::slots;
+            std::atomic<bool> stopped{false};
             tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
-                if (strips_of(frame, part, d) > 0) workers_[d]->fetch(slot, film, locked);
+                if (strips_of(frame, part, d) > 0 && !workers_[d]->fetch(slot, film, locked, progress.stop)) stopped = true;
             });
+            if (stopped) {
+                drop();
+                return false;
+            }
             film.rays = RayCounts();
             for (const auto& worker : workers_) film.rays.add(worker->rays);
             progress.rays += film.rays.total() - before.total();
@@ -238,12 +251,10 @@ class CudaRenderer : public Renderer {
         }
     }
 
-    /// Waits for all that was begun and forgets it.
+    /// Ends all that was begun and forgets it. All workers first: one GPU may have several.
     void drop() {
+        for (auto& worker : workers_) worker->stop();
         for (auto& worker : workers_) worker->wait();
-    }
-    void drop_begun() {
-        if (begun_) drop();
         begun_.reset();
     }
 

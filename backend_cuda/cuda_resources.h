@@ -83,6 +83,14 @@ class CudaEvent {
     CudaEvent& operator=(const CudaEvent&) = delete;
     operator cudaEvent_t() const { return event_; }
 
+    bool happened() const {
+        const cudaError_t error = cudaEventQuery(event_);
+        if (error == cudaSuccess) return true;
+        if (error != cudaErrorNotReady) fail_cuda(error, "cudaEventQuery");
+        cudaGetLastError();  // or the next launch would be told
+        return false;
+    }
+
     /// Milliseconds from `earlier`; both must have happened.
     double since(const CudaEvent& earlier) const {
         float milliseconds = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <thread>
 
 #include "scene/shadow_plan.h"
 
@@ -19,6 +20,8 @@ constexpr size_t queued_per_pixel = 2, most_queued = size_t{1} << 21;
 constexpr size_t many_pixels = size_t{1} << 19;
 /// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
 constexpr int most_blocks = 6;
+/// So long the host asks again and again whether a part is done, then every hundredth of the time that it has waited.
+constexpr double patience = 5e-3, longest_nap = 1e-3;  // seconds
 
 /// Strips are whole but for a rectangle's last.
 int rows_of_last_strip(const FramePart& part) {
@@ -28,6 +31,20 @@ int rows_of_last_strip(const FramePart& part) {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// False once `stop` is set, which no call of CUDA's would look at.
+bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
+    const auto start = std::chrono::steady_clock::now();
+    while (!done.happened()) {
+        if (stop.load(std::memory_order_relaxed)) return false;
+        const double waited = seconds_since(start);
+        if (waited < patience)
+            std::this_thread::yield();
+        else
+            std::this_thread::sleep_for(std::chrono::duration<double>(std::min(waited / 100, longest_nap)));
+    }
+    return true;
 }
 
 }  // namespace
@@ -43,6 +60,10 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(),
                                        cudaMemcpyHostToDevice, compute_));
     counters_.reserve(counters * sizeof(unsigned int));
+    stop_.reserve(sizeof(unsigned int));
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(stop_.as<void>(), 0, sizeof(unsigned int), compute_));
+    one_.reserve(sizeof(unsigned int));
+    *one_.as<unsigned int>() = 1;
     for (PartSlot& slot : slots_) {
         slot.tally.reserve(sizeof(DeviceTally));
         slot.tally_copy.reserve(sizeof(DeviceTally));
@@ -69,10 +90,10 @@ void DeviceWorker<Real>::reserve_rooms() {
 }
 
 /// A kernel's first launch takes memory for its threads' stacks: over a gigabyte on a large device. It must come before the
-/// pixels', which can do with less.
+/// pixels', which can do with less. It may also wait for other kernels, which must not be endless then.
 template <class Real>
-void DeviceWorker<Real>::prime(int mask, Pass first) {
-    const int kernel = 2 * mask + (first == Pass::pixels ? 0 : 1);
+void DeviceWorker<Real>::prime(int mask, Pass pass) {
+    const int kernel = 3 * mask + int(pass);
     if (primed_ >> kernel & 1u) return;
     PartSlot& slot = slots_[0];
     slot.records.reserve(strip_rows * sizeof(PixelRecord));
@@ -81,12 +102,13 @@ void DeviceWorker<Real>::prime(int mask, Pass first) {
     job.width = 1;
     job.rows = strip_rows;  // of a rectangle without height: no pixel is rendered
     job.tally = slot.tally.as<DeviceTally>();
-    job.next = counters_.as<unsigned int>();
-    if (first == Pass::adaptive_pixels) reserve_rooms();
+    job.next = job.from.size = counters_.as<unsigned int>();
+    job.stop = stop_.as<unsigned int>();
+    if (pass == Pass::adaptive_pixels) reserve_rooms();
     job.rooms = rooms_.as<LatticeRoom>();
     job.room_blocks = room_blocks_;
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.next, 0, sizeof(unsigned int), compute_));
-    launch(first, mask, path_, scene_, job, compute_);
+    launch(pass, mask, path_, scene_, job, compute_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
     primed_ |= 1u << kernel;
 }
@@ -95,6 +117,7 @@ template <class Real>
 bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, Pass first, bool splits) {
     use_device(device_);
     prime(mask, first);
+    if (splits) prime(mask, Pass::branches);
     const size_t bytes = pixels * sizeof(PixelRecord);
     if (!splits)
         for (DeviceMemory& queue : queue_) queue.free();
@@ -127,6 +150,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.strip_step = part.strip_step;
     job.rows = part.strips * strip_rows;
     job.interleaved = size_t(job.width) * size_t(job.rows) >= many_pixels;
+    job.stop = stop_.as<unsigned int>();
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
@@ -144,6 +168,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
         const bool last = part.split_depth == 0 || pass + 1 == passes || depth >= part.frame.tree.depth;
         job.to = last ? BranchQueue() : queue(pass);
         job.split_depth = last ? whole_trees : depth;
+        job.seldom = seldom_levels(part.frame.tree.depth, job.split_depth);
         return !last;
     };
     bool more = give(0);
@@ -163,10 +188,10 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
 }
 
 template <class Real>
-void DeviceWorker<Real>::fetch(int index, Film& film, bool locked) {
+bool DeviceWorker<Real>::fetch(int index, Film& film, bool locked, const std::atomic<bool>& stop) {
     use_device(device_);
     PartSlot& slot = slots_[index];
-    CISTULA_CUDA_CHECK(cudaEventSynchronize(slot.done));
+    if (!await(slot.done, stop)) return false;
     kernel_seconds += slot.end.since(slot.begin) * 1e-3;
     const auto start = std::chrono::steady_clock::now();
     if (locked)
@@ -182,12 +207,24 @@ void DeviceWorker<Real>::fetch(int index, Film& film, bool locked) {
     }
     flags |= tally.flags;
     transfer_seconds += seconds_since(start);
+    return true;
 }
 
 template <class Real>
-void DeviceWorker<Real>::wait() const {
+void DeviceWorker<Real>::stop() {
+    use_device(device_);
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(stop_.as<void>(), one_.as<void>(), sizeof(unsigned int), cudaMemcpyHostToDevice, copy_));
+    stopped_ = true;
+}
+
+template <class Real>
+void DeviceWorker<Real>::wait() {
     use_device(device_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+    if (!stopped_) return;
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(copy_));
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(stop_.as<void>(), 0, sizeof(unsigned int), compute_));
+    stopped_ = false;
 }
 
 /// Into a film in locked pages: all strips that are whole at once, and the last one.

@@ -1,6 +1,7 @@
 // One GPU's share of frames: a part at a time on its way through the kernels while the one before is read back.
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -52,10 +53,14 @@ class DeviceWorker {
     void start(const FramePart& part, int slot);
 
     /// Waits for the part in a slot and puts its pixels where they belong in the film; `locked`: that lies in locked pages.
-    void fetch(int slot, Film& film, bool locked);
+    /// False, the part still under way, once `stop` is set.
+    bool fetch(int slot, Film& film, bool locked, const std::atomic<bool>& stop);
+
+    /// Makes all that was started end soon, whatever is left to do; nothing is waited for. Until wait() nothing may start.
+    void stop();
 
     /// Waits for all that was started.
-    void wait() const;
+    void wait();
 
     int device() const { return device_; }
     double kernel_seconds = 0, transfer_seconds = 0;  // of all parts fetched; the caller resets them
@@ -66,7 +71,7 @@ class DeviceWorker {
     static constexpr int passes = 6;  // over pixels, then over queues
     static constexpr int counters = passes + 1;  // sizes of queues, and the next pixel
 
-    void prime(int mask, Pass first);
+    void prime(int mask, Pass pass);
     void reserve_rooms();
     void copy_rows(const PartSlot& slot, Film& film);
     void copy_straight(const PartSlot& slot, Film& film);
@@ -80,7 +85,10 @@ class DeviceWorker {
     DeviceMemory rooms_;
     unsigned int room_blocks_ = 0;  // 0: rooms_ is empty
     size_t queue_capacity_ = 0;
-    uint32_t primed_ = 0;  // bit 2 m: that mask m's kernel over pixels has run; 2 m + 1: its adaptive one
+    uint32_t primed_ = 0;  // bit 3 m + p: that mask m's kernel of pass p has run
+    DeviceMemory stop_;    // what kernels look at; 0 unless stopped_
+    PinnedMemory one_;     // from where it is set: by a copy, as a kernel that does so might have to wait for the others
+    bool stopped_ = false;
     DeviceScene<Real> scene_;
     PartSlot slots_[slots];
 };

@@ -38,7 +38,7 @@ class GivingBranchStack {
     __device__ bool push(const Entry& branch) {
         if (count_ == branch_stack) return false;
         room_.put(count_++, branch);
-        if (int(branch.depth) >= job_.split_depth) count_ -= give_away(&room_, count_ - 1, &job_.to, record_);
+        if ((branch.depth & job_.seldom) == 0) count_ = look_up(&room_, count_, int(branch.depth), &job_, record_);
         return true;
     }
     __device__ bool pop(Entry& branch) {
@@ -48,14 +48,25 @@ class GivingBranchStack {
     }
 
   private:
-    /// Whether the queue has room for entry i, which it then has. Called, so that this seldom thing is nowhere in the way.
-    __device__ __noinline__ static bool give_away(const Room* room, int i, const BranchQueue* queue, unsigned int record) {
-        const unsigned int place = next_place(queue->size);
-        if (place >= queue->capacity) return false;
+    /// How many entries are left, of depth `depth` the last: it may go to the queue, or all be dropped. Called, so that
+    /// this seldom thing is nowhere in the way.
+    __device__ __noinline__ static int look_up(const Room* room, int count, int depth, const FrameJob* job,
+                                               unsigned int record) {
+        if (depth >= job->split_depth && give_away(*room, count - 1, job->to, record)) return count - 1;
+        return stopped(*job) ? 0 : count;
+    }
+
+    /// Whether the queue has room for entry i, which it then has.
+    __device__ static bool give_away(const Room& room, int i, const BranchQueue& queue, unsigned int record) {
+        const unsigned int place = next_place(queue.size);
+        if (place >= queue.capacity) {
+            atomicSub(queue.size, 1u);  // it stays full, and never wraps
+            return false;
+        }
         QueuedBranch<Entry> item;
-        room->get(i, item.branch);
+        room.get(i, item.branch);
         item.record = record;
-        static_cast<QueuedBranch<Entry>*>(queue->items)[place] = item;
+        static_cast<QueuedBranch<Entry>*>(queue.items)[place] = item;
         return true;
     }
 
@@ -171,7 +182,8 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     const unsigned int count = min(*job.from.size, job.from.capacity);
     PixelRays rays;  // of many pixels, and yet far from 2^32: a part of a frame
     unsigned int flags = 0;
-    for (unsigned int i = blockIdx.x * block_threads + threadIdx.x; i < count; i += gridDim.x * block_threads) {
+    for (unsigned int i = blockIdx.x * block_threads + threadIdx.x; i < count && !stopped(job);
+         i += gridDim.x * block_threads) {
         Item item = static_cast<const Item*>(job.from.items)[i];
         PixelRecord part;
         PixelWork own;

@@ -34,6 +34,11 @@ struct PathTraits<Real, DevicePath::tree> {
     using Intersector = BvhIntersector<Real, MediaList, Scene>;
 };
 
+/// Whether the host wants the kernel to end. Past the caches, which would keep what was there first.
+__device__ inline bool stopped(const FrameJob& job) {
+    return *static_cast<const volatile unsigned int*>(job.stop) != 0;
+}
+
 /// Over all lanes, for every one.
 __device__ inline unsigned int warp_sum(unsigned int value) {
 #if __CUDA_ARCH__ >= 800

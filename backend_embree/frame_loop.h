@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <atomic>
 #include <mutex>
 #include <utility>
 
@@ -19,6 +20,29 @@ inline void use_default_rounding() {
     _mm_setcsr(0x1f80);
 }
 
+/// A stack that is empty once `stop` is set: a tree may be endless.
+template <class Inner>
+class StoppableStack {
+  public:
+    explicit StoppableStack(const std::atomic<bool>& stop) : stop_(stop) {}
+
+    template <class Entry>
+    bool push(const Entry& branch) {
+        return inner_.push(branch);
+    }
+    template <class Entry>
+    bool pop(Entry& branch) {
+        if (stop_.load(std::memory_order_relaxed)) inner_.clear();
+        return inner_.pop(branch);
+    }
+    bool empty() const { return inner_.empty(); }
+    void clear() { inner_.clear(); }
+
+  private:
+    Inner inner_;
+    const std::atomic<bool>& stop_;
+};
+
 /// Calls render(x, y, record, work) for every pixel of the film, in tiles.
 template <class Render>
 bool for_each_pixel(const FrameSettings& settings, Film& film, RenderProgress& progress, const Render& render) {
@@ -28,13 +52,13 @@ bool for_each_pixel(const FrameSettings& settings, Film& film, RenderProgress& p
     tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
         use_default_rounding();
         for (int64_t t = range.begin(); t != range.end(); ++t) {
-            if (progress.stop.load(std::memory_order_relaxed)) return;
             const int x0 = int(t % columns) * tile, y0 = int(t / columns) * tile;
             const int x1 = std::min(x0 + tile, rect.width), y1 = std::min(y0 + tile, rect.height);
             RayCounts rays;
             uint32_t flags = 0;
             for (int y = y0; y < y1; ++y)
                 for (int x = x0; x < x1; ++x) {
+                    if (progress.stop.load(std::memory_order_relaxed)) return;
                     PixelWork own;
                     render(rect.x + x, rect.y + y, film.pixels[size_t(y) * size_t(rect.width) + size_t(x)], own);
                     rays.add(own.rays);
@@ -54,7 +78,8 @@ template <class Real, class E, class Intersector>
 bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
                   const FrameSettings& settings, Film& film, RenderProgress& progress) {
     return for_each_pixel(settings, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
-        render_pixel<Real, E>(scene, frame, intersector, x, y, pixel, own);
+        StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
+        render_pixel<Real, E>(scene, frame, intersector, x, y, SampleRange(), pixel, own, stack);
     });
 }
 
@@ -64,7 +89,8 @@ bool render_adaptive_tiles(const SceneView<Real>& scene, const FrameView& frame,
                            const FrameSettings& settings, Film& film, RenderProgress& progress) {
     const bool gradual = shades_gradually(scene);
     return for_each_pixel(settings, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
-        render_adaptive_pixel<Real, E>(scene, frame, intersector, x, y, gradual, pixel, own);
+        StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
+        render_adaptive_pixel<Real, E>(scene, frame, intersector, x, y, gradual, pixel, own, stack);
     });
 }
 

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "endless_scene.h"
 #include "run_program.h"
 #include "scene/error.h"
 
@@ -55,6 +59,26 @@ class RenderProgram : public testing::Test {
         EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
         EXPECT_NE(result.error.find(part), std::string::npos) << result.error;
         EXPECT_EQ(result.out, "");
+    }
+
+    /// A frame that would take years, by both signals.
+    void expect_interrupted_within_a_pixel(const Arguments& more) const {
+        put_bytes(file("room.json"), test::room_of_mirrors_text);
+        Arguments arguments{"room.json", "-v", "-o", "room.exr", "--depth", "256"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        for (const int number : {SIGINT, SIGTERM}) {
+            RunningProgram running(program_, arguments, file(""));
+            ASSERT_TRUE(
+                running.wait_until([&] { return running.error_so_far().find("scene hash") != std::string::npos; }, 60));
+            std::this_thread::sleep_for(std::chrono::seconds(2));  // well into the frame
+            const auto sent = std::chrono::steady_clock::now();
+            running.send(number);
+            const ProgramResult result = running.wait();
+            EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(10));
+            EXPECT_EQ(result.code, 130) << result.error;
+            EXPECT_NE(result.error.find("render: interrupted; 0 of 1 frames"), std::string::npos) << result.error;
+            EXPECT_FALSE(exists("room.exr"));
+        }
     }
 
     bool has_part_files() const {

@@ -5,10 +5,12 @@
 #include <thread>
 
 #include "backend_cuda/cuda_renderer.h"
+#include "endless_scene.h"
 #include "expect_error.h"
 #include "golden.h"
 #include "gpu.h"
 #include "scene/generated_scene.h"
+#include "stopping.h"
 
 using namespace cistula;
 
@@ -222,6 +224,65 @@ TYPED_TEST(Cuda, StopsInTheMiddleAndGoesOnAfterwards) {
     stopped.stop = true;
     EXPECT_FALSE(renderer->render(camera_at(scene.camera, 0), settings, film, stopped));
     EXPECT_EQ(render(*renderer, scene, settings), this->expected(scene, settings));
+}
+
+/// Stops a frame that would take years, twice, and then renders one that does not.
+template <class Expected>
+void check_endless(Renderer& renderer, const SceneDescription& scene, FrameSettings settings, const Expected& expected,
+                   const std::string& where) {
+    for (const double after : {0.3, 0.0}) {
+        renderer.expect(camera_at(scene.camera, 1), settings);  // begun behind the first, it must end too
+        const test::Stopped stopped = test::render_stopped(renderer, camera_at(scene.camera, 0), settings, after);
+        EXPECT_FALSE(stopped.whole) << where;
+        EXPECT_LT(stopped.seconds, 5) << where;
+    }
+    settings.target_error = 0;
+    settings.supersample = 1;
+    settings.depth = 2;
+    EXPECT_EQ(render(renderer, scene, settings), expected(scene, settings)) << where;
+}
+
+TYPED_TEST(Cuda, StopsWithinAnEndlessFrame) {
+    CISTULA_NEEDS_GPU();
+    const auto expected = [](const SceneDescription& scene, const FrameSettings& settings) {
+        return TestFixture::expected(scene, settings);
+    };
+    struct Case {
+        int split = CudaOptions::automatic, supersample = 1;
+        double target_error = 0;
+        std::vector<int> devices = {0};
+    };
+    const std::vector<Case> cases = {{},   // queues that overflow
+                                     {0},  // whole trees
+                                     {3},
+                                     {0, 4},
+                                     {0, 1, 1e-6},  // of many samples, adaptive
+                                     {CudaOptions::automatic, 1, 0, {0, 0}}};
+    // By a tree, and by a plain loop.
+    for (const SceneDescription& scene : {scene_of("hard/furnace"), test::room_of_mirrors()})
+        for (const Case& one : cases) {
+            CudaOptions options;
+            options.split = one.split;
+            options.devices = one.devices;
+            FrameSettings settings = test::endless_settings(96, 54);
+            if (one.target_error > 0) settings = test::endless_settings(1920, 1080);
+            settings.supersample = one.supersample;
+            settings.target_error = one.target_error;
+            check_endless(*this->gpu(scene, options), scene, settings, expected,
+                          scene.source + ", split " + std::to_string(one.split) + ", samples " +
+                              std::to_string(one.supersample) + (one.target_error > 0 ? ", adaptive" : "") +
+                              ", shares " + std::to_string(one.devices.size()));
+        }
+}
+
+TYPED_TEST(Cuda, GoesAwayWithAFrameUnderWay) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = test::room_of_mirrors();
+    FrameSettings settings = test::endless_settings(96, 54);
+    settings.depth = 40;  // less than a second
+    const auto renderer = this->gpu(scene);
+    renderer->expect(camera_at(scene.camera, 0), settings);
+    render(*renderer, scene, settings);  // leaves another one under way
 }
 
 TYPED_TEST(Cuda, RefusesDevicesThatAreNotThere) {

@@ -132,5 +132,9 @@ TEST_F(RenderFilm, SigtermStopsAStillAndTheOldFileStays) {
     EXPECT_FALSE(has_part_files());
 }
 
+TEST_F(RenderFilm, TreesWithoutEndAreInterruptedToo) {
+    expect_interrupted_within_a_pixel({});
+}
+
 }  // namespace
 }  // namespace cistula

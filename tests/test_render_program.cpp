@@ -113,6 +113,11 @@ TEST_F(RenderProgram, CudaRendersTheSameFile) {
     EXPECT_FALSE(exists("c.exr"));
 }
 
+TEST_F(RenderProgram, CudaIsInterruptedInTreesWithoutEnd) {
+    CISTULA_NEEDS_GPU();
+    expect_interrupted_within_a_pixel({"--backend", "cuda"});
+}
+
 TEST_F(RenderProgram, CudaIsRefusedAndNeverReplaced) {
     if (!test::missing_gpu().empty()) {
         for (const char* device : {"0", "4096"}) {

@@ -9,6 +9,7 @@
 #include "apps/render_report/png.h"
 #include "apps/render_report/svg_chart.h"
 #include "apps/render_report/target_table.h"
+#include "endless_scene.h"
 #include "run_program.h"
 
 namespace cistula::report {
@@ -157,6 +158,11 @@ TEST_F(Program, MeasuresASmallSceneAndShowsItFromItsRecord) {
         EXPECT_LE(at->second, std::prev(at)->second) << "depth " << at->first;
     EXPECT_GT(by_depth.begin()->second, 0);
     EXPECT_GE(native, 4u);
+    // Whatever quicker settings take, what is within the limit is there.
+    EXPECT_EQ(scene.left_out, std::vector<std::string>());
+    const std::string full_lattice = "depth:256/cutoff:0.002/float/samples:16x16";
+    EXPECT_TRUE(std::any_of(record.entries.begin(), record.entries.end(),
+                            [&](const Entry& entry) { return setting_name(entry.setting) == full_lattice; }));
     const Json table = Json::parse(text).at("targets").at("small");
     std::vector<const Entry*> entries;
     for (const Entry& entry : record.entries) entries.push_back(&entry);
@@ -201,6 +207,31 @@ TEST_F(Program, MeasuresASmallSceneAndShowsItFromItsRecord) {
                              "Intersector: native against the exact one"})
         EXPECT_NE(page.find(part), page.npos) << part;
     EXPECT_LT(page.size(), 400000u);
+}
+
+TEST_F(Program, StopsSettingsThatTakeTooLongAndNamesThem) {
+    const ProgramResult result = run({"small.json", "--quick", "--repetitions", "1", "--res", "80x45", "--threads", "1",
+                                      "--no-cache", "--limit", "0.05", "--json", "r.json", "-o", "r.html"});
+    ASSERT_EQ(result.code, 0) << result.error;
+    const Record record = parse_record(bytes_of(folder.file("r.json")), "r.json");
+    ASSERT_EQ(record.scenes.size(), 1u);
+    const std::vector<std::string>& left_out = record.scenes[0].left_out;
+    const std::string full_lattice = "depth:256/cutoff:0.002/float/samples:16x16";
+    EXPECT_NE(std::find(left_out.begin(), left_out.end(), full_lattice), left_out.end());
+    for (const Entry& entry : record.entries)
+        EXPECT_EQ(std::find(left_out.begin(), left_out.end(), setting_name(entry.setting)), left_out.end());
+    EXPECT_FALSE(record.entries.empty());
+    EXPECT_NE(bytes_of(folder.file("r.html")).find(full_lattice), std::string::npos);
+}
+
+TEST_F(Program, GivesUpWhereTheReferenceHasNoEnd) {
+    put_bytes(folder.file("room.json"), test::room_of_mirrors_text);
+    const ProgramResult result =
+        run({"room.json", "--quick", "--res", "16x9", "--no-cache", "--limit", "0.01", "-o", "r.html"});
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.error.find("room.json: the reference, depth:256/"), std::string::npos) << result.error;
+    EXPECT_NE(result.error.find("ray trees have no end"), std::string::npos) << result.error;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("r.html")));
 }
 
 TEST_F(Program, ShowsVerdictsAndTheSeedsTimes) {

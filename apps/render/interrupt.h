@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM: a flag that the renderer looks at between tiles.
+// Ctrl-C and SIGTERM: a flag that the renderer looks at now and then.
 #pragma once
 
 #include <atomic>

@@ -1,12 +1,21 @@
 // Rendering and timing of single frames of one scene: every frame of the report goes through here.
 #pragma once
 
+#include <limits>
+#include <optional>
+
 #include "progress.h"
 #include "renderers.h"
 #include "scene/camera_path.h"
 #include "scene/film.h"
 
 namespace cistula::report {
+
+/// Frames that take longer are stopped: ray trees may be endless.
+struct FrameLimit {
+    double whole = std::numeric_limits<double>::infinity();  // seconds of wall clock
+    double still = std::numeric_limits<double>::infinity();  // the same, in which no pixel is done
+};
 
 class Frames {
   public:
@@ -15,6 +24,8 @@ class Frames {
     /// Seconds of wall clock. Throws Error: interrupted after Ctrl-C, failed where the frame cannot be trusted.
     double render(const Setting& setting, Film& film, uint32_t effects = 0);
     double render(Renderer& renderer, const FrameSettings& settings, Film& film);
+    /// The same, but nothing where the limit was passed.
+    std::optional<double> render_within(const FrameLimit& limit, const Setting& setting, Film& film);
 
     /// Milliseconds of the frame just rendered: of its kernels where the renderer tells, else all `seconds`.
     double kernel_ms(const Setting& setting, double seconds);
@@ -24,6 +35,10 @@ class Frames {
     const CameraFrame camera;
     const int width, height;
     Progress& progress;
+
+  private:
+    void begin();
+    void check(const Film& film) const;
 };
 
 /// Throws Error (interrupted) if Ctrl-C was pressed.

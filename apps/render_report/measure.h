@@ -5,6 +5,7 @@
 
 #include "frames.h"
 #include "record.h"
+#include "sweep_plan.h"
 
 namespace cistula::report {
 
@@ -12,9 +13,13 @@ struct MeasureSettings {
     Machine machine;
     int repetitions = 10, warm_ups = 2;
     bool quick = false;
-    double limit = 2;           // seconds: settings whose frames would take longer are left out
+    double limit = 2;           // seconds: settings whose frames take longer are left out
     int width = 0, height = 0;  // 0: the scene's film
     std::string cache;          // folder; empty: none
+
+    FrameLimit of_setting() const { return {.whole = limit}; }
+    /// What is needed may take long, but must get on.
+    FrameLimit of_reference() const { return {.still = limit * reference_supersample * reference_supersample}; }
 };
 
 /// Adds the scene and its benchmarks to the record. Throws Error.

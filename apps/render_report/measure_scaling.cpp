@@ -63,7 +63,7 @@ class Scaling {
   public:
     Scaling(const MeasureSettings& settings, Progress& progress) : settings_(settings), progress_(progress) {}
 
-    /// False where it took longer than the limit: larger ones are then left out.
+    /// False where it took longer than the limit: larger ones are then left out, and it too if its first frame did.
     bool add(ScalingSeries& series, double value, Frames& frames, const Setting& setting) {
         progress_.begin(fmt::format("scaling: {} {:.0f}", series.name, value),
                         settings_.warm_ups + settings_.repetitions);
@@ -71,7 +71,9 @@ class Scaling {
         point.value = value;
         Film film;
         double last = 0;
-        for (int round = 0; round < settings_.warm_ups + settings_.repetitions; ++round) {
+        if (!frames.render_within(settings_.of_setting(), setting, film)) return false;
+        progress_.advance();
+        for (int round = 1; round < settings_.warm_ups + settings_.repetitions; ++round) {
             last = frames.render(setting, film);
             if (round >= settings_.warm_ups) point.time.runs.push_back(frames.kernel_ms(setting, last));
             progress_.advance();

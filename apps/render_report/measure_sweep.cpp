@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <numeric>
 #include <random>
 
 #include "apps/render/target.h"
 #include "measure.h"
 #include "reference.h"
+#include "scene/error.h"
 #include "scene/film_picture.h"
 #include "sweep_plan.h"
 
@@ -19,22 +21,12 @@ double least_samples(const Setting& setting) {
     return setting.adaptive() ? 4 : static_cast<double>(setting.supersample) * setting.supersample;
 }
 
-/// How many times as long a frame takes at least as that of `other`; 0: nothing is known.
-double least_ratio(const Setting& setting, const Setting& other) {
+/// Whether a frame takes at least as long as that of `other`, as none of its knobs makes it easier.
+bool is_harder(const Setting& setting, const Setting& other) {
     const auto cutoff = [](const Setting& s) { return frame_settings(s, 1, 1).truncation(); };
-    if (other.depth > setting.depth || cutoff(other) < cutoff(setting) || other.precision > setting.precision ||
-        other.intersector != setting.intersector)
-        return 0;
-    if (other.adaptive()) return setting.adaptive() ? 1 : 0;  // the cutoffs are the targets'
-    const double ratio = least_samples(setting) / least_samples(other);
-    return ratio >= 1 ? ratio : 0;
-}
-
-/// How long a frame will take at least, from what is known of easier ones; 0: nothing is.
-double predicted_seconds(const Setting& setting, const std::vector<std::pair<Setting, double>>& known) {
-    double most = 0;
-    for (const auto& [other, seconds] : known) most = std::max(most, seconds * least_ratio(setting, other));
-    return most;
+    return other.depth <= setting.depth && cutoff(other) >= cutoff(setting) && other.precision <= setting.precision &&
+           other.intersector == setting.intersector && other.adaptive() == setting.adaptive() &&
+           least_samples(other) <= least_samples(setting);
 }
 
 void note_times(const Renderer& renderer, double seconds, Entry& entry) {
@@ -69,66 +61,76 @@ class Sweep {
     }
 
     void run(std::vector<Entry>& entries) {
-        find_yardsticks();
+        find_reference();
         const size_t begin = entries.size();
         measure_errors(entries);
         measure_times(entries, begin);
     }
 
   private:
-    void find_yardsticks() {
+    void find_reference() {
         frames_.progress.begin(scene_.name + ": reference", 1);
-        reference_ =
-            reference_picture(frames_, scene_.hash, reference_setting(scene_.base, settings_.quick), settings_.cache);
+        const Setting setting = reference_setting(scene_.base, settings_.quick);
+        const auto found = reference_picture(frames_, scene_.hash, setting, settings_.of_reference(), settings_.cache);
+        if (!found)
+            throw Error(ExitCode::failed,
+                        fmt::format("{}: the reference, {}, does not get on within {:g} seconds: where next to no "
+                                    "light is lost and much goes both ways, ray trees have no end; a larger --limit "
+                                    "gives it more time",
+                                    scene_.file, setting_name(setting), settings_.of_reference().still));
+        reference_ = *found;
         scene_.reference = reference_.yardstick;
-        std::vector<std::pair<std::string, Setting>> wanted;
-        for (const PlannedSetting& planned : plan_)
-            for (const auto& [knob, setting] : planned.alone)
-                if (yardstick_of(setting) == nullptr &&
-                    std::none_of(wanted.begin(), wanted.end(), [&](const auto& one) { return one.second == setting; }))
-                    wanted.emplace_back(knob, setting);
-        frames_.progress.begin(scene_.name + ": references of single knobs", static_cast<double>(wanted.size()));
-        for (const auto& [knob, setting] : wanted) {
-            yardsticks_.push_back(reference_picture(frames_, scene_.hash, setting, settings_.cache));
-            yardsticks_.back().yardstick.knob = knob;
-            scene_.yardsticks.push_back(yardsticks_.back().yardstick);
-            frames_.progress.advance();
-        }
     }
 
-    const ReferencePicture* yardstick_of(const Setting& setting) const {
+    /// Rendered when it is first asked for; null where that takes too long.
+    const ReferencePicture* yardstick_of(const std::string& knob, const Setting& setting) {
         if (reference_.yardstick.setting == setting) return &reference_;
         for (const ReferencePicture& one : yardsticks_)
             if (one.yardstick.setting == setting) return &one;
-        return nullptr;
+        if (std::find(without_end_.begin(), without_end_.end(), setting) != without_end_.end()) return nullptr;
+        auto found = reference_picture(frames_, scene_.hash, setting, settings_.of_reference(), settings_.cache);
+        frames_.progress.frame(0);
+        if (!found) {
+            without_end_.push_back(setting);
+            scene_.left_out.push_back(fmt::format("{}: the reference of {}", setting_name(setting), knob));
+            return nullptr;
+        }
+        found->yardstick.knob = knob;
+        scene_.yardsticks.push_back(found->yardstick);
+        return &yardsticks_.emplace_back(std::move(*found));
     }
 
+    /// Tries every setting: who predicts from others what a frame takes leaves out some that are quick enough.
     void measure_errors(std::vector<Entry>& entries) {
         frames_.progress.begin(scene_.name + ": errors", static_cast<double>(plan_.size()));
-        std::vector<std::pair<Setting, double>> known;
+        std::vector<Setting> stopped;
         Film film;
         for (const PlannedSetting& planned : plan_) {
-            if (predicted_seconds(planned.setting, known) > settings_.limit) {
-                scene_.left_out.push_back(setting_name(planned.setting));
+            const Setting& setting = planned.setting;
+            const bool hopeless = std::any_of(stopped.begin(), stopped.end(),
+                                              [&](const Setting& other) { return is_harder(setting, other); });
+            const auto seconds = hopeless ? std::nullopt : frames_.render_within(settings_.of_setting(), setting, film);
+            if (!seconds) {
+                if (!hopeless) stopped.push_back(setting);
+                scene_.left_out.push_back(setting_name(setting));
                 frames_.progress.advance();
                 continue;
             }
             Entry entry;
             entry.scene = scene_.name;
-            entry.setting = planned.setting;
-            known.emplace_back(planned.setting, frames_.render(planned.setting, film));
+            entry.setting = setting;
             entry.film_hash = film_hash(film);
             entry.rays = Rays(film.rays);
             const Picture picture = resolve_picture(film);
             entry.error = compare_with(picture, reference_.picture);
             note_samples(film, picture, entry);
-            for (const auto& [knob, setting] : planned.alone)
-                entry.alone[knob] = compare_with(picture, yardstick_of(setting)->picture);
+            for (const auto& [knob, alone] : planned.alone)
+                if (const ReferencePicture* yardstick = yardstick_of(knob, alone))
+                    entry.alone[knob] = compare_with(picture, yardstick->picture);
             entries.push_back(std::move(entry));
+            seconds_.push_back(*seconds);
             frames_.progress.advance();
         }
-        seconds_.clear();
-        for (const auto& [setting, seconds] : known) seconds_.push_back(seconds);
     }
 
     void note_samples(const Film& film, const Picture& picture, Entry& entry) const {
@@ -164,8 +166,9 @@ class Sweep {
     SceneRecord& scene_;
     std::vector<PlannedSetting> plan_;
     ReferencePicture reference_;
-    std::vector<ReferencePicture> yardsticks_;
-    std::vector<double> seconds_;  // of the frames of measure_errors
+    std::deque<ReferencePicture> yardsticks_;
+    std::vector<Setting> without_end_;  // yardsticks that are not to be had
+    std::vector<double> seconds_;       // of the frames of measure_errors
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "cistula/effects.h"
 #include "measure.h"
 #include "png.h"
+#include "scene/error.h"
 #include "scene/exr.h"
 #include "scene/film_picture.h"
 #include "scene/required_effects.h"
@@ -49,8 +50,13 @@ void measure_stages(Frames& frames, const MeasureSettings& settings, SceneRecord
     for (const Precision precision : {Precision::single_, Precision::double_}) {
         Setting setting = scene.base;
         setting.precision = precision;
-        const double seconds = frames.render(setting, film);
-        scene.stages.push_back({"first frame", precision_name(precision), {{seconds * 1e3}}});
+        const auto seconds = frames.render_within(settings.of_reference(), setting, film);
+        if (!seconds)
+            throw Error(ExitCode::failed,
+                        fmt::format("{}: a frame of the scene's own depth, {}, does not get on within {:g} seconds; "
+                                    "give it less depth, or a larger --limit",
+                                    scene.file, setting_name(setting), settings.of_reference().still));
+        scene.stages.push_back({"first frame", precision_name(precision), {{*seconds * 1e3}}});
         frames.progress.advance();
     }
     for (const Stage& stage : frames.renderers.stages()) scene.stages.push_back(stage);

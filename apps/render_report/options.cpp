@@ -36,7 +36,7 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--res", texts.resolution, "frames of this many pixels; each scene's film")->type_name("WxH");
     app.add_option("--repetitions", texts.repetitions, "timed runs of each setting after warm-up; 10, --quick 3")
         ->type_name("N");
-    app.add_option("--limit", texts.limit, "leave out settings whose frames would take longer than S seconds; 2")
+    app.add_option("--limit", texts.limit, "leave out settings whose frames take longer than S seconds; 2")
         ->type_name("S");
     app.add_flag("--quick", texts.quick, "fewer settings and runs: to try it out");
     app.add_flag("--scaling", texts.scaling, "also time against triangles, lights, depth, pixels and GPUs");

@@ -99,7 +99,7 @@ struct SceneRecord {
     Share strongest, mirror;  // mirror: the largest reflection
     Yardstick reference;
     std::vector<Yardstick> yardsticks;
-    std::vector<std::string> left_out;  // settings that would have taken longer than the limit
+    std::vector<std::string> left_out;  // settings that take longer than the limit, and what else for want of time
     std::vector<Stage> stages;
     std::vector<Level> levels;
     std::vector<EffectCost> effect_costs;

@@ -78,8 +78,8 @@ std::optional<ReferencePicture> unpack_reference(const std::string& bytes, const
     return reference;
 }
 
-ReferencePicture reference_picture(Frames& frames, const std::string& scene_hash, const Setting& setting,
-                                   const std::string& cache) {
+std::optional<ReferencePicture> reference_picture(Frames& frames, const std::string& scene_hash, const Setting& setting,
+                                                  const FrameLimit& limit, const std::string& cache) {
     const std::string key = key_of(frames, scene_hash, setting);
     const std::string file =
         cache.empty() ? "" : (std::filesystem::path(cache) / (hash_of(key) + ".reference")).string();
@@ -97,12 +97,14 @@ ReferencePicture reference_picture(Frames& frames, const std::string& scene_hash
             found->yardstick.setting = setting;
             found->yardstick.seconds = seconds;
             found->yardstick.cached = true;
-            return std::move(*found);
+            return found;
         }
     }
     Film film;
     frames.progress.frame(static_cast<uint64_t>(frames.width) * static_cast<uint64_t>(frames.height));
-    reference.yardstick.seconds = frames.render(setting, film);
+    const std::optional<double> seconds = frames.render_within(limit, setting, film);
+    if (!seconds) return std::nullopt;
+    reference.yardstick.seconds = *seconds;
     reference.yardstick.setting = setting;
     reference.yardstick.remainder = remainder_of(film);
     reference.picture = resolve_picture(film);

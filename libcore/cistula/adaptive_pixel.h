@@ -35,12 +35,12 @@ CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel)
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
 }
 
-/// All that the pixel wants, with room of its own.
-template <class Real, class E, class Intersector, class Scene>
+/// All that the pixel wants, with room of its own for samples.
+template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
-                                          int px, int py, bool gradual, PixelRecord& record, PixelWork& work) {
+                                          int px, int py, bool gradual, PixelRecord& record, PixelWork& work,
+                                          Stack& stack) {
     const LatticeSettings& settings = frame.lattice;
-    StackOf<Real, E, typename Intersector::Media> stack;
     LatticeSample samples[lattice_samples];
     PixelRecord taken;
     LatticePixel pixel;

@@ -150,14 +150,6 @@ CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, con
     record.samples = work.rays.primary;
 }
 
-/// All samples, with a stack of its own.
-template <class Real, class E, class Intersector, class Scene>
-CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
-                                 PixelRecord& record, PixelWork& work) {
-    StackOf<Real, E, typename Intersector::Media> stack;
-    render_pixel<Real, E>(scene, frame, intersector, px, py, SampleRange(), record, work, stack);
-}
-
 /// The rest of a tree from a branch that another stack gave away; `record` and `work` get what is its own.
 template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void resume_branch(const Scene& scene, const FrameView& frame,

@@ -47,7 +47,7 @@ struct FrameSettings {
 struct RenderProgress {
     std::atomic<uint64_t> pixels_done{0};
     std::atomic<uint64_t> rays{0};
-    std::atomic<bool> stop{false};  // set it: the render returns at the next tile
+    alignas(64) std::atomic<bool> stop{false};  // set it: the render returns soon. Apart, as every ray's tree reads it
 };
 
 /// Where the time of the last frame went, in seconds; of the devices that had part in it the slowest.
