@@ -17,8 +17,8 @@ inline constexpr int color_bits = 30, color_shift = 54 - color_bits;
 /// Rays of a tree that sees many things, and the largest cell that may stand undivided in a pixel that met one.
 inline constexpr uint32_t bushy_tree = 96;
 inline constexpr int bushy_area = lattice_samples / 8;
-/// How much brighter or darker what lies unseen in such a cell is taken to be: on infinity.json this leaves one pixel in
-/// 2,000 beyond targets of 0.001 to 0.01.
+/// How much brighter or darker what lies unseen in such a cell is taken to be: on infinity.json at most one pixel in
+/// 1,500 is then beyond targets of 0.001 to 0.01.
 inline constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
 
 /// What a frame asks of adaptive sampling.
