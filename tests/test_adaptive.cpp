@@ -58,7 +58,8 @@ PixelRecord sampled(const LatticeSettings& settings, const Value& value, const S
 template <class Value, class Sign>
 PixelRecord sampled(const LatticeSettings& settings, const Value& value, const Sign& sign,
                     std::set<std::pair<int, int>>* taken = nullptr) {
-    return sampled(settings, value, sign, [](int, int) { return 1u; }, taken);
+    return sampled(
+        settings, value, sign, [](int, int) { return 1u; }, taken);
 }
 
 LatticeSettings lattice(double target, bool fine, int most = lattice_samples) {
@@ -360,10 +361,9 @@ TEST(Adaptive, IsWithinItsTargetOfTheWholeLattice) {
         PixelRect crop;
         double samples;  // at most
     };
-    for (const Case& one : {Case{"benchmark", 1280, 720, {0, 360, 1280, 2}, 80},
-                            Case{"platonic", 1280, 720, {0, 360, 1280, 2}, 80},
-                            Case{"glass", 1280, 720, {0, 360, 1280, 2}, 80},
-                            Case{"infinity", 640, 360, {160, 181, 320, 1}, 160}}) {
+    for (const Case& one :
+         {Case{"benchmark", 1280, 720, {0, 360, 1280, 2}, 80}, Case{"platonic", 1280, 720, {0, 360, 1280, 2}, 80},
+          Case{"glass", 1280, 720, {0, 360, 1280, 2}, 80}, Case{"infinity", 640, 360, {160, 181, 320, 1}, 160}}) {
         const SceneDescription scene = read_scene(scenes / (std::string(one.name) + ".json"));
         const auto renderer = make_embree_renderer<float>(test::compile<float>(scene));
         FrameSettings settings = small(scene, one.width, one.height);

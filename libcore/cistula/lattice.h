@@ -119,8 +119,8 @@ class LatticePixel {
         const int64_t fineness = settings.fine && !whole ? 8 : 4;
         // Bushy trees see so much that some of it may well lie between a few samples that agree, be these bushy or not:
         // a light's image ends a tree early, and hides between others as others do between lights.
-        const bool overlooks = settings.fine && (bushy_ || cell.bushy) &&
-                               (area > bushy_area || unseen_range * area > allowed);
+        const bool overlooks =
+            settings.fine && (bushy_ || cell.bushy) && (area > bushy_area || unseen_range * area > allowed);
         const bool wants_split = overlooks || (differs && fineness * range * area > allowed) || bend * area > allowed ||
                                  (settings.fine ? 8 : 4) * range * area > 3 * allowed;
         cell.differs = differs;
