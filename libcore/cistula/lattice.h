@@ -12,11 +12,14 @@ inline constexpr int lattice_side = 16, lattice_samples = lattice_side * lattice
 inline constexpr int lattice_middle = lattice_side / 2 * (lattice_side + 1);
 /// The fewest that a pixel can do with: its corners and its middle.
 inline constexpr int least_lattice_samples = 5;
-/// Rays of a tree that sees many things, and the largest cell of such trees that may stand undivided.
-inline constexpr uint32_t bushy_tree = 96;
-inline constexpr int bushy_area = lattice_samples / 8;
 /// Colors are compared in units of 2^-30 of the radiance bound's power of two.
 inline constexpr int color_bits = 30, color_shift = 54 - color_bits;
+/// Rays of a tree that sees many things, and the largest cell that may stand undivided in a pixel that met one.
+inline constexpr uint32_t bushy_tree = 96;
+inline constexpr int bushy_area = lattice_samples / 8;
+/// How much brighter or darker what lies unseen in such a cell is taken to be: on infinity.json at most one pixel in
+/// 1,500 is then beyond targets of 0.001 to 0.01.
+inline constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
 
 /// What a frame asks of adaptive sampling.
 struct LatticeSettings {
@@ -65,9 +68,9 @@ class LatticePixel {
   public:
     CISTULA_INLINE void begin(const LatticeSettings& settings) {
         round_ = 0;
-        unmet_ = 0;
+        unmet_ = bushy_ = 0;
         count_[0] = 1;
-        cells_[0][0] = {0, 0, lattice_side, lattice_side, Split::none, 0};
+        cells_[0][0] = {0, 0, lattice_side, lattice_side, Split::none, 0, 0};
         wanted_ = 0;
         for (int c = 0; c < 4; ++c) want(corner(cells_[0][0], c));
         if (settings.fine) want(lattice_middle);
@@ -88,9 +91,11 @@ class LatticePixel {
         for (int c = 0; c < 4; ++c) at[c] = samples + corner(cell, c);
         const bool whole = is_whole(cell), has_middle = settings.fine && whole;
         bool differs = has_middle && samples[lattice_middle].signature != at[0]->signature;
-        for (int c = 1; c < 4; ++c) differs |= at[c]->signature != at[0]->signature;
-        // A bushy tree sees so much that some of it may well lie between a few samples that agree.
-        const bool bushy = settings.fine && cell.width * cell.height > bushy_area && at[0]->rays >= bushy_tree;
+        cell.bushy = at[0]->rays >= bushy_tree;
+        for (int c = 1; c < 4; ++c) {
+            differs |= at[c]->signature != at[0]->signature;
+            cell.bushy |= at[c]->rays >= bushy_tree;
+        }
         int64_t range = 0, bend = 0, across = 0, down = 0;
         for (int c = 0; c < 3; ++c) {
             const int64_t a = color(*at[0], c), b = color(*at[1], c), d = color(*at[2], c), e = color(*at[3], c);
@@ -112,7 +117,11 @@ class LatticePixel {
         // What a border through it can be worth: its range times its area. Rays that meet the same things bend little
         // between, unless a texture does.
         const int64_t fineness = settings.fine && !whole ? 8 : 4;
-        const bool wants_split = bushy || (differs && fineness * range * area > allowed) || bend * area > allowed ||
+        // Bushy trees see so much that some of it may well lie between a few samples that agree, be these bushy or not:
+        // a light's image ends a tree early, and hides between others as others do between lights.
+        const bool overlooks =
+            settings.fine && (bushy_ || cell.bushy) && (area > bushy_area || unseen_range * area > allowed);
+        const bool wants_split = overlooks || (differs && fineness * range * area > allowed) || bend * area > allowed ||
                                  (settings.fine ? 8 : 4) * range * area > 3 * allowed;
         cell.differs = differs;
         cell.split = !wants_split || area == 4             ? Split::none
@@ -129,6 +138,7 @@ class LatticePixel {
         count_[round_ & 1] = wanted_ = 0;
         for (int i = 0; i < count; ++i) {
             const Cell cell = judged[i];
+            bushy_ |= cell.bushy;
             if (cell.split == Split::none) continue;
             const int more = cell.split == Split::in_four ? 11 : 4;  // the middle is one of sixteen
             if (due_ + more > settings.most) {
@@ -180,7 +190,7 @@ class LatticePixel {
     struct Cell {
         uint8_t x, y, width, height;
         Split split;
-        uint8_t differs;
+        uint8_t differs, bushy;
     };
 
     CISTULA_INLINE static bool is_whole(const Cell& cell) {
@@ -222,7 +232,7 @@ class LatticePixel {
 
     int round_, count_[2];  // this round's cells, and those of the last or the next
     int due_, wanted_;      // samples taken and wanted, and of these the latter
-    int unmet_;
+    int unmet_, bushy_;     // bushy_: whether a cell judged in an earlier round had a bushy corner
     uint8_t slots_[lattice_samples / 2];
     Cell cells_[2][most_cells];
 };
