@@ -168,7 +168,9 @@ class CudaRenderer : public Renderer {
         frame.fits = path_ == DevicePath::tree
                          ? camera_solids(view_, BvhIntersector<Real>{view_}, position, frame.view.camera_media)
                          : camera_solids(view_, BruteIntersector<Real>{view_}, position, frame.view.camera_media);
-        frame.mask = least_mask(settings.effects | scene_->effects | camera_effects(frame.view), settings.adaptive());
+        frame.mask = settings.unshadowed ? unshadowed_mask
+                                         : least_mask(settings.effects | scene_->effects | camera_effects(frame.view),
+                                                      settings.adaptive());
         effects_ = effect_masks[frame.mask];
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;

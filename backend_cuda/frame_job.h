@@ -96,7 +96,7 @@ enum class Pass { pixels, adaptive_pixels, branches };
 
 /// Whether Pass::branches is compiled for a mask: only what passes a face makes trees fork.
 constexpr bool splits_trees(int mask) {
-    return (effect_masks[mask] & effect_transmission) != 0;
+    return mask < effect_mask_count && (effect_masks[mask] & effect_transmission) != 0;
 }
 
 /// Enqueues a pass that is compiled for the mask. `mask` is an index of effect_masks. Throws Error (device).

@@ -19,9 +19,10 @@ CISTULA_ELSEWHERE(3)
 CISTULA_ELSEWHERE(4)
 CISTULA_ELSEWHERE(5)
 CISTULA_ELSEWHERE(6)
+CISTULA_ELSEWHERE(7)
 #undef CISTULA_ELSEWHERE
 #undef CISTULA_ELSEWHERE_IN
-static_assert(effect_mask_count == 7, "name the new masks above and in CMakeLists.txt");
+static_assert(compiled_mask_count == 8, "name the new masks above and in CMakeLists.txt");
 
 template <class Real>
 size_t queued_branch_bytes(DevicePath path) {
@@ -37,7 +38,7 @@ void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene
     using Launch = void (*)(DevicePath, Pass, const DeviceScene<Real>&, const FrameJob&, cudaStream_t);
     static constexpr auto table = []<int... m>(std::integer_sequence<int, m...>) {
         return std::array<Launch, sizeof...(m)>{&launch_mask<Real, m>...};
-    }(std::make_integer_sequence<int, effect_mask_count>());
+    }(std::make_integer_sequence<int, compiled_mask_count>());
     table[size_t(mask)](path, pass, scene, job, stream);
 }
 
@@ -46,7 +47,7 @@ std::vector<KernelResources> kernel_resources() {
     [&]<int... m>(std::integer_sequence<int, m...>) {
         (list_resources_of_mask<float, m>(list), ...);
         (list_resources_of_mask<double, m>(list), ...);
-    }(std::make_integer_sequence<int, effect_mask_count>());
+    }(std::make_integer_sequence<int, compiled_mask_count>());
     return list;
 }
 

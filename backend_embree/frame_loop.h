@@ -109,13 +109,13 @@ bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& sc
         ran = all_effects;
         return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
     }
-    const int index = least_mask(required);
+    const int index = settings.unshadowed ? unshadowed_mask : least_mask(required);
     ran = effect_masks[index];
     using Render = bool (*)(const SceneView<Real>&, const FrameView&, const Intersector&, const FrameSettings&, Film&,
                             RenderProgress&);
     static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
         return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
-    }(std::make_index_sequence<effect_mask_count>());
+    }(std::make_index_sequence<compiled_mask_count>());
     return table[size_t(index)](scene, frame, intersector, settings, film, progress);
 }
 

@@ -162,6 +162,34 @@ void render_scene(const RenderOptions& options) {
 }
 
 template <class Real>
+std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const RenderOptions& options, const CudaOptions& cuda) {
+    return make_renderer<Real>(options.backend, std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene)), cuda,
+                               options.intersection);
+}
+
+void measure_scene(const RenderOptions& options) {
+    const ChosenDevices devices = choose_devices(options.backend, options.devices);
+    const SceneDescription scene = read_scene(options.scene);
+    const FrameSettings settings = frame_settings(options, scene);
+    const std::vector<EffectReason> reasons = explain_effects(scene);
+    RenderProgress progress;  // outlives the guard
+    InterruptGuard guard;
+    guard.watch(progress.stop);
+    const int threads = threads_of(options);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+        const auto make = [&](const SceneDescription& of) {
+            return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
+                                                           : renderer_of<float>(of, options, devices.options);
+        };
+        const int frame = options.frames.empty() ? 0 : options.frames.front();
+        const EffectCosts costs = measure_effects(scene, reasons, frame, settings, make, progress);
+        print(explain_table(scene.source, reasons, &costs));
+    });
+}
+
+template <class Real>
 void report_pixel(const RenderOptions& options, const SceneDescription& scene, const FrameSettings& settings,
                   const CameraFrame& camera) {
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
@@ -207,6 +235,8 @@ void run(const RenderOptions& options) {
             return print(list_devices_text());
         case Action::pixel:
             return report_pixel(options);
+        case Action::measure:
+            return measure_scene(options);
         case Action::explain:
         case Action::render:
             return render_scene(options);

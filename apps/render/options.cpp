@@ -22,7 +22,8 @@ struct Texts {
         max_samples, threads, layers, device, pixel, json, backend = "embree", precision = "float",
                                                            intersector = "exact", effects = "auto", bits = "float",
                                                            progress = "auto";
-    bool explain = false, resume = false, quiet = false, verbose = false, version = false, print_template = false,
+    std::string explain;
+    bool resume = false, quiet = false, verbose = false, version = false, print_template = false,
          list_devices = false;
 };
 
@@ -57,7 +58,8 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
     app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
-    app.add_flag("--explain", texts.explain, "print the effects the scene calls for and why; renders nothing");
+    app.add_flag("--explain{needs}", texts.explain,
+                 "print the effects the scene calls for and why; renders nothing. --explain=measure: and what each costs");
     app.add_option("--pixel", texts.pixel, "print how this pixel comes about, ray by ray; renders nothing")
         ->type_name("X,Y");
     app.add_option("--json", texts.json, "with --pixel: the same as JSON; - is standard output")->type_name("FILE");
@@ -90,7 +92,7 @@ void refuse_with_pixel(const Texts& texts) {
     refuse(!texts.crop.empty(), "--crop", "the pixel counts from the top left of the full frame");
     refuse(texts.resume, "--resume", no_image);
     refuse(texts.progress != "auto", "--progress", "one pixel takes no time");
-    refuse(texts.explain, "--explain", "each prints a report of its own");
+    refuse(!texts.explain.empty(), "--explain", "each prints a report of its own");
     refuse(!texts.target_error.empty(), "--target-error", "it shows the samples of a grid; --supersample chooses one");
     refuse(texts.backend != "embree", "--backend", "the CPU follows the rays, and every backend gives the same bits");
     refuse(texts.intersector != "exact", "--intersector", "the rays of the exact image are followed");
@@ -102,7 +104,8 @@ RenderOptions checked(const Texts& texts) {
     if (texts.print_template) options.action = Action::print_template;
     if (texts.list_devices) options.action = Action::list_devices;
     if (options.action != Action::render) return options;
-    if (texts.explain) options.action = Action::explain;
+    if (!texts.explain.empty())
+        options.action = chosen<Action>("--explain", texts.explain, {{"needs", Action::explain}, {"measure", Action::measure}});
 
     options.scene = texts.scene;
     options.output = texts.output;
@@ -158,6 +161,9 @@ RenderOptions checked(const Texts& texts) {
         refuse(!texts.supersample.empty(), "--supersample", "pixels get as many samples as they need");
         refuse(!texts.cutoff.empty(), "--cutoff", "a quarter of the target is the cutoff");
     }
+    if (options.action == Action::measure)
+        refuse_beside("--explain", texts.explain, options.target_error.has_value(), "--target-error",
+                      "it times the samples of a grid; --supersample chooses one");
     if (!texts.max_samples.empty()) {
         options.max_samples =
             integer_option("--max-samples", texts.max_samples, least_lattice_samples, lattice_samples);

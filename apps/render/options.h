@@ -21,7 +21,7 @@ struct PixelPlace {
 };
 
 enum class ProgressStyle { automatic, plain, none };
-enum class Action { render, explain, pixel, print_help, print_version, print_template, list_devices };
+enum class Action { render, explain, measure, pixel, print_help, print_version, print_template, list_devices };
 
 struct RenderOptions {
     Action action = Action::render;

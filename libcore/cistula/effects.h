@@ -62,12 +62,16 @@ inline constexpr uint32_t effect_masks[] = {
     clear_bodies | effect_visible_lights,
     clear_bodies | effect_visible_lights | effect_tint,
     all_effects,
+    all_effects & ~(effect_opaque_shadows | effect_transparent_shadows),  // never the least: to measure what shadows cost
 };
-inline constexpr int effect_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
+inline constexpr int compiled_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
+inline constexpr int unshadowed_mask = compiled_mask_count - 1;
+/// Of the masks that scenes run with; the last is all_effects.
+inline constexpr int effect_mask_count = unshadowed_mask;
 
 /// Adaptive sampling is for scenes that are worth it: it is not compiled for masks whose rays pass nothing.
 constexpr bool samples_adaptively(int mask) {
-    return (effect_masks[mask] & effect_transmission) != 0;
+    return mask < effect_mask_count && (effect_masks[mask] & effect_transmission) != 0;
 }
 
 /// The index in effect_masks of the least mask that contains `required`.

@@ -16,12 +16,13 @@ CISTULA_SELDOM inline uint32_t far_remainder(double i, uint32_t n) {
     return remainder(i, n);
 }
 
-/// i modulo n, for an integer i.
+/// i modulo n, for an integer i. Without a quotient where n is a power of two.
 CISTULA_INLINE uint32_t repeated(float i, uint32_t n) {
-    return magnitude(i) < 0x1p23f ? remainder(i, n) : far_remainder(double(i), n);
+    if (!(magnitude(i) < 0x1p23f)) return far_remainder(double(i), n);
+    return (n & (n - 1)) == 0 ? uint32_t(int32_t(i)) & (n - 1) : remainder(i, n);
 }
 CISTULA_INLINE uint32_t repeated(double i, uint32_t n) {
-    return remainder(i, n);
+    return (n & (n - 1)) == 0 && magnitude(i) < 0x1p31 ? uint32_t(int32_t(i)) & (n - 1) : remainder(i, n);
 }
 
 /// Between the four texels around (x, y); texel(i, j) are their colors.

@@ -1,0 +1,81 @@
+#include "effect_costs.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "scene/error.h"
+#include "scene/without_effect.h"
+
+namespace cistula {
+namespace {
+
+constexpr uint32_t shadows = effect_opaque_shadows | effect_transparent_shadows;
+
+/// A way to render the frame, and how long it took.
+struct Variant {
+    std::unique_ptr<Renderer> renderer;
+    FrameSettings settings;
+    std::vector<double> milliseconds;
+
+    void run(const CameraFrame& camera, RenderProgress& progress, bool counts) {
+        Film film;
+        const auto start = std::chrono::steady_clock::now();
+        if (!renderer->render(camera, settings, film, progress)) throw Error(ExitCode::interrupted, "interrupted");
+        const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start;
+        const double kernel = renderer->times().kernel;
+        if (counts) milliseconds.push_back((kernel > 0 ? kernel : all.count()) * 1e3);
+    }
+    double median() const {
+        std::vector<double> sorted = milliseconds;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted[sorted.size() / 2];
+    }
+};
+
+}  // namespace
+
+EffectCosts measure_effects(const SceneDescription& scene, const std::vector<EffectReason>& reasons, int frame,
+                            const FrameSettings& settings, const MakeRenderer& make, RenderProgress& progress,
+                            int runs) {
+    const uint32_t needed = required_effects(reasons);
+    std::vector<Variant> variants;
+    const auto add = [&](const SceneDescription& of, FrameSettings how) {
+        variants.push_back({make(of), how, {}});
+        return variants.size() - 1;
+    };
+    add(scene, settings);
+    // The mask without shadows has everything else, so that it is compared with the mask of all.
+    size_t with_shadows = 0, without_shadows = 0;
+    if ((needed & shadows) != 0) {
+        FrameSettings how = settings;
+        how.effects = all_effects;
+        with_shadows = add(scene, how);
+        how.unshadowed = true;
+        without_shadows = add(scene, how);
+    }
+    std::vector<std::pair<uint32_t, size_t>> taken_out;  // effect, its variant; 0: none
+    for (const EffectReason& reason : reasons) {
+        if (!reason.needed) continue;
+        const auto less = without_effect(scene, reason.effect);
+        taken_out.push_back({reason.effect, less ? add(*less, settings) : 0});
+    }
+    const CameraFrame camera = camera_at(scene.camera, frame);
+    for (int run = -1; run < runs; ++run)
+        for (Variant& variant : variants) variant.run(camera, progress, run >= 0);
+
+    EffectCosts result{variants[0].median(), runs, {}};
+    const auto share = [&](size_t with, size_t without) {
+        return 1 - variants[without].median() / variants[with].median();
+    };
+    for (const auto& [effect, variant] : taken_out) {
+        EffectCost cost{effect, std::nullopt};
+        if ((effect & shadows) != 0)
+            cost.share = share(with_shadows, without_shadows);
+        else if (variant != 0)
+            cost.share = share(0, variant);
+        result.costs.push_back(cost);
+    }
+    return result;
+}
+
+}  // namespace cistula
