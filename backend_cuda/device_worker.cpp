@@ -168,7 +168,6 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
         const bool last = part.split_depth == 0 || pass + 1 == passes || depth >= part.frame.tree.depth;
         job.to = last ? BranchQueue() : queue(pass);
         job.split_depth = last ? whole_trees : depth;
-        job.seldom = seldom_levels(part.frame.tree.depth, job.split_depth);
         return !last;
     };
     bool more = give(0);

@@ -35,17 +35,6 @@ struct BranchQueue {
 
 inline constexpr int whole_trees = 0x7fffffff;
 
-/// FrameJob::seldom: every 8th or 16th level, as trees may be endless, or what split_depth is a multiple of. A branch in
-/// between costs one test, of a tree of 8 levels all of them.
-constexpr unsigned int seldom_levels(int tree_depth, int split_depth) {
-    const unsigned int levels = tree_depth > 16 ? 16 : 8;
-    if (split_depth == whole_trees) return levels - 1;
-    const unsigned int split = unsigned(split_depth), factor = split & (~split + 1u);  // the largest power of two in it
-    return (factor < levels ? factor : levels) - 1;
-}
-static_assert(seldom_levels(256, whole_trees) == 15 && seldom_levels(8, whole_trees) == 7);
-static_assert(seldom_levels(32, 4) == 3 && seldom_levels(32, 12) == 3 && seldom_levels(32, 3) == 0);
-
 /// A pixel that is sampled adaptively.
 struct LatticeRoom {
     LatticePixel pixel;
@@ -65,8 +54,7 @@ struct FrameJob {
     bool interleaved = false;  // whether the four warps of a block take every other pixel and row of it, or a tile each
     DeviceTally* tally = nullptr;
     BranchQueue from, to;  // passes after the first read `from`
-    int split_depth = whole_trees;  // branches of this depth and more go `to` the queue: looked at, as `stop` is,
-    unsigned int seldom = 0;        // ... only where a branch's depth has none of these bits (seldom_levels)
+    int split_depth = whole_trees;       // branches of this depth and more go `to` the queue
     const unsigned int* stop = nullptr;  // to a 1: the kernel ends, and what it has written means nothing
     unsigned int* next = nullptr;   // of adaptive sampling: the pixel that the next free warp takes,
     LatticeRoom* rooms = nullptr;   // ... block_pixels for each of room_blocks

@@ -36,9 +36,9 @@ class GivingBranchStack {
         : room_(room), job_(job), record_(record) {}
 
     __device__ bool push(const Entry& branch) {
-        if (count_ == branch_stack) return false;
+        if (count_ >= many_waiting && (count_ == branch_stack || ends())) return false;
         room_.put(count_++, branch);
-        if ((branch.depth & job_.seldom) == 0) count_ = look_up(&room_, count_, int(branch.depth), &job_, record_);
+        if (int(branch.depth) >= job_.split_depth) count_ -= give_away(&room_, count_ - 1, &job_.to, record_);
         return true;
     }
     __device__ bool pop(Entry& branch) {
@@ -48,25 +48,28 @@ class GivingBranchStack {
     }
 
   private:
-    /// How many entries are left, of depth `depth` the last: it may go to the queue, or all be dropped. Called, so that
-    /// this seldom thing is nowhere in the way.
-    __device__ __noinline__ static int look_up(const Room* room, int count, int depth, const FrameJob* job,
-                                               unsigned int record) {
-        if (depth >= job->split_depth && give_away(*room, count - 1, job->to, record)) return count - 1;
-        return stopped(*job) ? 0 : count;
+    /// Trees of up to so many levels come to an end by themselves; in larger ones this is where most of the time goes.
+    /// To look more often, or where only few lanes of a warp do, doubled the time of deep frames.
+    static constexpr int many_waiting = 16;
+
+    /// Empties a stack whose kernel is stopped.
+    __device__ bool ends() {
+        const bool ends = stopped(job_);
+        if (ends) count_ = 0;
+        return ends;
     }
 
-    /// Whether the queue has room for entry i, which it then has.
-    __device__ static bool give_away(const Room& room, int i, const BranchQueue& queue, unsigned int record) {
-        const unsigned int place = next_place(queue.size);
-        if (place >= queue.capacity) {
-            atomicSub(queue.size, 1u);  // it stays full, and never wraps
+    /// Whether the queue has room for entry i, which it then has. Called, so that this seldom thing is nowhere in the way.
+    __device__ __noinline__ static bool give_away(const Room* room, int i, const BranchQueue* queue, unsigned int record) {
+        const unsigned int place = next_place(queue->size);
+        if (place >= queue->capacity) {
+            atomicSub(queue->size, 1u);  // it stays full, and never wraps
             return false;
         }
         QueuedBranch<Entry> item;
-        room.get(i, item.branch);
+        room->get(i, item.branch);
         item.record = record;
-        static_cast<QueuedBranch<Entry>*>(queue.items)[place] = item;
+        static_cast<QueuedBranch<Entry>*>(queue->items)[place] = item;
         return true;
     }
 

@@ -19,13 +19,7 @@ struct alignas(16) BlockRoom {
 /// Blocks that share a multiprocessor: what bounds the registers of a thread, at 80 and 128. Others were slower on an
 /// H200.
 template <class Real>
-#ifndef LBF
-#define LBF 6
-#endif
-#ifndef LBD
-#define LBD 4
-#endif
-inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? LBF : LBD;
+inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? 6 : 4;
 
 template <class Real, DevicePath path>
 struct PathTraits;

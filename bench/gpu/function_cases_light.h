@@ -154,8 +154,6 @@ struct SeenLightCase {
     CISTULA_HD static void run(const Input& in, Words& out) {
         SceneView<Real> scene;
         scene.seen_lights = {in.lights, 2};
-        const SeenGroup both{.padded_square = 64, .first = 0, .count = 2};
-        scene.seen_groups = {&both, 1};
         const SeenHit<Real> hit = closest_seen_light(scene, in.ray, in.limit);
         out.real(hit.t);
         out.bits(hit.light);

@@ -48,14 +48,14 @@ CISTULA_INLINE float tree_near(Real t) {
     return greatest(float(t) * (1.0f - tree_slack_relative) - tree_slack_absolute, 0.0f);
 }
 
-/// Calls visit(item) for the candidates of box_ray below node `root`, nearer boxes first; visit returns the new far limit.
+/// Calls visit(item) for the candidates of box_ray, nearer boxes first; visit returns the new far limit.
 template <class Visit>
 CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>& items, BoxRay box_ray,
-                              const Visit& visit, int32_t root = 0) {
+                              const Visit& visit) {
     if (nodes.empty()) return;
     int32_t pending[max_tree_depth + 1];
     int depth = 0;
-    int32_t node = root;
+    int32_t node = 0;
     for (;;) {
         const TreeNode n = nodes[uint32_t(node)];  // whole: wide loads
         const float t0 = box_ray.enter(n.low[0], n.high[0]), t1 = box_ray.enter(n.low[1], n.high[1]);

@@ -182,12 +182,12 @@ CISTULA_INLINE uint32_t convex_face([[maybe_unused]] const Scene& scene, [[maybe
 #endif
 }
 
-/// Whether a ray that starts outside surely misses, or meets what is in the sphere only beyond `limit`: spares most rays
-/// the slabs, decides no hit. Sphere: a Solid's or a SeenGroup's.
-template <class Sphere, class Real>
-CISTULA_INLINE bool passes_by(const Sphere& sphere, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
-    const Vec3<Real> to_center = Vec3<Real>(sphere.center) - origin;
-    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - Real(sphere.padded_square);
+/// Whether a ray that starts outside surely misses, or meets the solid only beyond `limit`: spares most rays the slabs,
+/// decides no hit.
+template <class Real>
+CISTULA_INLINE bool passes_by(const Solid& solid, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
+    const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
+    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - Real(solid.padded_square);
     const Real beyond = limit * (Real(2) * ahead - limit), beside = ahead < Real(0) ? Real(0) : ahead * ahead;
     return rest > (ahead > limit ? beyond : beside);
 }

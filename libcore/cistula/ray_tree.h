@@ -218,7 +218,7 @@ class RayTree {
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray);
             if constexpr (E::has(effect_visible_lights)) {
-                const SeenHit<Real> seen = closest_seen_light<Real, E>(scene_, branch.ray, hit.t);
+                const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, hit.t);
                 if (seen.light != no_light) {
                     light = true;
                     absorption.dim(scene_, branch.ray.media, seen.t, branch.weight);

@@ -132,17 +132,6 @@ struct SeenLight {
     Vec3<Real> radiance;
 };
 
-/// Seen lights that a ray looks for together: those on the edges of a convex solid, or any.
-struct SeenGroup {
-    Vec3<float> center{0.0f};    // of a sphere around them,
-    float padded_square = 0;     // ... and the square of its radius plus sphere_padding
-    float reach = 0;             // on edges: no point of one is farther than this from both planes of its edge
-    uint32_t solid = 0xffffffu;  // ... and whose edges; else no_solid
-    uint32_t first = 0, count = 0;  // seen_lights[first] and on
-    int32_t root = -1;           // of their tree in seen_tree; -1: they are few
-};
-inline constexpr uint32_t most_seen_groups = 8;
-
 enum class TextureFilter : uint32_t { nearest, bilinear };
 
 /// Linear RGB texels, row 0 at v = 0 (the top of the picture file), repeated without end.
@@ -182,8 +171,7 @@ struct SceneView {
     Span<Vec3<float>> texels;
     Span<TreeNode> tree;                // over primitives; may be empty (then brute force or Embree finds hits)
     Span<uint32_t> tree_items;
-    Span<SeenGroup> seen_groups;        // all seen_lights, each once
-    Span<TreeNode> seen_tree;           // over groups of many
+    Span<TreeNode> seen_tree;           // over seen_lights; empty where there are few
     Span<uint32_t> seen_items;
     Vec3<Real> background;
     Vec3<Real> bound;                   // B per channel, at most 1, slack included

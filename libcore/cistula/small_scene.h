@@ -71,7 +71,6 @@ struct SmallScene {
     Span<Vec3<float>> texels;
     Span<TreeNode> tree;
     Span<uint32_t> tree_items;
-    InlineSpan<SeenGroup, most_seen_groups> seen_groups;
     Span<TreeNode> seen_tree;
     Span<uint32_t> seen_items;
     Vec3<Real> background;
@@ -86,7 +85,7 @@ struct SmallScene {
         if (!solids.assign(here.solids) || !slabs.assign(here.slabs) ||
             !convex.assign(here.convex.size, [&](uint32_t i) { return NumberedSolid{here.solids[here.convex[i]], here.convex[i]}; }) ||
             !clusters.assign(here.clusters) || !materials.assign(here.materials) || !lights.assign(here.lights) ||
-            !textures.assign(here.textures) || !seen_groups.assign(here.seen_groups))
+            !textures.assign(here.textures))
             return false;
         slab_groups = there.slab_groups;
         facets = there.facets;

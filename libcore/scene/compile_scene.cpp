@@ -14,7 +14,6 @@
 #include "scene/error.h"
 #include "scene/radiance_bound.h"
 #include "scene/scene_hash.h"
-#include "scene/seen_groups.h"
 
 namespace cistula {
 namespace {
@@ -34,6 +33,7 @@ void return_free_memory() {
 #endif
 }
 
+constexpr uint32_t fewest_in_seen_tree = 9;
 constexpr size_t most_pairs = 10'000'000;
 constexpr double touching = 0x1p-17;  // far above the reach of a meeting
 
@@ -276,7 +276,6 @@ class Compiler {
     }
 
     void compile_lights() {
-        std::vector<uint32_t> edges;
         for (size_t i = 0; i < lights_.size(); ++i) {
             const FramedLight& light = lights_[i];
             hash_.add(light.position);
@@ -291,7 +290,6 @@ class Compiler {
             if (light.radius > 0) {
                 const Vec3<Real> radiance(scaled(light.radiance));
                 scene_.seen_lights.push_back({position, static_cast<Real>(light.radius), radiance});
-                edges.push_back(light.convex < 0 ? no_solid : scene_.convex[static_cast<size_t>(light.convex)]);
             }
             if (!light.lights()) continue;
             auto& faces = incidents_[i];
@@ -303,7 +301,17 @@ class Compiler {
                                      static_cast<uint32_t>(faces.size())});
             scene_.incidents.insert(scene_.incidents.end(), faces.begin(), faces.end());
         }
-        group_seen_lights(scene_, edges);
+        if (scene_.seen_lights.size() < fewest_in_seen_tree) return;
+        std::vector<RTCBuildPrimitive> primitives;
+        for (const auto& light : scene_.seen_lights) {
+            const dvec3 center(light.center), radius{light.radius};
+            Box box{center - radius, center + radius};
+            primitives.push_back(padded_primitive(box, 0x1p-18 * static_cast<double>(scene_.extent),
+                                                  static_cast<uint32_t>(primitives.size())));
+        }
+        Tree tree = build_tree(primitives, 1);
+        scene_.seen_tree = std::move(tree.nodes);
+        scene_.seen_items = std::move(tree.items);
     }
 
     void explain() {

@@ -92,7 +92,6 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.texels = span_of(texels);
     v.tree = span_of(tree);
     v.tree_items = span_of(tree_items);
-    v.seen_groups = span_of(seen_groups);
     v.seen_tree = span_of(seen_tree);
     v.seen_items = span_of(seen_items);
     v.background = background;
@@ -105,7 +104,7 @@ template <class Real>
 size_t CompiledScene<Real>::memory() const {
     return bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) + bytes_of(clusters) + bytes_of(uvs) +
            bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(seen_lights) + bytes_of(textures) +
-           bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) + bytes_of(seen_groups) + bytes_of(seen_tree) + bytes_of(seen_items);
+           bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) + bytes_of(seen_tree) + bytes_of(seen_items);
 }
 
 template <class Real>

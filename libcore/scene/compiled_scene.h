@@ -28,7 +28,6 @@ struct CompiledScene {
     std::vector<Vec3<float>> texels;
     std::vector<TreeNode> tree;  // filled by build_primitive_tree only
     std::vector<uint32_t> tree_items;
-    std::vector<SeenGroup> seen_groups;
     std::vector<TreeNode> seen_tree;
     std::vector<uint32_t> seen_items;
     Vec3<Real> background, bound;

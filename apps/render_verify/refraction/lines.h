@@ -30,7 +30,7 @@ struct Watched {
     const Intersector& inner;
     Lines<Real>& lines;
 
-    template <class E>
+    template <class E = Effects<all_effects>>
     CISTULA_HD Hit<Real> closest(const Ray<Real>& ray) const {
         const Hit<Real> hit = inner.closest(ray);
         const int last = lines.count - 1;
