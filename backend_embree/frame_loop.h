@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cistula/adaptive_pixel.h"
+#include "cistula/bvh.h"
 #include "scene/frame_view.h"
 
 namespace cistula {
@@ -94,6 +95,24 @@ bool render_adaptive_tiles(const SceneView<Real>& scene, const FrameView& frame,
     });
 }
 
+template <class Real, class Intersector>
+bool render_mask(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
+                 const FrameSettings& settings, Film& film, RenderProgress& progress, int mask, uint32_t& ran) {
+    ran = effect_masks[mask];
+    using Render = bool (*)(const SceneView<Real>&, const FrameView&, const Intersector&, const FrameSettings&, Film&,
+                            RenderProgress&);
+    static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
+        return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
+    }(std::make_index_sequence<compiled_mask_count>());
+    return table[size_t(mask)](scene, frame, intersector, settings, film, progress);
+}
+
+/// The device's traversal runs here to be tested only: with one mask, which spares the compiler the others.
+template <class Intersector>
+inline constexpr bool runs_every_mask = true;
+template <class Real>
+inline constexpr bool runs_every_mask<BvhIntersector<Real>> = false;
+
 /// Runs the least instantiated mask that contains settings.effects (0: what the scene requires); `ran` tells which.
 template <class Real, class Intersector>
 bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, const Intersector& intersector,
@@ -109,14 +128,13 @@ bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& sc
         ran = all_effects;
         return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
     }
-    const int index = settings.unshadowed ? unshadowed_mask : least_mask(required);
-    ran = effect_masks[index];
-    using Render = bool (*)(const SceneView<Real>&, const FrameView&, const Intersector&, const FrameSettings&, Film&,
-                            RenderProgress&);
-    static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
-        return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
-    }(std::make_index_sequence<compiled_mask_count>());
-    return table[size_t(index)](scene, frame, intersector, settings, film, progress);
+    if constexpr (!runs_every_mask<Intersector>) {
+        ran = all_effects;
+        return render_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
+    } else {
+        return render_mask<Real>(scene, frame, intersector, settings, film, progress,
+                                 settings.unshadowed ? unshadowed_mask : least_mask(required), ran);
+    }
 }
 
 }  // namespace cistula

@@ -23,6 +23,7 @@ class Part(Records):
                 record = json.load(file)
         super().__init__([path] if "benchmarks" in record else [])
         self.context = self.context or record.get("context", {})
+        self.kernels = record.get("kernels", [])
         self.parity = {"cases": record.get("cases", []), **record.get("parity", {})}
 
     def named(self, name):
@@ -175,6 +176,29 @@ def fast_bars(bars, times, fast):
     bars.add("time of the exact kernels / of fast-math ones, worst", "<=", 1.25, 1.1, known.get(worst), "x", worst=worst, each=known)
 
 
+def effect_bars(bars, times):
+    """effects/SCENE/SAMPLES/PRECISION/auto and .../all, at 1280x720."""
+    ms = {b["name"]: b["real_time"] for b in times.benchmarks if b["name"].startswith("effects/")}
+
+    def gains(scene, samples):
+        return {p: ratio(ms.get(f"effects/{scene}/{samples}/{p}/all"), ms.get(f"effects/{scene}/{samples}/{p}/auto"))
+                for p in ("float", "double")}
+
+    for scene, limit in (("opaque", 1.8), ("mirrors", 1.4), ("benchmark", 1.1)):
+        for samples in ("4x4", "1x1"):
+            each = gains(scene, samples)
+            bars.add(f"{scene}, {samples}: all effects / those it needs, worst precision", ">=", limit, None,
+                     min((v for v in each.values() if v), default=None), "x", each=each)
+    every = {name[len("effects/"):-len("/auto")]: ratio(ms.get(name[:-len("auto")] + "all"), t)
+             for name, t in ms.items() if name.endswith("/auto")}
+    worst = min(every, key=every.get, default=None)
+    bars.add("scenes/ and these: all effects / those needed, worst", ">=", 0.98, None, every.get(worst), "x", worst=worst, each=every)
+    edge = {f"{s}/{p}": ratio(ms.get(f"effects/edge_lights/{s}/{p}/auto"), ms.get(f"effects/benchmark/{s}/{p}/auto"))
+            for s in ("4x4", "1x1") for p in ("float", "double")}
+    bars.add("six seen lights on every edge / none, worst", "<=", 1.3, None, max((v for v in edge.values() if v), default=None), "x",
+             each=edge)
+
+
 def film_bars(bars, times):
     """film/.../kernel and film/.../writers alone, film/.../film together, all in the time of the whole film."""
     alone, whole = [], None
@@ -225,6 +249,7 @@ def main():
     seed_bars(bars, parts["times"], parts["seed"])
     ray_bars(bars, parts["times"])
     fast_bars(bars, parts["times"], parts["fast"])
+    effect_bars(bars, parts["times"])
     film_bars(bars, parts["times"])
     device_bars(bars, parts["times"])
     bars.print()
@@ -243,7 +268,7 @@ def main():
     benchmarks = [b for step in ("times", "seed") for b in parts[step].benchmarks]
     benchmarks += [{**b, "name": "fast_math/" + b["name"]} for b in parts["fast"].benchmarks]
     with open(out, "w") as file:
-        json.dump({"context": context, "benchmarks": benchmarks,
+        json.dump({"context": context, "benchmarks": benchmarks, "kernels": parts["times"].kernels,
                    "parity": {"compared": compared, "differing": differing,
                               "cases": [c for p in ("parity", "times", "golden") for c in parts[p].parity.get("cases", [])]},
                    "sanitizer": sanitizer, "bars": bars.all}, file, indent=2)

@@ -108,6 +108,12 @@ TEST(RenderOptions, Actions) {
     EXPECT_EQ(parse({"--print-template"}).action, Action::print_template);
     EXPECT_EQ(parse({"--list-devices"}).action, Action::list_devices);
     EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
+    EXPECT_EQ(parse({"s.json", "--explain=measure"}).action, Action::measure);
+    expect_refused({"s.json", "--explain=mesure"}, "--explain mesure");
+    expect_refused({"s.json", "--explain=measure", "--target-error", "0.01"}, "--target-error has no place here");
+    EXPECT_FALSE(parse({"s.json"}).all_effects || parse({"s.json", "--effects", "auto"}).all_effects);
+    EXPECT_TRUE(parse({"s.json", "--effects", "all"}).all_effects);
+    expect_refused({"s.json", "--effects", "most"}, "--effects most");
     const RenderOptions pixel = parse({"s.json", "--pixel", "12,034", "--json", "-", "-f", "7", "-v"});
     EXPECT_EQ(pixel.action, Action::pixel);
     EXPECT_EQ(pixel.pixel.x, 12);
@@ -121,7 +127,7 @@ TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
     for (const char* part : {"--output",       "--frames",         "--backend",  "--res",
                              "--crop",         "--supersample",    "--depth",    "--cutoff",
                              "--precision",    "--threads",        "--bits",     "--preview",
-                             "--aov",          "--explain",        "--pixel",    "--json",
+                             "--aov",          "--explain",        "--pixel",    "--json",     "--effects",
                              "--stats",        "--resume",         "--progress", "--quiet",
                              "--verbose",      "--help",           "--device ",  "--list-devices",
                              "--version",      "--print-template", "Examples:",  "Exit codes: 0 done",
@@ -459,6 +465,12 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     EXPECT_NE(table.find("diffuse              yes     in        material clay\n"), std::string::npos) << table;
     EXPECT_NE(table.find("fresnel              no      left out  no reason\n"), std::string::npos) << table;
     EXPECT_NE(table.find("Mask 1 of "), std::string::npos) << table;
+    EXPECT_EQ(table.find("cost"), std::string::npos) << table;
+    const EffectCosts costs{12.5, 7, {{effect_diffuse, 0.25}}};
+    const std::string measured = explain_table("s.json", reasons, &costs);
+    EXPECT_NE(measured.find("diffuse              yes     in        25.0 %   material clay\n"), std::string::npos) << measured;
+    EXPECT_NE(measured.find("fresnel              no      left out  -        no reason\n"), std::string::npos) << measured;
+    EXPECT_NE(measured.find("7 frames of 12.5 ms"), std::string::npos) << measured;
 }
 
 TEST(FilmLoop, EveryFlagHasItsWords) {

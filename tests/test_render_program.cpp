@@ -56,6 +56,18 @@ TEST_F(RenderProgram, ExplainsAndRendersNothing) {
     EXPECT_FALSE(exists("a.exr"));
 }
 
+TEST_F(RenderProgram, MeasuresWhatEffectsCost) {
+    const ProgramResult result = run({"s.json", "--explain=measure"});
+    EXPECT_EQ(result.code, 0) << result.error;
+    for (const char* part : {"cost", " %", "medians of 7 frames"}) EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+}
+
+TEST_F(RenderProgram, AllEffectsWriteTheSameFile) {
+    for (const char* effects : {"auto", "all"})
+        ASSERT_EQ(run({"s.json", "-q", "--effects", effects, "-o", std::string(effects) + ".exr"}).code, 0);
+    EXPECT_EQ(bytes_of(file("auto.exr")), bytes_of(file("all.exr")));
+}
+
 TEST_F(RenderProgram, RefusesInOneLine) {
     expect_refused({}, ExitCode::usage, "no scene is given");
     expect_refused({"s.json", "--dept", "3"}, ExitCode::usage, "did you mean '--depth'?");

@@ -3,6 +3,7 @@
 
 namespace cistula {
 
+// Their resources are of no interest either.
 #define CISTULA_LEFT_OUT(mask)                                                                                         \
     template <>                                                                                                        \
     void launch_mask<float, mask>(DevicePath, Pass, const DeviceScene<float>&, const FrameJob&, cudaStream_t) {        \
@@ -11,7 +12,11 @@ namespace cistula {
     template <>                                                                                                        \
     void launch_mask<double, mask>(DevicePath, Pass, const DeviceScene<double>&, const FrameJob&, cudaStream_t) {      \
         throw Error(ExitCode::failed, "mask " #mask " of effects is not in this program: only the benchmark's, 3");    \
-    }
+    }                                                                                                                  \
+    template <>                                                                                                        \
+    void list_resources_of_mask<float, mask>(std::vector<KernelResources>&) {}                                         \
+    template <>                                                                                                        \
+    void list_resources_of_mask<double, mask>(std::vector<KernelResources>&) {}
 CISTULA_LEFT_OUT(0)
 CISTULA_LEFT_OUT(1)
 CISTULA_LEFT_OUT(2)

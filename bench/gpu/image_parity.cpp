@@ -32,20 +32,29 @@ void check(GpuRecord& record, const std::string& name, const SceneDescription& s
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
     const Film cpu = golden::render_with(*make_embree_renderer<Real>(compiled), scene, settings);
     const char* precision = sizeof(Real) == sizeof(float) ? "float" : "double";
-    for (const bool always_tree : {false, true})
+    FrameSettings with_all = settings;
+    with_all.effects = all_effects;
+    const auto compare = [&](const CudaOptions& options, const FrameSettings& how, const std::string& what) {
+        const Film gpu = golden::render_with(*make_cuda_renderer<Real>(compiled, options), scene, how);
+        FilmDifference d = film_difference(cpu, gpu);
+        if (!hash.empty()) {
+            ++d.compared;
+            d.differing += film_hash(gpu) != hash;
+        }
+        record.add_parity(fmt::format("{}/{}/{}/{}", name, precision, options.always_tree ? "tree" : "chosen", what), d.compared,
+                          d.differing, first_pixel(d, cpu, gpu));
+    };
+    for (const bool always_tree : {false, true}) {
         for (const int split : splits) {
             CudaOptions options;
             options.always_tree = always_tree;
             options.split = split;
-            const Film gpu = golden::render_with(*make_cuda_renderer<Real>(compiled, options), scene, settings);
-            FilmDifference d = film_difference(cpu, gpu);
-            if (!hash.empty()) {
-                ++d.compared;
-                d.differing += film_hash(gpu) != hash;
-            }
-            record.add_parity(fmt::format("{}/{}/{}/split:{}", name, precision, always_tree ? "tree" : "chosen", split),
-                              d.compared, d.differing, first_pixel(d, cpu, gpu));
+            compare(options, settings, fmt::format("split:{}", split));
         }
+        CudaOptions options;
+        options.always_tree = always_tree;
+        compare(options, with_all, "all_effects");
+    }
 }
 
 /// Small frames, as their pixels take many samples.

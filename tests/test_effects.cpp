@@ -1,0 +1,138 @@
+// What the scene does not call for is left out of the code that runs, and no bit of the image tells.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "golden.h"
+#include "scene/compiled_scene.h"
+#include "scene/generated_scene.h"
+#include "scene/without_effect.h"
+
+using namespace cistula;
+
+namespace {
+
+const std::string source = CISTULA_SOURCE_DIR;
+
+SceneDescription load(const std::string& name) {
+    return read_scene(source + "/scenes/" + name + ".json");
+}
+
+template <class Real>
+class EffectTest : public ::testing::Test {
+  public:
+    /// Renders with the effects that the scene calls for and with all of them. The mask that ran.
+    static uint32_t compare(const SceneDescription& scene, FrameSettings settings, const std::string& name) {
+        const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(scene), EmbreeOptions());
+        const std::string chosen = film_hash(golden::render_with(*renderer, scene, settings));
+        const uint32_t ran = renderer->effects();
+        settings.effects = all_effects;
+        EXPECT_EQ(film_hash(golden::render_with(*renderer, scene, settings)), chosen) << name;
+        EXPECT_EQ(renderer->effects(), all_effects);
+        return ran;
+    }
+};
+
+FrameSettings small_frame(const SceneDescription& scene) {
+    FrameSettings settings = golden::settings_for(scene);
+    settings.set_size(160, 90);
+    settings.depth = std::min(scene.depth, 8);
+    return settings;
+}
+
+using Reals = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(EffectTest, Reals);
+
+TYPED_TEST(EffectTest, NoSceneTellsAllEffectsFromThoseItNeeds) {
+    int scenes = 0;
+    for (const char* folder : {"/scenes", "/scenes/hard"})
+        for (const auto& entry : std::filesystem::directory_iterator(source + folder)) {
+            if (entry.path().extension() != ".json") continue;
+            const SceneDescription scene = read_scene(entry.path().string());
+            this->compare(scene, small_frame(scene), entry.path().filename().string());
+            ++scenes;
+        }
+    EXPECT_GE(scenes, 20);
+}
+
+TYPED_TEST(EffectTest, NoGeneratedSceneDoes) {
+    std::set<uint32_t> ran;
+    for (uint64_t seed = 0; seed < generated_scene_count; ++seed) {
+        const SceneDescription scene = generated_scene(seed, source + "/scenes");
+        ran.insert(this->compare(scene, generated_settings(scene), "generated scene " + std::to_string(seed)));
+    }
+    EXPECT_GE(ran.size(), 4u);
+}
+
+/// The benchmark's scene, less and less of it, then more: each mask of the table has one that runs it.
+TYPED_TEST(EffectTest, EveryMaskRuns) {
+    const SceneDescription benchmark = load("benchmark");
+    SceneDescription lit = benchmark, reflecting = benchmark, seen = benchmark;
+    for (MaterialDescription& material : lit.materials) material.reflection = material.transmission = 0;
+    for (MaterialDescription& material : reflecting.materials) material.transmission = 0;
+    SceneDescription solids = lit;
+    solids.objects.pop_back();  // the floor
+    seen.lights[0].radius = 0.1;
+    const std::vector<SceneDescription> scenes = {solids, lit, reflecting, benchmark, seen, load("platonic"), load("glass")};
+    ASSERT_EQ(scenes.size(), size_t(effect_mask_count));
+    for (size_t i = 0; i < scenes.size(); ++i)
+        EXPECT_EQ(this->compare(scenes[i], small_frame(scenes[i]), "scene " + std::to_string(i)), effect_masks[i]) << i;
+}
+
+TYPED_TEST(EffectTest, ACameraInASolidCallsForInsides) {
+    SceneDescription scene = load("benchmark");
+    for (MaterialDescription& material : scene.materials) material.transmission = 0;
+    scene.camera.position_path.reset();
+    scene.camera.target_path.reset();
+    scene.camera.target = {0, 0, 0};
+    scene.camera.position = {-2.5, 2.5, 2};  // the octahedron's center
+    EXPECT_FALSE(compile_scene<TypeParam>(scene)->effects & effect_insides);
+    EXPECT_TRUE(this->compare(scene, small_frame(scene), "inside") & effect_insides);
+}
+
+TYPED_TEST(EffectTest, WithoutShadowsNothingIsDarker) {
+    const SceneDescription scene = load("benchmark");
+    FrameSettings settings = small_frame(scene);
+    const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
+    const Film shadowed = golden::render_with(*renderer, scene, settings);
+    settings.unshadowed = true;
+    const Film lit = golden::render_with(*renderer, scene, settings);
+    EXPECT_EQ(lit.rays.shadow, 0u);
+    int brighter = 0;
+    for (size_t i = 0; i < lit.pixels.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_GE(lit.pixels[i].radiance[c], shadowed.pixels[i].radiance[c]);
+            brighter += lit.pixels[i].radiance[c] > shadowed.pixels[i].radiance[c];
+        }
+    EXPECT_GT(brighter, 1000);
+}
+
+TEST(WithoutEffect, TheSceneNoLongerCallsForIt) {
+    for (const char* name : {"benchmark", "platonic", "glass", "mesh", "seed", "infinity"}) {
+        const SceneDescription scene = load(name);
+        for (const EffectReason& reason : explain_effects(scene)) {
+            if (!reason.needed) continue;
+            const auto less = without_effect(scene, reason.effect);
+            const uint32_t shadows = effect_opaque_shadows | effect_transparent_shadows;
+            if ((reason.effect & shadows) != 0) {
+                EXPECT_FALSE(less);
+                continue;
+            }
+            if (!less) continue;
+            const uint32_t left = required_effects(*less);
+            // Glass still reflects totally where nothing else does.
+            if (reason.effect == effect_reflection && (left & effect_refraction) != 0) continue;
+            EXPECT_FALSE(left & reason.effect) << name << ": " << names_of_effects(reason.effect)[0];
+        }
+    }
+}
+
+TEST(WithoutEffect, LeavesNoEmptyScene) {
+    SceneDescription scene = load("benchmark");
+    scene.objects.pop_back();
+    EXPECT_FALSE(without_effect(scene, effect_solids));
+    EXPECT_TRUE(without_effect(scene, effect_triangles));
+    EXPECT_FALSE(without_effect(scene, effect_opaque_shadows));
+}
+
+}  // namespace
