@@ -36,7 +36,7 @@ class GivingBranchStack {
         : room_(room), job_(job), record_(record) {}
 
     __device__ bool push(const Entry& branch) {
-        if (count_ >= many_waiting && (count_ == branch_stack || ends())) return false;
+        if (count_ == branch_stack) return false;
         room_.put(count_++, branch);
         if (int(branch.depth) >= job_.split_depth) count_ -= give_away(&room_, count_ - 1, &job_.to, record_);
         return true;
@@ -46,19 +46,10 @@ class GivingBranchStack {
         room_.get(--count_, branch);
         return true;
     }
+    __device__ void clear() { count_ = 0; }
+    __device__ bool stopped() const { return cistula::stopped(job_); }
 
   private:
-    /// Trees of up to so many levels come to an end by themselves; in larger ones this is where most of the time goes.
-    /// To look more often, or where only few lanes of a warp do, doubled the time of deep frames.
-    static constexpr int many_waiting = 16;
-
-    /// Empties a stack whose kernel is stopped.
-    __device__ bool ends() {
-        const bool ends = stopped(job_);
-        if (ends) count_ = 0;
-        return ends;
-    }
-
     /// Whether the queue has room for entry i, which it then has. Called, so that this seldom thing is nowhere in the way.
     __device__ __noinline__ static bool give_away(const Room* room, int i, const BranchQueue* queue, unsigned int record) {
         const unsigned int place = next_place(queue->size);

@@ -13,6 +13,8 @@ namespace cistula {
 inline constexpr int largest_depth = 1024;
 /// Faces that one ray may pass without shading or bending; more fail the render (flag_too_many_crossings).
 inline constexpr int largest_crossings = 1 << 20;
+/// How often a walk asks a stack that can be stopped whether it is.
+inline constexpr uint32_t turns_between_stops = 64;
 /// The branch that is followed while k others wait weighs at most 2^-k, and one under 2^-62 is dropped.
 inline constexpr int branch_stack = 67;
 
@@ -141,7 +143,11 @@ class RayTree {
     template <class First>
     CISTULA_INLINE void walk(Entry& branch, const First& first) {
         bool at_first = true;
+        [[maybe_unused]] uint32_t turns = 0;
         do {
+            // The lanes of a warp ask in the same turn: a question that a few ask alone would part them for long.
+            if constexpr (requires { stack_.stopped(); })
+                if (++turns % turns_between_stops == 0 && stack_.stopped()) return stack_.clear();
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
             Meeting<Real, Media> meeting;  // within the loop, as all that only some rays have: it holds no registers elsewhere
             bool light = false;
