@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "golden.h"
 #include "scene/compiled_scene.h"
@@ -62,6 +64,19 @@ TYPED_TEST(EffectTest, NoGeneratedSceneDoes) {
         ran.insert(this->compare(scene, generated_settings(scene), "generated scene " + std::to_string(seed)));
     }
     EXPECT_GE(ran.size(), 4u);
+}
+
+/// Most generated scenes call for much: here less is left of them, so that every mask but the largest has its share.
+TYPED_TEST(EffectTest, NorDoGeneratedScenesOfFewerEffects) {
+    std::map<uint32_t, int> ran;
+    for (uint64_t seed = 0; seed < generated_scene_count; ++seed) {
+        const uint32_t mask = effect_masks[seed % uint64_t(effect_mask_count - 1)];
+        SceneDescription scene = generated_scene(seed, source + "/scenes");
+        for (int bit = 0; bit < effect_count; ++bit)
+            if (const auto less = without_effect(scene, 1u << bit & ~mask); less && (mask >> bit & 1u) == 0) scene = *less;
+        ++ran[this->compare(scene, generated_settings(scene), "generated scene " + std::to_string(seed) + " with less")];
+    }
+    for (int mask = 0; mask + 1 < effect_mask_count; ++mask) EXPECT_GE(ran[effect_masks[mask]], 10) << "mask " << mask;
 }
 
 /// The benchmark's scene, less and less of it, then more: each mask of the table has one that runs it.

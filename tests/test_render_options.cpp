@@ -109,11 +109,13 @@ TEST(RenderOptions, Actions) {
     EXPECT_EQ(parse({"--list-devices"}).action, Action::list_devices);
     EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
     EXPECT_EQ(parse({"s.json", "--explain=measure"}).action, Action::measure);
-    expect_refused({"s.json", "--explain=mesure"}, "--explain mesure");
-    expect_refused({"s.json", "--explain=measure", "--target-error", "0.01"}, "--target-error has no place here");
+    expect_refused({"s.json", "--explain=mesure"}, "--explain mesure: must be needs or measure; did you mean 'measure'?");
+    expect_refused({"s.json", "--explain=measure", "--target-error", "0.01"},
+                   "--explain measure: --target-error has no place here: it times the samples of a grid; --supersample chooses one; "
+                   "leave it out");
     EXPECT_FALSE(parse({"s.json"}).all_effects || parse({"s.json", "--effects", "auto"}).all_effects);
     EXPECT_TRUE(parse({"s.json", "--effects", "all"}).all_effects);
-    expect_refused({"s.json", "--effects", "most"}, "--effects most");
+    expect_refused({"s.json", "--effects", "most"}, "--effects most: must be auto or all; known names: auto, all");
     const RenderOptions pixel = parse({"s.json", "--pixel", "12,034", "--json", "-", "-f", "7", "-v"});
     EXPECT_EQ(pixel.action, Action::pixel);
     EXPECT_EQ(pixel.pixel.x, 12);
