@@ -168,9 +168,7 @@ class CudaRenderer : public Renderer {
         frame.fits = path_ == DevicePath::tree
                          ? camera_solids(view_, BvhIntersector<Real>{view_}, position, frame.view.camera_media)
                          : camera_solids(view_, BruteIntersector<Real>{view_}, position, frame.view.camera_media);
-        frame.mask = settings.unshadowed ? unshadowed_mask
-                                         : least_mask(settings.effects | scene_->effects | camera_effects(frame.view),
-                                                      settings.adaptive());
+        frame.mask = mask_to_run(scene_->effects, settings, frame.view);
         effects_ = effect_masks[frame.mask];
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
@@ -190,7 +188,7 @@ class CudaRenderer : public Renderer {
     /// Of a frame of few samples the last threads would be long alone with the deepest trees; others keep the device busy
     /// meanwhile. Trees without forks cannot be split. A budget of truncation is spent in the order of one thread's stack.
     int split_depth(const FrameSettings& settings, const Frame& frame, size_t samples_per_device) const {
-        if (settings.adaptive() || !splits_trees(frame.mask)) return 0;
+        if (settings.adaptive() || !trees_fork(frame.mask)) return 0;
         const int chosen = samples_per_device <= few_samples && settings.depth > deep ? split_levels : 0;
         const int split = options_.split != CudaOptions::automatic ? options_.split : chosen;
         return frame.view.tree.budget == 0 && split > 0 && split < settings.depth ? split : 0;

@@ -82,12 +82,8 @@ size_t queued_branch_bytes(DevicePath path);
 /// What a kernel goes over: all pixels of the job, those of a frame with a target error, or the branches of job.from.
 enum class Pass { pixels, adaptive_pixels, branches };
 
-/// Whether Pass::branches is compiled for a mask: only what passes a face makes trees fork.
-constexpr bool splits_trees(int mask) {
-    return mask < effect_mask_count && (effect_masks[mask] & effect_transmission) != 0;
-}
-
-/// Enqueues a pass that is compiled for the mask. `mask` is an index of effect_masks. Throws Error (device).
+/// Enqueues a pass; any but Pass::pixels is for masks whose trees_fork. `mask` is an index of effect_masks. Throws Error
+/// (device).
 template <class Real>
 void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream);
 

@@ -200,30 +200,38 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     add_to_tally(*job.tally, rays, flags);
 }
 
+/// Of this thread's current device.
+inline int device_attribute(cudaDeviceAttr attribute) {
+    int device = 0, value = 0;
+    CISTULA_CUDA_CHECK(cudaGetDevice(&device));
+    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&value, attribute, device));
+    return value;
+}
+
+/// Blocks of a kernel that share a multiprocessor.
+template <class Kernel>
+int sharing_blocks(const Kernel& kernel) {
+    int blocks = 0;
+    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, block_threads, 0));
+    return blocks;
+}
+
 /// Blocks of a grid that keeps the device full: passes over queues find out there how much there is to do.
 template <class Kernel>
 unsigned int filling_blocks(const Kernel& kernel) {
-    int device = 0, multiprocessors = 0, blocks = 0;
-    CISTULA_CUDA_CHECK(cudaGetDevice(&device));
-    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device));
-    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, block_threads, 0));
-    return unsigned(multiprocessors) * unsigned(blocks > 0 ? blocks : 1);
+    return unsigned(device_attribute(cudaDevAttrMultiProcessorCount)) * unsigned(greatest(sharing_blocks(kernel), 1));
 }
 
 template <class Kernel>
 KernelResources resources_of(const char* name, const Kernel& kernel) {
     cudaFuncAttributes attributes;
     CISTULA_CUDA_CHECK(cudaFuncGetAttributes(&attributes, kernel));
-    int device = 0, blocks = 0, threads = 0;
-    CISTULA_CUDA_CHECK(cudaGetDevice(&device));
-    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, device));
-    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, block_threads, 0));
     KernelResources r{};
     r.name = name;
     r.registers = attributes.numRegs;
     r.local_bytes = attributes.localSizeBytes;
-    r.blocks = blocks;
-    r.occupancy = double(blocks) * block_threads / threads;
+    r.blocks = sharing_blocks(kernel);
+    r.occupancy = double(r.blocks) * block_threads / device_attribute(cudaDevAttrMaxThreadsPerMultiProcessor);
     return r;
 }
 
@@ -237,8 +245,10 @@ void list_resources(std::vector<KernelResources>& list) {
         list.push_back(r);
     };
     add(resources_of("render_pixels", render_pixels<Real, E, path>));
-    if constexpr (samples_adaptively(mask)) add(resources_of("render_adaptive", render_adaptive<Real, E, path>));
-    if constexpr (splits_trees(mask)) add(resources_of("render_branches", render_branches<Real, E, path>));
+    if constexpr (trees_fork(mask)) {
+        add(resources_of("render_adaptive", render_adaptive<Real, E, path>));
+        add(resources_of("render_branches", render_branches<Real, E, path>));
+    }
 }
 
 /// Of the kernels of one mask of effects.
@@ -256,14 +266,13 @@ void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, con
     const dim3 grid(unsigned(job.width + block.width - 1) / unsigned(block.width), unsigned(job.rows / block.height));
     const auto launch = [&]<DevicePath here>(const auto& own) {
         if (pass == Pass::pixels) render_pixels<Real, E, here><<<grid, block_threads, 0, stream>>>(job, own);
-        if constexpr (samples_adaptively(mask))
-            if (pass == Pass::adaptive_pixels)
-                render_adaptive<Real, E, here>
-                    <<<least(filling_blocks(render_adaptive<Real, E, here>), job.room_blocks), block_threads, 0, stream>>>(job, own);
-        if constexpr (splits_trees(mask))
-            if (pass == Pass::branches)
-                render_branches<Real, E, here>
-                    <<<filling_blocks(render_branches<Real, E, here>), block_threads, 0, stream>>>(job, own);
+        if constexpr (trees_fork(mask)) {
+            const auto fill = [&](auto kernel, unsigned int most) {
+                kernel<<<least(filling_blocks(kernel), most), block_threads, 0, stream>>>(job, own);
+            };
+            if (pass == Pass::adaptive_pixels) fill(render_adaptive<Real, E, here>, job.room_blocks);
+            if (pass == Pass::branches) fill(render_branches<Real, E, here>, ~0u);
+        }
     };
     if (path == DevicePath::plain_loop)
         launch.template operator()<DevicePath::plain_loop>(scene.small);

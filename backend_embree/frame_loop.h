@@ -123,7 +123,6 @@ bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& sc
     prepare_film(film, settings, compiled.radiance_exponent);
     if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media))
         film.flags |= flag_media_overflow;
-    const uint32_t required = settings.effects | compiled.effects | camera_effects(frame);
     if (settings.adaptive()) {  // one mask for all: what it would save is less than what compiling more takes
         ran = all_effects;
         return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
@@ -133,7 +132,7 @@ bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& sc
         return render_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
     } else {
         return render_mask<Real>(scene, frame, intersector, settings, film, progress,
-                                 settings.unshadowed ? unshadowed_mask : least_mask(required), ran);
+                                 mask_to_run(compiled.effects, settings, frame), ran);
     }
 }
 

@@ -6,46 +6,23 @@
 #include "effect_scenes.h"
 #include "program.h"
 #include "scene/camera_path.h"
-#include "scene/error.h"
 
 namespace cistula::bench {
 namespace {
 
 constexpr int threads = 2, repetitions = 9;
 
-struct Work {
-    std::unique_ptr<Renderer> renderer;
-    CameraFrame camera;
-    FrameSettings settings;
-};
-
-void time_frame(benchmark::State& state, Work& work, uint32_t effects) {
-    FrameSettings settings = work.settings;
-    settings.effects = effects;
-    Film film;
-    for (auto _ : state) {
-        RenderProgress progress;
-        work.renderer->render(work.camera, settings, film, progress);
-        if (film.flags != 0)
-            throw Error(ExitCode::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
-    }
-    state.counters["rays"] = double(film.rays.total());
-    state.counters["mask"] = work.renderer->effects();
-}
-
 template <class Real>
 void add(const EffectScene& scene) {
-    const auto work = std::make_shared<Work>();
-    work->renderer = make_embree_renderer<Real>(std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene.scene)));
-    work->camera = camera_at(scene.scene.camera, 0);
-    work->settings.set_size(640, 480);
-    work->settings.depth = scene.scene.depth;
-    for (const auto& [name, effects] : {std::pair{"auto", 0u}, std::pair{"all", all_effects}})
-        benchmark::RegisterBenchmark(("effects/" + scene.name + "/" + RealTraits<Real>::name + "/" + name).c_str(),
-                                     [work, effects = effects](benchmark::State& state) { time_frame(state, *work, effects); })
-            ->MinTime(0.05)
-            ->UseRealTime()
-            ->Unit(benchmark::kMillisecond);
+    const std::shared_ptr<Renderer> renderer = make_embree_renderer<Real>(compile_scene<Real>(scene.scene));
+    FrameSettings settings;
+    settings.set_size(640, 480);
+    settings.depth = scene.scene.depth;
+    for (const auto& [name, effects] : {std::pair{"auto", 0u}, std::pair{"all", all_effects}}) {
+        settings.effects = effects;
+        register_frames("effects/" + scene.name + "/" + RealTraits<Real>::name + "/" + name, renderer,
+                        camera_at(scene.scene.camera, 0), settings);
+    }
 }
 
 void register_all(const std::vector<std::string>&) {

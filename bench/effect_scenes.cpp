@@ -1,20 +1,17 @@
 #include "bench/effect_scenes.h"
 
 #include "scene/read_scene.h"
+#include "scene/without_effect.h"
 
 namespace cistula::bench {
 
 std::vector<EffectScene> effect_scenes(const std::string& folder) {
     const SceneDescription benchmark = read_scene(folder + "/scenes/benchmark.json");
 
-    SceneDescription floor = benchmark;
-    for (MaterialDescription& material : floor.materials) material.reflection = material.transmission = 0;
+    const SceneDescription mirrors = without_effect(benchmark, effect_transmission).value();
+    SceneDescription floor = without_effect(mirrors, effect_reflection).value();
     floor.lights.resize(1);
-    SceneDescription opaque = floor;
-    std::erase_if(opaque.objects, [](const ObjectDescription& o) { return !std::holds_alternative<SolidObject>(o.shape); });
-
-    SceneDescription mirrors = benchmark;
-    for (MaterialDescription& material : mirrors.materials) material.transmission = 0;
+    const SceneDescription opaque = without_effect(floor, effect_triangles).value();
 
     SceneDescription edge_lights = benchmark;
     for (ObjectDescription& object : edge_lights.objects)

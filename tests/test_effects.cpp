@@ -82,11 +82,10 @@ TYPED_TEST(EffectTest, NorDoGeneratedScenesOfFewerEffects) {
 /// The benchmark's scene, less and less of it, then more: each mask of the table has one that runs it.
 TYPED_TEST(EffectTest, EveryMaskRuns) {
     const SceneDescription benchmark = load("benchmark");
-    SceneDescription lit = benchmark, reflecting = benchmark, seen = benchmark;
-    for (MaterialDescription& material : lit.materials) material.reflection = material.transmission = 0;
-    for (MaterialDescription& material : reflecting.materials) material.transmission = 0;
-    SceneDescription solids = lit;
-    solids.objects.pop_back();  // the floor
+    const SceneDescription reflecting = without_effect(benchmark, effect_transmission).value();
+    const SceneDescription lit = without_effect(reflecting, effect_reflection).value();
+    const SceneDescription solids = without_effect(lit, effect_triangles).value();
+    SceneDescription seen = benchmark;
     seen.lights[0].radius = 0.1;
     const std::vector<SceneDescription> scenes = {solids, lit, reflecting, benchmark, seen, load("platonic"), load("glass")};
     ASSERT_EQ(scenes.size(), size_t(effect_mask_count));
@@ -95,8 +94,7 @@ TYPED_TEST(EffectTest, EveryMaskRuns) {
 }
 
 TYPED_TEST(EffectTest, ACameraInASolidCallsForInsides) {
-    SceneDescription scene = load("benchmark");
-    for (MaterialDescription& material : scene.materials) material.transmission = 0;
+    SceneDescription scene = without_effect(load("benchmark"), effect_transmission).value();
     scene.camera.position_path.reset();
     scene.camera.target_path.reset();
     scene.camera.target = {0, 0, 0};

@@ -1,10 +1,9 @@
 #include "effect_costs.h"
 
-#include <algorithm>
-#include <chrono>
-
+#include "apps/common/timing.h"
 #include "scene/error.h"
 #include "scene/without_effect.h"
+#include "stats.h"
 
 namespace cistula {
 namespace {
@@ -15,20 +14,15 @@ constexpr uint32_t shadows = effect_opaque_shadows | effect_transparent_shadows;
 struct Variant {
     std::unique_ptr<Renderer> renderer;
     FrameSettings settings;
-    std::vector<double> milliseconds;
+    Timing time;
 
     void run(const CameraFrame& camera, RenderProgress& progress, bool counts) {
         Film film;
-        const auto start = std::chrono::steady_clock::now();
-        if (!renderer->render(camera, settings, film, progress)) throw Error(ExitCode::interrupted, "interrupted");
-        const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start;
+        bool whole = false;
+        const double all = seconds_of([&] { whole = renderer->render(camera, settings, film, progress); });
+        if (!whole) throw Error(ExitCode::interrupted, "interrupted");
         const double kernel = renderer->times().kernel;
-        if (counts) milliseconds.push_back((kernel > 0 ? kernel : all.count()) * 1e3);
-    }
-    double median() const {
-        std::vector<double> sorted = milliseconds;
-        std::sort(sorted.begin(), sorted.end());
-        return sorted[sorted.size() / 2];
+        if (counts) time.runs.push_back((kernel > 0 ? kernel : all) * 1e3);
     }
 };
 
@@ -63,9 +57,9 @@ EffectCosts measure_effects(const SceneDescription& scene, const std::vector<Eff
     for (int run = -1; run < runs; ++run)
         for (Variant& variant : variants) variant.run(camera, progress, run >= 0);
 
-    EffectCosts result{variants[0].median(), runs, {}};
+    EffectCosts result{variants[0].time.median(), runs, {}};
     const auto share = [&](size_t with, size_t without) {
-        return 1 - variants[without].median() / variants[with].median();
+        return 1 - variants[without].time.median() / variants[with].time.median();
     };
     for (const auto& [effect, variant] : taken_out) {
         EffectCost cost{effect, std::nullopt};

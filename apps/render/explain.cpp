@@ -21,9 +21,7 @@ std::string text_of(const EffectCosts& costs, uint32_t effect) {
 }  // namespace
 
 std::string explain_table(const std::string& scene, const std::vector<EffectReason>& reasons, const EffectCosts* costs) {
-    uint32_t required = 0;
-    for (const EffectReason& reason : reasons)
-        if (reason.needed) required |= reason.effect;
+    const uint32_t required = required_effects(reasons);
     const int chosen = least_mask(required);
     const uint32_t mask = effect_masks[chosen];
 

@@ -29,6 +29,15 @@ int threads_of(const RenderOptions& options) {
     return options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
 }
 
+/// Does all that `work` spreads over threads on as many as --threads says.
+template <class Work>
+void on_threads(const RenderOptions& options, const Work& work) {
+    const int threads = threads_of(options);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+    tbb::task_arena arena(threads);
+    arena.execute(work);
+}
+
 void print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
     if (options.quiet) return;
     for (const std::string& warning : warnings) fmt::print(stderr, "render: warning: {}\n", one_line(warning));
@@ -122,12 +131,9 @@ void render_scene(const RenderOptions& options) {
     RenderProgress progress;  // outlives the guard
     InterruptGuard guard;
 
-    const int threads = threads_of(options);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
-        stats.scene = options.scene;
-        stats.threads = threads;
+    stats.scene = options.scene;
+    stats.threads = threads_of(options);
+    on_threads(options, [&] {
         const std::unique_ptr<Renderer> renderer = options.precision == Precision::double_
                                                        ? prepare<double>(scene, options, devices.options, stats)
                                                        : prepare<float>(scene, options, devices.options, stats);
@@ -175,10 +181,7 @@ void measure_scene(const RenderOptions& options) {
     RenderProgress progress;  // outlives the guard
     InterruptGuard guard;
     guard.watch(progress.stop);
-    const int threads = threads_of(options);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
+    on_threads(options, [&] {
         const auto make = [&](const SceneDescription& of) {
             return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
                                                            : renderer_of<float>(of, options, devices.options);

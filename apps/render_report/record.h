@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/timing.h"
 #include "metrics.h"
 #include "setting.h"
-#include "timing.h"
 
 namespace cistula::report {
 

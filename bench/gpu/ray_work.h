@@ -131,8 +131,7 @@ template <class Real, class Scene>
 CISTULA_HD inline uint8_t light_of(const Scene& scene, const StoredRay<Real>& stored) {
     if (!stored.exists()) return no_light_ray;
     const ShadowRay<Real> shadow{stored.ray(), stored.distance, &scene.lights[0]};
-    using E = Effects<effect_opaque_shadows | effect_solids | effect_triangles | effect_insides>;
-    const Real share = BvhIntersector<Real>{scene}.template transmittance<E>(shadow);
+    const Real share = BvhIntersector<Real>{scene}.template transmittance<Effects<effect_opaque_shadows>>(shadow);
     return share > Real(0) ? light_arrives : light_is_stopped;
 }
 

@@ -5,10 +5,10 @@
 
 namespace cistula {
 
-/// No question where only one kind is compiled in.
+/// No question where one kind alone is compiled in.
 template <class E, class Scene>
 CISTULA_INLINE bool is_solid(const Scene& scene, uint32_t primitive) {
-    return E::has(effect_solids) && (!E::has(effect_triangles) || primitive < scene.convex.size);
+    return E::solids && (!E::triangles || primitive < scene.convex.size);
 }
 
 /// The exact test of one primitive against one ray; trees and Embree only choose which ones to call it on.
@@ -41,10 +41,10 @@ struct BruteIntersector {
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
         if (!is_finite(ray)) return best;
-        if constexpr (E::has(effect_solids))
+        if constexpr (E::solids)
             if (closest_solid<E>(ray, best)) return best;
         // The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
-        if constexpr (E::has(effect_triangles))
+        if constexpr (E::triangles)
             for (uint32_t i = 0; i < scene.clusters.size; ++i)
                 if (!misses_flat(scene, i, ray, best.t))
                     closest_cluster(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
@@ -58,15 +58,15 @@ struct BruteIntersector {
         if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
         shadow_start<Real, E>(scene, shadow, sum);
         if constexpr (Media::contacts) {
-            for (uint32_t i = 0; E::has(effect_solids) && i < scene.convex.size && !sum.dark(); ++i)
+            for (uint32_t i = 0; E::solids && i < scene.convex.size && !sum.dark(); ++i)
                 shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
-            for (uint32_t i = 0; E::has(effect_triangles) && i < scene.clusters.size && !sum.dark(); ++i)
+            for (uint32_t i = 0; E::triangles && i < scene.clusters.size && !sum.dark(); ++i)
                 if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
         } else {
             const uint32_t light = uint32_t(shadow.light - scene.lights.data), from = shadow.ray.from_solid;
             const uint32_t near = from == no_solid ? ~0u : scene.plan.near[from][light];
-            if constexpr (E::has(effect_solids)) add_planned_solids(near, light, shadow, sum);
-            for (uint32_t left = E::has(effect_triangles) ? near & scene.plan.all_clusters : 0; left != 0 && !sum.dark();
+            if constexpr (E::solids) add_planned_solids(near, light, shadow, sum);
+            for (uint32_t left = E::triangles ? near & scene.plan.all_clusters : 0; left != 0 && !sum.dark();
                  left &= left - 1) {
                 const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
                 if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);

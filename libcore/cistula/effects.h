@@ -39,6 +39,10 @@ template <uint32_t Mask>
 struct Effects {
     static constexpr uint32_t mask = Mask;
     CISTULA_HD static constexpr bool has(uint32_t effects) { return (Mask & effects) != 0; }
+
+    /// Kinds of primitives: who names neither means both.
+    static constexpr bool solids = has(effect_solids) || !has(effect_triangles);
+    static constexpr bool triangles = has(effect_triangles) || !has(effect_solids);
 };
 
 /// What is left of light after some bounces: a share per color, or one for all where no color is treated apart.
@@ -69,15 +73,16 @@ inline constexpr int unshadowed_mask = compiled_mask_count - 1;
 /// Of the masks that scenes run with; the last is all_effects.
 inline constexpr int effect_mask_count = unshadowed_mask;
 
-/// Adaptive sampling is for scenes that are worth it: it is not compiled for masks whose rays pass nothing.
-constexpr bool samples_adaptively(int mask) {
+/// Only what passes a face makes trees fork. Of such masks devices have all kernels: for branches that other threads
+/// follow, and for adaptive sampling, for which scenes of other masks take the least of these.
+constexpr bool trees_fork(int mask) {
     return mask < effect_mask_count && (effect_masks[mask] & effect_transmission) != 0;
 }
 
 /// The index in effect_masks of the least mask that contains `required`.
 constexpr int least_mask(uint32_t required, bool adaptive = false) {
     for (int i = 0; i < effect_mask_count; ++i)
-        if ((required & ~effect_masks[i]) == 0 && (!adaptive || samples_adaptively(i))) return i;
+        if ((required & ~effect_masks[i]) == 0 && (!adaptive || trees_fork(i))) return i;
     return effect_mask_count - 1;
 }
 

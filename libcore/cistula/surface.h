@@ -19,10 +19,7 @@ struct Surface {
 /// No question where one kind alone is compiled in.
 template <class E>
 CISTULA_INLINE bool is_convex(const Solid& solid) {
-    if constexpr (E::has(effect_solids) != E::has(effect_triangles))
-        return E::has(effect_solids);
-    else
-        return solid.kind == SolidKind::convex;
+    return E::solids && (!E::triangles || solid.kind == SolidKind::convex);
 }
 
 /// From a point on a triangle toward the apex over its centroid, by about 8 u M: the segment crosses no other triangle

@@ -53,9 +53,12 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     return frame;
 }
 
-/// The effects that the place of the camera adds to the scene's. After camera_solids.
-inline uint32_t camera_effects(const FrameView& frame) {
-    return frame.camera_media.empty() ? 0u : uint32_t(effect_insides);
+/// The index in effect_masks of what renders a frame of a scene that calls for `effects`. After camera_solids, as a camera
+/// in a body adds to them.
+inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
+    if (settings.unshadowed) return unshadowed_mask;
+    const uint32_t of_camera = frame.camera_media.empty() ? 0u : uint32_t(effect_insides);
+    return least_mask(settings.effects | effects | of_camera, settings.adaptive());
 }
 
 /// A film of the right size for a frame, its pixels unset.

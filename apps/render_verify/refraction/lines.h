@@ -61,8 +61,7 @@ struct Unnoted {
 template <class Real, class Intersector>
 CISTULA_HD inline void trace(const Setup<Real>& setup, const Intersector& intersector, const Ray<Real>& ray,
                              Lines<Real>& lines) {
-    using Glass = Effects<effect_reflection | effect_transmission | effect_refraction | effect_solids | effect_triangles |
-                          effect_insides>;
+    using Glass = Effects<effect_reflection | effect_transmission | effect_refraction | effect_insides>;
     using Stack = StackOf<Real, Glass, MediaList>;
     using Tree = RayTree<Real, Glass, Watched<Real, Intersector>, Stack>;
     TreeSettings settings;

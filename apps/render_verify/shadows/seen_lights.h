@@ -31,22 +31,20 @@ struct SeenLightTree {
                 light.radius = radius * (k % 5 ? 1 : 0.5);
                 points.push_back(p);
             }
-            plan.add("radius " + std::to_string(radius), scene, SeenLightTree(), points, plan.rays(100'000, 2500));
+            plan.add("radius " + std::to_string(radius), scene, SeenLightTree(), {}, plan.rays(100'000, 2500));
         }
-        // On the edges of several solids, which one finds through their planes.
+        // On the edges of several solids.
         for (const double radius : {0x1p-4, 0x1p-8, 0x1p-14}) {
             SceneDescription scene = lit_scene();
-            std::vector<glm::dvec3> centers;
+            double k = 0;
             for (const PlatonicSolid shape : {PlatonicSolid::tetrahedron, PlatonicSolid::cube, PlatonicSolid::octahedron,
                                               PlatonicSolid::dodecahedron, PlatonicSolid::icosahedron}) {
-                const double k = double(centers.size());
                 SolidObject solid = solid_object(shape, {k - 2, k * 0.25 - 0.5, 0.125 * k}, 0.5, {17 * k, 41, 73});
                 solid.edge_lights = {6, glm::dvec3(0), glm::dvec3(1), radius, false};
-                centers.push_back(solid.center);
                 add_solid(scene, Shape::planes, solid);
+                ++k;
             }
-            plan.add("on edges, radius " + std::to_string(radius), scene, SeenLightTree(), centers,
-                     plan.rays(100'000, 2500));
+            plan.add("on edges, radius " + std::to_string(radius), scene, SeenLightTree(), {}, plan.rays(100'000, 2500));
         }
     }
 

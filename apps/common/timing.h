@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace cistula::report {
+namespace cistula {
 
 /// Milliseconds of one run each.
 struct Timing {
@@ -15,4 +15,4 @@ struct Timing {
     double most() const;
 };
 
-}  // namespace cistula::report
+}  // namespace cistula

@@ -1,8 +1,8 @@
-#include "timing.h"
+#include "apps/common/timing.h"
 
 #include <algorithm>
 
-namespace cistula::report {
+namespace cistula {
 
 double Timing::median() const {
     if (runs.empty()) return 0;
@@ -20,4 +20,4 @@ double Timing::most() const {
     return runs.empty() ? 0 : *std::max_element(runs.begin(), runs.end());
 }
 
-}  // namespace cistula::report
+}  // namespace cistula
