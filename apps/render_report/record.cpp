@@ -7,14 +7,18 @@
 #include "scene/suggest.h"
 #include "target_table.h"
 
-namespace cistula::report {
+namespace cistula {
 
-void to_json(Json& json, const Timing& timing) {
+static void to_json(report::Json& json, const Timing& timing) {
     json = timing.runs;
 }
-void from_json(const Json& json, Timing& timing) {
+static void from_json(const report::Json& json, Timing& timing) {
     json.get_to(timing.runs);
 }
+
+}  // namespace cistula
+
+namespace cistula::report {
 
 CISTULA_RECORD_FIELDS(Rays, primary, reflected, transmitted, shadow)
 CISTULA_RECORD_FIELDS(TargetOutcome, over, missed)

@@ -102,13 +102,14 @@ struct BruteIntersector {
     CISTULA_INLINE void add_planned_solids(uint32_t near, uint32_t light, const ShadowRay<Real, Media>& shadow,
                                            ShadowSum<E>& sum) const {
         const uint32_t around = E::has(effect_insides) ? shadow.ray.media.only() : no_solid, from = shadow.ray.from_solid;
-        if (around != no_solid) {
-            // From its own face, as lines from other faces may start a little off theirs.
-            if (!E::has(effect_absorption) && from == around && (scene.plan.beyond[light] >> around & 1u) != 0)
-                sum.cross(scene.materials[scene.solids[around].material]);
-            else
-                shadow_exit<Real, E>(scene, around, shadow, sum);
-        }
+        if constexpr (E::has(effect_insides))
+            if (around != no_solid) {
+                // From its own face, as lines from other faces may start a little off theirs.
+                if (!E::has(effect_absorption) && from == around && (scene.plan.beyond[light] >> around & 1u) != 0)
+                    sum.cross(scene.materials[scene.solids[around].material]);
+                else
+                    shadow_exit<Real, E>(scene, around, shadow, sum);
+            }
         for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.dark(); left &= left - 1) {
             const NumberedSolid& next = scene.convex[lowest_bit(left)];
             if ((next.index != around) & (next.index != from) &

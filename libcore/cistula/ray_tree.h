@@ -164,11 +164,14 @@ class RayTree {
 
     /// The latest of the branches that wait and are worth it; false if there is none.
     CISTULA_INLINE bool next(Entry& branch) {
-        if constexpr (!E::has(effect_reflection | effect_transmission)) return false;
-        do {
-            if (!stack_.pop(branch)) return false;
-        } while (!follow(branch));
-        return true;
+        if constexpr (E::has(effect_reflection | effect_transmission)) {
+            do {
+                if (!stack_.pop(branch)) return false;
+            } while (!follow(branch));
+            return true;
+        } else {
+            return false;
+        }
     }
 
     CISTULA_INLINE bool follow(const Entry& branch) {
@@ -276,17 +279,18 @@ class RayTree {
             return;
         }
         if constexpr (!E::has(effect_transmission)) {
+            // The one child has the room that its parent left.
             if (mirrored_size > Real(0)) stack_.push(child_of(branch, meeting, s, shares, false, mirrored));
-            return;
-        }
-        bool goes_through = through_size >= mirrored_size;
+        } else {
+            bool goes_through = through_size >= mirrored_size;
 #if CISTULA_ON_DEVICE
 #pragma unroll 1  // one copy of the code
 #endif
-        for (int i = 0; i < 2; ++i, goes_through = !goes_through) {
-            if (!((goes_through ? through_size : mirrored_size) > Real(0))) continue;
-            if (!stack_.push(child_of(branch, meeting, s, shares, goes_through, goes_through ? through : mirrored)))
-                sums_.flag(flag_stack_overflow);
+            for (int i = 0; i < 2; ++i, goes_through = !goes_through) {
+                if (!((goes_through ? through_size : mirrored_size) > Real(0))) continue;
+                if (!stack_.push(child_of(branch, meeting, s, shares, goes_through, goes_through ? through : mirrored)))
+                    sums_.flag(flag_stack_overflow);
+            }
         }
     }
 
