@@ -12,7 +12,9 @@ class EmbreeRenderer : public Renderer {
   public:
     EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, std::shared_ptr<const EmbreeTree<Real>> tree)
         : scene_(std::move(scene)), view_(scene_->view()), tree_(std::move(tree)) {
-        if (!tree_) plain_ = make_host_renderer<Real>(scene_, HostIntersector::brute);
+        if (tree_) return;
+        plain_ = make_small_renderer<Real>(scene_);
+        if (!plain_) plain_ = make_host_renderer<Real>(scene_, HostIntersector::brute);
     }
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
@@ -23,7 +25,7 @@ class EmbreeRenderer : public Renderer {
     }
     uint32_t effects() const override { return plain_ ? plain_->effects() : effects_; }
     std::string intersector() const override { return "embree"; }
-    size_t memory() const override { return scene_->memory() + (tree_ ? tree_->memory() : 0); }
+    size_t memory() const override { return plain_ ? plain_->memory() : scene_->memory() + tree_->memory(); }
 
   private:
     std::shared_ptr<const CompiledScene<Real>> scene_;

@@ -20,6 +20,10 @@ template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options = {});
 
+/// The same loop where a scene is small enough to do without a tree (SmallScene); null where it is not.
+template <class Real>
+std::unique_ptr<Renderer> make_small_renderer(std::shared_ptr<const CompiledScene<Real>> scene);
+
 /// The same loop over Embree's own triangles, solids of planes too: another image, approximate at edges and where
 /// bodies touch, its hits in float whatever Real is. For previews and comparisons (native_intersector.h).
 template <class Real>

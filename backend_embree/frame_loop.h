@@ -76,7 +76,7 @@ bool for_each_pixel(const FrameSettings& settings, Film& film, RenderProgress& p
 }
 
 template <class Real, class E, class Intersector>
-bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
+bool render_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                   const FrameSettings& settings, Film& film, RenderProgress& progress) {
     return for_each_pixel(settings, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
         StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
@@ -86,7 +86,7 @@ bool render_tiles(const SceneView<Real>& scene, const FrameView& frame, const In
 
 /// Of a frame with a target error.
 template <class Real, class E, class Intersector>
-bool render_adaptive_tiles(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
+bool render_adaptive_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                            const FrameSettings& settings, Film& film, RenderProgress& progress) {
     const bool gradual = shades_gradually(scene);
     return for_each_pixel(settings, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
@@ -96,11 +96,11 @@ bool render_adaptive_tiles(const SceneView<Real>& scene, const FrameView& frame,
 }
 
 template <class Real, class Intersector>
-bool render_mask(const SceneView<Real>& scene, const FrameView& frame, const Intersector& intersector,
+bool render_mask(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                  const FrameSettings& settings, Film& film, RenderProgress& progress, int mask, uint32_t& ran) {
     ran = effect_masks[mask];
-    using Render = bool (*)(const SceneView<Real>&, const FrameView&, const Intersector&, const FrameSettings&, Film&,
-                            RenderProgress&);
+    using Render = bool (*)(const typename Intersector::Scene&, const FrameView&, const Intersector&, const FrameSettings&,
+                            Film&, RenderProgress&);
     static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
         return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
     }(std::make_index_sequence<compiled_mask_count>());
@@ -115,7 +115,7 @@ inline constexpr bool runs_every_mask<BvhIntersector<Real>> = false;
 
 /// Runs the least instantiated mask that contains settings.effects (0: what the scene requires); `ran` tells which.
 template <class Real, class Intersector>
-bool render_frame(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, const Intersector& intersector,
+bool render_frame(const CompiledScene<Real>& compiled, const typename Intersector::Scene& scene, const Intersector& intersector,
                   const CameraFrame& camera, const FrameSettings& settings, Film& film, RenderProgress& progress,
                   uint32_t& ran) {
     use_default_rounding();

@@ -56,11 +56,18 @@ def main():
     for depth in (4, 16):
         bar(f"time of double / float, depth {depth}", "<=", 1.6,
             *records.ratio(f"{scene}double/depth:{depth}", f"{scene}float/depth:{depth}"))
+    for effects, limit in (("opaque", 1.8), ("mirrors", 1.4), ("benchmark", 1.1)):
+        for precision in ("float", "double"):
+            run = f"effects/{effects}/{precision}/"
+            bar(f"all effects / those needed, {effects}, {precision}", ">=", limit, *records.ratio(run + "all", run + "auto"))
+    for precision in ("float", "double"):
+        bar(f"with / without lights on edges, {precision}", "<=", 1.3,
+            *records.ratio(f"effects/edge_lights/{precision}/auto", f"effects/benchmark/{precision}/auto"))
 
     for b in bars:
         spread = f"{b['low']:9.3f} to {b['high']:<9.3f}" if "low" in b else ""
         verdict = "met" if b["met"] else "MISSED"
-        print(f"{b['bar']:<42} {b['value']:9.3f}  {b['relation']} {b['limit']:<6} {verdict:<7}{spread}")
+        print(f"{b['bar']:<48} {b['value']:9.3f}  {b['relation']} {b['limit']:<6} {verdict:<7}{spread}")
     for name in ("povray", "cistula"):
         times = records.times(scene + name)
         print(f"{name} on benchmark.json, depth 16: median {statistics.median(times):.0f} ms, "

@@ -2,6 +2,8 @@
 // sample, two threads.
 #include <tbb/global_control.h>
 
+#include <set>
+
 #include "backend_embree/embree_renderer.h"
 #include "effect_scenes.h"
 #include "program.h"
@@ -26,7 +28,9 @@ void add(const EffectScene& scene) {
 }
 
 void register_all(const std::vector<std::string>&) {
+    const std::set<std::string> chosen = {"opaque", "opaque_floor", "mirrors", "benchmark", "edge_lights", "mesh"};
     for (const EffectScene& scene : effect_scenes(CISTULA_SOURCE_DIR)) {
+        if (chosen.count(scene.name) == 0) continue;
         add<float>(scene);
         add<double>(scene);
     }

@@ -139,7 +139,9 @@ struct Done {
 template <class Real>
 void check(const std::string& name, const SceneDescription& description, const FrameSettings& settings, Done& done) {
     const std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(description);
-    const Film expected = golden::render_with(*make_embree_renderer<Real>(compiled), description, settings);
+    EmbreeOptions embree;
+    embree.always_tree = true;
+    const Film expected = golden::render_with(*make_embree_renderer<Real>(compiled, embree), description, settings);
     EXPECT_EQ(expected.flags, 0u) << name;
     // A budget of truncation is spent in the order of one stack, so such trees stay whole.
     std::vector<Split> splits = {{0}};

@@ -51,7 +51,34 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, d
     return primary_ray(scene, frame, direction, ray, start);
 }
 
-/// The solids that contain a point: planes for convex ones, crossings of a straight ray from outside for meshes.
+/// The meshes that contain a point, by the crossings of a straight ray from outside.
+template <class Scene, class Intersector>
+CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
+                                     MediaList& media) {
+    using Real = typename Scene::Scalar;
+    // Through no axis, edge or symmetry that a scene is likely to have.
+    const Vec3<double> direction = normalized(Vec3<double>(0.36, 0.48, 0.8112));
+    // From the sphere of radius 2 M, as all rays (NUMERICS, 1).
+    const double ahead = dot(point, direction);
+    const double rest = 4 * double(scene.extent) * double(scene.extent) - (dot(point, point) - ahead * ahead);
+    const double distance = ahead + square_root(greatest(rest, 0.0));
+    Ray<Real> ray;
+    ray.origin = Vec3<Real>(along(point, -distance, direction));
+    ray.direction = Vec3<Real>(direction);
+    ray.meet_all();
+    bool fits = true;
+    for (;;) {
+        const Hit<Real> hit = intersector.closest(ray);
+        if (!(double(hit.t) < distance)) return fits;
+        const uint32_t solid = key_solid(hit.key);
+        const int change = media_change(key_kind(hit.key));
+        if (change != 0) ray.media.add(solid, change);
+        if (scene.solids[solid].kind == SolidKind::mesh) fits &= media.add(solid, change);
+        ray.after = {hit.t, hit.key};
+    }
+}
+
+/// The solids that contain a point.
 template <class Scene, class Intersector>
 CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& intersector,
                                      const Vec3<double>& point, MediaList& media) {
@@ -65,26 +92,9 @@ CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& inte
         if (scene.solids[i].kind == SolidKind::convex && inside_convex(scene, scene.solids[i], Vec3<Real>(point)))
             fits &= media.add(i, 1);
     }
-    if (!meshes) return fits;
-    // Through no axis, edge or symmetry that a scene is likely to have.
-    const Vec3<double> direction = normalized(Vec3<double>(0.36, 0.48, 0.8112));
-    // From the sphere of radius 2 M, as all rays (NUMERICS, 1).
-    const double ahead = dot(point, direction);
-    const double rest = 4 * double(scene.extent) * double(scene.extent) - (dot(point, point) - ahead * ahead);
-    const double distance = ahead + square_root(greatest(rest, 0.0));
-    Ray<Real> ray;
-    ray.origin = Vec3<Real>(along(point, -distance, direction));
-    ray.direction = Vec3<Real>(direction);
-    ray.meet_all();
-    for (;;) {
-        const Hit<Real> hit = intersector.closest(ray);
-        if (!(double(hit.t) < distance)) return fits;
-        const uint32_t solid = key_solid(hit.key);
-        const int change = media_change(key_kind(hit.key));
-        if (change != 0) ray.media.add(solid, change);
-        if (scene.solids[solid].kind == SolidKind::mesh) fits &= media.add(solid, change);
-        ray.after = {hit.t, hit.key};
-    }
+    if constexpr (Intersector::Media::meshes)
+        if (meshes) fits &= camera_meshes(scene, intersector, point, media);
+    return fits;
 }
 
 /// Notes down what a sample sees first.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cistula/bvh.h"
+#include "cistula/edge_lights.h"
 
 namespace cistula {
 
@@ -37,8 +38,13 @@ CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Re
         for (uint32_t i = 0; i < scene.seen_lights.size; ++i) see_light(scene, i, ray, best);
         return best;
     }
+    Real from = ray.after.t;
+#if !CISTULA_ON_DEVICE
+    from = greatest(from, Real(0));
+    if (!may_see_lights(scene, ray, from, t_limit)) return best;
+#endif
     BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
-    box_ray.near_limit = tree_near(ray.after.t);
+    box_ray.near_limit = tree_near(from);
     box_ray.far_limit = tree_far(t_limit);
     walk_tree(scene.seen_tree, scene.seen_items, box_ray, [&](uint32_t light) {
         see_light(scene, light, ray, best);

@@ -11,6 +11,7 @@
 #include "scene/compile_materials.h"
 #include "scene/compile_solids.h"
 #include "scene/compiled_scene.h"
+#include "scene/edge_light_reach.h"
 #include "scene/error.h"
 #include "scene/radiance_bound.h"
 #include "scene/scene_hash.h"
@@ -312,6 +313,7 @@ class Compiler {
         Tree tree = build_tree(primitives, 1);
         scene_.seen_tree = std::move(tree.nodes);
         scene_.seen_items = std::move(tree.items);
+        reach_edge_lights<Real>(scene_);
     }
 
     void explain() {

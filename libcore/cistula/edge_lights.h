@@ -1,0 +1,106 @@
+// Seen lights along the edges of convex solids, of which there may be hundreds: a line that is near two faces of no solid
+// at a time meets none of them, and looks for none. For the host, which tests eight slabs at once; a thread of a device
+// takes as long for that as for the tree over the lights.
+#pragma once
+
+#include "cistula/convex.h"
+
+namespace cistula {
+
+/// Up to this many solids are asked, of up to so many slabs.
+inline constexpr uint32_t most_solids_of_edge_lights = 16, most_slabs_of_edge_lights = 32;  // a bit each
+
+/// Whether the line between `from` and `to` passes the sphere around a solid's lights by.
+template <class Real>
+CISTULA_INLINE bool passes_lights(const Solid& solid, Real square, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                                  Real from, Real to) {
+    const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
+    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - square;
+    const Real nearest = clamped(ahead, from, to);
+    return rest > nearest * (Real(2) * ahead - nearest);
+}
+
+/// Bit i: whether a[i] >= limit, or a[i] <= limit.
+template <class Real>
+CISTULA_INLINE uint32_t lanes_from(const Real (&a)[slab_lanes], Real limit) {
+    alignas(32) int32_t is[slab_lanes];
+    for (int i = 0; i < slab_lanes; ++i) is[i] = a[i] >= limit ? -1 : 0;
+    return sign_bits(is);
+}
+template <class Real>
+CISTULA_INLINE uint32_t lanes_to(const Real (&a)[slab_lanes], Real limit) {
+    alignas(32) int32_t is[slab_lanes];
+    for (int i = 0; i < slab_lanes; ++i) is[i] = a[i] <= limit ? -1 : 0;
+    return sign_bits(is);
+}
+
+/// Whether a line is within `reach` of two faces of a solid at once, somewhere between `from` and `to`, which come closer to
+/// where. Of an entering plane a line is near up to some time, of a leaving one from some time on.
+template <class Real>
+CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, Real reach, const Vec3<Real>& origin,
+                               const Vec3<Real>& direction, Real& from, Real& to) {
+    constexpr int most_groups = most_slabs_of_edge_lights / slab_lanes;
+    alignas(32) Real past[most_groups][slab_lanes], soon[most_groups][slab_lanes];
+    const int count = int(slabs + slab_lanes - 1) / slab_lanes;
+    for (int g = 0; g < count; ++g) {
+        alignas(32) Real enter[slab_lanes], leave[slab_lanes];
+        const SlabGroup<Real>& group = groups[g];
+#pragma GCC ivdep
+        for (int i = 0; i < slab_lanes; ++i) {
+            const Vec3<Real> normal(group.nx[i], group.ny[i], group.nz[i]);
+            const Real nd = dot(normal, direction), no = dot(normal, origin);
+            // Of a slab that it is parallel to, a line is near from very early to very late or not at all.
+            const Real inverse = Real(1) / (magnitude(nd) < Real(0x1p-60) ? Real(0x1p-60) : nd);
+            const Real at_low = (group.low[i] - no) * inverse, at_high = (group.high[i] - no) * inverse;
+            const Real half = reach * magnitude(inverse), in = lesser(at_low, at_high), out = greater(at_low, at_high);
+            enter[i] = in - half;
+            past[g][i] = in + half;
+            soon[g][i] = out - half;
+            leave[i] = out + half;
+        }
+        from = greatest(greatest_lane(enter), from);
+        to = least(least_lane(leave), to);
+    }
+    if (!(from <= to)) return false;
+    uint32_t entering = 0, leaving = 0;  // planes
+    for (int g = 0; g < count; ++g) {
+        entering |= lanes_from(past[g], from) << g * slab_lanes;
+        leaving |= lanes_to(soon[g], to) << g * slab_lanes;
+    }
+    const bool two_at_first = (entering & (entering - 1)) != 0, two_at_last = (leaving & (leaving - 1)) != 0;
+    if (!two_at_first && !two_at_last && (entering == 0 || leaving == 0)) return false;
+    Real first = to, last = from;
+    for (uint32_t left = two_at_first ? 0 : leaving; left != 0; left &= left - 1)
+        first = least(soon[lowest_bit(left) / slab_lanes][lowest_bit(left) % slab_lanes], first);
+    for (uint32_t left = two_at_last ? 0 : entering; left != 0; left &= left - 1)
+        last = greatest(past[lowest_bit(left) / slab_lanes][lowest_bit(left) % slab_lanes], last);
+    if (!two_at_first) from = greatest(first, from);
+    if (!two_at_last) to = least(last, to);
+    return from <= to;
+}
+
+/// Whether a ray may meet a seen light between `from` and `to`, which come closer to where.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& ray, Real& from, Real& to) {
+    bool any = false;
+    Real earliest = to, latest = from;
+    for (const Solid& solid : scene.solids) {
+        if (solid.kind != SolidKind::convex) continue;
+        const SlabGroup<Real>* groups = scene.slab_groups.data + solid.first_group;
+        if (groups->light_reach == RealTraits<Real>::infinity) return true;
+        if (groups->light_reach == Real(0)) continue;
+        any = true;
+        Real near_from = from, near_to = to;
+        if (passes_lights(solid, groups->light_square, ray.origin, ray.direction, from, to) ||
+            !nears_edge(groups, solid.slab_count, groups->light_reach, ray.origin, ray.direction, near_from, near_to))
+            continue;
+        earliest = least(near_from, earliest);
+        latest = greatest(near_to, latest);
+    }
+    if (!any) return true;
+    from = earliest;
+    to = latest;
+    return earliest <= latest;
+}
+
+}  // namespace cistula
