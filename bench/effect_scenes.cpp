@@ -22,7 +22,13 @@ std::vector<EffectScene> effect_scenes(const std::string& folder) {
             solid->edge_lights.radius = 0.03;
         }
 
-    std::vector<EffectScene> scenes = {{"opaque", opaque}, {"opaque_floor", floor}, {"mirrors", mirrors}, {"edge_lights", edge_lights}};
+    SceneDescription away = opaque;
+    away.camera = CameraDescription();
+    away.camera.position = {30, 0, 0};
+    away.camera.target = {60, 0, 0};
+
+    std::vector<EffectScene> scenes = {
+        {"opaque", opaque}, {"opaque_floor", floor}, {"mirrors", mirrors}, {"edge_lights", edge_lights}, {"away", away}};
     for (const char* name : {"benchmark", "glass", "infinity", "mesh", "platonic", "seed"})
         scenes.push_back({name, read_scene(folder + "/scenes/" + name + ".json")});
     return scenes;

@@ -27,7 +27,7 @@ SceneDescription edge_lit(int count, double radius, double size = 1) {
 }
 
 struct Seen {
-    int rays = 0, lights = 0, looked = 0;
+    int rays = 0, lights = 0, looked = 0, inside = 0;
 };
 
 template <class Real>
@@ -42,8 +42,9 @@ class EdgeLights : public ::testing::Test {
         Seen seen;
         for (int i = 0; i < count; ++i) {
             Real limit = RealTraits<Real>::infinity;
-            const Ray<Real> ray = i % 2 == 0 ? any_ray(scene) : grazing_ray(scene);
+            Ray<Real> ray = i % 2 == 0 ? any_ray(scene) : grazing_ray(scene);
             if (i % 3 == 0) limit = scene.extent * Real(uniform(0, 2));
+            seen.inside += enter_solids(scene, ray, limit);
             const SeenHit<Real> expected = closest_seen_light(plain, ray, limit), found = closest_seen_light(scene, ray, limit);
             EXPECT_EQ(found.light, expected.light) << "ray " << i;
             EXPECT_EQ(found.t, expected.t) << "ray " << i;
@@ -67,8 +68,22 @@ class EdgeLights : public ::testing::Test {
         return ray;
     }
     Ray<Real> any_ray(const SceneView<Real>& scene) {
-        const Vec3<double> from = in_cube() * double(scene.extent);
+        Vec3<double> from = in_cube() * double(scene.extent);
+        if (uniform(0, 1) < 0.3) {  // perhaps from within a solid
+            const Solid& solid = scene.solids[scene.convex[uint32_t(uniform(0, scene.convex.size - 0.5))]];
+            from = Vec3<double>(solid.center) + in_cube() * std::sqrt(double(solid.padded_square));
+        }
         return ray_through(from, in_cube() * double(scene.extent));
+    }
+    /// A ray that starts in solids knows them, and no light counts for it beyond its way out. Whether it starts in any.
+    bool enter_solids(const SceneView<Real>& scene, Ray<Real>& ray, Real& limit) {
+        ray.after.t = greatest(ray.after.t, Real(0));
+        const Vec3<Real> start = ray.origin + ray.after.t * ray.direction;
+        for (const uint32_t index : scene.convex)
+            if (inside_convex(scene, scene.solids[index], start)) ray.media.add(index, 1);
+        if (ray.media.empty()) return false;
+        limit = least(limit, BruteIntersector<Real>{scene}.closest(ray).t);
+        return true;
     }
     /// Through the rim of a light, from near or far: within rounding of it, or a little off.
     Ray<Real> grazing_ray(const SceneView<Real>& scene) {
@@ -89,6 +104,7 @@ TYPED_TEST(EdgeLights, AreFoundByAllThatMeetThem) {
     for (const double radius : {0.001, 0.03, 0.3}) {
         const Seen seen = this->compare(edge_lit(6, radius), 200000);
         EXPECT_GT(seen.lights, seen.rays / 10) << radius;
+        EXPECT_GT(seen.inside, seen.rays / 20) << radius;
     }
     this->compare(edge_lit(3, 0.02, 2.5), 200000);  // solids through one another
     for (const char* name : {"platonic", "infinity", "glass", "hard/lights-on-edges", "hard/tiny-beside-unit"}) {

@@ -24,12 +24,14 @@ CISTULA_INLINE bool passes_lights(const Solid& solid, Real square, const Vec3<Re
 template <class Real>
 CISTULA_INLINE uint32_t lanes_from(const Real (&a)[slab_lanes], Real limit) {
     alignas(32) int32_t is[slab_lanes];
+    CISTULA_VECTORS
     for (int i = 0; i < slab_lanes; ++i) is[i] = a[i] >= limit ? -1 : 0;
     return sign_bits(is);
 }
 template <class Real>
 CISTULA_INLINE uint32_t lanes_to(const Real (&a)[slab_lanes], Real limit) {
     alignas(32) int32_t is[slab_lanes];
+    CISTULA_VECTORS
     for (int i = 0; i < slab_lanes; ++i) is[i] = a[i] <= limit ? -1 : 0;
     return sign_bits(is);
 }
@@ -79,25 +81,38 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, Re
     return from <= to;
 }
 
+/// A solid of a list of convex ones, which holds copies or numbers.
+template <class Scene>
+CISTULA_INLINE const Solid& listed(const Scene&, const NumberedSolid& copy) {
+    return copy.solid;
+}
+template <class Scene>
+CISTULA_INLINE const Solid& listed(const Scene& scene, uint32_t index) {
+    return scene.solids[index];
+}
+
 /// Whether a ray may meet a seen light between `from` and `to`, which come closer to where.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& ray, Real& from, Real& to) {
-    bool any = false;
+    if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return true;
+    const auto near = [&](const Solid& solid, const SlabGroup<Real>& first, Real& near_from, Real& near_to) {
+        return nears_edge(&first, solid.slab_count, first.light_reach, ray.origin, ray.direction, near_from, near_to);
+    };
+    if (const uint32_t around = enclosing(scene, ray); around != no_solid) {
+        const SlabGroup<Real>& first = scene.slab_groups[scene.solids[around].first_group];
+        if (first.lights_apart) return near(scene.solids[around], first, from, to);
+    }
     Real earliest = to, latest = from;
-    for (const Solid& solid : scene.solids) {
-        if (solid.kind != SolidKind::convex) continue;
-        const SlabGroup<Real>* groups = scene.slab_groups.data + solid.first_group;
-        if (groups->light_reach == RealTraits<Real>::infinity) return true;
-        if (groups->light_reach == Real(0)) continue;
-        any = true;
+    for (const auto& entry : scene.convex) {
+        const Solid& solid = listed(scene, entry);
+        const SlabGroup<Real>& first = scene.slab_groups[solid.first_group];
         Real near_from = from, near_to = to;
-        if (passes_lights(solid, groups->light_square, ray.origin, ray.direction, from, to) ||
-            !nears_edge(groups, solid.slab_count, groups->light_reach, ray.origin, ray.direction, near_from, near_to))
+        if (passes_lights(solid, first.light_square, ray.origin, ray.direction, from, to) ||
+            !near(solid, first, near_from, near_to))
             continue;
         earliest = least(near_from, earliest);
         latest = greatest(near_to, latest);
     }
-    if (!any) return true;
     from = earliest;
     to = latest;
     return earliest <= latest;

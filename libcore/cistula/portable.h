@@ -36,6 +36,13 @@
 #define CISTULA_CALLED CISTULA_HD inline
 #endif
 
+// Before a short loop, which becomes vectors where it is not unrolled.
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define CISTULA_VECTORS _Pragma("GCC unroll 1")
+#else
+#define CISTULA_VECTORS
+#endif
+
 // Called rarely: out of the way of the instruction caches.
 #define CISTULA_SELDOM CISTULA_HD __attribute__((noinline))
 

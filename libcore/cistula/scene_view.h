@@ -29,6 +29,7 @@ struct alignas(32) SlabGroup {
     Real nx[slab_lanes], ny[slab_lanes], nz[slab_lanes], low[slab_lanes], high[slab_lanes];
     Real light_reach;   // of a solid's first group: no seen light is farther from the solid's edges (edge_lights.h)
     Real light_square;  // ... and the square of the radius of a sphere around them all
+    bool lights_apart;  // no light of another solid reaches into this one
 };
 
 /// Solids are numbered in file order, which is also the priority of their media: later wins.

@@ -41,8 +41,21 @@ size_t reach_lights(CompiledScene<Real>& scene, const Solid& solid, std::vector<
         square = greatest(square, far * far);
     }
     group.light_reach = Real(reach);
-    group.light_square = Real(square) + Real(sphere_padding);
+    group.light_square = count > 0 ? Real(square) + Real(sphere_padding) : -RealTraits<Real>::infinity;
     return count;
+}
+
+/// Whether no sphere around another solid's lights reaches into this one.
+template <class Real>
+bool stands_apart(const CompiledScene<Real>& scene, const Solid& solid) {
+    for (const uint32_t index : scene.convex) {
+        const Solid& other = scene.solids[index];
+        const Vec3<double> between = Vec3<double>(solid.center) - Vec3<double>(other.center);
+        const double lights = double(scene.slab_groups[other.first_group].light_square);
+        const double reach = std::sqrt(lights) + std::sqrt(double(solid.padded_square));
+        if (&other != &solid && lights > 0 && dot(between, between) <= reach * reach) return false;
+    }
+    return true;
 }
 
 }  // namespace
@@ -55,9 +68,13 @@ void reach_edge_lights(CompiledScene<Real>& scene) {
     for (const uint32_t index : scene.convex) few = few && scene.solids[index].slab_count <= most_slabs_of_edge_lights;
     for (const uint32_t index : scene.convex)
         if (few) count += reach_lights(scene, scene.solids[index], taken);
-    if (count == taken.size()) return;
-    for (const uint32_t index : scene.convex)
-        scene.slab_groups[scene.solids[index].first_group].light_reach = RealTraits<Real>::infinity;
+    const bool all = count == taken.size();
+    for (const uint32_t index : scene.convex) {
+        const Solid& solid = scene.solids[index];
+        SlabGroup<Real>& group = scene.slab_groups[solid.first_group];
+        if (!all) group.light_reach = RealTraits<Real>::infinity;
+        group.lights_apart = all && group.light_reach > Real(0) && stands_apart(scene, solid);
+    }
 }
 
 template void reach_edge_lights<float>(CompiledScene<float>&);

@@ -5,8 +5,8 @@
 
 namespace cistula {
 
-/// Sets light_reach and light_square of every solid's first group: 0 where no seen light lies on its edges; infinity if
-/// any light lies on no edge, or the solids are too many to be asked.
+/// Sets light_reach, light_square and lights_apart of every solid's first group: a sphere of no size where no seen light lies
+/// on its edges, and a reach of infinity for all if any light lies on no edge or the solids are too many to be asked.
 template <class Real>
 void reach_edge_lights(CompiledScene<Real>& scene);
 
