@@ -20,7 +20,8 @@ template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options = {});
 
-/// The same loop where a scene is small enough to do without a tree (SmallScene); null where it is not.
+/// The same loop over a SmallScene, as kernels run it: masks reach the primitives' tests, and the shadow plan spares most of
+/// them. Null where the scene fits into none.
 template <class Real>
 std::unique_ptr<Renderer> make_small_renderer(std::shared_ptr<const CompiledScene<Real>> scene);
 

@@ -115,9 +115,9 @@ inline constexpr bool runs_every_mask<BvhIntersector<Real>> = false;
 
 /// Runs the least instantiated mask that contains settings.effects (0: what the scene requires); `ran` tells which.
 template <class Real, class Intersector>
-bool render_frame(const CompiledScene<Real>& compiled, const typename Intersector::Scene& scene, const Intersector& intersector,
-                  const CameraFrame& camera, const FrameSettings& settings, Film& film, RenderProgress& progress,
-                  uint32_t& ran) {
+bool render_frame(const CompiledScene<Real>& compiled, const typename Intersector::Scene& scene,
+                  const Intersector& intersector, const CameraFrame& camera, const FrameSettings& settings, Film& film,
+                  RenderProgress& progress, uint32_t& ran) {
     use_default_rounding();
     FrameView frame = frame_view(compiled, camera, settings);
     prepare_film(film, settings, compiled.radiance_exponent);

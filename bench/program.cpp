@@ -12,6 +12,7 @@
 #include "scene/error.h"
 
 namespace cistula::bench {
+
 void register_frames(const std::string& name, std::shared_ptr<Renderer> renderer, const CameraFrame& camera,
                      const FrameSettings& settings) {
     const auto time_frame = [=](benchmark::State& state) {

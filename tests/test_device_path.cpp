@@ -122,15 +122,6 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
     return film;
 }
 
-/// The form that the plain loop reads, if the scene fits into it.
-template <class Real>
-std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& scene) {
-    auto small = std::make_unique<SmallScene<Real>>();
-    if (!small->assign(scene, scene)) return nullptr;
-    plan_shadows(scene, small->plan);
-    return small;
-}
-
 struct Done {
     uint64_t given = 0;  // branches that went through a queue
     int plain_loops = 0;
@@ -139,9 +130,8 @@ struct Done {
 template <class Real>
 void check(const std::string& name, const SceneDescription& description, const FrameSettings& settings, Done& done) {
     const std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(description);
-    EmbreeOptions embree;
-    embree.always_tree = true;
-    const Film expected = golden::render_with(*make_embree_renderer<Real>(compiled, embree), description, settings);
+    const auto embree = make_embree_renderer<Real>(compiled, {.always_tree = true});
+    const Film expected = golden::render_with(*embree, description, settings);
     EXPECT_EQ(expected.flags, 0u) << name;
     // A budget of truncation is spent in the order of one stack, so such trees stay whole.
     std::vector<Split> splits = {{0}};

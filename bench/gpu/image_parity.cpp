@@ -30,9 +30,7 @@ void check(GpuRecord& record, const std::string& name, const SceneDescription& s
            const std::string& hash) {
     const std::vector<int> splits = settings.adaptive() ? std::vector<int>{0} : std::vector<int>{0, 1, 3};
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
-    EmbreeOptions embree;
-    embree.always_tree = true;
-    const Film cpu = golden::render_with(*make_embree_renderer<Real>(compiled, embree), scene, settings);
+    const Film cpu = golden::render_with(*make_embree_renderer<Real>(compiled, {.always_tree = true}), scene, settings);
     const char* precision = sizeof(Real) == sizeof(float) ? "float" : "double";
     FrameSettings with_all = settings;
     with_all.effects = all_effects;

@@ -277,6 +277,7 @@ class Compiler {
     }
 
     void compile_lights() {
+        std::vector<uint32_t> owners;  // of seen lights
         for (size_t i = 0; i < lights_.size(); ++i) {
             const FramedLight& light = lights_[i];
             hash_.add(light.position);
@@ -291,6 +292,7 @@ class Compiler {
             if (light.radius > 0) {
                 const Vec3<Real> radiance(scaled(light.radiance));
                 scene_.seen_lights.push_back({position, static_cast<Real>(light.radius), radiance});
+                owners.push_back(light.convex < 0 ? no_solid : convex_[static_cast<size_t>(light.convex)].solid);
             }
             if (!light.lights()) continue;
             auto& faces = incidents_[i];
@@ -313,7 +315,7 @@ class Compiler {
         Tree tree = build_tree(primitives, 1);
         scene_.seen_tree = std::move(tree.nodes);
         scene_.seen_items = std::move(tree.items);
-        reach_edge_lights<Real>(scene_);
+        reach_edge_lights(scene_, owners);
     }
 
     void explain() {

@@ -5,9 +5,10 @@
 
 namespace cistula {
 
-/// Sets light_reach, light_square and lights_apart of every solid's first group: a sphere of no size where no seen light lies
-/// on its edges, and a reach of infinity for all if any light lies on no edge or the solids are too many to be asked.
+/// Sets light_reach, light_square and lights_apart of every solid's first group: a sphere of no size where no seen light
+/// lies on its edges, and a reach of infinity for all if any light lies on none or the solids are too many to be asked.
+/// `owners`: the convex solid on whose edges each seen light lies, or no_solid.
 template <class Real>
-void reach_edge_lights(CompiledScene<Real>& scene);
+void reach_edge_lights(CompiledScene<Real>& scene, const std::vector<uint32_t>& owners);
 
 }  // namespace cistula

@@ -2,6 +2,8 @@
 // spared most of them.
 #pragma once
 
+#include <memory>
+
 #include "cistula/small_scene.h"
 
 namespace cistula {
@@ -10,5 +12,9 @@ namespace cistula {
 /// shadow ray's test could accept, and calls no light beyond a solid that a ray from inside could reach unhindered.
 template <class Real>
 void plan_shadows(const SceneView<Real>& scene, ShadowPlan& plan);
+
+/// The form of a scene that a plain loop reads, its shadows planned; null where it fits into none (SmallScene::assign).
+template <class Real>
+std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& scene);
 
 }  // namespace cistula
