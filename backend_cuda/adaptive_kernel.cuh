@@ -110,13 +110,14 @@ class WarpPixels {
         cells.for_each([&](int pixel, int i) { rooms_[pixel].pixel.judge(settings, rooms_[pixel].samples, i); });
         if (ready) rooms_[lane_].pixel.divide(settings);
         __syncwarp();
-        // The same number as before, as they are the same.
+        const bool done = ready && rooms_[lane_].pixel.wanted() == 0;
+        const WarpDeal standing = WarpDeal::of(done ? rooms_[lane_].pixel.cells() : 0);
         const unsigned int record = record_;
-        for (int j = lane_; __any_sync(whole_warp, j < cells.total); j += warp_threads) {
+        for (int j = lane_; __any_sync(whole_warp, j < standing.total); j += warp_threads) {
             int pixel = 0, i = 0;
-            cells.find(j, pixel, i);
+            standing.find(j, pixel, i);
             PixelRecord& to = job_.records[__shfl_sync(whole_warp, record, pixel)];
-            if (j < cells.total)
+            if (j < standing.total)
                 rooms_[pixel].pixel.settle(settings, i, [&](int slot, int weight) {
                     rooms_[pixel].samples[slot].give(to, weight, AtomicAdd());
                 });

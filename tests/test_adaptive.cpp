@@ -45,11 +45,11 @@ PixelRecord sampled(const LatticeSettings& settings, const Value& value, const S
         }
         for (int i = pixel.cells(); i-- > 0;) pixel.judge(settings, samples, i);  // in any order
         pixel.divide(settings);
-        for (int i = pixel.judged(); i-- > 0;)
-            pixel.settle(settings, i, [&](int slot, int weight) {
-                samples[slot].give(record, weight, [](auto& to, auto more) { to += more; });
-            });
     }
+    for (int i = pixel.cells(); i-- > 0;)
+        pixel.settle(settings, i, [&](int slot, int weight) {
+            samples[slot].give(record, weight, [](auto& to, auto more) { to += more; });
+        });
     record.samples = uint32_t(pixel.taken());
     record.unmet = pixel.unmet();
     return record;
@@ -234,6 +234,34 @@ TEST(Lattice, OneBushyTreeIsEnoughForItsPixel) {
         }
 }
 
+TEST(Lattice, WhatAPixelShowsIsTakenToHideElsewhereInIt) {
+    // A texture's border at the left, and a patch of the other color somewhere between samples that agree.
+    const auto strip = [](int x, int) { return x < 3; };
+    const auto values = [&](int left, int top) {
+        return [=](int x, int y) {
+            const bool patch = x >= left && x < left + 4 && y >= top && y < top + 4;
+            return strip(x, y) || patch ? fixed(0.5) : fixed(0.2);
+        };
+    };
+    const auto unlike = [](int x, int y) { return uint32_t(x / 4 + 4 * (y / 4)); };
+    for (const bool fine : {true, false})
+        for (int left = 4; left <= 11; ++left)
+            for (int top = 1; top <= 11; ++top) {
+                const double truth = 0.2 + 0.3 * (48 + 16) / 256;
+                const auto off = [&](const PixelRecord& record) {
+                    return std::abs(double(record.radiance[0]) * 0x1p-54 / 256 - truth);
+                };
+                EXPECT_LE(off(sampled(lattice(0.003, fine), values(left, top), one_kind)), 0.003)
+                    << left << ", " << top;
+                EXPECT_LE(off(sampled(lattice(0.003, fine), values(left, top), unlike)), 0.003) << left << ", " << top;
+            }
+    // Borders of things rather than of textures leave cells of one kind alone, as does what is not worth the target.
+    const auto side = [&](int x, int y) { return uint32_t(strip(x, y)); };
+    EXPECT_EQ(sampled(lattice(0.003, true), values(16, 16), one_kind).samples, 256u);
+    EXPECT_LE(sampled(lattice(0.003, true), values(16, 16), side).samples, 88u);
+    EXPECT_LE(sampled(lattice(0.03, true), values(16, 16), one_kind).samples, 72u);
+}
+
 TEST(Lattice, SpendsWhatItMayInAllQuartersAlike) {
     for (int most : {16, 32, 64, 128}) {
         std::set<std::pair<int, int>> taken;
@@ -364,7 +392,11 @@ TEST(Adaptive, IsWithinItsTargetOfTheWholeLattice) {
     };
     for (const Case& one :
          {Case{"benchmark", 1280, 720, {0, 360, 1280, 2}, 80}, Case{"platonic", 1280, 720, {0, 360, 1280, 2}, 80},
-          Case{"glass", 1280, 720, {0, 360, 1280, 2}, 80}, Case{"infinity", 640, 360, {160, 181, 320, 1}, 160, 0.0002}}) {
+          Case{"glass", 1280, 720, {0, 360, 1280, 2}, 80}, Case{"infinity", 640, 360, {160, 181, 320, 1}, 160, 0.0002},
+          // Textures through curved glass, from afar, and squeezed by refraction: from 0.8 to 2.8 % of these pixels
+          // were over when only a cell's own corners were asked.
+          Case{"hard/huge", 160, 90, {0, 55, 160, 15}, 160}, Case{"hard/far-camera", 160, 90, {0, 60, 160, 20}, 160},
+          Case{"hard/critical-angle", 160, 90, {0, 70, 160, 10}, 160}}) {
         const SceneDescription scene = read_scene(scenes / (std::string(one.name) + ".json"));
         const auto renderer = make_embree_renderer<float>(test::compile<float>(scene));
         FrameSettings settings = small(scene, one.width, one.height);

@@ -54,11 +54,11 @@ CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& f
         }
         for (int i = 0; i < pixel.cells(); ++i) pixel.judge(settings, samples, i);
         pixel.divide(settings);
-        for (int i = 0; i < pixel.judged(); ++i)
-            pixel.settle(settings, i, [&](int slot, int weight) {
-                samples[slot].give(record, weight, [](auto& to, auto value) { to += value; });
-            });
     }
+    for (int i = 0; i < pixel.cells(); ++i)
+        pixel.settle(settings, i, [&](int slot, int weight) {
+            samples[slot].give(record, weight, [](auto& to, auto value) { to += value; });
+        });
     record.samples = uint32_t(pixel.taken());
     record.unmet = pixel.unmet();
 }

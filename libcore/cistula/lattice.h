@@ -20,6 +20,13 @@ inline constexpr int bushy_area = lattice_samples / 8;
 /// How much brighter or darker what lies unseen in such a cell is taken to be: on infinity.json at most one pixel in
 /// 1,500 is then beyond targets of 0.001 to 0.01.
 inline constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
+/// Eighths of a cell that something unseen in it is taken to fill. If its corners met different things, that may have
+/// any color that the pixel shows; if they met the same, it is as much brighter or darker as samples that met the same
+/// are at corners of one small cell: on both sides of a texture's border, say, but not where shading is gradual. At
+/// 0.004 at most 0.1 % of the pixels of scenes/ and scenes/hard are then beyond. 4 and 2 leave 0.2 % of
+/// critical-angle.json, 3 and 3 about 0.1 % of mirrors.json. Areas of 4 leave more than that of seed.json; those of 16
+/// and more cost platonic.json 3 to 5 % and gain little.
+inline constexpr int unseen_unlike = 4, unseen_alike = 3, jump_area = 8;
 
 /// What a frame asks of adaptive sampling.
 struct LatticeSettings {
@@ -58,21 +65,21 @@ struct LatticeSample {
     }
 };
 
-/// A pixel, in rounds: all samples that it wants are taken, all cells judged and those that differ divided, whose
+/// A pixel, in rounds: all samples that it wants are taken, all new cells judged and those that differ divided, whose
 /// children want the next. A cell, a rectangle of samples, is known by its four corners; where these differ too much it
-/// is split, else they stand for all of it. A straight border through a rectangle parts its corners, so that it is
-/// never overlooked. All 256 samples give what the uniform 16 x 16 grid does. The children of a split share no sample.
-/// In each of a round's steps the work on one sample or cell may be any thread's. The samples lie with the caller, by
-/// slot.
+/// is split, else they stand for all of it, unless what the pixel shows elsewhere by then makes that doubtful. A
+/// straight border through a rectangle parts its corners, so that it is never overlooked. All 256 samples give what the
+/// uniform 16 x 16 grid does. The children of a split share no sample. In each of a round's steps the work on one
+/// sample or cell may be any thread's. The samples lie with the caller, by slot.
 class LatticePixel {
   public:
     CISTULA_INLINE void begin(const LatticeSettings& settings) {
-        round_ = 0;
         unmet_ = bushy_ = 0;
-        count_[0] = 1;
-        cells_[0][0] = {0, 0, lattice_side, lattice_side, Split::none, 0, 0};
+        range_ = jump_ = 0;
+        count_ = 1;
+        cells_[0] = whole_cell();
         wanted_ = 0;
-        for (int c = 0; c < 4; ++c) want(corner(cells_[0][0], c));
+        for (int c = 0; c < 4; ++c) want(corner(cells_[0], c));
         if (settings.fine) want(lattice_middle);
         due_ = wanted_;
     }
@@ -81,20 +88,21 @@ class LatticePixel {
     CISTULA_INLINE int wanted() const { return wanted_; }
     CISTULA_INLINE int wanted(int i) const { return slots_[i]; }
 
-    /// Cells that wait to be judged, once all that was wanted is there.
-    CISTULA_INLINE int cells() const { return count_[round_ & 1]; }
+    /// Cells that the pixel consists of, to be judged once all that was wanted is there.
+    CISTULA_INLINE int cells() const { return count_; }
 
-    /// Whether cell i should be split.
-    CISTULA_INLINE void judge(const LatticeSettings& settings, const LatticeSample* samples, int i) {
-        Cell& cell = cells_[round_ & 1][i];
+    /// What the corners of the index-th cell, if it is new, tell of it and of its pixel.
+    CISTULA_INLINE void judge(const LatticeSettings& settings, const LatticeSample* samples, int index) {
+        Cell& cell = cells_[index];
+        if (!cell.is_new) return;
         const LatticeSample* at[4];
         for (int c = 0; c < 4; ++c) at[c] = samples + corner(cell, c);
         const bool whole = is_whole(cell), has_middle = settings.fine && whole;
         bool differs = has_middle && samples[lattice_middle].signature != at[0]->signature;
-        cell.bushy = at[0]->rays >= bushy_tree;
+        bool bushy = at[0]->rays >= bushy_tree;
         for (int c = 1; c < 4; ++c) {
             differs |= at[c]->signature != at[0]->signature;
-            cell.bushy |= at[c]->rays >= bushy_tree;
+            bushy |= at[c]->rays >= bushy_tree;
         }
         int64_t range = 0, bend = 0, across = 0, down = 0;
         for (int c = 0; c < 3; ++c) {
@@ -113,58 +121,59 @@ class LatticePixel {
             across = greatest(across, greatest(magnitude_of(a - b), magnitude_of(d - e)));
             down = greatest(down, greatest(magnitude_of(a - d), magnitude_of(b - e)));
         }
-        const int64_t area = int64_t(cell.width) * cell.height, allowed = settings.target * lattice_samples;
+        const int64_t area = area_of(cell), allowed = settings.target * lattice_samples;
         // What a border through it can be worth: its range times its area. Rays that meet the same things bend little
         // between, unless a texture does.
         const int64_t fineness = settings.fine && !whole ? 8 : 4;
-        // Bushy trees see so much that some of it may well lie between a few samples that agree, be these bushy or not:
-        // a light's image ends a tree early, and hides between others as others do between lights.
-        const bool overlooks =
-            settings.fine && (bushy_ || cell.bushy) && (area > bushy_area || unseen_range * area > allowed);
-        const bool wants_split = overlooks || (differs && fineness * range * area > allowed) || bend * area > allowed ||
-                                 (settings.fine ? 8 : 4) * range * area > 3 * allowed;
+        cell.wants_split = (differs && fineness * range * area > allowed) || bend * area > allowed ||
+                           (settings.fine ? 8 : 4) * range * area > 3 * allowed;
+        cell.is_new = false;
         cell.differs = differs;
-        cell.split = !wants_split || area == 4             ? Split::none
-                     : has_middle                          ? Split::in_four
-                     : is_split_across(cell, across, down) ? Split::across
-                                                           : Split::down;
+        cell.bushy = bushy;
+        cell.across = is_split_across(cell, across, down);
+        cell.range = range;
+        cell.jump = 0;
+        if (area > jump_area) return;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < i; ++j)
+                for (int c = 0; c < 3 && at[i]->signature == at[j]->signature; ++c)
+                    cell.jump = greatest(cell.jump, magnitude_of(color(*at[i], c) - color(*at[j], c)));
     }
 
-    /// Splits those of the judged cells that should be and still may.
+    /// Splits those of the cells that should be and still may.
     CISTULA_INLINE void divide(const LatticeSettings& settings) {
-        Cell* judged = cells_[round_ & 1];
-        const int count = cells();
-        ++round_;
-        count_[round_ & 1] = wanted_ = 0;
+        const int count = count_;
         for (int i = 0; i < count; ++i) {
-            const Cell cell = judged[i];
+            const Cell& cell = cells_[i];
             bushy_ |= cell.bushy;
-            if (cell.split == Split::none) continue;
-            const int more = cell.split == Split::in_four ? 11 : 4;  // the middle is one of sixteen
+            range_ = greatest(range_, cell.range);
+            jump_ = greatest(jump_, cell.jump);
+        }
+        wanted_ = 0;
+        for (int i = 0; i < count; ++i) {
+            const Cell cell = cells_[i];
+            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, cell))) continue;
+            const bool in_four = settings.fine && is_whole(cell);
+            const int more = in_four ? 11 : 4;  // the middle is one of sixteen
             if (due_ + more > settings.most) {
                 unmet_ = 1;
-                judged[i].split = Split::none;
                 continue;
             }
             due_ += more;
-            if (cell.split == Split::in_four)
-                for (int q = 0; q < 4; ++q) add_child(cell, q & 1 ? 1 : -1, q & 2 ? 1 : -1);
-            else if (cell.split == Split::across)
-                add_child(cell, -1, 0), add_child(cell, 1, 0);
-            else
-                add_child(cell, 0, -1), add_child(cell, 0, 1);
+            if (in_four) {
+                for (int q = 0; q < 4; ++q) add_child(i, q, cell, q & 1 ? 1 : -1, q & 2 ? 1 : -1);
+            } else {
+                for (int half = 0; half < 2; ++half)
+                    add_child(i, half, cell, cell.across ? 2 * half - 1 : 0, cell.across ? 0 : 2 * half - 1);
+            }
         }
     }
 
-    /// The cells that were judged before the last divide().
-    CISTULA_INLINE int judged() const { return count_[~round_ & 1]; }
-
-    /// stand(slot, weight): samples that stand for judged cell i; none if it was split.
+    /// stand(slot, weight): samples that stand for cell i once the pixel is done.
     template <class Stand>
     CISTULA_INLINE void settle(const LatticeSettings& settings, int i, const Stand& stand) const {
-        const Cell& cell = cells_[~round_ & 1][i];
-        if (cell.split != Split::none) return;
-        int each = cell.width * cell.height / 4;
+        const Cell& cell = cells_[i];
+        int each = area_of(cell) / 4;
         if (settings.fine && is_whole(cell)) {
             // Simpson's rule, near enough, where all is smooth.
             each = cell.differs ? 32 : 24;
@@ -186,13 +195,19 @@ class LatticePixel {
   private:
     static constexpr int most_cells = lattice_samples / 4;
 
-    enum class Split : uint8_t { none, across, down, in_four };
     struct Cell {
         uint8_t x, y, width, height;
-        Split split;
-        uint8_t differs, bushy;
+        bool is_new, wants_split, across, differs, bushy;
+        int64_t range, jump;  // of colors: of all corners; in a small cell, of those that met the same
     };
 
+    CISTULA_INLINE static Cell whole_cell() {
+        Cell cell = Cell();
+        cell.width = cell.height = lattice_side;
+        cell.is_new = true;
+        return cell;
+    }
+    CISTULA_INLINE static int area_of(const Cell& cell) { return cell.width * cell.height; }
     CISTULA_INLINE static bool is_whole(const Cell& cell) {
         return cell.width == lattice_side && cell.height == lattice_side;
     }
@@ -214,9 +229,20 @@ class LatticePixel {
         return across != down ? across > down : cell.width >= cell.height;
     }
 
-    /// The left or right half (-1, 1; 0: both) of the upper or lower half; wants the corners that it does not inherit.
-    CISTULA_INLINE void add_child(const Cell& parent, int right, int lower) {
+    /// Whether a cell whose corners agree may well hide what is worth the target, by what the pixel shows so far.
+    CISTULA_INLINE bool overlooks(const LatticeSettings& settings, const Cell& cell) const {
+        const int64_t area = area_of(cell), allowed = settings.target * lattice_samples;
+        // Bushy trees see so much that some of it may well lie between a few samples that agree, be these bushy or not:
+        // a light's image ends a tree early, and hides between others as others do between lights.
+        if (settings.fine && bushy_ && (area > bushy_area || unseen_range * area > allowed)) return true;
+        return (cell.differs ? unseen_unlike * range_ : unseen_alike * jump_) * area > 8 * allowed;
+    }
+
+    /// Child `nth` of cell i: the left or right half (-1, 1; 0: both) of the upper or lower half; wants the corners
+    /// that it does not inherit.
+    CISTULA_INLINE void add_child(int i, int nth, const Cell& parent, int right, int lower) {
         Cell child = parent;
+        child.is_new = true;
         if (right != 0) child.width /= 2;
         if (lower != 0) child.height /= 2;
         if (right > 0) child.x = uint8_t(child.x + child.width);
@@ -224,17 +250,18 @@ class LatticePixel {
         for (int c = 0; c < 4; ++c) {
             const bool inherits =
                 (right == 0 || (c & 1 ? 1 : -1) == right) && (lower == 0 || (c & 2 ? 1 : -1) == lower);
-            const bool is_middle = parent.split == Split::in_four && corner(child, c) == lattice_middle;
+            const bool is_middle = right != 0 && lower != 0 && corner(child, c) == lattice_middle;
             if (!inherits && !is_middle) want(corner(child, c));
         }
-        cells_[round_ & 1][count_[round_ & 1]++] = child;
+        cells_[nth == 0 ? i : count_++] = child;
     }
 
-    int round_, count_[2];  // this round's cells, and those of the last or the next
+    int count_;             // cells
     int due_, wanted_;      // samples taken and wanted, and of these the latter
-    int unmet_, bushy_;     // bushy_: whether a cell judged in an earlier round had a bushy corner
+    int unmet_, bushy_;     // bushy_: whether a cell had a bushy corner
+    int64_t range_, jump_;  // greatest of any cell
     uint8_t slots_[lattice_samples / 2];
-    Cell cells_[2][most_cells];
+    Cell cells_[most_cells];
 };
 
 }  // namespace cistula
