@@ -108,11 +108,11 @@ std::string effect_table(const Shown& shown) {
     if (costs.empty()) return "";
     const double least = costs.front().time.median();
     double most = 0;
-    for (const EffectCost& cost : costs) most = std::max(most, cost.time.median());
+    for (const MaskCost& cost : costs) most = std::max(most, cost.time.median());
     Table table(
         {"code compiled for", ">time", ">against the least", ""},
         "What effects that this scene does not use would cost if they were not left out (same bits, base setting)");
-    for (const EffectCost& cost : costs) {
+    for (const MaskCost& cost : costs) {
         const double time = cost.time.median();
         table.row(
             {cost.added.empty() ? "what the scene needs"

@@ -54,7 +54,7 @@ void measure_scene(const std::string& file, const MeasureSettings& settings, Pro
     scene.effects = names_of_effects(frames.renderers.single()->effects);
     measure_stages(frames, settings, scene);
     measure_levels(frames, settings, scene);
-    measure_effects(frames, settings, scene);
+    measure_masks(frames, settings, scene);
     measure_parity(frames, settings, scene);
     measure_sweep(frames, settings, scene, record);
     record.scenes.push_back(std::move(scene));

@@ -28,7 +28,7 @@ void measure_scene(const std::string& file, const MeasureSettings& settings, Pro
 /// The steps, each of which fills its part of the scene's record.
 void measure_sweep(Frames& frames, const MeasureSettings& settings, SceneRecord& scene, Record& record);
 void measure_levels(Frames& frames, const MeasureSettings& settings, SceneRecord& scene);
-void measure_effects(Frames& frames, const MeasureSettings& settings, SceneRecord& scene);
+void measure_masks(Frames& frames, const MeasureSettings& settings, SceneRecord& scene);
 void measure_stages(Frames& frames, const MeasureSettings& settings, SceneRecord& scene);
 void measure_parity(Frames& frames, const MeasureSettings& settings, SceneRecord& scene);
 

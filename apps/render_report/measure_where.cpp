@@ -103,7 +103,7 @@ void measure_levels(Frames& frames, const MeasureSettings& settings, SceneRecord
     scene.heat = to_heat_image(width, height, costs);
 }
 
-void measure_effects(Frames& frames, const MeasureSettings& settings, SceneRecord& scene) {
+void measure_masks(Frames& frames, const MeasureSettings& settings, SceneRecord& scene) {
     const uint32_t required = frames.renderers.single()->effects;
     const int least = least_mask(required);
     for (int i = least; i < effect_mask_count; ++i)
@@ -112,7 +112,7 @@ void measure_effects(Frames& frames, const MeasureSettings& settings, SceneRecor
     frames.progress.begin(scene.name + ": effects", rounds * static_cast<double>(scene.effect_costs.size()));
     Film film;
     for (int round = 0; round < rounds; ++round)
-        for (EffectCost& cost : scene.effect_costs) {
+        for (MaskCost& cost : scene.effect_costs) {
             const double seconds = frames.render(scene.base, film, cost.mask);
             if (round >= settings.warm_ups) cost.time.runs.push_back(frames.kernel_ms(scene.base, seconds));
             frames.progress.advance();

@@ -26,7 +26,7 @@ CISTULA_RECORD_FIELDS(Yardstick, knob, setting, remainder, seconds, cached)
 CISTULA_RECORD_FIELDS(Share, what, material, value)
 CISTULA_RECORD_FIELDS(Stage, name, precision, time)
 CISTULA_RECORD_FIELDS(Level, depth, rays)
-CISTULA_RECORD_FIELDS(EffectCost, mask, added, time)
+CISTULA_RECORD_FIELDS(MaskCost, mask, added, time)
 CISTULA_RECORD_FIELDS(Image, width, height, png)
 CISTULA_RECORD_FIELDS(ParityCase, first, second, precision, compared, differing)
 CISTULA_RECORD_FIELDS(SceneRecord, name, file, hash, width, height, base, effects, strongest, mirror, reference,

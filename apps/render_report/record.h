@@ -74,7 +74,7 @@ struct Level {
 };
 
 /// The same frame, run by code that has more effects compiled in than the scene calls for.
-struct EffectCost {
+struct MaskCost {
     uint32_t mask = 0;
     std::vector<std::string> added;  // beyond the least mask
     Timing time;
@@ -102,7 +102,7 @@ struct SceneRecord {
     std::vector<std::string> left_out;  // settings that take longer than the limit, and what else for want of time
     std::vector<Stage> stages;
     std::vector<Level> levels;
-    std::vector<EffectCost> effect_costs;
+    std::vector<MaskCost> effect_costs;
     int parity_depth = 0;
     std::vector<ParityCase> parity;
     std::string first_renderer, second_renderer;  // of the two pictures
