@@ -66,7 +66,7 @@ class CudaRenderer : public Renderer {
                 RenderProgress& progress) override {
         notes_.clear();
         times_ = {};
-        prepare_film(film, settings, scene_->radiance_exponent);
+        prepare_film(film, settings, *scene_, camera);
         if (!begun_ || !same(begun_->camera, camera) || begun_->settings != settings) {
             if (begun_) drop();
             begun_ = begin(camera, settings);

@@ -120,7 +120,7 @@ bool render_frame(const CompiledScene<Real>& compiled, const typename Intersecto
                   RenderProgress& progress, uint32_t& ran) {
     use_default_rounding();
     FrameView frame = frame_view(compiled, camera, settings);
-    prepare_film(film, settings, compiled.radiance_exponent);
+    prepare_film(film, settings, compiled, camera);
     if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media))
         film.flags |= flag_media_overflow;
     if (settings.adaptive()) {  // one mask for all: what it would save is less than what compiling more takes

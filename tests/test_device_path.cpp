@@ -107,9 +107,10 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
                       const SceneDescription& description, const FrameSettings& settings, Split split,
                       uint64_t& given) {
     const SceneView<Real> view = compiled.view();
-    FrameView frame = frame_view(compiled, camera_at(description.camera, 0), settings);
+    const CameraFrame camera = camera_at(description.camera, 0);
+    FrameView frame = frame_view(compiled, camera, settings);
     Film film;
-    prepare_film(film, settings, compiled.radiance_exponent);
+    prepare_film(film, settings, compiled, camera);
     if (!camera_solids(view, BruteIntersector<Real>{view}, frame.camera.position, frame.camera_media))
         film.flags |= flag_media_overflow;
     const Intersector intersector{scene};

@@ -371,7 +371,7 @@ TEST_F(RenderProgram, ATargetIsReachedAndSaid) {
     EXPECT_EQ(frame.at("rays").at("primary").get<double>(), sum);
     const auto& target = frame.at("target");
     EXPECT_EQ(target.at("reached"), true);
-    for (const char* key : {"pixels_missed", "pixels_truncated", "pixels_undersampled"}) EXPECT_EQ(target.at(key), 0);
+    for (const char* key : {"pixels_missed", "pixels_truncated", "pixels_undersampled", "pixels_rounded"}) EXPECT_EQ(target.at(key), 0);
     EXPECT_LE(target.at("worst_truncation").get<double>(), 0.005);
     EXPECT_GT(target.at("worst_truncation").get<double>(), 0);
 
@@ -401,6 +401,14 @@ TEST_F(RenderProgram, AMissedTargetIsCountedAndTheImageWritten) {
                    "want more than 5 samples; raise --max-samples");
     EXPECT_EQ(std::get<int>(read_exr(file("b.exr")).attributes.at("cistula:maxSamples")), 5);
     EXPECT_FALSE(has_part_files());
+}
+
+TEST_F(RenderProgram, ATargetThatRoundingMissesAsksForDoublePrecision) {
+    const std::string floor = std::string(CISTULA_SOURCE_DIR) + "/scenes/hard/far-floor.json";
+    Arguments fine{floor, "-q", "-o", "a.exr", "--res", "60x34", "--target-error", "0.004"};
+    expect_refused(fine, ExitCode::target, "have borders that rounding may move by more; --precision double");
+    fine.insert(fine.end(), {"--precision", "double"});
+    expect_done(fine);
 }
 
 TEST_F(RenderProgram, NativeImagesSaySoAndAreNotResumedAsExactOnes) {

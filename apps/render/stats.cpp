@@ -42,6 +42,7 @@ Json target_entry(const TargetReport& target) {
             {"pixels_truncated", target.truncated},
             {"pixels_bushy", target.bushy},
             {"pixels_undersampled", target.undersampled},
+            {"pixels_rounded", target.rounded},
             {"worst_truncation", target.worst_truncation}};
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cistula/lattice.h"
 #include "cistula/signature.h"
 #include "stats.h"
 
@@ -15,6 +16,7 @@ void TargetReport::add(const TargetReport& other) {
     truncated += other.truncated;
     bushy += other.bushy;
     undersampled += other.undersampled;
+    rounded += other.rounded;
     missed += other.missed;
     worst_truncation = std::max(worst_truncation, other.worst_truncation);
 }
@@ -22,6 +24,10 @@ void TargetReport::add(const TargetReport& other) {
 TargetReport target_report(const Film& film, const FrameSettings& settings) {
     TargetReport report;
     const double unit = film.unit();
+    int64_t brightest = 0;
+    for (const PixelRecord& pixel : film.pixels) brightest = std::max(brightest, *std::max_element(pixel.radiance, pixel.radiance + 3));
+    // A border moved by a share of the pixel's width changes it by that share of what lies on either side, at most.
+    const double needed = film.rounding * static_cast<double>(brightest) * unit / settings.target_error;
     for (const PixelRecord& pixel : film.pixels) {
         double truncation = 0, pruned = 0;
         for (int c = 0; c < 3; ++c) {
@@ -33,7 +39,9 @@ TargetReport target_report(const Film& film, const FrameSettings& settings) {
         report.truncated += truncated;
         report.bushy += pruned > settings.truncation();
         report.undersampled += pixel.unmet;
-        report.missed += truncated || pixel.unmet;
+        const bool rounded = pixel.samples > least_lattice_samples && static_cast<double>(pixel.z) < needed;
+        report.rounded += rounded;
+        report.missed += truncated || pixel.unmet || rounded;
         report.worst_truncation = std::max(report.worst_truncation, truncation);
     }
     return report;
@@ -62,6 +70,8 @@ std::string describe_target(const std::vector<FrameStats>& frames, const FrameSe
     if (all.undersampled != 0)
         reasons.push_back(
             fmt::format("{} want more than {} samples; raise --max-samples", all.undersampled, settings.max_samples));
+    if (all.rounded != 0)
+        reasons.push_back(fmt::format("{} have borders that rounding may move by more; --precision double", all.rounded));
     return fmt::format("{}{} ({})", text, fmt::join(reasons, "; "), cost);
 }
 

@@ -62,13 +62,16 @@ inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const Fr
 }
 
 /// A film of the right size for a frame, its pixels unset.
-inline void prepare_film(Film& film, const FrameSettings& settings, int radiance_exponent) {
+template <class Real>
+void prepare_film(Film& film, const FrameSettings& settings, const CompiledScene<Real>& scene, const CameraFrame& camera) {
     film.full_width = settings.full_width;
     film.full_height = settings.full_height;
     film.rect = settings.crop;
-    film.radiance_exponent = radiance_exponent;
+    film.radiance_exponent = scene.radiance_exponent;
     film.samples = settings.grid() * settings.grid();
     film.fixed_shift = fixed_shift(uint32_t(film.samples));
+    const double place = 2 * double(RealTraits<Real>::unit) * std::ldexp(double(scene.extent), -scene.scale);
+    film.rounding = place * film.full_width / (2 * camera.camera.tan_half_width);
     film.pixels.clear();
     film.pixels.resize(size_t(film.rect.width) * size_t(film.rect.height));
     film.rays = RayCounts();
