@@ -188,7 +188,7 @@ double seen_through(const SceneView<Real>& scene, const Ray<Real>& ray, uint32_t
     settings.fixed_scale = 0x1p62;
     settings.fixed_unit = 0x1p-62;
     PixelRecord record = PixelRecord();
-    PixelSums<Real> sums(settings, scene.bound, record, flags);
+    PixelSums<Real> sums(settings, scene, record, flags);
     PixelRays rays;
     Stack stack;
     struct Unnoted {

@@ -127,8 +127,14 @@ TYPED_TEST(CompilePrimitives, SeenLightsGetATreeWhereThereAreMany) {
     add_object(scene, object);
     const auto compiled = compile_scene<TypeParam>(scene);
     ASSERT_EQ(compiled->seen_lights.size(), 180u);
-    EXPECT_EQ(compiled->seen_items.size(), 180u);
-    EXPECT_EQ(std::set<uint32_t>(compiled->seen_items.begin(), compiled->seen_items.end()).size(), 180u);
+    std::multiset<int32_t> children;
+    for (const LightNode& node : compiled->seen_tree)
+        for (int i = 0; i < LightNode::width; ++i)
+            if (node.planes[0].of[i] < RealTraits<float>::infinity) children.insert(node.children.of[i]);
+    for (int32_t light = 0; light < 180; ++light) EXPECT_EQ(children.count(~light), 1u) << light;
+    for (int32_t node = 1; node < int32_t(compiled->seen_tree.size()); ++node) EXPECT_EQ(children.count(node), 1u) << node;
+    EXPECT_EQ(children.size(), 180u + compiled->seen_tree.size() - 1);
+    EXPECT_LT(compiled->seen_tree.size(), 2 * 60u);  // 60 would be full
 }
 
 }  // namespace

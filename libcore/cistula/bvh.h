@@ -6,30 +6,34 @@
 
 namespace cistula {
 
-/// The candidate ray: rounded to float, which the padding of the boxes covers.
+/// The candidate ray: rounded to float, which the padding of the boxes covers. Times are fused products, not quotients of
+/// differences: what that adds is a few u of the places' own size.
 struct BoxRay {
-    float origin[3], inverse[3];
+    float inverse[3], shift[3];  // see meets()
     float near_limit, far_limit;
 
     template <class Real>
     CISTULA_INLINE static BoxRay of(const Vec3<Real>& origin, const Vec3<Real>& direction) {
+        constexpr float least_step = 0x1p-60f;  // of a line beside two planes: all is finite, and drifts by nothing
         BoxRay r;
         for (int k = 0; k < 3; ++k) {
-            r.origin[k] = float(origin[k]);
-            r.inverse[k] = 1.0f / float(direction[k]);
+            const float step = float(direction[k]);
+            r.inverse[k] = reciprocal(magnitude(step) < least_step ? least_step : step);
+            r.shift[k] = -float(origin[k]) * r.inverse[k];
         }
         return r;
     }
 
-    /// Where the ray enters the box, or infinity. A zero direction component on a face gives NaN, which both selects
-    /// ignore.
+    /// When x[k] = plane.
+    CISTULA_INLINE float meets(int k, float plane) const { return fused(plane, inverse[k], shift[k]); }
+
+    /// Where the ray enters the box, or infinity.
     CISTULA_INLINE float enter(const float low[3], const float high[3]) const {
         float near_t = near_limit, far_t = far_limit;
         for (int k = 0; k < 3; ++k) {
-            const float at_low = (low[k] - origin[k]) * inverse[k], at_high = (high[k] - origin[k]) * inverse[k];
-            const bool upward = inverse[k] >= 0.0f;
-            near_t = greatest(upward ? at_low : at_high, near_t);
-            far_t = least(upward ? at_high : at_low, far_t);
+            const float at_low = meets(k, low[k]), at_high = meets(k, high[k]);
+            near_t = greater(lesser(at_low, at_high), near_t);
+            far_t = lesser(greater(at_low, at_high), far_t);
         }
         return near_t <= far_t ? near_t : RealTraits<float>::infinity;
     }

@@ -132,7 +132,7 @@ CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, co
     const int across = 2 * (px * k + column) + 1 - frame.width * k;
     const int down = 2 * (py * k + row) + 1 - frame.height * k;
     const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
-    PixelSums<Real> sums(settings, scene.bound, record, work.flags);
+    PixelSums<Real> sums(settings, scene, record, work.flags);
     ++work.rays.primary;
     if (!primary_ray(scene, frame, direction, ray, work.start)) {
         sums.add(scene.background);
@@ -167,7 +167,7 @@ CISTULA_INLINE void resume_branch(const Scene& scene, const FrameView& frame,
                                          BranchOf<Real, E, typename Intersector::Media>& branch, PixelRecord& record,
                                          PixelWork& work, Stack& stack) {
     record = PixelRecord();
-    PixelSums<Real> sums(frame.tree, scene.bound, record, work.flags);
+    PixelSums<Real> sums(frame.tree, scene, record, work.flags);
     RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, work.rays, stack);
     tree.resume(branch);
     record.rays = work.rays.total();

@@ -30,9 +30,15 @@ CISTULA_INLINE auto greatest_word(const Vec3<Real>& a) {
 template <class Real>
 class PixelSums {
   public:
-    /// For one sample. Weights have a share per color, or one for all. `bound` is the scene's radiance bound B per channel.
-    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Vec3<Real>& bound, PixelRecord& record, uint32_t& flags)
-        : settings_(settings), bound_(bound), record_(record), flags_(flags), left_(settings.budget) {}
+    /// For one sample. Weights have a share per color, or one for all.
+    template <class Scene>
+    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
+        : settings_(settings),
+          bound_(scene.bound),
+          largest_bound_(scene.largest_bound),
+          record_(record),
+          flags_(flags),
+          left_(settings.budget) {}
 
     CISTULA_INLINE void add(const Vec3<Real>& radiance) {
         for (int c = 0; c < 3; ++c) {
@@ -68,9 +74,11 @@ class PixelSums {
   private:
     /// Whether the branch could add more than one unit of the sums; what is not finite or beyond the bound is left to
     /// most_of.
-    template <class Share>
-    CISTULA_INLINE bool clearly_counts(const Share& weight) const {
-        const auto most = greatest_word(weight * bound_);
+    CISTULA_INLINE bool clearly_counts(const Vec3<Real>& weight) const { return counts(greatest_word(weight * bound_)); }
+    CISTULA_INLINE bool clearly_counts(Real weight) const { return counts(word_of(weight * largest_bound_)); }
+
+    template <class Word>
+    CISTULA_INLINE bool counts(Word most) const {
         return most <= word_of(Real(1)) && most > word_of(Real(settings_.fixed_unit));
     }
 
@@ -87,7 +95,8 @@ class PixelSums {
     }
 
     const TreeSettings& settings_;
-    const Vec3<Real>& bound_;
+    const Vec3<Real>& bound_;  // the scene's radiance bound B
+    const Real& largest_bound_;
     PixelRecord& record_;
     uint32_t& flags_;
     int64_t left_;

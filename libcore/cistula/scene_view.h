@@ -148,12 +148,26 @@ struct Texture {
 /// No tree is deeper, so traversal stacks of this size never run over.
 inline constexpr int max_tree_depth = 48;
 
-/// A node of a binary tree over primitives or seen lights: the boxes of both children, already padded.
+/// A node of a binary tree over primitives: the boxes of both children, already padded.
 /// A child >= 0 is a node; a child < 0 is a leaf that holds items [~child, ~child + count).
 struct alignas(16) TreeNode {
     float low[2][3], high[2][3];
     int32_t child[2];
     uint32_t count[2];
+};
+
+/// A node of a tree over seen lights: few rays come near one, so that a tree that is wide and soon left is worth more than an order.
+/// Boxes already padded, of children that are missing a point at infinity.
+struct alignas(16) LightNode {
+    static constexpr int width = 4;
+    struct alignas(16) Planes {
+        float of[width];
+    };
+    struct alignas(16) Children {
+        int32_t of[width];  // a node, or ~light
+    };
+    Planes planes[6];  // 2 axis: the low ones, 2 axis + 1: the high ones
+    Children children;
 };
 
 template <class Real>
@@ -174,10 +188,10 @@ struct SceneView {
     Span<Vec3<float>> texels;
     Span<TreeNode> tree;                // over primitives; may be empty (then brute force or Embree finds hits)
     Span<uint32_t> tree_items;
-    Span<TreeNode> seen_tree;           // over seen_lights; empty where there are few
-    Span<uint32_t> seen_items;
+    Span<LightNode> seen_tree;          // over seen_lights; empty where there are few
     Vec3<Real> background;
     Vec3<Real> bound;                   // B per channel, at most 1, slack included
+    Real largest_bound;                 // of these
     Real extent;                        // M: the largest coordinate, in [1, 2)
 };
 

@@ -71,10 +71,10 @@ struct SmallScene {
     Span<Vec3<float>> texels;
     Span<TreeNode> tree;
     Span<uint32_t> tree_items;
-    Span<TreeNode> seen_tree;
-    Span<uint32_t> seen_items;
+    Span<LightNode> seen_tree;
     Vec3<Real> background;
     Vec3<Real> bound;
+    Real largest_bound;
     Real extent;
 
     /// False if `here`, a view that can be read, is too large, or if a ray in it may be inside more than one solid or a mesh:
@@ -96,10 +96,10 @@ struct SmallScene {
         tree = there.tree;
         tree_items = there.tree_items;
         seen_tree = there.seen_tree;
-        seen_items = there.seen_items;
         plan.clear(convex.size, clusters.size);
         background = here.background;
         bound = here.bound;
+        largest_bound = here.largest_bound;
         extent = here.extent;
         return true;
     }

@@ -12,6 +12,7 @@
 #include "scene/compile_solids.h"
 #include "scene/compiled_scene.h"
 #include "scene/edge_light_reach.h"
+#include "scene/light_tree.h"
 #include "scene/error.h"
 #include "scene/radiance_bound.h"
 #include "scene/scene_hash.h"
@@ -312,9 +313,7 @@ class Compiler {
             primitives.push_back(padded_primitive(box, 0x1p-18 * static_cast<double>(scene_.extent),
                                                   static_cast<uint32_t>(primitives.size())));
         }
-        Tree tree = build_tree(primitives, 1);
-        scene_.seen_tree = std::move(tree.nodes);
-        scene_.seen_items = std::move(tree.items);
+        scene_.seen_tree = light_tree(build_tree(primitives, 1));
         reach_edge_lights(scene_, owners);
     }
 

@@ -93,9 +93,9 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.tree = span_of(tree);
     v.tree_items = span_of(tree_items);
     v.seen_tree = span_of(seen_tree);
-    v.seen_items = span_of(seen_items);
     v.background = background;
     v.bound = bound;
+    v.largest_bound = largest_component(bound);
     v.extent = extent;
     return v;
 }
@@ -104,7 +104,7 @@ template <class Real>
 size_t CompiledScene<Real>::memory() const {
     return bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) + bytes_of(clusters) + bytes_of(uvs) +
            bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(seen_lights) + bytes_of(textures) +
-           bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) + bytes_of(seen_tree) + bytes_of(seen_items);
+           bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) + bytes_of(seen_tree);
 }
 
 template <class Real>

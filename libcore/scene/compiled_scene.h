@@ -28,8 +28,7 @@ struct CompiledScene {
     std::vector<Vec3<float>> texels;
     std::vector<TreeNode> tree;  // filled by build_primitive_tree only
     std::vector<uint32_t> tree_items;
-    std::vector<TreeNode> seen_tree;
-    std::vector<uint32_t> seen_items;
+    std::vector<LightNode> seen_tree;
     Vec3<Real> background, bound;
     Real extent = 1;
 

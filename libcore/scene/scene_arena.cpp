@@ -25,7 +25,6 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
     visit(view.tree);
     visit(view.tree_items);
     visit(view.seen_tree);
-    visit(view.seen_items);
 }
 
 }  // namespace

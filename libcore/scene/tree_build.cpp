@@ -121,7 +121,7 @@ Tree single_leaf(const BuildNode& leaf, const RTCBounds& bounds) {
     set_leaf(tree, 0, 0, leaf);
     RTCBounds nothing{};
     nothing.lower_x = nothing.lower_y = nothing.lower_z = INFINITY;
-    nothing.upper_x = nothing.upper_y = nothing.upper_z = -INFINITY;
+    nothing.upper_x = nothing.upper_y = nothing.upper_z = INFINITY;
     set_box(tree.nodes[0], 1, nothing);
     tree.nodes[0].child[1] = ~static_cast<int32_t>(tree.items.size());
     tree.nodes[0].count[1] = 0;

@@ -69,8 +69,11 @@ CISTULA_HD inline void trace(const Setup<Real>& setup, const Intersector& inters
     settings.fixed_scale = 0x1p62;
     settings.fixed_unit = 0x1p-62;
     PixelRecord record = PixelRecord();
-    const Vec3<Real> bound(Real(1));
-    PixelSums<Real> sums(settings, bound, record, lines.flags);
+    const struct {
+        Vec3<Real> bound = Vec3<Real>(Real(1));
+        Real largest_bound = Real(1);
+    } any_scene;
+    PixelSums<Real> sums(settings, any_scene, record, lines.flags);
     PixelRays rays;
     Stack stack;
     lines.count = 0;
