@@ -161,7 +161,8 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     render_adaptive(const __grid_constant__ FrameJob job,
                     const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, path>::Intersector;
-    __shared__ BlockRoom room;
+    __shared__ Unset<BlockRoom> memory;
+    BlockRoom& room = memory.get();
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
     PixelRecord& taken = room.records[threadIdx.x];
     StackOf<Real, E, typename Intersector::Media> stack;

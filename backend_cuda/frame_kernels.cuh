@@ -137,7 +137,8 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     using Intersector = typename PathTraits<Real, path>::Intersector;
     using Media = typename Intersector::Media;
     using Stack = DeviceStack<Real, E, Media>;
-    __shared__ BlockRoom room;
+    __shared__ Unset<BlockRoom> memory;
+    BlockRoom& room = memory.get();
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
     const bool shares = shares_tiles(job.frame);
     const BlockShape block = BlockShape::of(job.frame);

@@ -16,6 +16,13 @@ struct alignas(16) BlockRoom {
     PixelWork work[block_threads];
 };
 
+/// Shared memory, unset: what it holds would be set by its constructors, of which the language allows none there.
+template <class T>
+struct alignas(T) Unset {
+    unsigned char bytes[sizeof(T)];
+    __device__ T& get() { return reinterpret_cast<T&>(bytes); }
+};
+
 /// Blocks that share a multiprocessor: what bounds the registers of a thread, at 80 and 128. Others were slower on an
 /// H200.
 template <class Real>
