@@ -270,6 +270,7 @@ TEST_F(Program, RefusesWhatIsWrong) {
         {{"small.json", "-o", "r.html", "--repetitions", "0"}, 2, "--repetitions 0"},
         {{"small.json", "-o", "r.html", "--limit", "-1"}, 2, "--limit -1"},
         {{"small.json", "-o", "r.html", "--quik"}, 2, "did you mean '--quick'?"},
+        {{"small.json", "-o", "r.html", "--scaling=all"}, 2, "--scaling all"},
         {{"small.json", "-o", "small.json"}, 2, "a file of its own"},
         {{"small.json", "-o", "r.html", "--json", "r.html"}, 2, "a file of its own"},
         {{"small.json", "--from", "r.json", "-o", "r.html"}, 2, "a scene and --from"},
@@ -289,6 +290,23 @@ TEST_F(Program, RefusesWhatIsWrong) {
         EXPECT_EQ(result.error.rfind("render-report: ", 0), 0u) << result.error;
         EXPECT_FALSE(std::filesystem::exists(folder.file("r.html"))) << one.message;
     }
+}
+
+TEST_F(Program, ScalingByItselfIsARecordToShowBesideOthers) {
+    const ProgramResult result =
+        run({"small.json", "--quick", "--repetitions", "1", "--scaling=only", "-q", "--json", "s.json"});
+    ASSERT_EQ(result.code, 0) << result.error;
+    const Record record = parse_record(bytes_of(folder.file("s.json")), "s.json");
+    EXPECT_TRUE(record.scenes.empty());
+    EXPECT_TRUE(record.entries.empty());
+    std::vector<std::string> names;
+    for (const ScalingSeries& series : record.scaling) {
+        names.push_back(series.name);
+        EXPECT_GE(series.points.size(), 3u) << series.name;
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"triangles", "lights", "depth", "pixels"}));
+    ASSERT_EQ(run({"--from", "s.json", "-o", "s.html"}).code, 0);
+    EXPECT_NE(bytes_of(folder.file("s.html")).find("Time against triangles"), std::string::npos);
 }
 
 TEST_F(Program, AnInterruptionLeavesNothing) {

@@ -19,8 +19,8 @@ constexpr int quick_repetitions = 3;
 /// The options' texts as CLI11 leaves them.
 struct Texts {
     std::vector<std::string> scenes, from;
-    std::string output, json, verify, seed_baseline, cache, backend, device, threads, resolution, repetitions, limit;
-    bool no_cache = false, quick = false, scaling = false, quiet = false, version = false;
+    std::string output, json, verify, seed_baseline, cache, backend, device, threads, resolution, repetitions, limit, scaling;
+    bool no_cache = false, quick = false, quiet = false, version = false;
 };
 
 void declare(CLI::App& app, Texts& texts) {
@@ -39,7 +39,8 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--limit", texts.limit, "leave out settings whose frames take longer than S seconds; 2")
         ->type_name("S");
     app.add_flag("--quick", texts.quick, "fewer settings and runs: to try it out");
-    app.add_flag("--scaling", texts.scaling, "also time against triangles, lights, depth, pixels and GPUs");
+    app.add_flag("--scaling{also}", texts.scaling,
+                 "also time against triangles, lights, depth, pixels and GPUs; --scaling=only: nothing else");
     app.add_option("--verify", texts.verify, "show the hard cases' verdicts from render-verify's --json")
         ->type_name("FILE");
     app.add_option("--seed-baseline", texts.seed_baseline,
@@ -68,7 +69,7 @@ void check_from(const Texts& texts) {
                                                       {"--limit", !texts.limit.empty()},
                                                       {"--repetitions", !texts.repetitions.empty()},
                                                       {"--quick", texts.quick},
-                                                      {"--scaling", texts.scaling},
+                                                      {"--scaling", !texts.scaling.empty()},
                                                       {"--cache", !texts.cache.empty()},
                                                       {"--no-cache", texts.no_cache},
                                                       {"--json", !texts.json.empty()}};
@@ -134,7 +135,8 @@ ReportOptions parse_report_options(int argc, const char* const* argv) {
         options.height = size.height;
     }
     options.quick = texts.quick;
-    options.scaling = texts.scaling;
+    if (!texts.scaling.empty())
+        options.scaling = chosen<ScalingChoice>("--scaling", texts.scaling, {{"also", ScalingChoice::also}, {"only", ScalingChoice::only}});
     options.quiet = texts.quiet;
     options.repetitions = texts.repetitions.empty() ? (options.quick ? quick_repetitions : options.repetitions)
                                                     : integer_option("--repetitions", texts.repetitions, 1, 1000);

@@ -9,6 +9,7 @@
 namespace cistula::report {
 
 enum class Action { report, print_help, print_version };
+enum class ScalingChoice { none, also, only };
 
 struct ReportOptions {
     Action action = Action::report;
@@ -21,7 +22,8 @@ struct ReportOptions {
     int width = 0, height = 0;  // 0: each scene's film
     int repetitions = 10;
     double limit = 2;  // seconds a frame
-    bool quick = false, scaling = false, quiet = false;
+    ScalingChoice scaling = ScalingChoice::none;
+    bool quick = false, quiet = false;
 };
 
 /// Throws Error (usage).

@@ -60,13 +60,14 @@ Record measure(const ReportOptions& options, int threads) {
     Progress progress(options.quiet);
     InterruptGuard guard;
     guard.watch(progress.render.stop);
-    for (const std::string& scene : options.scenes) measure_scene(scene, settings, progress, record);
+    if (options.scaling != ScalingChoice::only)
+        for (const std::string& scene : options.scenes) measure_scene(scene, settings, progress, record);
     if (record.seed) {
         for (const std::string& scene : options.scenes)
             if (std::filesystem::path(scene).stem() == record.seed->scene)
                 measure_seed_table(scene, settings, progress, record, *record.seed);
     }
-    if (options.scaling) measure_scaling(options.scenes.front(), settings, progress, record);
+    if (options.scaling != ScalingChoice::none) measure_scaling(options.scenes.front(), settings, progress, record);
     return record;
 }
 
