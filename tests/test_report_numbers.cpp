@@ -211,6 +211,7 @@ Entry entry_of(const Setting& setting, double rmse, double time, double samples)
     Entry entry;
     entry.setting = setting;
     entry.error.rmse = rmse;
+    entry.error.p999 = 3 * rmse;
     entry.wall.runs = {time};
     entry.samples = samples;
     if (setting.adaptive()) entry.target = TargetOutcome{0.25, 3};
@@ -249,6 +250,12 @@ TEST(TargetTable, FindsTheQuickestFixedSettingThatIsAsClose) {
     EXPECT_EQ(json.at("rows").at(0).at("over_target"), 0.25);
     EXPECT_EQ(json.at("rows").at(1).at("fixed"), "none");
     EXPECT_FALSE(json.at("rows").at(1).contains("ratio"));
+}
+
+TEST(TargetTable, OnePixelFarOffMakesNoSettingAsClose) {
+    std::vector<Entry> entries = {grid_entry(1, 0.1, 1), grid_entry(4, 0.02, 16), target_entry(0.01, 0.03, 8, 6)};
+    entries[2].error.p999 = 0.01;  // a few pixels make its RMSE
+    EXPECT_EQ(table_of(entries).rows[0].fixed, nullptr);
 }
 
 TEST(TargetTable, InterpolatesTheSamplesForTheErrorOfAGrid) {

@@ -52,7 +52,7 @@ TargetTable target_table(const std::vector<const Entry*>& entries) {
         if (!entry->setting.adaptive()) continue;
         TargetRow row{entry, nullptr};
         for (const Entry* other : entries)
-            if (!other->setting.adaptive() && other->error.rmse <= entry->error.rmse &&
+            if (!other->setting.adaptive() && other->error.p999 <= entry->error.p999 &&
                 (row.fixed == nullptr || other->wall.median() < row.fixed->wall.median()))
                 row.fixed = other;
         table.rows.push_back(row);
@@ -70,6 +70,7 @@ void to_json(Json& json, const TargetTable& table) {
         const Metrics& error = row.entry->error;
         Json one = {{"target_error", row.entry->setting.target_error},
                     {"rmse", error.rmse},
+                    {"p999", error.p999},
                     {"max", error.max},
                     {"worst", {{"x", error.worst_x}, {"y", error.worst_y}}},
                     {"over_target", row.entry->target->over},
@@ -79,6 +80,7 @@ void to_json(Json& json, const TargetTable& table) {
                     {"fixed", row.fixed ? Json(setting_name(row.fixed->setting)) : Json("none")}};
         if (row.fixed) {
             one["fixed_rmse"] = row.fixed->error.rmse;
+            one["fixed_p999"] = row.fixed->error.p999;
             one["fixed_time_ms"] = row.fixed->wall.median();
             one["ratio"] = row.ratio();
         }

@@ -11,7 +11,7 @@ namespace cistula::report {
 
 struct TargetRow {
     const Entry* entry = nullptr;  // with the target
-    const Entry* fixed = nullptr;  // the quickest fixed setting with an RMSE no larger; null: none was measured
+    const Entry* fixed = nullptr;  // the quickest fixed setting with a p999 no larger; null: none was measured
 
     /// The target's time over the fixed setting's; there must be one.
     double ratio() const;
@@ -30,7 +30,8 @@ struct TargetTable {
     std::optional<UniformRow> uniform;
 };
 
-/// Of one scene's entries, by measured RMSE and median wall time. Points into them.
+/// Of one scene's entries, by median wall time. As close is what keeps 99.9 % of the pixels as close: that is what a target speaks of,
+/// while an RMSE may be one pixel's. Samples are compared at an RMSE, as that of a grid is all of its pixels'. Points into them.
 TargetTable target_table(const std::vector<const Entry*>& entries);
 
 void to_json(Json& json, const TargetTable& table);

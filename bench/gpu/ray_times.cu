@@ -1,5 +1,6 @@
 // The ray benchmark's kernels: those that are timed read a ray, trace it and write what it found.
 #include "backend_cuda/cuda_check.h"
+#include "backend_cuda/kernel_parts.cuh"
 #include "bench/gpu/ray_kernels.h"
 
 namespace cistula::bench {
@@ -21,14 +22,15 @@ __global__ void __launch_bounds__(block_rays) make_further_rays(const __grid_con
                     job.arrays.shadow[i]);
 }
 
+// With the registers of the frame's kernels: left to itself, ptxas takes fewer and spills.
 template <class Real>
-__global__ void __launch_bounds__(block_rays)
+__global__ void __launch_bounds__(block_rays, least_blocks<Real>)
     find_hits(const __grid_constant__ SceneView<Real> scene, const StoredRay<Real>* rays, StoredHit<Real>* hits) {
     hits[ray_index()] = closest_hit_of(scene, rays[ray_index()]);
 }
 
 template <class Real>
-__global__ void __launch_bounds__(block_rays)
+__global__ void __launch_bounds__(block_rays, least_blocks<Real>)
     find_light(const __grid_constant__ SceneView<Real> scene, const StoredRay<Real>* rays, uint8_t* light) {
     light[ray_index()] = light_of(scene, rays[ray_index()]);
 }
