@@ -10,6 +10,7 @@
 namespace cistula {
 namespace {
 
+using samples::add_light;
 using samples::add_object;
 using samples::empty_scene;
 using samples::solid;
@@ -119,6 +120,27 @@ TYPED_TEST(CompilePrimitives, BoxesOfConvexSolidsHoldTheirCornersPushedOut) {
     }
 }
 
+/// Every light and every node but the first is one node's child.
+template <class Real>
+void expect_each_once(const CompiledScene<Real>& compiled) {
+    std::multiset<int32_t> children;
+    for (const LightNode& node : compiled.seen_tree)
+        for (size_t i = 0; i < LightNode::width; ++i)
+            if (node.planes[0].of[i] < RealTraits<float>::infinity) children.insert(node.children.of[i]);
+    const auto lights = static_cast<int32_t>(compiled.seen_lights.size()), nodes = static_cast<int32_t>(compiled.seen_tree.size());
+    for (int32_t light = 0; light < lights; ++light) EXPECT_EQ(children.count(~light), 1u) << light;
+    for (int32_t node = 1; node < nodes; ++node) EXPECT_EQ(children.count(node), 1u) << node;
+    EXPECT_EQ(children.size(), static_cast<size_t>(lights + nodes - 1));
+}
+
+TYPED_TEST(CompilePrimitives, SeenLightsInOnePlaceAreAllInTheTree) {
+    SceneDescription scene = empty_scene();
+    for (int i = 0; i < 21; ++i) add_light(scene, {i == 7 ? 2.0 : 1.0, 0, 0}).radius = 0.01;
+    const auto compiled = compile_scene<TypeParam>(scene);
+    ASSERT_EQ(compiled->seen_lights.size(), 21u);
+    expect_each_once(*compiled);
+}
+
 TYPED_TEST(CompilePrimitives, SeenLightsGetATreeWhereThereAreMany) {
     SceneDescription scene = empty_scene();
     SolidObject object = solid(PlatonicSolid::icosahedron);
@@ -127,13 +149,7 @@ TYPED_TEST(CompilePrimitives, SeenLightsGetATreeWhereThereAreMany) {
     add_object(scene, object);
     const auto compiled = compile_scene<TypeParam>(scene);
     ASSERT_EQ(compiled->seen_lights.size(), 180u);
-    std::multiset<int32_t> children;
-    for (const LightNode& node : compiled->seen_tree)
-        for (int i = 0; i < LightNode::width; ++i)
-            if (node.planes[0].of[i] < RealTraits<float>::infinity) children.insert(node.children.of[i]);
-    for (int32_t light = 0; light < 180; ++light) EXPECT_EQ(children.count(~light), 1u) << light;
-    for (int32_t node = 1; node < int32_t(compiled->seen_tree.size()); ++node) EXPECT_EQ(children.count(node), 1u) << node;
-    EXPECT_EQ(children.size(), 180u + compiled->seen_tree.size() - 1);
+    expect_each_once(*compiled);
     EXPECT_LT(compiled->seen_tree.size(), 2 * 60u);  // 60 would be full
 }
 

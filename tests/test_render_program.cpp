@@ -371,7 +371,8 @@ TEST_F(RenderProgram, ATargetIsReachedAndSaid) {
     EXPECT_EQ(frame.at("rays").at("primary").get<double>(), sum);
     const auto& target = frame.at("target");
     EXPECT_EQ(target.at("reached"), true);
-    for (const char* key : {"pixels_missed", "pixels_truncated", "pixels_undersampled", "pixels_rounded"}) EXPECT_EQ(target.at(key), 0);
+    for (const char* key : {"pixels_missed", "pixels_truncated", "pixels_undersampled", "pixels_rounded"})
+        EXPECT_EQ(target.at(key), 0);
     EXPECT_LE(target.at("worst_truncation").get<double>(), 0.005);
     EXPECT_GT(target.at("worst_truncation").get<double>(), 0);
 

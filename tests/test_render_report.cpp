@@ -271,6 +271,8 @@ TEST_F(Program, RefusesWhatIsWrong) {
         {{"small.json", "-o", "r.html", "--limit", "-1"}, 2, "--limit -1"},
         {{"small.json", "-o", "r.html", "--quik"}, 2, "did you mean '--quick'?"},
         {{"small.json", "-o", "r.html", "--scaling=all"}, 2, "--scaling all"},
+        {{"small.json", "small.json", "-o", "r.html", "--scaling=only"}, 2, "looks at one scene"},
+        {{"small.json", "--seed-baseline", "bad.json", "-o", "r.html", "--scaling=only"}, 2, "measures none"},
         {{"small.json", "-o", "small.json"}, 2, "a file of its own"},
         {{"small.json", "-o", "r.html", "--json", "r.html"}, 2, "a file of its own"},
         {{"small.json", "--from", "r.json", "-o", "r.html"}, 2, "a scene and --from"},

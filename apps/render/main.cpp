@@ -111,7 +111,7 @@ void print_summary(const RunStats& stats, const OutputName& image, double second
 void judge_target(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
     const bool reached =
         std::all_of(stats.frames.begin(), stats.frames.end(), [](const auto& f) { return f.target.missed == 0; });
-    const std::string text = describe_target(stats.frames, settings);
+    const std::string text = describe_target(stats.frames, settings, options.precision);
     if (!reached) throw Error(ExitCode::target, text);
     if (!options.quiet) fmt::print(stderr, "render: {}\n", text);
 }

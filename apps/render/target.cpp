@@ -24,10 +24,9 @@ void TargetReport::add(const TargetReport& other) {
 TargetReport target_report(const Film& film, const FrameSettings& settings) {
     TargetReport report;
     const double unit = film.unit();
-    int64_t brightest = 0;
-    for (const PixelRecord& pixel : film.pixels) brightest = std::max(brightest, *std::max_element(pixel.radiance, pixel.radiance + 3));
-    // A border moved by a share of the pixel's width changes it by that share of what lies on either side, at most.
-    const double needed = film.rounding * static_cast<double>(brightest) * unit / settings.target_error;
+    // A border that is moved by a share of the pixel's width changes it by that share of what lies on its brighter side:
+    // twice the pixel's radiance, if the border halves it and the other side is dark.
+    const double worth = 2 * film.rounding * unit / settings.target_error;
     for (const PixelRecord& pixel : film.pixels) {
         double truncation = 0, pruned = 0;
         for (int c = 0; c < 3; ++c) {
@@ -39,7 +38,9 @@ TargetReport target_report(const Film& film, const FrameSettings& settings) {
         report.truncated += truncated;
         report.bushy += pruned > settings.truncation();
         report.undersampled += pixel.unmet;
-        const bool rounded = pixel.samples > least_lattice_samples && static_cast<double>(pixel.z) < needed;
+        const int64_t brightest = *std::max_element(pixel.radiance, pixel.radiance + 3);
+        const bool rounded = pixel.samples > least_lattice_samples &&
+                             static_cast<double>(pixel.z) < worth * static_cast<double>(brightest);
         report.rounded += rounded;
         report.missed += truncated || pixel.unmet || rounded;
         report.worst_truncation = std::max(report.worst_truncation, truncation);
@@ -47,7 +48,8 @@ TargetReport target_report(const Film& film, const FrameSettings& settings) {
     return report;
 }
 
-std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings) {
+std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings,
+                            Precision precision) {
     TargetReport all;
     uint64_t pixels = 0;
     for (const FrameStats& frame : frames) {
@@ -71,7 +73,8 @@ std::string describe_target(const std::vector<FrameStats>& frames, const FrameSe
         reasons.push_back(
             fmt::format("{} want more than {} samples; raise --max-samples", all.undersampled, settings.max_samples));
     if (all.rounded != 0)
-        reasons.push_back(fmt::format("{} have borders that rounding may move by more; --precision double", all.rounded));
+        reasons.push_back(fmt::format("{} have borders that rounding may move by more{}", all.rounded,
+                                      precision == Precision::single_ ? "; --precision double" : ""));
     return fmt::format("{}{} ({})", text, fmt::join(reasons, "; "), cost);
 }
 

@@ -1,5 +1,5 @@
-// How far a frame with --target-error came: what is proven of truncation, where sampling had to stop, and where places are
-// too coarse for it.
+// How far a frame with --target-error came: what is proven of truncation, where sampling had to stop, and where places
+// are too coarse for it.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +29,7 @@ TargetReport target_report(const Film& film, const FrameSettings& settings);
 struct FrameStats;
 
 /// One line for all frames; says what would reach the target where it was missed.
-std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings);
+std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings,
+                            Precision precision);
 
 }  // namespace cistula

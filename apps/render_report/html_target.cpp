@@ -90,7 +90,8 @@ std::string errors_html(const Shown& shown, const TargetTable& table) {
 }
 
 std::string fixed_html(const Shown& shown, const TargetTable& table) {
-    Table rows({">target", ">99.9 % within", ">time", "quickest fixed setting as close", ">99.9 % within", ">time", ">target / fixed"},
+    Table rows({">target", ">99.9 % within", ">time", "quickest fixed setting as close", ">99.9 % within", ">time",
+                ">target / fixed"},
                "Beside the quickest fixed setting of the sweep that keeps 99.9 % of the pixels as close");
     for (const TargetRow& row : table.rows) {
         std::vector<std::string> cells = {number_text(row.entry->setting.target_error),

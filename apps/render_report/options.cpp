@@ -19,7 +19,8 @@ constexpr int quick_repetitions = 3;
 /// The options' texts as CLI11 leaves them.
 struct Texts {
     std::vector<std::string> scenes, from;
-    std::string output, json, verify, seed_baseline, cache, backend, device, threads, resolution, repetitions, limit, scaling;
+    std::string output, json, verify, seed_baseline, cache, backend, device, threads, resolution, repetitions, limit;
+    std::string scaling;
     bool no_cache = false, quick = false, quiet = false, version = false;
 };
 
@@ -136,7 +137,12 @@ ReportOptions parse_report_options(int argc, const char* const* argv) {
     }
     options.quick = texts.quick;
     if (!texts.scaling.empty())
-        options.scaling = chosen<ScalingChoice>("--scaling", texts.scaling, {{"also", ScalingChoice::also}, {"only", ScalingChoice::only}});
+        options.scaling = chosen<ScalingChoice>(
+            "--scaling", texts.scaling, {{"also", ScalingChoice::also}, {"only", ScalingChoice::only}});
+    if (options.scaling == ScalingChoice::only) {
+        refuse(texts.scenes.size() > 1, "--scaling=only", "looks at one scene; give one");
+        refuse(!texts.seed_baseline.empty(), "--seed-baseline", "is measured beside scenes; --scaling=only measures none");
+    }
     options.quiet = texts.quiet;
     options.repetitions = texts.repetitions.empty() ? (options.quick ? quick_repetitions : options.repetitions)
                                                     : integer_option("--repetitions", texts.repetitions, 1, 1000);

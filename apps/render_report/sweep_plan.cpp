@@ -90,7 +90,8 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
             setting.intersector = other;
             plan.add(setting).alone["intersector"] = exact;
         }
-    // A target is about all of the error. What small ones take without it: the whole lattice, with more truncation or as much.
+    // A target is about all of the error. What small ones take without it: the whole lattice, with more truncation or
+    // as much.
     for (const double cutoff : cutoffs)
         if (cutoff > 0) plan.add(with(base, deepest, cutoff, single, reference_supersample));
     for (const double target : quick ? std::vector<double>{0.1, 0.03, 0.01, 0.004}

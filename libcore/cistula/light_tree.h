@@ -23,8 +23,8 @@ CISTULA_INLINE void walk_lights(const Span<LightNode>& nodes, BoxRay box_ray, co
             const LightNode& node = nodes[uint32_t(next)];
             float near_t[width], far_t[width];
             for (int i = 0; i < width; ++i) near_t[i] = box_ray.near_limit, far_t[i] = box_ray.far_limit;
-            for (int k = 0; k < 3; ++k) {
-                const LightNode::Planes first = node.planes[first_met[k]], last = node.planes[first_met[k] ^ 1u];  // whole: wide loads
+            for (int k = 0; k < 3; ++k) {  // copies of whole planes: wide loads
+                const LightNode::Planes first = node.planes[first_met[k]], last = node.planes[first_met[k] ^ 1u];
                 CISTULA_VECTORS
                 for (int i = 0; i < width; ++i) {
                     near_t[i] = greater(box_ray.meets(k, first.of[i]), near_t[i]);

@@ -156,8 +156,8 @@ struct alignas(16) TreeNode {
     uint32_t count[2];
 };
 
-/// A node of a tree over seen lights: few rays come near one, so that a tree that is wide and soon left is worth more than an order.
-/// Boxes already padded, of children that are missing a point at infinity.
+/// A node of a tree over seen lights: few rays come near one, so that four boxes at a time are worth more than the nearer of
+/// two first. Boxes are already padded; that of a child that is not there is a point at infinity.
 struct alignas(16) LightNode {
     static constexpr int width = 4;
     struct alignas(16) Planes {

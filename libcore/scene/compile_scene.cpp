@@ -12,8 +12,8 @@
 #include "scene/compile_solids.h"
 #include "scene/compiled_scene.h"
 #include "scene/edge_light_reach.h"
-#include "scene/light_tree.h"
 #include "scene/error.h"
+#include "scene/light_tree.h"
 #include "scene/radiance_bound.h"
 #include "scene/scene_hash.h"
 

@@ -50,7 +50,7 @@ struct Film {
     int radiance_exponent = 0;  // radiances were divided by 2^radiance_exponent
     int samples = 1;            // per pixel
     int fixed_shift = 0;        // s of the fixed sums
-    double rounding = 0;        // how far rounding moves points, in pixels' widths at distance 1 (scene units) from the camera
+    double rounding = 0;        // how far rounding moves points, in widths of a pixel at distance 1 (scene units)
     std::vector<PixelRecord, UnsetAllocator<PixelRecord>> pixels;
     RayCounts rays;
     uint32_t flags = 0;         // RenderFlag bits of all pixels

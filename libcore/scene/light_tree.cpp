@@ -1,6 +1,8 @@
 #include "scene/light_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace cistula {
 namespace {
