@@ -96,15 +96,21 @@ struct BlockShape {
     }
 };
 
-/// A block's threads write its records, whole lines at a time; all of the block's in few instructions.
+/// A block's threads write its records, whole rows at a time: the words of a record are as many lanes' as it has, which
+/// spares all divisions.
 template <int width, int height>
 __device__ void write_all(const PixelRecord* staged, PixelRecord* to, int frame_width) {
-    constexpr int words = width * int(sizeof(PixelRecord)) / int(sizeof(uint4));
-    const auto* from = reinterpret_cast<const uint4*>(staged);
-    auto* out = reinterpret_cast<uint4*>(to);
-    const int pitch = frame_width / 2 * (2 * int(sizeof(PixelRecord)) / int(sizeof(uint4)));
+    constexpr int lanes = int(sizeof(PixelRecord)) / 4, words = width * int(sizeof(PixelRecord)) / int(sizeof(uint4));
+    static_assert(lanes <= warp_threads && words % lanes == 0 && height % block_warps == 0);
+    const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
+    if (lane >= lanes) return;
+    const size_t pitch = size_t(frame_width / 2) * (2 * sizeof(PixelRecord) / sizeof(uint4));
+    const auto* from = reinterpret_cast<const uint4*>(staged) + warp * words + lane;
+    auto* out = reinterpret_cast<uint4*>(to) + size_t(warp) * pitch + size_t(lane);
 #pragma unroll
-    for (int i = int(threadIdx.x); i < words * height; i += block_threads) out[i / words * pitch + i % words] = from[i];
+    for (int r = 0; r < height / block_warps; ++r, from += block_warps * words, out += block_warps * pitch)
+#pragma unroll
+        for (int i = 0; i < words; i += lanes) out[i] = from[i];
 }
 
 /// The first columns of its rows.
@@ -163,8 +169,8 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
             for (int other = 1; other < block_warps; ++other) record.add(room.records[other * warp_threads + lane]);
         __syncthreads();
     }
+    if (warp == 0) add_block_to_tally(*job.tally, room.work);
     write_block(room.records, block, job, left, top);
-    add_to_tally(*job.tally, own.rays, own.flags);
 }
 
 template <class Real, class E, DevicePath path>

@@ -56,22 +56,33 @@ __device__ inline unsigned int warp_sum(unsigned int value) {
 #endif
 }
 
-/// Sums over the warp first, in words; where they could overflow, each lane by itself.
+/// Sums over the warp first, two in a word; where they could overflow, each lane by itself.
 __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, unsigned int flags) {
+    constexpr int half = 16;
     const unsigned int counts[4] = {rays.primary, rays.reflected, rays.transmitted, rays.shadow};
     unsigned long long* to = tally.rays[(blockIdx.x + blockIdx.y * 7u) % DeviceTally::slots];
-    if (__any_sync(0xffffffffu, (counts[0] | counts[1] | counts[2] | counts[3]) >> 27 != 0)) {
+    if (__any_sync(0xffffffffu, (counts[0] | counts[1] | counts[2] | counts[3]) >= (1u << half) / warp_threads)) {
         for (int i = 0; i < 4; ++i) atomicAdd(to + i, (unsigned long long)counts[i]);
     } else {
-        const int lane = threadIdx.x % warp_threads;
-        unsigned int sum = 0;
-        for (int i = 0; i < 4; ++i) {
-            const unsigned int whole = warp_sum(counts[i]);
-            if (lane == i) sum = whole;
-        }
+        const unsigned int lane = threadIdx.x % warp_threads;
+        const unsigned int first = warp_sum(counts[0] | counts[1] << half), last = warp_sum(counts[2] | counts[3] << half);
+        const unsigned int sum = (lane < 2 ? first : last) >> (lane % 2 * half) & ((1u << half) - 1);
         if (lane < 4 && sum != 0) atomicAdd(to + lane, (unsigned long long)sum);
     }
     if (flags != 0) atomicOr(&tally.flags, flags);
+}
+
+/// What a block noted down, by one warp of it, after all are done.
+__device__ inline void add_block_to_tally(DeviceTally& tally, const PixelWork (&work)[block_threads]) {
+    PixelRays rays;
+    unsigned int flags = 0;
+#pragma unroll
+    for (int i = 0; i < block_warps; ++i) {
+        const PixelWork& own = work[i * warp_threads + int(threadIdx.x) % warp_threads];
+        rays.add(own.rays);
+        flags |= own.flags;
+    }
+    add_to_tally(tally, rays, flags);
 }
 
 }  // namespace cistula

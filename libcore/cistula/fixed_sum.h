@@ -26,7 +26,7 @@ template <class Real, class Scale>
 CISTULA_INLINE bool to_fixed(Real x, Scale scale, int64_t& out) {
     const Real value = x * static_cast<Real>(scale);  // exact, scale being a power of two
     if (!(x >= 0 && x <= 1)) return false;
-    out = static_cast<int64_t>(value);
+    out = whole_of(value);
     return true;
 }
 
@@ -35,8 +35,7 @@ template <class Real, class Scale>
 CISTULA_INLINE bool to_fixed_up(Real x, Scale scale, int64_t& out) {
     const Real value = x * static_cast<Real>(scale);
     if (!(x >= 0 && x <= 1)) return false;
-    const int64_t whole = static_cast<int64_t>(value);
-    out = whole + (static_cast<Real>(whole) < value ? 1 : 0);
+    out = whole_above(value);
     return true;
 }
 

@@ -40,12 +40,9 @@ class PixelSums {
           flags_(flags),
           left_(settings.budget) {}
 
-    CISTULA_INLINE void add(const Vec3<Real>& radiance) {
-        for (int c = 0; c < 3; ++c) {
-            int64_t fixed = 0;
-            if (!to_fixed(radiance[c], settings_.fixed_scale, fixed)) flags_ |= flag_not_finite;
-            record_.radiance[c] += fixed;
-        }
+    CISTULA_INLINE void add(Vec3<Real> radiance) {
+        check(radiance);
+        for (int c = 0; c < 3; ++c) record_.radiance[c] += whole_of(radiance[c] * Real(settings_.fixed_scale));
     }
 
     /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of the
@@ -85,13 +82,24 @@ class PixelSums {
     /// The most a branch can add, rounded up; B's slack of 2^-10 covers the rounding of all weights below it.
     template <class Share>
     CISTULA_INLINE int64_t most_of(const Share& weight, int64_t most[3]) {
+        Vec3<Real> bound(channel(weight, 0) * bound_[0], channel(weight, 1) * bound_[1], channel(weight, 2) * bound_[2]);
+        check(bound);
         int64_t worst = 0;
         for (int c = 0; c < 3; ++c) {
-            most[c] = 0;
-            if (!to_fixed_up(channel(weight, c) * bound_[c], settings_.fixed_scale, most[c])) flags_ |= flag_not_finite;
+            most[c] = whole_above(bound[c] * Real(settings_.fixed_scale));
             worst = most[c] > worst ? most[c] : worst;
         }
         return worst;
+    }
+
+    /// What is not in [0, 1] is a fault, and counts as 0. One question for all three, as none ever is.
+    CISTULA_INLINE void check(Vec3<Real>& a) {
+        if (greatest_word(a) <= word_of(Real(1))) return;
+        for (int c = 0; c < 3; ++c) {
+            if (a[c] >= Real(0) && a[c] <= Real(1)) continue;  // -0
+            flags_ |= flag_not_finite;
+            a[c] = Real(0);
+        }
     }
 
     const TreeSettings& settings_;

@@ -108,6 +108,24 @@ CISTULA_INLINE double floor_of(double a) {
     return ::floor(a);
 }
 
+/// floor(a) and ceil(a) for a in [0, 2^63).
+template <class Real>
+CISTULA_INLINE int64_t whole_of(Real a) {
+    return static_cast<int64_t>(a);
+}
+template <class Real>
+CISTULA_INLINE int64_t whole_above(Real a) {
+#if CISTULA_ON_DEVICE
+    if constexpr (sizeof(Real) == sizeof(float))
+        return __float2ll_ru(a);
+    else
+        return __double2ll_ru(a);
+#else
+    const int64_t whole = static_cast<int64_t>(a);
+    return whole + (static_cast<Real>(whole) < a ? 1 : 0);
+#endif
+}
+
 /// std::bit_cast, which device code cannot call everywhere.
 template <class To, class From>
 CISTULA_INLINE To bits_as(const From& from) {

@@ -119,10 +119,7 @@ struct Ray {
 /// A ray that is not finite meets nothing.
 template <class Real, class Media>
 CISTULA_INLINE bool is_finite(const Ray<Real, Media>& ray) {
-    // Of each product 0 or NaN.
-    const Vec3<Real>&o = ray.origin, &d = ray.direction;
-    const Real zero = Real(0);
-    return fused(zero, o.x, fused(zero, o.y, fused(zero, o.z, fused(zero, d.x, fused(zero, d.y, zero * d.z))))) == zero;
+    return nothing_of(ray.origin) + nothing_of(ray.direction) == Real(0);
 }
 
 }  // namespace cistula

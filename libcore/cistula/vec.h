@@ -47,10 +47,14 @@ CISTULA_INLINE Vec3<Real> normalized(const Vec3<Real>& a) {
     return a / length(a);
 }
 
-/// 0 times infinity or NaN is NaN, which a sum keeps: one comparison for all.
+/// 0, or NaN where a component is not finite: 0 times infinity or NaN is NaN, which a sum keeps.
+template <class Real>
+CISTULA_INLINE Real nothing_of(const Vec3<Real>& a) {
+    return fused(a.x, Real(0), fused(a.y, Real(0), a.z * Real(0)));
+}
 template <class Real>
 CISTULA_INLINE bool is_finite(const Vec3<Real>& a) {
-    return a.x * Real(0) + a.y * Real(0) + a.z * Real(0) == Real(0);
+    return nothing_of(a) == Real(0);
 }
 
 template <class Real>
