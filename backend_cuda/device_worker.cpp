@@ -70,10 +70,7 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     }
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
     scene_.view = scene.at(arena_.as<void>());
-    if (path_ == DevicePath::plain_loop) {
-        scene_.small.assign(here, scene_.view);
-        plan_shadows(here, scene_.small.plan);
-    }
+    if (path_ == DevicePath::plain_loop) scene_.small = *small_scene(here, scene_.view);
 }
 
 /// For as many blocks as the device can have at work, or half as many until there is memory.

@@ -100,7 +100,7 @@ struct EmbreeIntersector {
         };
         shadow_start<Real, E>(scene, shadow, query.sum);
         walk_shadow(tree, query.context, shadow);
-        return query.sum.template share<Real>();
+        return query.sum.template share<Real>(scene);
     }
 
     /// RTCIntersectFunctionN of the one user geometry.

@@ -111,7 +111,7 @@ struct NativeIntersector {
         embree_init(query.context);
         query.start();
         walk_shadow(tree, query.context, shadow);
-        return query.sum.template share<Real>();
+        return query.sum.template share<Real>(scene);
     }
 
     /// RTCFilterFunctionN of rtcIntersect1: refused hits do not end the search.

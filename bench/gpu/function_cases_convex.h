@@ -221,8 +221,8 @@ struct ConvexIntervalCase {
         out.unsigned_zero(rest.t);
         out.bits(all.met(scene.extent));
         // Misses, and lies beyond half the way to it.
-        const bool misses = passes_by(in.solid, o, d, RealTraits<Real>::infinity);
-        const bool beyond = passes_by(in.solid, o, d, all.enter * Real(0.5));
+        const bool misses = passes_by(Ball<Real>::of(in.solid), o, d, RealTraits<Real>::infinity);
+        const bool beyond = passes_by(Ball<Real>::of(in.solid), o, d, all.enter * Real(0.5));
         out.bits(4 * uint64_t(beyond) + 2 * uint64_t(inside_convex(scene, in.solid, o)) + uint64_t(misses));
     }
 };
@@ -254,7 +254,7 @@ struct ConvexShadowCase {
         }
         ShadowSum<> sum;
         shadow_convex<Real, Effects<all_effects>>(scene, 0, shadow, sum);
-        add_shadow<Real>(sum, out);
+        add_shadow(scene, sum, out);
     }
 };
 

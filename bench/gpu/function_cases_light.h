@@ -186,7 +186,7 @@ struct ApexCase {
         const Vec3<Real> point = along(along(in.corner[0], in.u, ab), in.v, ac);
         const Vec3<Real> centroid = (in.corner[0] + in.corner[1] + in.corner[2]) * Real(1.0 / 3.0);
         out.vec(normal);
-        out.vec(toward_apex(point, centroid, normal, in.height, Real(1.5)));
+        out.vec(Apex<Real>::of(centroid, normal, in.height, Real(1.5)).from(point));
     }
 };
 

@@ -193,11 +193,11 @@ CISTULA_HD inline void draw_shadow(Draw& draw, uint32_t faces, ShadowInput<Real>
 }
 
 template <class Real>
-CISTULA_HD inline void add_shadow(const ShadowSum<>& sum, Words& out) {
+CISTULA_HD inline void add_shadow(const SceneView<Real>& scene, const ShadowSum<>& sum, Words& out) {
     for (int c = 0; c < 3; ++c) out.bits(sum.loss[c]);
     for (int c = 0; c < 3; ++c) out.bits(sum.path[c].sum);
     out.bits(sum.opaque);
-    out.vec(sum.template share<Real>());
+    out.vec(sum.template share<Real>(scene));
 }
 
 template <class Real>
@@ -229,7 +229,7 @@ struct TriangleShadowCase {
         ShadowSum<> sum;
         shadow_start<Real, Effects<all_effects>>(scene, shadow, sum);
         shadow_cluster<Real, Effects<all_effects>>(scene, 0, shadow, triangle_ray, sum);
-        add_shadow<Real>(sum, out);
+        add_shadow(scene, sum, out);
     }
 };
 

@@ -47,7 +47,7 @@ struct BruteIntersector {
         if constexpr (E::triangles)
             for (uint32_t i = 0; i < scene.clusters.size; ++i)
                 if (!misses_flat(scene, i, ray, best.t))
-                    closest_cluster(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
+                    closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
         return best;
     }
 
@@ -72,7 +72,7 @@ struct BruteIntersector {
                 if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
             }
         }
-        return sum.template share<Real>();
+        return sum.template share<Real>(scene);
     }
 
   private:
@@ -87,10 +87,10 @@ struct BruteIntersector {
             if (around != no_solid) closest_exit(scene, around, ray, best);
             if (around != no_solid && scene.solids[around].alone) return true;
             for (uint32_t i = 0; i < scene.convex.size; ++i) {
-                const NumberedSolid& next = scene.convex[i];
+                const NumberedSolid<Real>& next = scene.convex[i];
                 // All conditions in one, so that their values are waited for but once.
                 if ((next.index != around) & (next.index != ray.from_solid) &
-                    !passes_by(next.solid, ray.origin, ray.direction, best.t))
+                    !passes_by(next.ball, ray.origin, ray.direction, best.t))
                     closest_entry(scene, next.index, next.solid, ray, best);
             }
         }
@@ -111,16 +111,16 @@ struct BruteIntersector {
                     shadow_exit<Real, E>(scene, around, shadow, sum);
             }
         for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.dark(); left &= left - 1) {
-            const NumberedSolid& next = scene.convex[lowest_bit(left)];
+            const NumberedSolid<Real>& next = scene.convex[lowest_bit(left)];
             if ((next.index != around) & (next.index != from) &
-                !passes_by(next.solid, shadow.ray.origin, shadow.ray.direction, shadow.distance))
+                !passes_by(next.ball, shadow.ray.origin, shadow.ray.direction, shadow.distance))
                 shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);
         }
     }
 
     template <class E>
     CISTULA_INLINE void add_cluster(uint32_t i, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) const {
-        shadow_cluster<Real, E>(scene, i, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
+        shadow_triangles<Real, E>(scene, i, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
     }
 };
 

@@ -130,7 +130,7 @@ struct BvhIntersector {
                 shadow_primitive<Real, E>(scene, primitive, shadow, triangle_ray, sum);
             return sum.dark() ? -1.0f : tree_far(shadow.distance);
         });
-        return sum.template share<Real>();
+        return sum.template share<Real>(scene);
     }
 };
 

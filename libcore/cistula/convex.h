@@ -12,7 +12,7 @@ template <class Real>
 struct ConvexInterval {
     Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
 #if CISTULA_ON_DEVICE
-    uint32_t enter_slab = 0;  // the first with this value; the host looks it up where it counts
+    uint32_t enter_slab = 0;  // of the scene's: the first with this value; the host looks it up where it counts
 #endif
 
     /// For an origin outside. A solid that ends where the line starts, give or take the rounding of a point on a shared
@@ -77,11 +77,11 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const So
     ConvexInterval<Real> interval;
 #if CISTULA_ON_DEVICE
     // As if no slab were parallel to the line; with more care where one was.
-    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
+    const uint32_t end = solid.first_slab + solid.slab_count;
     Real slope = Real(1);
 #pragma unroll 1  // code that fits the instruction cache is worth more
-    for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const Slab<Real>& slab = slabs[i];
+    for (uint32_t i = solid.first_slab; i < end; ++i) {
+        const Slab<Real>& slab = scene.slabs.data[i];
         const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin), inverse = reciprocal(nd);
         const Real at_low = (slab.low - no) * inverse, at_high = (slab.high - no) * inverse;
         const Real enter = lesser(at_low, at_high);
@@ -94,9 +94,10 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const So
     if (!(slope < least_slope<Real>)) return interval;
     interval = ConvexInterval<Real>();
 #pragma unroll 1
-    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+    for (uint32_t i = solid.first_slab; i < end; ++i) {
         Real enter, leave;
-        cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
+        const Slab<Real>& slab = scene.slabs.data[i];
+        cross_slab(slab.normal, slab.low, slab.high, origin, direction, enter, leave);
         if (enter > interval.enter) interval.enter = enter, interval.enter_slab = i;
         interval.leave = lesser(leave, interval.leave);
     }
@@ -149,11 +150,11 @@ CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& sol
 template <class Real, class Scene>
 CISTULA_INLINE uint32_t convex_face(const Scene& scene, const Solid& solid, [[maybe_unused]] const Vec3<Real>& origin,
                                     const Vec3<Real>& direction, const ConvexInterval<Real>& interval) {
-    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
 #if CISTULA_ON_DEVICE
     const uint32_t i = interval.enter_slab;
-    return leaving_face(i, dot(slabs[i].normal, direction)) ^ 1u;
+    return leaving_face(i - solid.first_slab, dot(scene.slabs.data[i].normal, direction)) ^ 1u;
 #else
+    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         Real enter, leave;
         cross_slab(slabs[i].normal, slabs[i].low, slabs[i].high, origin, direction, enter, leave);
@@ -185,9 +186,9 @@ CISTULA_INLINE uint32_t convex_face([[maybe_unused]] const Scene& scene, [[maybe
 /// Whether a ray that starts outside surely misses, or meets the solid only beyond `limit`: spares most rays the slabs,
 /// decides no hit.
 template <class Real>
-CISTULA_INLINE bool passes_by(const Solid& solid, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
-    const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
-    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - Real(solid.padded_square);
+CISTULA_INLINE bool passes_by(const Ball<Real>& ball, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
+    const Vec3<Real> to_center = ball.center - origin;
+    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - ball.padded_square;
     const Real beyond = limit * (Real(2) * ahead - limit), beside = ahead < Real(0) ? Real(0) : ahead * ahead;
     return rest > (ahead > limit ? beyond : beside);
 }
@@ -242,7 +243,7 @@ CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray
                                    Hit<Real>& best) {
     if (ray.media.contains(index))
         closest_exit(scene, index, ray, best);
-    else if (ray.from_solid != index && !passes_by(scene.solids[index], ray.origin, ray.direction, best.t))
+    else if (ray.from_solid != index && !passes_by(Ball<Real>::of(scene.solids[index]), ray.origin, ray.direction, best.t))
         closest_entry(scene, index, scene.solids[index], ray, best);
 }
 

@@ -82,8 +82,8 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, Re
 }
 
 /// A solid of a list of convex ones, which holds copies or numbers.
-template <class Scene>
-CISTULA_INLINE const Solid& listed(const Scene&, const NumberedSolid& copy) {
+template <class Real, class Scene>
+CISTULA_INLINE const Solid& listed(const Scene&, const NumberedSolid<Real>& copy) {
     return copy.solid;
 }
 template <class Scene>

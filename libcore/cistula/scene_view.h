@@ -15,7 +15,7 @@ enum class SolidKind : uint32_t {
 
 /// The points with low <= normal.x <= high. A single plane has low = -infinity. Face 2 i is slab i's low side, 2 i + 1 its high one.
 template <class Real>
-struct alignas(2 * sizeof(Real)) Slab {  // read in pairs of numbers
+struct alignas(16) Slab {  // wide loads
     Vec3<Real> normal;  // unit
     Real low, high;
 };
@@ -51,8 +51,32 @@ struct alignas(16) Solid {
                                       // hits next is its own face
 };
 
-/// A solid and its number.
+/// The sphere around a convex solid.
+template <class Real>
+struct alignas(16) Ball {
+    Vec3<Real> center;
+    Real padded_square;
+
+    CISTULA_INLINE static Ball of(const Solid& solid) { return {Vec3<Real>(solid.center), Real(solid.padded_square)}; }
+};
+
+/// The plane of a flat sheet.
+template <class Real>
+struct alignas(16) SheetPlane {
+    Vec3<Real> normal;
+    Real offset;
+    uint32_t solid;
+    uint32_t flat;
+
+    CISTULA_INLINE static SheetPlane of(const Solid& solid, uint32_t index) {
+        return {Vec3<Real>(solid.plane_normal), Real(solid.plane_offset), index, solid.flat};
+    }
+};
+
+/// A solid, its number, and what is asked of it first.
+template <class Real>
 struct NumberedSolid {
+    Ball<Real> ball;
     Solid solid;
     uint32_t index;
 };

@@ -16,6 +16,18 @@ struct ShadowRay {
     const Light<Real>* light;
 };
 
+/// 2^-loss; scenes may know those that are asked for most.
+template <class Real, class Scene>
+CISTULA_INLINE Real looked_up_share(const Scene& scene, uint64_t loss) {
+    if constexpr (requires { scene.known_shares; }) {
+        Real share = Real(-1);
+        for (const KnownShare<Real>& known : scene.known_shares)
+            if (known.loss == loss) share = known.share;
+        if (share >= Real(0)) return share;
+    }
+    return share_of<Real>(loss);
+}
+
 /// What has been met so far on the way to a light, for every color or for all at once (Share).
 template <class E = Effects<all_effects>>
 struct ShadowSum {
@@ -52,8 +64,8 @@ struct ShadowSum {
             path[c].add(sign, double(material.absorption[c]), double(remaining), 4 * double(extent));
     }
 
-    template <class Real>
-    CISTULA_INLINE Share<Real, E> share() const {
+    template <class Real, class Scene>
+    CISTULA_INLINE Share<Real, E> share(const Scene& scene) const {
         Real shares[channels];
         uint64_t known = 0;  // a loss and its share, as gray materials have one for all colors
         Real known_share = 1;
@@ -61,7 +73,7 @@ struct ShadowSum {
             if constexpr (E::has(effect_transparent_shadows)) {
                 uint64_t total = loss[c];
                 if constexpr (E::has(effect_absorption)) total = saturating_add(total, path[c].loss());
-                if (total != known) known = total, known_share = share_of<Real>(total);
+                if (total != known) known = total, known_share = looked_up_share<Real>(scene, total);
             }
             shares[c] = opaque >> c & 1u ? Real(0) : known_share;
         }
@@ -141,7 +153,7 @@ CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const Shad
     if (shadow.ray.media.contains(index))
         shadow_exit<Real, E>(scene, index, shadow, sum);
     else if (shadow.ray.from_solid != index &&
-             !passes_by(scene.solids[index], shadow.ray.origin, shadow.ray.direction, shadow.distance))
+             !passes_by(Ball<Real>::of(scene.solids[index]), shadow.ray.origin, shadow.ray.direction, shadow.distance))
         shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
 }
 
@@ -184,15 +196,21 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
             sum.absorb_rest(material, shadow.distance - c.t, c.enters() ? 1 : -1, scene.extent);
 }
 
+/// For a ray that does not start on the cluster's flat sheet.
 template <class Real, class E, class Media, class Scene>
-CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                   const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
-    if (leaves_flat(scene, index, shadow.ray)) return;
+CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                     const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
         shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, shadow,
                                  sum);
     });
+}
+
+template <class Real, class E, class Media, class Scene>
+CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                   const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
+    if (!leaves_flat(scene, index, shadow.ray)) shadow_triangles<Real, E>(scene, index, shadow, triangle_ray, sum);
 }
 
 /// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.

@@ -2,7 +2,9 @@
 // warp read at once. The same names as in SceneView, so that the same code reads either.
 #pragma once
 
-#include "cistula/scene_view.h"
+#include "cistula/surface.h"
+#include "cistula/transmittance.h"
+#include "cistula/triangle.h"
 
 namespace cistula {
 
@@ -56,10 +58,13 @@ struct SmallScene {
 
     InlineSpan<Solid, ShadowPlan::solids> solids;
     InlineSpan<Slab<Real>, 96> slabs;
-    InlineSpan<NumberedSolid, ShadowPlan::convex> convex;  // copies: a look at one needs no other first
+    InlineSpan<NumberedSolid<Real>, ShadowPlan::convex> convex;  // copies: a look at one needs no other first
+    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;   // of the clusters: such copies too
     InlineSpan<Cluster<Real>, ShadowPlan::clusters> clusters;
+    InlineSpan<TriangleSides<Real>, ShadowPlan::clusters * cluster_lanes> sides;  // by slot
     InlineSpan<Material<Real>, 16> materials;
     InlineSpan<Light<Real>, ShadowPlan::lights> lights;
+    KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
     ShadowPlan plan;
     InlineSpan<Texture, 8> textures;
     // Elsewhere, as in the view that it was made of:
@@ -83,7 +88,7 @@ struct SmallScene {
         for (const Solid& solid : here.solids)
             if (solid.kind == SolidKind::mesh || solid.touched) return false;
         if (!solids.assign(here.solids) || !slabs.assign(here.slabs) ||
-            !convex.assign(here.convex.size, [&](uint32_t i) { return NumberedSolid{here.solids[here.convex[i]], here.convex[i]}; }) ||
+            !convex.assign(here.convex.size, [&](uint32_t i) { return numbered(here, here.convex[i]); }) ||
             !clusters.assign(here.clusters) || !materials.assign(here.materials) || !lights.assign(here.lights) ||
             !textures.assign(here.textures))
             return false;
@@ -96,12 +101,41 @@ struct SmallScene {
         tree = there.tree;
         tree_items = there.tree_items;
         seen_tree = there.seen_tree;
+        planes.assign(clusters.size, [&](uint32_t i) { return plane_of<Real>(here, i); });
+        sides.assign(clusters.size * cluster_lanes, [&](uint32_t slot) {
+            const bool is_used = slot % cluster_lanes < clusters[slot / cluster_lanes].count;
+            return is_used ? TriangleSides<Real>::of(here, slot) : TriangleSides<Real>();
+        });
+        find_shares();
         plan.clear(convex.size, clusters.size);
         background = here.background;
         bound = here.bound;
         largest_bound = here.largest_bound;
         extent = here.extent;
         return true;
+    }
+
+  private:
+    static NumberedSolid<Real> numbered(const SceneView<Real>& scene, uint32_t index) {
+        return {Ball<Real>::of(scene.solids[index]), scene.solids[index], index};
+    }
+
+    /// One crossing of each material first, then two of each, ...
+    void find_shares() {
+        int found = 0;
+        for (KnownShare<Real>& known : known_shares) known = {0, Real(1)};
+        const auto is_known = [&](uint64_t loss) {
+            bool is = loss == 0;
+            for (int i = 0; i < found; ++i) is |= known_shares[i].loss == loss;
+            return is;
+        };
+        for (uint64_t crossings = 1; crossings <= 4; ++crossings)
+            for (const Material<Real>& material : materials)
+                for (int c = 0; c < 3; ++c) {
+                    const uint64_t once = material.filter_loss[c];
+                    if (found == 4 || once > largest_loss / 4 || is_known(crossings * once)) continue;
+                    known_shares[found++] = {crossings * once, share_of<Real>(crossings * once)};
+                }
     }
 };
 

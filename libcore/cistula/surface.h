@@ -22,16 +22,20 @@ CISTULA_INLINE bool is_convex(const Solid& solid) {
     return E::solids && (!E::triangles || solid.kind == SolidKind::convex);
 }
 
-/// From a point on a triangle toward the apex over its centroid, by about 8 u M: the segment crosses no other triangle
-/// (NUMERICS, 2), so that the new origin is on the right side of all of them.
+/// The point over a triangle's centroid toward which lines leave it.
 template <class Real>
-CISTULA_INLINE Vec3<Real> toward_apex(const Vec3<Real>& point, const Vec3<Real>& centroid, const Vec3<Real>& normal,
-                                      Real height, Real extent) {
-    const Real step = Real(8) * RealTraits<Real>::unit * extent;
-    const Real k = step < height * Real(0.125) ? step / height : Real(0.125);
-    const Vec3<Real> apex = along(centroid, height, normal);
-    return along(point, k, apex - point);
-}
+struct Apex {
+    Vec3<Real> place;
+    Real share;  // of the way there that a line starts at: about 8 u M
+
+    CISTULA_INLINE static Apex of(const Vec3<Real>& centroid, const Vec3<Real>& normal, Real height, Real extent) {
+        const Real step = Real(8) * RealTraits<Real>::unit * extent;
+        return {along(centroid, height, normal), step < height * Real(0.125) ? step / height : Real(0.125)};
+    }
+    /// From a point on the triangle: the segment crosses no other triangle (NUMERICS, 2), so that the new origin is on the
+    /// right side of all of them.
+    CISTULA_INLINE Vec3<Real> from(const Vec3<Real>& point) const { return along(point, share, place - point); }
+};
 
 template <class Real>
 CISTULA_INLINE Real largest_magnitude(const Vec3<Real>& a) {
@@ -56,21 +60,46 @@ CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>
 
 /// The corners of the triangle that was hit.
 template <class Real, class Scene>
-CISTULA_INLINE void triangle_corners(const Scene& scene, const Hit<Real>& hit, Vec3<Real> (&corner)[3]) {
-    const Cluster<Real>& cluster = scene.clusters[hit.slot / cluster_lanes];
-    const uint32_t lane = hit.slot % cluster_lanes;
+CISTULA_INLINE void triangle_corners(const Scene& scene, uint32_t slot, Vec3<Real> (&corner)[3]) {
+    const Cluster<Real>& cluster = scene.clusters[slot / cluster_lanes];
+    const uint32_t lane = slot % cluster_lanes;
     for (int c = 0; c < 3; ++c)
         corner[c] = {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
 }
 
-/// Where a line starts that leaves a point of a triangle along `normal`; outside: on the side its corners turn
-/// counter-clockwise on.
+/// The apex on one side of a triangle, along `normal`; outside: on the side its corners turn counter-clockwise on.
+template <class Real, class Scene>
+CISTULA_INLINE Apex<Real> apex_of(const Scene& scene, uint32_t slot, const Vec3<Real> (&corner)[3], const Vec3<Real>& normal,
+                                  bool outside) {
+    const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);
+    return Apex<Real>::of(centroid, normal, scene.clusters[slot / cluster_lanes].height[outside][slot % cluster_lanes],
+                          scene.extent);
+}
+
+/// What hits on a triangle would find out each time: scenes of a few have it ready.
+template <class Real>
+struct TriangleSides {
+    Vec3<Real> normal;    // on the outside
+    Apex<Real> apex[2];   // inside, outside
+
+    template <class Scene>
+    static TriangleSides of(const Scene& scene, uint32_t slot) {
+        Vec3<Real> corner[3];
+        triangle_corners(scene, slot, corner);
+        const Vec3<Real> normal = triangle_normal(corner[1] - corner[0], corner[2] - corner[0]);
+        return {normal, {apex_of(scene, slot, corner, -normal, false), apex_of(scene, slot, corner, normal, true)}};
+    }
+};
+
+/// Where a line starts that leaves a point of a triangle along `normal`.
 template <class Real, class Scene>
 CISTULA_INLINE Vec3<Real> off_triangle(const Scene& scene, const Hit<Real>& hit, const Vec3<Real>& point,
-                                       const Vec3<Real> (&corner)[3], const Vec3<Real>& normal, bool outside) {
-    const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);
-    const Real height = scene.clusters[hit.slot / cluster_lanes].height[outside][hit.slot % cluster_lanes];
-    return toward_apex(point, centroid, normal, height, scene.extent);
+                                       [[maybe_unused]] const Vec3<Real> (&corner)[3],
+                                       [[maybe_unused]] const Vec3<Real>& normal, bool outside) {
+    if constexpr (requires { scene.sides; })
+        return scene.sides[hit.slot].apex[outside].from(point);
+    else
+        return apex_of(scene, hit.slot, corner, normal, outside).from(point);
 }
 
 /// Where rays that bend into the other side of a face start.
@@ -79,7 +108,7 @@ CISTULA_INLINE Vec3<Real> far_side(const Scene& scene, const Hit<Real>& hit, con
                                    const Vec3<Real>& normal) {
     if (is_convex<E>(scene.solids[key_solid(hit.key)])) return point;
     Vec3<Real> corner[3];
-    triangle_corners(scene, hit, corner);
+    triangle_corners(scene, hit.slot, corner);
     return off_triangle(scene, hit, point, corner, -normal, !hit.enters);
 }
 
@@ -93,9 +122,14 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
         const bool outward = (face & 1u) != 0;  // the high side's outward normal is the slab's
         return outward == hit.enters ? normal : -normal;
     }
-    Vec3<Real> corner[3];
-    triangle_corners(scene, hit, corner);
-    const Vec3<Real> normal = triangle_normal(corner[1] - corner[0], corner[2] - corner[0]);
+    Vec3<Real> normal;
+    if constexpr (requires { scene.sides; }) {
+        normal = scene.sides[hit.slot].normal;
+    } else {
+        Vec3<Real> corner[3];
+        triangle_corners(scene, hit.slot, corner);
+        normal = triangle_normal(corner[1] - corner[0], corner[2] - corner[0]);
+    }
     return hit.enters ? normal : -normal;
 }
 
@@ -121,7 +155,7 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
         return s;
     }
     Vec3<Real> corner[3];
-    triangle_corners(scene, hit, corner);
+    triangle_corners(scene, hit.slot, corner);
     s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
     s.viewer_side = off_triangle(scene, hit, s.point, corner, s.normal, hit.enters);
     if constexpr (E::has(effect_texture)) {

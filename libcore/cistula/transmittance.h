@@ -42,6 +42,13 @@ CISTULA_HD inline Real share_of(uint64_t loss) {
     return static_cast<Real>(elementary::exp2_reduced(r, 0) * elementary::power_of_two(-static_cast<int>(k)));
 }
 
+/// A loss and what it leaves.
+template <class Real>
+struct KnownShare {
+    uint64_t loss;
+    Real share;
+};
+
 /// Beer-Lambert: the loss of a share exp(-sigma_length), to nearest. Below 0 counts as 0; from
 /// 4096 ln 2 = 2839.13 on, and for NaN, it saturates.
 CISTULA_HD inline uint64_t absorption_loss(double sigma_length) {

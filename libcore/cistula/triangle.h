@@ -222,19 +222,29 @@ CISTULA_INLINE bool leaves_flat(const Scene& scene, uint32_t cluster, const Ray<
 /// triangles, decides no hit. Lines that stay so far off at a slant below plane_padding / 4 M have all of the sheet far
 /// beside them.
 template <class Real>
-CISTULA_INLINE bool stays_off(const Solid& solid, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
-    const Vec3<Real> normal(solid.plane_normal);
-    const Real off = dot(normal, origin) - Real(solid.plane_offset), slant = dot(normal, direction);
+CISTULA_INLINE bool stays_off(const SheetPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
+    const Real off = dot(plane.normal, origin) - plane.offset, slant = dot(plane.normal, direction);
     const Real ahead = off < Real(0) ? -slant : slant, far_off = magnitude(off);
-    return far_off > Real(plane_padding) && far_off + ahead * limit > Real(plane_padding);
+    return (far_off > Real(plane_padding)) & (far_off + ahead * limit > Real(plane_padding));
+}
+
+/// The plane of a cluster's flat sheet, if it belongs to one.
+template <class Real, class Scene>
+CISTULA_INLINE SheetPlane<Real> plane_of(const Scene& scene, uint32_t cluster) {
+    if constexpr (requires { scene.planes; }) {
+        return scene.planes[cluster];
+    } else {
+        const uint32_t solid = scene.clusters[cluster].solid;
+        return SheetPlane<Real>::of(scene.solids[solid], solid);
+    }
 }
 
 /// Whether a line surely meets nothing of a cluster up to `limit` because that belongs to a flat sheet.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
-    const uint32_t index = scene.clusters[cluster].solid;
-    const Solid& solid = scene.solids[index];
-    return solid.flat != 0 && (ray.from_solid == index || stays_off(solid, ray.origin, ray.direction, limit));
+    const SheetPlane<Real> plane = plane_of<Real>(scene, cluster);
+    // Without branches: all is there at once.
+    return (plane.flat != 0) & ((ray.from_solid == plane.solid) | stays_off(plane, ray.origin, ray.direction, limit));
 }
 
 /// Takes an accepted crossing if it is the ray's next.
@@ -255,15 +265,21 @@ CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_
     if (ray.after.before(c.t, key) && best.improves(c.t, key)) best.take(c.t, key, c.u(), c.v(), slot, c.enters());
 }
 
-/// The ray's next crossing of a cluster's triangles, if it is less than `best`.
+/// The ray's next crossing of a cluster's triangles, if it is less than `best`. For a ray that does not start on the cluster's
+/// flat sheet.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE void closest_cluster(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
-                                    const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
+CISTULA_INLINE void closest_triangles(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
+                                      const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     const Cluster<Real>& cluster = scene.clusters[index];
-    if (leaves_flat(scene, index, ray)) return;
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
         closest_crossing(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, ray, best);
     });
+}
+
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_cluster(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
+                                    const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
+    if (!leaves_flat(scene, index, ray)) closest_triangles(scene, index, ray, triangle_ray, best);
 }
 
 /// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.

@@ -13,8 +13,13 @@ namespace cistula {
 template <class Real>
 void plan_shadows(const SceneView<Real>& scene, ShadowPlan& plan);
 
-/// The form of a scene that a plain loop reads, its shadows planned; null where it fits into none (SmallScene::assign).
+/// The form of a scene that a plain loop reads, its shadows planned; null where it fits into none. `here` and `there` as of
+/// SmallScene::assign.
 template <class Real>
-std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& scene);
+std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& here, const SceneView<Real>& there);
+template <class Real>
+std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& scene) {
+    return small_scene(scene, scene);
+}
 
 }  // namespace cistula
