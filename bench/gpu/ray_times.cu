@@ -22,13 +22,13 @@ __global__ void __launch_bounds__(block_rays) make_further_rays(const __grid_con
                     job.arrays.shadow[i]);
 }
 
-// With the registers of the frame's kernels: left to itself, ptxas takes fewer and spills.
 template <class Real>
-__global__ void __launch_bounds__(block_rays, least_blocks<Real>)
+__global__ void __launch_bounds__(block_rays)
     find_hits(const __grid_constant__ SceneView<Real> scene, const StoredRay<Real>* rays, StoredHit<Real>* hits) {
     hits[ray_index()] = closest_hit_of(scene, rays[ray_index()]);
 }
 
+// With the registers of the frame's kernels: left to itself, ptxas takes fewer and spills.
 template <class Real>
 __global__ void __launch_bounds__(block_rays, least_blocks<Real>)
     find_light(const __grid_constant__ SceneView<Real> scene, const StoredRay<Real>* rays, uint8_t* light) {

@@ -45,10 +45,10 @@ CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Re
 #endif
     BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
     box_ray.near_limit = tree_near(from);
-    box_ray.far_limit = least(tree_far(t_limit), RealTraits<float>::largest);
+    box_ray.far_limit = tree_far(t_limit);
     walk_lights(scene.seen_tree, box_ray, [&](uint32_t light) {
         see_light(scene, light, ray, best);
-        return least(tree_far(best.t), RealTraits<float>::largest);
+        return tree_far(best.t);
     });
     return best;
 }
