@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scene/compiled_scene.h"
 #include "scene_samples.h"
 
@@ -148,11 +150,38 @@ TEST(RequiredEffects, LightsOnEdgesAndFalloff) {
     object.edge_lights.count = 2;
     object.edge_lights.radius = 0.05;
     add_object(scene, object);
-    const uint32_t seen = effect_solids | effect_diffuse | effect_opaque_shadows | effect_visible_lights;
+    const uint32_t seen = effect_solids | effect_diffuse | effect_opaque_shadows | effect_visible_lights | effect_lights_on_faces;
     EXPECT_EQ(effects_of(scene), seen);
     EXPECT_EQ(because(scene, effect_visible_lights), "the lights on the edges of /objects/0 are seen");
     std::get<SolidObject>(scene.objects[0].shape).edge_lights.falloff = true;
     EXPECT_EQ(effects_of(scene), seen | effect_light_falloff);
+}
+
+TEST(RequiredEffects, LampsOnFaces) {
+    SceneDescription scene = lit_cube();
+    EXPECT_FALSE(effects_of(scene) & effect_lights_on_faces);
+    EXPECT_EQ(because(scene, effect_lights_on_faces), "no lamp lies on a face");
+    EdgeLights& on_edges = std::get<SolidObject>(scene.objects[0].shape).edge_lights;
+    on_edges.count = 1;
+    EXPECT_TRUE(effects_of(scene) & effect_lights_on_faces);
+    EXPECT_EQ(because(scene, effect_lights_on_faces), "the lights on the edges of /objects/0 lie on its faces");
+    on_edges.color = glm::dvec3{0};
+    EXPECT_FALSE(effects_of(scene) & effect_lights_on_faces);
+
+    add_object(scene, square(3, -2));
+    add_light(scene, {0.5, 0.25, -2});
+    EXPECT_TRUE(effects_of(scene) & effect_lights_on_faces);
+    EXPECT_EQ(because(scene, effect_lights_on_faces), "the light /lights/1 lies on a face of /objects/1");
+    scene.lights[1].position.z += 1e-4;
+    EXPECT_FALSE(effects_of(scene) & effect_lights_on_faces);
+    scene.lights[1].position = {3.5, 0, -2};  // beside it
+    EXPECT_FALSE(effects_of(scene) & effect_lights_on_faces);
+    const double half = 1 / std::sqrt(3.0);
+    scene.lights[1].position = {half, 0.1, 0.2};
+    EXPECT_EQ(because(scene, effect_lights_on_faces), "the light /lights/1 lies on a face of /objects/0");
+    for (MaterialDescription& material : scene.materials) material.diffuse = 0;
+    EXPECT_FALSE(effects_of(scene) & effect_lights_on_faces);
+    EXPECT_EQ(because(scene, effect_lights_on_faces), "no surface shows light of any lamp");
 }
 
 TEST(RequiredEffects, UnusedMaterialsCallForNothing) {

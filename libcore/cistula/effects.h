@@ -24,15 +24,16 @@ enum Effect : uint32_t {
     effect_solids = 1u << 13,     // convex ones, which are planes
     effect_triangles = 1u << 14,  // of meshes and sheets
     effect_insides = 1u << 15,    // rays inside of closed solids
+    effect_lights_on_faces = 1u << 16,  // a lamp lies on a face, an edge perhaps: half-spaces tell its shadows
 };
-inline constexpr int effect_count = 16;
+inline constexpr int effect_count = 17;
 inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// The names that --explain, --stats and the documentation use, in the order of the bits.
 inline constexpr const char* effect_names[effect_count] = {
     "texture",      "diffuse",    "specular", "opaque-shadows", "transparent-shadows", "reflection",
     "transmission", "refraction", "fresnel",  "absorption",     "visible-lights",      "light-falloff",
-    "tint",         "solids",     "triangles", "insides"};
+    "tint",         "solids",     "triangles", "insides",       "lights-on-faces"};
 
 /// The effects that are compiled in; `if constexpr (E::has(...))` removes the others.
 template <uint32_t Mask>
@@ -64,7 +65,7 @@ inline constexpr uint32_t effect_masks[] = {
     mirrors,
     clear_bodies,
     clear_bodies | effect_visible_lights,
-    clear_bodies | effect_visible_lights | effect_tint,
+    clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
     all_effects,
     all_effects & ~(effect_opaque_shadows | effect_transparent_shadows),  // never the least: to measure what shadows cost
 };

@@ -102,8 +102,9 @@ CISTULA_SELDOM LightSide light_on_convex(const Scene& scene, const Light<Real>& 
     return side;
 }
 
-template <class Real, class Media, class Scene>
+template <class E, class Real, class Media, class Scene>
 CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow) {
+    if constexpr (!E::has(effect_lights_on_faces)) return LightSide::none;
     return shadow.light->incident_count == 0 ? LightSide::none
                                              : light_on_convex(scene, *shadow.light, index, shadow.ray.origin);
 }
@@ -116,7 +117,7 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     const Solid& solid = scene.solids[index];
     const Material<Real>& material = scene.materials[solid.material];
     Real leave = shadow.distance;
-    if (light_side(scene, index, shadow) == LightSide::none) {
+    if (light_side<E>(scene, index, shadow) == LightSide::none) {
         const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
         leave = greatest(convex_exit(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
         if (leave < shadow.distance) sum.cross(material);
@@ -129,7 +130,7 @@ template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid& solid, const ShadowRay<Real, Media>& shadow,
                                  ShadowSum<E>& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
-    const LightSide side = light_side(scene, index, shadow);
+    const LightSide side = light_side<E>(scene, index, shadow);
     if (side == LightSide::outside) return;
     const ConvexInterval<Real> interval =
         convex_interval(scene, solid, ray.origin, ray.direction, side == LightSide::none);
@@ -185,7 +186,8 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
     if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
     if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
-    if (lies_on(scene, *shadow.light, index, triangle)) return;
+    if constexpr (E::has(effect_lights_on_faces))
+        if (lies_on(scene, *shadow.light, index, triangle)) return;
     if constexpr (Media::meshes)
         if (behind_shadow(scene, index, triangle, slot, c, shadow.ray)) return;
     const Solid& solid = scene.solids[index];

@@ -118,11 +118,34 @@ void find_triangle_incidents(const std::vector<FramedLight>& lights, const Frame
     }
 }
 
+template <class Real>
+void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid, double extent,
+                             IncidentLists& incidents) {
+    const double tolerance = static_cast<double>(incidence<Real>) * extent;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].lights()) continue;
+        const dvec3 p = rounded<Real>(lights[i].position);
+        for (uint32_t triangle = 0; triangle < mesh.size(); ++triangle)
+            if (near_triangle(mesh.triangle(triangle), p, tolerance)) incidents[i].push_back({solid, triangle});
+    }
+}
+
+std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights, const IncidentLists& incidents) {
+    for (size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].lights() || incidents[i].empty()) continue;
+        if (lights[i].convex >= 0) return "the lights on the edges of " + lights[i].place + " lie on its faces";
+        return "the light " + lights[i].place + " lies on a face of " + source.solids[incidents[i][0].solid].place;
+    }
+    return "";
+}
+
 #define CISTULA_INSTANTIATE(Real)                                                                                  \
     template void find_convex_incidents<Real>(const std::vector<FramedLight>&, const std::vector<ConvexSolid>&,    \
                                               double, IncidentLists&);                                             \
     template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, const Groups&, \
-                                                const Tree&, uint32_t, uint32_t, double, IncidentLists&);
+                                                const Tree&, uint32_t, uint32_t, double, IncidentLists&);          \
+    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, uint32_t,      \
+                                                double, IncidentLists&);
 CISTULA_INSTANTIATE(float)
 CISTULA_INSTANTIATE(double)
 #undef CISTULA_INSTANTIATE

@@ -42,4 +42,12 @@ void find_triangle_incidents(const std::vector<FramedLight>& lights, const Frame
                              const Tree& tree, uint32_t solid, uint32_t first_triangle, double extent,
                              IncidentLists& incidents);
 
+/// The same for a mesh without a tree, numbering its own triangles.
+template <class Real>
+void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid, double extent,
+                             IncidentLists& incidents);
+
+/// Which lamp lies on a face, and of what, in words for explain_effects; empty if none does.
+std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights, const IncidentLists& incidents);
+
 }  // namespace cistula

@@ -322,7 +322,7 @@ class Compiler {
         for (size_t i = 0; i < source_.solids.size(); ++i)
             uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place, closed_[i],
                             source_.solids[i].platonic != nullptr});
-        scene_.effect_reasons = explain_effects(description_, uses);
+        scene_.effect_reasons = explain_effects(description_, uses, lamp_on_face(source_, lights_, incidents_));
         scene_.effects = required_effects(scene_.effect_reasons);
     }
 

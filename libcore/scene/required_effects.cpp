@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "scene/compile_lights.h"
 #include "scene/compile_materials.h"
 #include "scene/mesh_topology.h"
 
@@ -48,8 +49,8 @@ std::vector<SceneLight> all_lights(const SceneDescription& scene) {
 
 class Explainer {
   public:
-    Explainer(const SceneDescription& scene, const std::vector<MaterialUse>& uses)
-        : scene_(scene), uses_(uses), lights_(all_lights(scene)) {}
+    Explainer(const SceneDescription& scene, const std::vector<MaterialUse>& uses, const std::string& lamp_on_face)
+        : scene_(scene), uses_(uses), lights_(all_lights(scene)), lamp_on_face_(lamp_on_face) {}
 
     std::vector<EffectReason> explain() {
         for (const SceneLight& light : lights_)
@@ -117,6 +118,9 @@ class Explainer {
         by_material(effect_insides, "no closed body lets rays pass; a camera in one adds it", [](const MaterialUse& u) {
             return u.closed && passes(*u.material) ? std::string("lets rays into a closed body") : std::string();
         });
+        const bool on_face = lit_ && !lamp_on_face_.empty();
+        reasons_.push_back({effect_lights_on_faces, on_face,
+                            on_face ? lamp_on_face_ : lit_ ? "no lamp lies on a face" : no_light_});
         return std::move(reasons_);
     }
 
@@ -171,6 +175,7 @@ class Explainer {
     const SceneDescription& scene_;
     const std::vector<MaterialUse>& uses_;
     std::vector<SceneLight> lights_;
+    const std::string& lamp_on_face_;
     std::vector<EffectReason> reasons_;
     bool lit_ = false, passing_ = false;
     std::string no_light_ = "no surface shows light of any lamp";
@@ -178,17 +183,33 @@ class Explainer {
 
 }  // namespace
 
-std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses) {
-    return Explainer(scene, uses).explain();
+std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
+                                          const std::string& lamp_on_face) {
+    return Explainer(scene, uses, lamp_on_face).explain();
 }
 
 std::vector<EffectReason> explain_effects(const SceneDescription& scene) {
     const SceneSource source = gather_scene(scene);
+    const Frame frame = find_frame(source);
+    std::vector<ConvexSolid> convex;
+    for (uint32_t i = 0; i < source.solids.size(); ++i)
+        if (source.solids[i].platonic) convex.push_back(convex_solid(*source.solids[i].platonic, i, frame));
+    share_planes(convex, frame.extent);
+    const std::vector<FramedLight> lights = frame_lights(source, frame, convex);
+    IncidentLists incidents(lights.size());
+    find_convex_incidents<float>(lights, convex, frame.extent, incidents);
     std::vector<MaterialUse> uses;
-    for (const SourceSolid& solid : source.solids)
-        uses.push_back({&source.materials[solid.material], solid.place,
-                        solid.platonic != nullptr || find_topology(solid.mesh).closed, solid.platonic != nullptr});
-    return explain_effects(scene, uses);
+    for (uint32_t i = 0; i < source.solids.size(); ++i) {
+        const SourceSolid& solid = source.solids[i];
+        bool closed = true;
+        if (!solid.platonic) {
+            const MeshTopology topology = find_topology(solid.mesh);
+            closed = topology.closed;
+            find_triangle_incidents<float>(lights, FramedMesh(solid.mesh, topology, frame, true), i, frame.extent, incidents);
+        }
+        uses.push_back({&source.materials[solid.material], solid.place, closed, solid.platonic != nullptr});
+    }
+    return explain_effects(scene, uses, lamp_on_face(source, lights, incidents));
 }
 
 std::vector<std::string> names_of_effects(uint32_t mask) {

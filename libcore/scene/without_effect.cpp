@@ -23,6 +23,12 @@ void take_from_light(Light& light, uint32_t effect) {
     if (effect == effect_visible_lights || effect == effect_light_falloff) light.falloff = false;
 }
 
+/// They are only seen then.
+void put_out(EdgeLights& lights) {
+    lights.glow = lights.glow.value_or(lights.color);
+    lights.color = glm::dvec3{0};
+}
+
 }  // namespace
 
 std::optional<SceneDescription> without_effect(const SceneDescription& scene, uint32_t effect) {
@@ -31,7 +37,10 @@ std::optional<SceneDescription> without_effect(const SceneDescription& scene, ui
     for (MaterialDescription& material : less.materials) take_from(material, effect);
     for (LightDescription& light : less.lights) take_from_light(light, effect);
     for (ObjectDescription& object : less.objects)
-        if (auto* solid = std::get_if<SolidObject>(&object.shape)) take_from_light(solid->edge_lights, effect);
+        if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
+            take_from_light(solid->edge_lights, effect);
+            if (effect == effect_lights_on_faces) put_out(solid->edge_lights);
+        }
     std::erase_if(less.objects, [&](const ObjectDescription& object) {
         const bool convex = std::holds_alternative<SolidObject>(object.shape);
         return effect == (convex ? effect_solids : effect_triangles);
