@@ -64,7 +64,7 @@ PixelRecord sampled(const LatticeSettings& settings, const Value& value, const S
 
 LatticeSettings lattice(double target, bool fine, int most = lattice_samples) {
     LatticeSettings settings;
-    settings.target = int64_t(target * 0x1p30);
+    settings.target = int64_t(std::ldexp(target, color_bits));
     settings.fine = fine;
     settings.most = most;
     return settings;
@@ -195,7 +195,12 @@ TEST(Lattice, BushyTreesAreNotTrustedToBeAlike) {
     const auto with = [&](const LatticeSettings& settings, uint32_t rays) {
         return sampled(settings, flat, one_kind, [&](int, int) { return rays; });
     };
-    for (const double target : {0.001, 0.0001}) EXPECT_EQ(with(lattice(target, true), bushy_tree - 1).samples, 5u);
+    for (const double target : {0.001, 0.0001}) {
+        EXPECT_EQ(with(lattice(target, true), many_rays - 1).samples, 5u);
+        EXPECT_EQ(with(lattice(target, true), many_rays).samples, 16u);
+        EXPECT_EQ(with(lattice(target, true), bushy_tree - 1).samples, 16u);
+    }
+    EXPECT_EQ(with(lattice(0.1, false), many_rays).samples, 4u);
     EXPECT_EQ(with(lattice(0.1, false), bushy_tree).samples, 4u);
     // The smaller the target, the more something unseen would be worth: cells of 32, 16, 8 and 4 samples stand.
     EXPECT_EQ(with(lattice(0.003, true), bushy_tree).samples, 32u);
@@ -260,6 +265,55 @@ TEST(Lattice, WhatAPixelShowsIsTakenToHideElsewhereInIt) {
     EXPECT_EQ(sampled(lattice(0.003, true), values(16, 16), one_kind).samples, 256u);
     EXPECT_LE(sampled(lattice(0.003, true), values(16, 16), side).samples, 88u);
     EXPECT_LE(sampled(lattice(0.03, true), values(16, 16), one_kind).samples, 72u);
+}
+
+TEST(Lattice, WhatComesInThroughASideIsSeenFromBesideIt) {
+    // A notch from the right, which widens between the corners of the cells that it enters.
+    const std::array<int, 16> first = {16, 16, 16, 16, 14, 12, 9, 15, 16, 16, 16, 16, 16, 16, 16, 16};
+    const auto notch = [&](int x, int y) { return x >= first[size_t(y)]; };
+    const double truth = 0.35 - 0.3 * (2 + 4 + 7 + 1) / 256;
+    const PixelRecord record = sampled(
+        lattice(0.004, true), [&](int x, int y) { return notch(x, y) ? fixed(0.05) : fixed(0.35); },
+        [&](int x, int y) { return uint32_t(notch(x, y)); }, [](int, int) { return bushy_tree; });
+    EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, 0.001);
+}
+
+TEST(Lattice, WhereColorsSpanMuchNoLargeCellStands) {
+    // A border at the left, and a highlight of 5 x 5 samples between corners that agree, anywhere beside it.
+    const auto side = [](int x, int) { return x < 3; };
+    const auto met = [&](int x, int y) { return uint32_t(side(x, y)); };
+    const double light = 0.5, dark = light - wide_range * 0.004 - 0.001;
+    for (int left = 4; left <= 11; ++left)
+        for (int top = 0; top <= 11; ++top) {
+            const auto lit = [&](int x, int y) {
+                return side(x, y) || (x >= left && x < left + 5 && y >= top && y < top + 5);
+            };
+            const PixelRecord record = sampled(
+                lattice(0.004, true), [&](int x, int y) { return fixed(lit(x, y) ? light : dark); }, met,
+                [](int, int) { return some_rays; });
+            const double truth = dark + (light - dark) * (3 * 16 + 25) / 256;
+            EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, 0.004) << left << ", " << top;
+        }
+    const auto plain = [&](int x, int y) { return fixed(side(x, y) ? light : dark); };
+    const auto taken = [&](uint32_t rays) {
+        return sampled(lattice(0.004, true), plain, met, [&](int, int) { return rays; }).samples;
+    };
+    EXPECT_GT(taken(some_rays), taken(some_rays - 1));
+}
+
+TEST(Lattice, FiveSamplesThatMetDifferentThingsAreNotEnough) {
+    const auto flat = [](int, int) { return fixed(0.5); };
+    const auto middle = [](int x, int y) { return uint32_t(x > 4 && x < 12 && y > 4 && y < 12); };
+    EXPECT_EQ(sampled(lattice(0.004, true), flat, middle).samples, 16u);
+    EXPECT_EQ(sampled(lattice(0.004, false), flat, middle).samples, 4u);
+}
+
+TEST(Lattice, TargetsOfFewUnitsOfTheBoundStillCount) {
+    // A bound of 2^24: what a frame asks for is 2^-32 of it.
+    const auto border = [](int x, int) { return x < 7 ? 0 : fixed(0x1p-30); };
+    const auto side = [](int x, int) { return uint32_t(x < 7); };
+    const PixelRecord record = sampled(lattice(0x1p-32, true), border, side);
+    EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, 0x1p-30 * 9 / 16, 0x1p-32);
 }
 
 TEST(Lattice, SpendsWhatItMayInAllQuartersAlike) {

@@ -12,8 +12,9 @@ inline constexpr int lattice_side = 16, lattice_samples = lattice_side * lattice
 inline constexpr int lattice_middle = lattice_side / 2 * (lattice_side + 1);
 /// The fewest that a pixel can do with: its corners and its middle.
 inline constexpr int least_lattice_samples = 5;
-/// Colors are compared in units of 2^-30 of the radiance bound's power of two.
-inline constexpr int color_bits = 30, color_shift = 54 - color_bits;
+/// Colors are compared in units of 2^-44 of the radiance bound's power of two: a target may be 2^-32 of that, as in
+/// closed-box.json. What is computed of them takes at most 13 bits more.
+inline constexpr int color_bits = 44, color_shift = 54 - color_bits;
 /// Rays of a tree that sees many things, and the largest cell that may stand undivided in a pixel that met one.
 inline constexpr uint32_t bushy_tree = 96;
 inline constexpr int bushy_area = lattice_samples / 8;
@@ -23,10 +24,16 @@ inline constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
 /// Eighths of a cell that something unseen in it is taken to fill. If its corners met different things, that may differ
 /// as corners of any of the pixel's cells do; if they met the same, it is as much brighter or darker as samples that met
 /// the same are at corners of a small cell: on both sides of a texture's border, say, but not where shading is gradual.
-/// At 0.004 at most 0.14 % of the pixels of any golden image are then beyond. At 160x90, 4 and 2 leave 0.2 % of
-/// critical-angle.json, 3 and 3 about 0.1 % of mirrors.json. Areas of 4 leave more than that of seed.json; those of 16
-/// and more cost platonic.json 3 to 5 % and gain little.
+/// Of critical-angle.json at 97x73 and 0.004, unseen_alike = 3 leaves 0.06 % of the pixels beyond, 2 leaves 0.10 % and 0
+/// leaves 0.20 %. Of mesh.json at 320x180, 0.14 % are by these alone; 6 would leave 0.09 % for 5 % more samples, but what
+/// is seen beside cells (is_crossed) leaves 0.06 % for 2 % more.
 inline constexpr int unseen_unlike = 4, unseen_alike = 3, jump_area = 8;
+/// For small targets: where one of a pixel's first five trees has many_rays, no cell stands for all of the pixel; where one
+/// has some_rays and a cell's colors span wide_range targets, no cell larger than wide_area stands, as a highlight may lie
+/// between. Of platonic.json at 320x180 and 0.004 that leaves 0.09 % of the pixels beyond instead of 0.19 %, for 4 % more
+/// samples; closed-box.json takes 10 % more, other golden scenes at most 4 %.
+inline constexpr uint32_t many_rays = 24, some_rays = 5;
+inline constexpr int wide_range = 20, wide_area = lattice_samples / 16;
 
 /// What a frame asks of adaptive sampling.
 struct LatticeSettings {
@@ -75,7 +82,9 @@ class LatticePixel {
   public:
     CISTULA_INLINE void begin(const LatticeSettings& settings) {
         unmet_ = bushy_ = 0;
+        first_rays_ = 0;
         range_ = jump_ = 0;
+        for (int y = 0; y < lattice_side; ++y) taken_[y] = fresh_[y] = 0;
         count_ = 1;
         cells_[0] = whole_cell();
         wanted_ = 0;
@@ -91,53 +100,12 @@ class LatticePixel {
     /// Cells that the pixel consists of, to be judged once all that was wanted is there.
     CISTULA_INLINE int cells() const { return count_; }
 
-    /// What the corners of the index-th cell, if it is new, tell of it and of its pixel.
+    /// What the corners of the index-th cell, if it is new, tell of it and of its pixel, and what was taken beside it.
     CISTULA_INLINE void judge(const LatticeSettings& settings, const LatticeSample* samples, int index) {
         Cell& cell = cells_[index];
-        if (!cell.is_new) return;
-        const LatticeSample* at[4];
-        for (int c = 0; c < 4; ++c) at[c] = samples + corner(cell, c);
-        const bool whole = is_whole(cell), has_middle = settings.fine && whole;
-        bool differs = has_middle && samples[lattice_middle].signature != at[0]->signature;
-        bool bushy = at[0]->rays >= bushy_tree;
-        for (int c = 1; c < 4; ++c) {
-            differs |= at[c]->signature != at[0]->signature;
-            bushy |= at[c]->rays >= bushy_tree;
-        }
-        int64_t range = 0, bend = 0, across = 0, down = 0;
-        for (int c = 0; c < 3; ++c) {
-            const int64_t a = color(*at[0], c), b = color(*at[1], c), d = color(*at[2], c), e = color(*at[3], c);
-            int64_t low = least(least(a, b), least(d, e)), high = greatest(greatest(a, b), greatest(d, e));
-            if (has_middle) {
-                const int64_t m = color(samples[lattice_middle], c);
-                low = least(low, m);
-                high = greatest(high, m);
-                // Beside the mean of the corners; four times that, and half as much counts as below.
-                bend = greatest(bend, magnitude_of(4 * m - a - b - d - e) / 2);
-            } else {
-                bend = greatest(bend, magnitude_of(a + e - b - d));
-            }
-            range = greatest(range, high - low);
-            across = greatest(across, greatest(magnitude_of(a - b), magnitude_of(d - e)));
-            down = greatest(down, greatest(magnitude_of(a - d), magnitude_of(b - e)));
-        }
-        const int64_t area = area_of(cell), allowed = settings.target * lattice_samples;
-        // What a border through it can be worth: its range times its area. Rays that meet the same things bend little
-        // between, unless a texture does.
-        const int64_t fineness = settings.fine && !whole ? 8 : 4;
-        cell.wants_split = (differs && fineness * range * area > allowed) || bend * area > allowed ||
-                           (settings.fine ? 8 : 4) * range * area > 3 * allowed;
-        cell.is_new = false;
-        cell.differs = differs;
-        cell.bushy = bushy;
-        cell.across = is_split_across(cell, across, down);
-        cell.range = range;
-        cell.jump = 0;
-        if (area > jump_area) return;
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < i; ++j)
-                for (int c = 0; c < 3 && at[i]->signature == at[j]->signature; ++c)
-                    cell.jump = greatest(cell.jump, magnitude_of(color(*at[i], c) - color(*at[j], c)));
+        const uint16_t* beside = cell.is_new ? taken_ : fresh_;
+        if (cell.is_new) judge_corners(settings, samples, cell);
+        if (!cell.wants_split && area_of(cell) > 4) cell.wants_split = is_crossed(settings, samples, cell, beside);
     }
 
     /// Splits those of the cells that should be and still may.
@@ -146,25 +114,26 @@ class LatticePixel {
         for (int i = 0; i < count; ++i) {
             const Cell& cell = cells_[i];
             bushy_ |= cell.bushy;
+            first_rays_ = greatest(first_rays_, cell.first_rays);
             range_ = greatest(range_, cell.range);
             jump_ = greatest(jump_, cell.jump);
         }
         wanted_ = 0;
+        for (int y = 0; y < lattice_side; ++y) fresh_[y] = 0;
         for (int i = 0; i < count; ++i) {
             const Cell cell = cells_[i];
-            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, cell))) continue;
-            const bool in_four = settings.fine && is_whole(cell);
-            const int more = in_four ? 11 : 4;  // the middle is one of sixteen
-            if (due_ + more > settings.most) {
-                unmet_ = 1;
-                continue;
-            }
-            due_ += more;
-            if (in_four) {
+            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, cell.differs, area_of(cell)))) continue;
+            const bool first = settings.fine && is_whole(cell);
+            const int in_four = first ? 11 : 12, in_two = 4;  // of the first the middle is there
+            if ((first || wants_four(settings, cell)) && due_ + in_four <= settings.most) {
+                due_ += in_four;
                 for (int q = 0; q < 4; ++q) add_child(i, q, cell, q & 1 ? 1 : -1, q & 2 ? 1 : -1);
-            } else {
+            } else if (!first && due_ + in_two <= settings.most) {
+                due_ += in_two;
                 for (int half = 0; half < 2; ++half)
                     add_child(i, half, cell, cell.across ? 2 * half - 1 : 0, cell.across ? 0 : 2 * half - 1);
+            } else {
+                unmet_ = 1;
             }
         }
     }
@@ -198,6 +167,7 @@ class LatticePixel {
     struct Cell {
         uint8_t x, y, width, height;
         bool is_new, wants_split, across, differs, bushy;
+        uint32_t first_rays;  // of the largest tree, set of the whole pixel
         int64_t range, jump;  // of colors: of all corners; in a small cell, of those that met the same
     };
 
@@ -215,7 +185,15 @@ class LatticePixel {
     CISTULA_INLINE static int corner(const Cell& cell, int c) {
         return (cell.y + (c & 2 ? cell.height - 1 : 0)) * lattice_side + cell.x + (c & 1 ? cell.width - 1 : 0);
     }
-    CISTULA_INLINE void want(int slot) { slots_[wanted_++] = uint8_t(slot); }
+    /// Unless it is there.
+    CISTULA_INLINE void want(int slot) {
+        const int y = slot / lattice_side;
+        const uint16_t bit = uint16_t(1u << slot % lattice_side);
+        if ((taken_[y] & bit) != 0) return;
+        taken_[y] = uint16_t(taken_[y] | bit);
+        fresh_[y] = uint16_t(fresh_[y] | bit);
+        slots_[wanted_++] = uint8_t(slot);
+    }
 
     CISTULA_INLINE static int64_t color(const LatticeSample& sample, int c) {
         return sample.radiance[c] >> color_shift;
@@ -229,17 +207,106 @@ class LatticePixel {
         return across != down ? across > down : cell.width >= cell.height;
     }
 
-    /// Whether a cell whose corners agree may well hide what is worth the target, by what the pixel shows so far.
-    CISTULA_INLINE bool overlooks(const LatticeSettings& settings, const Cell& cell) const {
+    CISTULA_INLINE void judge_corners(const LatticeSettings& settings, const LatticeSample* samples, Cell& cell) const {
+        const LatticeSample* at[4];
+        for (int c = 0; c < 4; ++c) at[c] = samples + corner(cell, c);
+        const bool whole = is_whole(cell), has_middle = settings.fine && whole;
+        bool differs = has_middle && samples[lattice_middle].signature != at[0]->signature;
+        bool bushy = at[0]->rays >= bushy_tree;
+        for (int c = 1; c < 4; ++c) {
+            differs |= at[c]->signature != at[0]->signature;
+            bushy |= at[c]->rays >= bushy_tree;
+        }
+        int64_t range = 0, bend = 0, across = 0, down = 0;
+        for (int c = 0; c < 3; ++c) {
+            const int64_t a = color(*at[0], c), b = color(*at[1], c), d = color(*at[2], c), e = color(*at[3], c);
+            int64_t low = least(least(a, b), least(d, e)), high = greatest(greatest(a, b), greatest(d, e));
+            if (has_middle) {
+                const int64_t m = color(samples[lattice_middle], c);
+                low = least(low, m);
+                high = greatest(high, m);
+                // Beside the mean of the corners; four times that, and half as much counts as below.
+                bend = greatest(bend, magnitude_of(4 * m - a - b - d - e) / 2);
+            } else {
+                bend = greatest(bend, magnitude_of(a + e - b - d));
+            }
+            range = greatest(range, high - low);
+            across = greatest(across, greatest(magnitude_of(a - b), magnitude_of(d - e)));
+            down = greatest(down, greatest(magnitude_of(a - d), magnitude_of(b - e)));
+        }
         const int64_t area = area_of(cell), allowed = settings.target * lattice_samples;
+        // What a border through it can be worth: its range times its area. Rays that meet the same things bend little
+        // between, unless a texture does.
+        const int64_t fineness = settings.fine && !whole ? 8 : 4;
+        // Five samples that met different things say too little of a pixel, however alike in color.
+        cell.wants_split = (differs && (has_middle || fineness * range * area > allowed)) || bend * area > allowed ||
+                           (settings.fine ? 8 : 4) * range * area > 3 * allowed;
+        if (has_middle) {
+            cell.first_rays = samples[lattice_middle].rays;
+            for (int c = 0; c < 4; ++c) cell.first_rays = greatest(cell.first_rays, at[c]->rays);
+        }
+        cell.is_new = false;
+        cell.differs = differs;
+        cell.bushy = bushy;
+        cell.across = is_split_across(cell, across, down);
+        cell.range = range;
+        cell.jump = 0;
+        if (area > jump_area) return;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < i; ++j)
+                for (int c = 0; c < 3 && at[i]->signature == at[j]->signature; ++c)
+                    cell.jump = greatest(cell.jump, magnitude_of(color(*at[i], c) - color(*at[j], c)));
+    }
+
+    /// Whether a sample right beside a cell, between the corners of one of its sides, is brighter or darker than both by
+    /// so much that two thirds of the cell would be worth the target: what comes in through that side may end before it
+    /// meets a corner. `rows`: the samples to look at.
+    CISTULA_INLINE static bool is_crossed(const LatticeSettings& settings, const LatticeSample* samples, const Cell& cell,
+                                          const uint16_t* rows) {
+        const int64_t area = area_of(cell), allowed = settings.target * lattice_samples;
+        for (int side = 0; side < 4; ++side) {  // left, right, upper, lower
+            const bool upright = side < 2, far = side % 2 != 0;
+            const int size = upright ? cell.width : cell.height, length = upright ? cell.height : cell.width;
+            const int beside = (upright ? cell.x : cell.y) + (far ? size : -1);
+            if (beside < 0 || beside >= lattice_side) continue;
+            const LatticeSample& a = samples[corner(cell, far ? (upright ? 1 : 2) : 0)];
+            const LatticeSample& b = samples[corner(cell, far ? 3 : upright ? 2 : 1)];
+            for (int k = 1; k < length - 1; ++k) {
+                const int x = upright ? beside : cell.x + k, y = upright ? cell.y + k : beside;
+                if ((rows[y] >> x & 1) == 0) continue;
+                for (int c = 0; c < 3; ++c) {
+                    const int64_t one = color(a, c), other = color(b, c),
+                                  there = color(samples[y * lattice_side + x], c);
+                    const int64_t beyond = greatest(least(one, other) - there, there - greatest(one, other));
+                    if (3 * beyond * area > 2 * allowed) return true;
+                }
+            }
+        }
+        return false;
+    }
+
+    /// Whether a cell that is split is so in four at once, which spares a round: where its halves would be too, whatever
+    /// they show, and where trees are bushy and the target coarse, as all that wait in a round wait for its largest tree.
+    CISTULA_INLINE bool wants_four(const LatticeSettings& settings, const Cell& cell) const {
+        static_assert(unseen_alike <= unseen_unlike, "cells overlook more if they differ");
+        return cell.width >= 4 && cell.height >= 4 &&
+               (overlooks(settings, false, area_of(cell) / 2) || (bushy_ && !settings.fine));
+    }
+
+    /// Whether a cell whose corners agree (or differ) may well hide what is worth the target, by what the pixel shows so
+    /// far.
+    CISTULA_INLINE bool overlooks(const LatticeSettings& settings, bool differs, int64_t area) const {
+        const int64_t allowed = settings.target * lattice_samples;
         // Bushy trees see so much that some of it may well lie between a few samples that agree, be these bushy or not:
         // a light's image ends a tree early, and hides between others as others do between lights.
         if (settings.fine && bushy_ && (area > bushy_area || unseen_range * area > allowed)) return true;
-        return (cell.differs ? unseen_unlike * range_ : unseen_alike * jump_) * area > 8 * allowed;
+        if (settings.fine && first_rays_ >= many_rays && area == lattice_samples) return true;
+        if (settings.fine && first_rays_ >= some_rays && area > wide_area && range_ >= wide_range * settings.target) return true;
+        return (differs ? unseen_unlike * range_ : unseen_alike * jump_) * area > 8 * allowed;
     }
 
     /// Child `nth` of cell i: the left or right half (-1, 1; 0: both) of the upper or lower half; wants the corners
-    /// that it does not inherit.
+    /// that are not there.
     CISTULA_INLINE void add_child(int i, int nth, const Cell& parent, int right, int lower) {
         Cell child = parent;
         child.is_new = true;
@@ -247,20 +314,17 @@ class LatticePixel {
         if (lower != 0) child.height /= 2;
         if (right > 0) child.x = uint8_t(child.x + child.width);
         if (lower > 0) child.y = uint8_t(child.y + child.height);
-        for (int c = 0; c < 4; ++c) {
-            const bool inherits =
-                (right == 0 || (c & 1 ? 1 : -1) == right) && (lower == 0 || (c & 2 ? 1 : -1) == lower);
-            const bool is_middle = right != 0 && lower != 0 && corner(child, c) == lattice_middle;
-            if (!inherits && !is_middle) want(corner(child, c));
-        }
+        for (int c = 0; c < 4; ++c) want(corner(child, c));
         cells_[nth == 0 ? i : count_++] = child;
     }
 
     int count_;             // cells
     int due_, wanted_;      // samples taken and wanted, and of these the latter
     int unmet_, bushy_;     // bushy_: whether a cell had a bushy corner
+    uint32_t first_rays_;   // of the largest of the first trees
     int64_t range_, jump_;  // greatest of any cell
-    uint8_t slots_[lattice_samples / 2];
+    uint16_t taken_[lattice_side], fresh_[lattice_side];  // samples by row, a bit a column: all, and this round's
+    uint8_t slots_[lattice_samples * 3 / 4];              // no split wants more than three of four new samples
     Cell cells_[most_cells];
 };
 

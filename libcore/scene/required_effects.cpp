@@ -205,7 +205,9 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene) {
         if (!solid.platonic) {
             const MeshTopology topology = find_topology(solid.mesh);
             closed = topology.closed;
-            find_triangle_incidents<float>(lights, FramedMesh(solid.mesh, topology, frame, true), i, frame.extent, incidents);
+            if (lamp_on_face(source, lights, incidents).empty())  // one is enough, and meshes may be large
+                find_triangle_incidents<float>(lights, FramedMesh(solid.mesh, topology, frame, true), i, frame.extent,
+                                               incidents);
         }
         uses.push_back({&source.materials[solid.material], solid.place, closed, solid.platonic != nullptr});
     }
