@@ -80,6 +80,15 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
+/// Slabs have room behind their five numbers that means nothing.
+template <class Real>
+bool same_slabs(const std::vector<Slab<Real>>& a, const std::vector<Slab<Real>>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Slab<Real>& x, const Slab<Real>& y) {
+        return std::memcmp(&x.normal, &y.normal, sizeof x.normal) == 0 && std::memcmp(&x.low, &y.low, sizeof x.low) == 0 &&
+               std::memcmp(&x.high, &y.high, sizeof x.high) == 0;
+    });
+}
+
 TYPED_TEST(CompileScene, ScenesScaledByAPowerOfTwoCompileToTheSameBits) {
     using Real = TypeParam;
     const auto reference = compile_scene<Real>(varied_scene());
@@ -90,7 +99,7 @@ TYPED_TEST(CompileScene, ScenesScaledByAPowerOfTwoCompileToTheSameBits) {
         const auto scaled = compile_scene<Real>(scaled_scene(description, k));
         EXPECT_EQ(scaled->scale, reference->scale - k);
         EXPECT_EQ(scaled->radiance_exponent, reference->radiance_exponent);
-        EXPECT_TRUE(same_bits(scaled->slabs, reference->slabs));
+        EXPECT_TRUE(same_slabs(scaled->slabs, reference->slabs));
         EXPECT_TRUE(same_bits(scaled->clusters, reference->clusters));
         EXPECT_TRUE(same_bits(scaled->lights, reference->lights));
         EXPECT_TRUE(same_bits(scaled->seen_lights, reference->seen_lights));
