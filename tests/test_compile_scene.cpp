@@ -1,5 +1,6 @@
 #include "scene/compiled_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
