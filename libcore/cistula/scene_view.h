@@ -60,16 +60,18 @@ struct alignas(16) Ball {
     CISTULA_INLINE static Ball of(const Solid& solid) { return {Vec3<Real>(solid.center), Real(solid.padded_square)}; }
 };
 
-/// The plane of a flat sheet.
+/// The plane of a flat sheet, and a padded box around what lies in it.
 template <class Real>
 struct alignas(16) SheetPlane {
     Vec3<Real> normal;
     Real offset;
     uint32_t solid;
     uint32_t flat;
+    Vec3<Real> center, half;  // half: infinite where nobody knows
 
     CISTULA_INLINE static SheetPlane of(const Solid& solid, uint32_t index) {
-        return {Vec3<Real>(solid.plane_normal), Real(solid.plane_offset), index, solid.flat};
+        return {Vec3<Real>(solid.plane_normal), Real(solid.plane_offset), index, solid.flat,
+                Vec3<Real>(Real(0)), Vec3<Real>(RealTraits<Real>::infinity)};
     }
 };
 

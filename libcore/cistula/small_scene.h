@@ -101,7 +101,7 @@ struct SmallScene {
         tree = there.tree;
         tree_items = there.tree_items;
         seen_tree = there.seen_tree;
-        planes.assign(clusters.size, [&](uint32_t i) { return plane_of<Real>(here, i); });
+        planes.assign(clusters.size, [&](uint32_t i) { return boxed_plane(here, i); });
         sides.assign(clusters.size * cluster_lanes, [&](uint32_t slot) {
             const bool is_used = slot % cluster_lanes < clusters[slot / cluster_lanes].count;
             return is_used ? TriangleSides<Real>::of(here, slot) : TriangleSides<Real>();
@@ -118,6 +118,22 @@ struct SmallScene {
   private:
     static NumberedSolid<Real> numbered(const SceneView<Real>& scene, uint32_t index) {
         return {Ball<Real>::of(scene.solids[index]), scene.solids[index], index};
+    }
+
+    static SheetPlane<Real> boxed_plane(const SceneView<Real>& scene, uint32_t index) {
+        SheetPlane<Real> plane = plane_of<Real>(scene, index);
+        const Cluster<Real>& cluster = scene.clusters[index];
+        for (int axis = 0; axis < 3; ++axis) {
+            Real low = cluster.corner[0][axis][0], high = low;
+            for (uint32_t lane = 0; lane < cluster.count; ++lane)
+                for (int c = 0; c < 3; ++c) {
+                    low = least(low, cluster.corner[c][axis][lane]);
+                    high = greatest(high, cluster.corner[c][axis][lane]);
+                }
+            plane.center[axis] = (low + high) * Real(0.5);
+            plane.half[axis] = (high - low) * Real(0.5) + Real(plane_padding);
+        }
+        return plane;
     }
 
     /// One crossing of each material first, then two of each, ...

@@ -220,12 +220,25 @@ CISTULA_INLINE bool leaves_flat(const Scene& scene, uint32_t cluster, const Ray<
 
 /// Whether a line from a place well off the plane of a flat sheet surely stays off it up to `limit`: spares most rays the
 /// triangles, decides no hit. Lines that stay so far off at a slant below plane_padding / 4 M have all of the sheet far
-/// beside them.
+/// beside them. `off`: of the origin from the plane; `slant`: of the direction.
 template <class Real>
-CISTULA_INLINE bool stays_off(const SheetPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
-    const Real off = dot(plane.normal, origin) - plane.offset, slant = dot(plane.normal, direction);
+CISTULA_INLINE bool stays_off(Real off, Real slant, Real limit) {
     const Real ahead = off < Real(0) ? -slant : slant, far_off = magnitude(off);
     return (far_off > Real(plane_padding)) & (far_off + ahead * limit > Real(plane_padding));
+}
+
+/// A line at less of a slant to a sheet's plane may cross it far from where rounding says.
+template <class Real>
+inline constexpr Real least_slant = Real(0x1p-6);
+
+/// Whether a line surely crosses the plane of a flat sheet beside the sheet. Where it crosses is off by the rounding of a few
+/// u M over the slant, 2^-13 M at most, and the box is padded by more.
+template <class Real>
+CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction, Real off,
+                                   Real slant) {
+    const Vec3<Real> at = along(origin, -off * reciprocal(slant), direction) - plane.center;
+    return (magnitude(slant) > least_slant<Real>) & ((magnitude(at.x) > plane.half.x) | (magnitude(at.y) > plane.half.y) |
+                                                     (magnitude(at.z) > plane.half.z));
 }
 
 /// The plane of a cluster's flat sheet, if it belongs to one.
@@ -243,8 +256,10 @@ CISTULA_INLINE SheetPlane<Real> plane_of(const Scene& scene, uint32_t cluster) {
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
     const SheetPlane<Real> plane = plane_of<Real>(scene, cluster);
-    // Without branches: all is there at once.
-    return (plane.flat != 0) & ((ray.from_solid == plane.solid) | stays_off(plane, ray.origin, ray.direction, limit));
+    const Real off = dot(plane.normal, ray.origin) - plane.offset, slant = dot(plane.normal, ray.direction);
+    // Two questions without branches of their own: what each asks is there at once.
+    if ((plane.flat != 0) & ((ray.from_solid == plane.solid) | stays_off(off, slant, limit))) return true;
+    return (plane.flat != 0) & crosses_beside(plane, ray.origin, ray.direction, off, slant);
 }
 
 /// Takes an accepted crossing if it is the ray's next.
