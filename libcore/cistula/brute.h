@@ -40,14 +40,10 @@ struct BruteIntersector {
     template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
-        if (!is_finite(ray)) return best;
-        if constexpr (E::solids)
-            if (closest_solid<E>(ray, best)) return best;
-        // The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
-        if constexpr (E::triangles)
-            for (uint32_t i = 0; i < scene.clusters.size; ++i)
-                if (!misses_flat(scene, i, ray, best.t))
-                    closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
+        // Nothing is nearer than that to a ray that is not finite: no question of its own, which would part a warp's lanes.
+        best.t = is_finite(ray) ? RealTraits<Real>::infinity : Real(-1);
+        find_closest<E>(ray, best);
+        if (!best.found()) best.t = RealTraits<Real>::infinity;
         return best;
     }
 
@@ -55,7 +51,7 @@ struct BruteIntersector {
     template <class E>
     CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
         ShadowSum<E> sum;
-        if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
+        sum.opaque = is_finite(shadow.ray) ? 0u : 7u;
         shadow_start<Real, E>(scene, shadow, sum);
         if constexpr (Media::contacts) {
             for (uint32_t i = 0; E::solids && i < scene.convex.size && !sum.dark(); ++i)
@@ -76,6 +72,17 @@ struct BruteIntersector {
     }
 
   private:
+    template <class E>
+    CISTULA_INLINE void find_closest(const Ray<Real, Media>& ray, Hit<Real>& best) const {
+        if constexpr (E::solids)
+            if (closest_solid<E>(ray, best)) return;
+        // The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
+        if constexpr (E::triangles)
+            for (uint32_t i = 0; i < scene.clusters.size; ++i)
+                if (!misses_flat(scene, i, ray, best.t))
+                    closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
+    }
+
     /// True if the ray's own way out comes first, since that solid stands alone.
     template <class E>
     CISTULA_INLINE bool closest_solid(const Ray<Real, Media>& ray, Hit<Real>& best) const {

@@ -50,6 +50,24 @@ CISTULA_INLINE void cross_slab(const Vec3<Real>& normal, Real low, Real high, co
     leave = parallel ? RealTraits<Real>::infinity : last;
 }
 
+#if CISTULA_ON_DEVICE
+/// The same, the crossings of both sides apart, for a line that is not parallel to the slab.
+template <class Real>
+struct SlabCrossing {
+    Real slope, at_low, at_high;
+
+    CISTULA_INLINE SlabCrossing(const Slab<Real>& slab, const Vec3<Real>& origin, const Vec3<Real>& direction) {
+        slope = dot(slab.normal, direction);
+        const Real no = dot(slab.normal, origin), inverse = reciprocal(slope);
+        at_low = (slab.low - no) * inverse;
+        at_high = (slab.high - no) * inverse;
+    }
+    CISTULA_INLINE bool is_parallel() const { return magnitude(slope) < least_slope<Real>; }
+    CISTULA_INLINE Real enter() const { return lesser(at_low, at_high); }
+    CISTULA_INLINE Real leave() const { return greater(at_low, at_high); }
+};
+#endif
+
 /// The same for eight at once, as the compiler fills vectors with it.
 template <class Real>
 CISTULA_INLINE void cross_slabs(const SlabGroup<Real>& group, const Vec3<Real>& origin, const Vec3<Real>& direction,
@@ -69,6 +87,24 @@ CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
     return least(least(least(a[0], a[4]), least(a[2], a[6])), least(least(a[1], a[5]), least(a[3], a[7])));
 }
 
+#if CISTULA_ON_DEVICE
+/// Where some slab is parallel to the line. By value, as it is called.
+template <class Real, class Scene>
+CISTULA_SELDOM ConvexInterval<Real> careful_interval(const Scene& scene, uint32_t first, uint32_t end, Vec3<Real> origin,
+                                                     Vec3<Real> direction) {
+    ConvexInterval<Real> interval;
+#pragma unroll 1
+    for (uint32_t i = first; i < end; ++i) {
+        Real enter, leave;
+        const Slab<Real>& slab = scene.slabs.data[i];
+        cross_slab(slab.normal, slab.low, slab.high, origin, direction, enter, leave);
+        if (enter > interval.enter) interval.enter = enter, interval.enter_slab = i;
+        interval.leave = lesser(leave, interval.leave);
+    }
+    return interval;
+}
+#endif
+
 /// `may_stop`: where it is sure not to be met, that is all that is known.
 template <class Real, class Scene>
 CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Solid& solid,
@@ -76,31 +112,19 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const So
                                                     [[maybe_unused]] bool may_stop) {
     ConvexInterval<Real> interval;
 #if CISTULA_ON_DEVICE
-    // As if no slab were parallel to the line; with more care where one was.
+    // As if no slab were parallel to the line; with more care where one was, in code that is out of the way.
     const uint32_t end = solid.first_slab + solid.slab_count;
     Real slope = Real(1);
-#pragma unroll 1  // code that fits the instruction cache is worth more
-    for (uint32_t i = solid.first_slab; i < end; ++i) {
-        const Slab<Real>& slab = scene.slabs.data[i];
-        const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin), inverse = reciprocal(nd);
-        const Real at_low = (slab.low - no) * inverse, at_high = (slab.high - no) * inverse;
-        const Real enter = lesser(at_low, at_high);
-        slope = lesser(slope, magnitude(nd));
-        if (enter > interval.enter) interval.enter_slab = i;
-        interval.enter = greater(enter, interval.enter);
-        interval.leave = lesser(greater(at_low, at_high), interval.leave);
-        if (may_stop && interval.enter > interval.leave) break;
-    }
-    if (!(slope < least_slope<Real>)) return interval;
-    interval = ConvexInterval<Real>();
 #pragma unroll 1
     for (uint32_t i = solid.first_slab; i < end; ++i) {
-        Real enter, leave;
-        const Slab<Real>& slab = scene.slabs.data[i];
-        cross_slab(slab.normal, slab.low, slab.high, origin, direction, enter, leave);
-        if (enter > interval.enter) interval.enter = enter, interval.enter_slab = i;
-        interval.leave = lesser(leave, interval.leave);
+        const SlabCrossing<Real> crossing(scene.slabs.data[i], origin, direction);
+        slope = lesser(magnitude(crossing.slope), slope);
+        if (crossing.enter() > interval.enter) interval.enter_slab = i;
+        interval.enter = greater(crossing.enter(), interval.enter);
+        interval.leave = lesser(crossing.leave(), interval.leave);
+        if (may_stop && interval.enter > interval.leave) break;
     }
+    if (slope < least_slope<Real>) return careful_interval(scene, solid.first_slab, end, origin, direction);
 #else
     for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
         alignas(32) Real enter[slab_lanes], leave[slab_lanes];
@@ -118,6 +142,22 @@ CISTULA_INLINE uint32_t leaving_face(uint32_t slab, Real slope) {
     return 2 * slab + (slope > Real(0) ? 1 : 0);
 }
 
+#if CISTULA_ON_DEVICE
+/// Where a slab is parallel to the line, or a face was skipped. By value, as it is called.
+template <class Real, class Scene>
+CISTULA_SELDOM ConvexExit<Real> careful_exit(const Scene& scene, uint32_t first, uint32_t count, Vec3<Real> origin,
+                                             Vec3<Real> direction, uint32_t skipped) {
+    ConvexExit<Real> exit;
+#pragma unroll 1
+    for (uint32_t i = 0; i < count; ++i) {
+        const SlabCrossing<Real> crossing(scene.slabs.data[first + i], origin, direction);
+        const uint32_t face = leaving_face(i, crossing.slope);
+        if (crossing.leave() < exit.t && face != skipped && !crossing.is_parallel()) exit = {crossing.leave(), face};
+    }
+    return exit;
+}
+#endif
+
 /// Where a line from inside leaves: by another face than `skipped`, whatever rounding says about where it starts.
 template <class Real, class Scene>
 CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
@@ -125,14 +165,19 @@ CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& sol
     ConvexExit<Real> exit;
     const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
 #if CISTULA_ON_DEVICE
-#pragma unroll 1
+    // As if no slab were parallel to the line and no face skipped; with more care where one was.
+    uint32_t leaving = 0;
+    Real leaving_slope = Real(0), slope = Real(1);
+#pragma unroll 1  // code that fits the instruction cache is worth more
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const Slab<Real>& slab = slabs[i];
-        const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin), inverse = reciprocal(nd);
-        const Real t = greater((slab.low - no) * inverse, (slab.high - no) * inverse);
-        const uint32_t face = leaving_face(i, nd);
-        if (t < exit.t && face != skipped && !(magnitude(nd) < least_slope<Real>)) exit = {t, face};
+        const SlabCrossing<Real> crossing(slabs[i], origin, direction);
+        slope = lesser(magnitude(crossing.slope), slope);
+        if (crossing.leave() < exit.t) leaving = i, leaving_slope = crossing.slope;
+        exit.t = lesser(crossing.leave(), exit.t);
     }
+    exit.face = leaving_face(leaving, leaving_slope);
+    if (slope < least_slope<Real> || exit.face == skipped)
+        return careful_exit(scene, solid.first_slab, solid.slab_count, origin, direction, skipped);
 #else
     for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
         alignas(32) Real enter[slab_lanes], leave[slab_lanes];

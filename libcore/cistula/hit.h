@@ -34,7 +34,7 @@ struct Crossing {
     uint64_t key = 0;
 
     CISTULA_INLINE bool before(Real other_t, uint64_t other_key) const {
-        return t < other_t || (t == other_t && key < other_key);
+        return (t < other_t) | ((t == other_t) & (key < other_key));  // without jumps
     }
 };
 
@@ -64,7 +64,7 @@ struct Hit {
 
     /// The one hit rule: keep the least (t, key).
     CISTULA_INLINE bool improves(Real other_t, uint64_t other_key) const {
-        return other_t < t || (other_t == t && other_key < key);
+        return (other_t < t) | ((other_t == t) & (other_key < key));
     }
 };
 

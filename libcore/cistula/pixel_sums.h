@@ -40,9 +40,9 @@ class PixelSums {
           flags_(flags),
           left_(settings.budget) {}
 
-    CISTULA_INLINE void add(Vec3<Real> radiance) {
-        check(radiance);
-        for (int c = 0; c < 3; ++c) record_.radiance[c] += whole_of(radiance[c] * Real(settings_.fixed_scale));
+    CISTULA_INLINE void add(const Vec3<Real>& radiance) {
+        const Vec3<Real> units = in_units(radiance);
+        for (int c = 0; c < 3; ++c) record_.radiance[c] += whole_of(units[c]);
     }
 
     /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of the
@@ -82,24 +82,25 @@ class PixelSums {
     /// The most a branch can add, rounded up; B's slack of 2^-10 covers the rounding of all weights below it.
     template <class Share>
     CISTULA_INLINE int64_t most_of(const Share& weight, int64_t most[3]) {
-        Vec3<Real> bound(channel(weight, 0) * bound_[0], channel(weight, 1) * bound_[1], channel(weight, 2) * bound_[2]);
-        check(bound);
+        const Vec3<Real> units =
+            in_units({channel(weight, 0) * bound_[0], channel(weight, 1) * bound_[1], channel(weight, 2) * bound_[2]});
         int64_t worst = 0;
         for (int c = 0; c < 3; ++c) {
-            most[c] = whole_above(bound[c] * Real(settings_.fixed_scale));
+            most[c] = whole_above(units[c]);
             worst = most[c] > worst ? most[c] : worst;
         }
         return worst;
     }
 
-    /// What is not in [0, 1] is a fault, and counts as 0. One question for all three, as none ever is.
-    CISTULA_INLINE void check(Vec3<Real>& a) {
-        if (greatest_word(a) <= word_of(Real(1))) return;
-        for (int c = 0; c < 3; ++c) {
-            if (a[c] >= Real(0) && a[c] <= Real(1)) continue;  // -0
+    /// Exact. Where one is not in [0, 1] is a fault, and all count as 0.
+    CISTULA_INLINE Vec3<Real> in_units(const Vec3<Real>& a) {
+        const Real scale = Real(settings_.fixed_scale), zero = Real(0);
+        Vec3<Real> units(fused(a.x, scale, zero), fused(a.y, scale, zero), fused(a.z, scale, zero));  // makes 0 of -0
+        if (greatest_word(units) > word_of(scale)) {
             flags_ |= flag_not_finite;
-            a[c] = Real(0);
+            units = Vec3<Real>(zero);
         }
+        return units;
     }
 
     const TreeSettings& settings_;

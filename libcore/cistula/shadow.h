@@ -16,6 +16,12 @@ struct ShadowRay {
     const Light<Real>* light;
 };
 
+/// By value, as it is called: what scenes do not know.
+template <class Real>
+CISTULA_SELDOM Real unknown_share(uint64_t loss) {
+    return share_of<Real>(loss);
+}
+
 /// 2^-loss; scenes may know those that are asked for most.
 template <class Real, class Scene>
 CISTULA_INLINE Real looked_up_share(const Scene& scene, uint64_t loss) {
@@ -23,9 +29,10 @@ CISTULA_INLINE Real looked_up_share(const Scene& scene, uint64_t loss) {
         Real share = Real(-1);
         for (const KnownShare<Real>& known : scene.known_shares)
             if (known.loss == loss) share = known.share;
-        if (share >= Real(0)) return share;
+        return share >= Real(0) ? share : unknown_share<Real>(loss);
+    } else {
+        return share_of<Real>(loss);
     }
-    return share_of<Real>(loss);
 }
 
 /// What has been met so far on the way to a light, for every color or for all at once (Share).
