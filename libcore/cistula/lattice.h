@@ -33,7 +33,7 @@ inline constexpr int unseen_unlike = 4, unseen_alike = 3, jump_area = 8;
 /// between. Of platonic.json at 320x180 and 0.004 that leaves 0.11 % of the pixels beyond instead of 0.19 %, for 4 % more
 /// samples; closed-box.json takes 10 % more, other golden scenes at most 4 %.
 inline constexpr uint32_t many_rays = 24, some_rays = 5;
-inline constexpr int wide_range = 20, wide_area = lattice_samples / 16;
+inline constexpr int wide_range = 16, wide_area = lattice_samples / 16;
 
 /// What a frame asks of adaptive sampling.
 struct LatticeSettings {
