@@ -94,8 +94,8 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
     // as much.
     for (const double cutoff : cutoffs)
         if (cutoff > 0) plan.add(with(base, deepest, cutoff, single, reference_supersample));
-    for (const double target : quick ? std::vector<double>{0.1, 0.03, 0.01, 0.004}
-                                     : std::vector<double>{0.1, 0.03, 0.01, 0.004, 0.002, 0.001}) {
+    for (const double target : quick ? std::vector<double>{0.3, 0.1, 0.03, 0.01, 0.004}
+                                     : std::vector<double>{0.3, 0.1, 0.03, 0.01, 0.004, 0.002, 0.001}) {
         plan.add(with_target(base, target)).alone["target"] = reference_setting(base, quick);
         if (target <= 0.004) plan.add(with(base, deepest, target / 4, single, reference_supersample));
     }
