@@ -138,7 +138,7 @@ __device__ inline void write_block(const PixelRecord* staged, BlockShape block, 
 }
 
 template <class Real, class E, DevicePath path>
-__global__ void __launch_bounds__(block_threads, least_blocks<Real>)
+__global__ void __launch_bounds__(block_threads, least_blocks<Real, E>)
     render_pixels(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, path>::Intersector;
     using Media = typename Intersector::Media;

@@ -23,10 +23,10 @@ struct alignas(T) Unset {
     __device__ T& get() { return reinterpret_cast<T&>(bytes); }
 };
 
-/// Blocks that share a multiprocessor: what bounds the registers of a thread, at 80 and 128. Others were slower on an
-/// H200.
-template <class Real>
-inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? 6 : 4;
+/// Blocks that share a multiprocessor: what bounds the registers of a thread, at 80 and 128, or 96 where opaque solids are all
+/// there is. Others were slower on an H200.
+template <class Real, class E = Effects<all_effects>>
+inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? 6 : (E::mask & ~opaque_solids) == 0 ? 5 : 4;
 
 template <class Real, DevicePath path>
 struct PathTraits;
