@@ -46,8 +46,7 @@ Ray<Real, OneMedium> aimed(Random& random, const SmallScene<Real>& scene, uint32
     const double reach = std::exp2(-random.between(0, random.below(2) ? 6 : 26));
     const dvec3 target = on_border + (third - on_border) * random.between(-reach, reach);
     const dvec3 normal(scene.planes[index].normal), away = random.direction();
-    const dvec3 slanted = away + normal * (std::exp2(-random.between(0, 12)) - dot(away, normal));
-    const dvec3 direction = slanted / square_root(dot(slanted, slanted));
+    const dvec3 direction = normalized(away + normal * (std::exp2(-random.between(0, 12)) - dot(away, normal)));
     Ray<Real, OneMedium> ray;
     ray.origin = Vec3<Real>(target - direction * random.between(0, 2) * double(scene.extent));
     ray.direction = Vec3<Real>(direction);
