@@ -278,6 +278,25 @@ TEST(Lattice, WhatComesInThroughASideIsSeenFromBesideIt) {
     EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, 0.001);
 }
 
+TEST(Lattice, ShadingThatComesInSteeplyBendsBetweenCornersThatAgree) {
+    // A groove between rows whose ends agree, and the slope that goes on beyond it.
+    const std::array<int, 16> rows = {261, 247, 232, 227, 226, 231, 245, 258, 269, 278, 286, 294, 301, 307, 311, 315};
+    double truth = 0;
+    for (int row : rows) truth += row * 0.001 / 16;
+    const auto groove = [&](int x, int y) { return fixed(rows[size_t(y)] * 0.001 + x * 1e-5); };
+    const auto across = [&](int x, int y) { return groove(y, x); };
+    truth += 7.5e-5;
+    EXPECT_NEAR(double(sampled(lattice(0.004, true), groove, one_kind).radiance[0]) * 0x1p-54 / 256, truth, 0.004);
+    EXPECT_NEAR(double(sampled(lattice(0.004, true), across, one_kind).radiance[0]) * 0x1p-54 / 256, truth, 0.004);
+    // A texture's border between two quarters is no slope, nor is one of things.
+    const auto border = [](double by) { return [by](int x, int) { return fixed(x < 8 ? 0.5 : 0.5 + by); }; };
+    const auto side = [](int x, int) { return uint32_t(x < 8); };
+    const auto taken = [&](double by, const auto& sign) { return sampled(lattice(0.004, true), border(by), sign).samples; };
+    EXPECT_GT(taken(0.0155, one_kind), 16u);
+    EXPECT_EQ(taken(0.0165, one_kind), 16u);
+    EXPECT_EQ(taken(0.0155, side), 16u);
+}
+
 TEST(Lattice, WhereColorsSpanMuchNoLargeCellStands) {
     // A border at the left, and a highlight of 5 x 5 samples between corners that agree, anywhere beside it.
     const auto side = [](int x, int) { return x < 3; };
