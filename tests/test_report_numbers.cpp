@@ -252,6 +252,20 @@ TEST(TargetTable, FindsTheQuickestFixedSettingThatIsAsClose) {
     EXPECT_FALSE(json.at("rows").at(1).contains("ratio"));
 }
 
+TEST(TargetTable, KeepsTargetsInDoubleApart) {
+    std::vector<Entry> entries = {grid_entry(4, 0.02, 16), target_entry(0.01, 0.02, 8, 8), target_entry(0.01, 0.01, 9, 7)};
+    entries[2].setting.precision = Precision::double_;
+    const TargetTable table = table_of(entries);
+    ASSERT_EQ(table.rows.size(), 1u);
+    EXPECT_EQ(table.rows[0].entry, &entries[1]);
+    ASSERT_EQ(table.in_double.size(), 1u);
+    EXPECT_EQ(table.in_double[0].entry, &entries[2]);
+    EXPECT_EQ(table.uniform->closer, &entries[1]);
+    const Json json = table;
+    EXPECT_EQ(json.at("rows").size(), 1u);
+    EXPECT_EQ(json.at("in_double").at(0).at("samples"), 7);
+}
+
 TEST(TargetTable, OnePixelFarOffMakesNoSettingAsClose) {
     std::vector<Entry> entries = {grid_entry(1, 0.1, 1), grid_entry(4, 0.02, 16), target_entry(0.01, 0.03, 8, 6)};
     entries[2].error.p999 = 0.01;  // a few pixels make its RMSE

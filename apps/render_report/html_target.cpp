@@ -75,13 +75,19 @@ Chart time_chart(const Shown& shown, const TargetTable& table) {
     return chart;
 }
 
+std::vector<TargetRow> all_rows(const TargetTable& table) {
+    std::vector<TargetRow> all = table.rows;
+    all.insert(all.end(), table.in_double.begin(), table.in_double.end());
+    return all;
+}
+
 std::string errors_html(const Shown& shown, const TargetTable& table) {
-    Table rows({">target", ">RMSE", ">99.9 % within", ">largest error", ">worst pixel", ">over the target",
+    Table rows({">target", "precision", ">RMSE", ">99.9 % within", ">largest error", ">worst pixel", ">over the target",
                 ">say they missed", ">samples", ">time"},
                "What targets come to: pixels over the target, pixels that said so themselves, samples per pixel");
-    for (const TargetRow& row : table.rows) {
+    for (const TargetRow& row : all_rows(table)) {
         const Entry& entry = *row.entry;
-        rows.row({number_text(entry.setting.target_error), number_text(shown.rmse(entry)),
+        rows.row({number_text(entry.setting.target_error), precision_name(entry.setting.precision), number_text(shown.rmse(entry)),
                   number_text(shown.p999(entry)), number_text(shown.max(entry)),
                   fmt::format("{}, {}", entry.error.worst_x, entry.error.worst_y), percent_text(entry.target->over),
                   count_text(entry.target->missed), samples_text(entry.samples), time_html(entry.wall)});
@@ -90,11 +96,12 @@ std::string errors_html(const Shown& shown, const TargetTable& table) {
 }
 
 std::string fixed_html(const Shown& shown, const TargetTable& table) {
-    Table rows({">target", ">99.9 % within", ">time", "quickest fixed setting as close", ">99.9 % within", ">time",
+    Table rows({">target", "precision", ">99.9 % within", ">time", "quickest fixed setting as close", ">99.9 % within", ">time",
                 ">target / fixed"},
                "Beside the quickest fixed setting of the sweep that keeps 99.9 % of the pixels as close");
-    for (const TargetRow& row : table.rows) {
+    for (const TargetRow& row : all_rows(table)) {
         std::vector<std::string> cells = {number_text(row.entry->setting.target_error),
+                                          precision_name(row.entry->setting.precision),
                                           number_text(shown.p999(*row.entry)), time_html(row.entry->wall)};
         if (row.fixed)
             cells.insert(cells.end(), {escaped(setting_text(row.fixed->setting)), number_text(shown.p999(*row.fixed)),

@@ -97,7 +97,12 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
     for (const double target : quick ? std::vector<double>{0.3, 0.1, 0.03, 0.01, 0.004}
                                      : std::vector<double>{0.3, 0.1, 0.03, 0.01, 0.004, 0.002, 0.001}) {
         plan.add(with_target(base, target)).alone["target"] = reference_setting(base, quick);
-        if (target <= 0.004) plan.add(with(base, deepest, target / 4, single, reference_supersample));
+        if (target > 0.004) continue;
+        plan.add(with(base, deepest, target / 4, single, reference_supersample));
+        // Where rounding moves borders no number of samples in float keeps a small one.
+        Setting exact = with_target(base, target);
+        exact.precision = twice;
+        plan.add(exact);
     }
     return plan.all;
 }

@@ -55,37 +55,38 @@ TargetTable target_table(const std::vector<const Entry*>& entries) {
             if (!other->setting.adaptive() && other->error.p999 <= entry->error.p999 &&
                 (row.fixed == nullptr || other->wall.median() < row.fixed->wall.median()))
                 row.fixed = other;
-        table.rows.push_back(row);
+        (entry->setting.precision == Precision::single_ ? table.rows : table.in_double).push_back(row);
     }
-    std::stable_sort(table.rows.begin(), table.rows.end(), [](const TargetRow& a, const TargetRow& b) {
-        return a.entry->setting.target_error > b.entry->setting.target_error;
-    });
+    for (std::vector<TargetRow>* rows : {&table.rows, &table.in_double})
+        std::stable_sort(rows->begin(), rows->end(), [](const TargetRow& a, const TargetRow& b) {
+            return a.entry->setting.target_error > b.entry->setting.target_error;
+        });
     table.uniform = uniform_row(entries, table.rows);
     return table;
 }
 
-void to_json(Json& json, const TargetTable& table) {
-    json = {{"rows", Json::array()}};
-    for (const TargetRow& row : table.rows) {
-        const Metrics& error = row.entry->error;
-        Json one = {{"target_error", row.entry->setting.target_error},
-                    {"rmse", error.rmse},
-                    {"p999", error.p999},
-                    {"max", error.max},
-                    {"worst", {{"x", error.worst_x}, {"y", error.worst_y}}},
-                    {"over_target", row.entry->target->over},
-                    {"missed", row.entry->target->missed},
-                    {"samples", row.entry->samples},
-                    {"time_ms", row.entry->wall.median()},
-                    {"fixed", row.fixed ? Json(setting_name(row.fixed->setting)) : Json("none")}};
-        if (row.fixed) {
-            one["fixed_rmse"] = row.fixed->error.rmse;
-            one["fixed_p999"] = row.fixed->error.p999;
-            one["fixed_time_ms"] = row.fixed->wall.median();
-            one["ratio"] = row.ratio();
-        }
-        json["rows"].push_back(one);
+void to_json(Json& json, const TargetRow& row) {
+    const Metrics& error = row.entry->error;
+    json = {{"target_error", row.entry->setting.target_error},
+            {"rmse", error.rmse},
+            {"p999", error.p999},
+            {"max", error.max},
+            {"worst", {{"x", error.worst_x}, {"y", error.worst_y}}},
+            {"over_target", row.entry->target->over},
+            {"missed", row.entry->target->missed},
+            {"samples", row.entry->samples},
+            {"time_ms", row.entry->wall.median()},
+            {"fixed", row.fixed ? Json(setting_name(row.fixed->setting)) : Json("none")}};
+    if (row.fixed) {
+        json["fixed_rmse"] = row.fixed->error.rmse;
+        json["fixed_p999"] = row.fixed->error.p999;
+        json["fixed_time_ms"] = row.fixed->wall.median();
+        json["ratio"] = row.ratio();
     }
+}
+
+void to_json(Json& json, const TargetTable& table) {
+    json = {{"rows", table.rows}, {"in_double", table.in_double}};
     if (!table.uniform) return;
     const UniformRow& uniform = *table.uniform;
     json["uniform"] = {{"setting", setting_name(uniform.uniform->setting)},

@@ -26,7 +26,8 @@ struct UniformRow {
 };
 
 struct TargetTable {
-    std::vector<TargetRow> rows;  // by falling target
+    std::vector<TargetRow> rows;       // in float, by falling target
+    std::vector<TargetRow> in_double;  // the small ones again
     std::optional<UniformRow> uniform;
 };
 
@@ -35,6 +36,7 @@ struct TargetTable {
 /// is made by many pixels.
 TargetTable target_table(const std::vector<const Entry*>& entries);
 
+void to_json(Json& json, const TargetRow& row);
 void to_json(Json& json, const TargetTable& table);
 
 }  // namespace cistula::report
