@@ -162,6 +162,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     // A pass follows trees that many levels further down, the last one to their end.
     const auto give = [&](int pass) {
         const int depth = (pass + 1) * part.split_depth;
+    const StreamGate::Hold held = gate_.hold(compute_);
         const bool last = part.split_depth == 0 || pass + 1 == passes || depth >= part.frame.tree.depth;
         job.to = last ? BranchQueue() : queue(pass);
         job.split_depth = last ? whole_trees : depth;
