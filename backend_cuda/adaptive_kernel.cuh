@@ -61,6 +61,7 @@ class WarpPixels {
   public:
     __device__ WarpPixels(const FrameJob& job)
         : job_(job),
+          records_(static_cast<PixelRecord*>(job.records)),
           lane_(threadIdx.x % warp_threads),
           rooms_(job.rooms + (blockIdx.x * block_warps + threadIdx.x / warp_threads) * warp_pixels) {}
 
@@ -95,7 +96,7 @@ class WarpPixels {
         const int x = __shfl_sync(whole_warp, x_, pixel), y = __shfl_sync(whole_warp, y_, pixel);
         const unsigned int record = __shfl_sync(whole_warp, record_, pixel);
         i += __shfl_sync(whole_warp, given_, pixel);
-        if (lane_ < deal.total) take(x, y, rooms_[pixel], rooms_[pixel].pixel.wanted(i), job_.records[record]);
+        if (lane_ < deal.total) take(x, y, rooms_[pixel], rooms_[pixel].pixel.wanted(i), records_[record]);
         __syncwarp();
         given_ += clamped(warp_threads - deal.before, 0, wanted_ - given_);
         return true;
@@ -116,7 +117,7 @@ class WarpPixels {
         for (int j = lane_; __any_sync(whole_warp, j < standing.total); j += warp_threads) {
             int pixel = 0, i = 0;
             standing.find(j, pixel, i);
-            PixelRecord& to = job_.records[__shfl_sync(whole_warp, record, pixel)];
+            PixelRecord& to = records_[__shfl_sync(whole_warp, record, pixel)];
             if (j < standing.total)
                 rooms_[pixel].pixel.settle(settings, i, [&](int slot, int weight) {
                     rooms_[pixel].samples[slot].give(to, weight, AtomicAdd());
@@ -127,8 +128,8 @@ class WarpPixels {
         given_ = 0;
         wanted_ = pixel.wanted();
         if (wanted_ != 0) return;
-        job_.records[record_].samples = uint32_t(pixel.taken());
-        job_.records[record_].unmet = pixel.unmet();
+        records_[record_].samples = uint32_t(pixel.taken());
+        records_[record_].unmet = pixel.unmet();
     }
 
   private:
@@ -141,13 +142,14 @@ class WarpPixels {
         x_ = job_.x + column;
         y_ = job_.y + film_row;
         record_ = unsigned(row) * unsigned(job_.width) + unsigned(column);
-        job_.records[record_] = PixelRecord();
+        records_[record_] = PixelRecord();
         rooms_[lane_].pixel.begin(job_.frame.lattice);
         given_ = 0;
         wanted_ = rooms_[lane_].pixel.wanted();
     }
 
     const FrameJob& job_;
+    PixelRecord* const records_;
     const int lane_;
     LatticeRoom* const rooms_;
     bool more_ = true;  // pixels that nobody has begun
@@ -161,8 +163,8 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     render_adaptive(const __grid_constant__ FrameJob job,
                     const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, path>::Intersector;
-    __shared__ Unset<BlockRoom> memory;
-    BlockRoom& room = memory.get();
+    __shared__ Unset<BlockRoom<PixelRecord>> memory;
+    BlockRoom<PixelRecord>& room = memory.get();
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
     PixelRecord& taken = room.records[threadIdx.x];
     StackOf<Real, E, typename Intersector::Media> stack;

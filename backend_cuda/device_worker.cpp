@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstring>
 #include <thread>
 
@@ -45,6 +46,16 @@ bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
             std::this_thread::sleep_for(std::chrono::duration<double>(std::min(waited / 100, longest_nap)));
     }
     return true;
+}
+
+/// `count` records of a mask from `from`, which are the film's from `to` on.
+void unpack(int mask, const std::byte* from, PixelRecord* to, size_t count) {
+    if (has_ledger(mask)) {
+        std::memcpy(to, from, count * sizeof(PixelRecord));
+        return;
+    }
+    const auto* seen = reinterpret_cast<const SeenRecord*>(from);
+    for (size_t i = 0; i < count; ++i) to[i] = {seen[i], {}, {}};
 }
 
 }  // namespace
@@ -95,7 +106,7 @@ void DeviceWorker<Real>::prime(int mask, Pass pass) {
     PartSlot& slot = slots_[0];
     slot.records.reserve(strip_rows * sizeof(PixelRecord));
     FrameJob job;
-    job.records = slot.records.as<PixelRecord>();
+    job.records = slot.records.as<void>();
     job.width = 1;
     job.rows = strip_rows;  // of a rectangle without height: no pixel is rendered
     job.tally = slot.tally.as<DeviceTally>();
@@ -115,7 +126,7 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, P
     use_device(device_);
     prime(mask, first);
     if (splits) prime(mask, Pass::branches);
-    const size_t bytes = pixels * sizeof(PixelRecord);
+    const size_t bytes = pixels * record_bytes(mask);
     if (!splits)
         for (DeviceMemory& queue : queue_) queue.free();
     const size_t branch = queued_branch_bytes<Real>(path_), wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
@@ -138,7 +149,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     slot.part = part;
     FrameJob job;
     job.frame = part.frame;
-    job.records = slot.records.as<PixelRecord>();
+    job.records = slot.records.as<void>();
     job.x = part.rect.x;
     job.y = part.rect.y;
     job.width = part.rect.width;
@@ -151,6 +162,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
+    const StreamGate::Hold held = gate_.hold(compute_);
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
     const auto queue = [&](int pass) {
         BranchQueue q;
@@ -162,7 +174,6 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     // A pass follows trees that many levels further down, the last one to their end.
     const auto give = [&](int pass) {
         const int depth = (pass + 1) * part.split_depth;
-    const StreamGate::Hold held = gate_.hold(compute_);
         const bool last = part.split_depth == 0 || pass + 1 == passes || depth >= part.frame.tree.depth;
         job.to = last ? BranchQueue() : queue(pass);
         job.split_depth = last ? whole_trees : depth;
@@ -191,7 +202,7 @@ bool DeviceWorker<Real>::fetch(int index, Film& film, bool locked, const std::at
     if (!await(slot.done, stop)) return false;
     kernel_seconds += slot.end.since(slot.begin) * 1e-3;
     const auto start = std::chrono::steady_clock::now();
-    if (locked)
+    if (locked && has_ledger(slot.part.mask))
         copy_straight(slot, film);
     else
         copy_rows(slot, film);
@@ -246,14 +257,14 @@ void DeviceWorker<Real>::copy_straight(const PartSlot& slot, Film& film) {
 template <class Real>
 void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
     const FramePart& part = slot.part;
-    const size_t width = size_t(part.rect.width), row_bytes = width * sizeof(PixelRecord);
+    const size_t width = size_t(part.rect.width), row_bytes = width * record_bytes(part.mask);
     const int rows = (part.strips - 1) * strip_rows + rows_of_last_strip(part);
     // No more than there is: to lock pages takes longer than to render a small frame.
     const int batch = std::min(int(std::max<size_t>(staging_bytes / row_bytes, 1)), rows);
     for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * row_bytes);
     const auto fill = [&](int first, int buffer) {
         CISTULA_CUDA_CHECK(cudaMemcpyAsync(staging_[buffer].as<void>(),
-                                           slot.records.as<PixelRecord>() + size_t(first) * width,
+                                           slot.records.as<std::byte>() + size_t(first) * row_bytes,
                                            size_t(std::min(batch, rows - first)) * row_bytes, cudaMemcpyDeviceToHost, copy_));
         CISTULA_CUDA_CHECK(cudaEventRecord(staged_[buffer], copy_));
     };
@@ -261,15 +272,15 @@ void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
     for (int first = 0, buffer = 0; first < rows; first += batch, buffer ^= 1) {
         CISTULA_CUDA_CHECK(cudaEventSynchronize(staged_[buffer]));
         if (first + batch < rows) fill(first + batch, buffer ^ 1);
-        const PixelRecord* from = staging_[buffer].as<PixelRecord>();
+        const auto* from = staging_[buffer].as<std::byte>();
         const int count = std::min(batch, rows - first);
         // Rows that are neighbors in the film go together: large copies pass the caches by, which writers of files want.
         const int together = part.strip_step == 1 ? std::max(int(copy_bytes / row_bytes), 1) : 1;
         tbb::parallel_for(0, (count + together - 1) / together, [&](int i) {
             const int begin = i * together, row = first + begin;
             const int y = row_of_strips(part.first_strip, part.strip_step, row);
-            std::memcpy(&film.pixels[size_t(y) * width], from + size_t(begin) * width,
-                        size_t(std::min(together, count - begin)) * row_bytes);
+            unpack(part.mask, from + size_t(begin) * row_bytes, &film.pixels[size_t(y) * width],
+                   size_t(std::min(together, count - begin)) * width);
         });
     }
 }

@@ -33,6 +33,14 @@ struct BranchQueue {
     unsigned int* size = nullptr;  // may pass capacity: what found no room
 };
 
+/// Whether kernels of a mask, an index of effect_masks, write PixelRecords: else SeenRecords (RecordOf).
+constexpr bool has_ledger(int mask) {
+    return sends_rays_on(effect_masks[mask]);
+}
+constexpr size_t record_bytes(int mask) {
+    return has_ledger(mask) ? sizeof(PixelRecord) : sizeof(SeenRecord);
+}
+
 inline constexpr int whole_trees = 0x7fffffff;
 
 /// A pixel that is sampled adaptively.
@@ -46,7 +54,7 @@ inline constexpr int block_pixels = 32;
 /// Rows of the frame's rectangle: strip s of the job is strip first_strip + s * strip_step of the rectangle.
 struct FrameJob {
     FrameView frame;
-    PixelRecord* records = nullptr;  // rows x width, row by row
+    void* records = nullptr;         // rows x width, row by row: PixelRecords, or SeenRecords without a ledger
     int x = 0, y = 0;                // of the rectangle in the frame
     int width = 0, height = 0;       // of the rectangle
     int first_strip = 0, strip_step = 1;

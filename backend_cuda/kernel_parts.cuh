@@ -11,8 +11,9 @@ inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_th
 inline constexpr int tile_width = 8, tile_height = 4;
 
 /// What a block keeps of its pixels while it renders them: registers are dearer.
+template <class Record>
 struct alignas(16) BlockRoom {
-    PixelRecord records[block_threads];
+    Record records[block_threads];
     PixelWork work[block_threads];
 };
 
@@ -23,10 +24,17 @@ struct alignas(T) Unset {
     __device__ T& get() { return reinterpret_cast<T&>(bytes); }
 };
 
-/// Blocks that share a multiprocessor: what bounds the registers of a thread, at 80 and 128, or 96 where opaque solids are all
-/// there is. Others were slower on an H200.
-template <class Real, class E = Effects<all_effects>>
-inline constexpr int least_blocks = sizeof(Real) == sizeof(float) ? 6 : (E::mask & ~opaque_solids) == 0 ? 5 : 4;
+/// Blocks that share a multiprocessor: what bounds the registers of a thread. As measured on an H200: trees that fork are
+/// slower with more blocks of fewer registers, and plain loops over what sends nothing on are quicker.
+constexpr int blocks_at_work(uint32_t mask, DevicePath path, bool in_float) {
+    const auto within = [&](uint32_t effects) { return path == DevicePath::plain_loop && (mask & ~effects) == 0; };
+    if (within(opaque_solids)) return in_float ? 8 : 6;
+    if (within(opaque_bodies)) return in_float ? 8 : 5;
+    if (within(mirrors)) return in_float ? 7 : 4;
+    return in_float ? 6 : 4;
+}
+template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
+inline constexpr int least_blocks = blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float));
 
 template <class Real, DevicePath path>
 struct PathTraits;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstring>
 #include <thread>
 
 #include "backend_cuda/cuda_renderer.h"
@@ -10,6 +11,7 @@
 #include "golden.h"
 #include "gpu.h"
 #include "scene/generated_scene.h"
+#include "scene/without_effect.h"
 #include "stopping.h"
 
 using namespace cistula;
@@ -20,6 +22,11 @@ const std::string source = CISTULA_SOURCE_DIR;
 
 SceneDescription scene_of(const std::string& name) {
     return read_scene(source + "/scenes/" + name + ".json");
+}
+
+/// Neither mirrored nor transparent: no ray is sent on, and there is nothing for a ledger.
+SceneDescription dull(const SceneDescription& scene) {
+    return without_effect(without_effect(scene, effect_transmission).value(), effect_reflection).value();
 }
 
 /// What must be equal; the rays too, which no pixel's hash has by kind.
@@ -312,6 +319,41 @@ TYPED_TEST(Cuda, FilmsThatComeByAgainAreCopiedStraight) {
     const std::vector<PixelRecord> kept(film.pixels.begin(), film.pixels.end());
     film = Film();  // the lock goes with the memory
     film.pixels.assign(kept.begin(), kept.end());
+}
+
+TYPED_TEST(Cuda, LargeFramesAreEqual) {
+    CISTULA_NEEDS_GPU();
+    // Their warps take every other two pixels; the widths leave the last block whole, even and odd.
+    FrameSettings settings = golden::settings_for(scene_of("benchmark"));
+    for (const SceneDescription& scene : {scene_of("benchmark"), dull(scene_of("benchmark"))})
+        for (const int width : {1040, 1030, 1029}) {
+            settings.set_size(width, 516);
+            EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << width;
+        }
+}
+
+TYPED_TEST(Cuda, FramesWithoutALedgerAreEqual) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = dull(scene_of("benchmark"));
+    CudaOptions options;
+    options.memory_limit = size_t{1} << 20;
+    for (const int k : {1, 2, 3}) {
+        FrameSettings settings = golden::settings_for(scene);
+        settings.supersample = k;
+        settings.crop = {1, 2, 237, 129};
+        const Image expected = this->expected(scene, settings);
+        EXPECT_EQ(render(*this->gpu(scene, options), scene, settings), expected) << k << ", in parts";
+        const auto renderer = this->gpu(scene);
+        Film film;
+        for (int turn = 0; turn < 3; ++turn) {  // the pages are locked for the second
+            std::memset(static_cast<void*>(film.pixels.data()), 0x5a, film.pixels.size() * sizeof(PixelRecord));
+            RenderProgress progress;
+            ASSERT_TRUE(renderer->render(camera_at(scene.camera, 0), settings, film, progress));
+            EXPECT_EQ(image_of(film), expected) << k;
+        }
+        settings.effects = all_effects;  // the same renderer, whose records have a ledger then
+        EXPECT_EQ(render(*renderer, scene, settings), expected) << k;
+    }
 }
 
 TYPED_TEST(Cuda, SharesOfAPixelsSamplesAddUp) {

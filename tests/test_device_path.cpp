@@ -10,6 +10,7 @@
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
 #include "scene/shadow_plan.h"
+#include "scene/without_effect.h"
 
 using namespace cistula;
 
@@ -77,13 +78,14 @@ void render_split(const Scene& scene, const FrameView& frame, const Intersector&
         for (int thread = 0; thread < threads; ++thread) {
             Stack stack(split.depth(0), queue, split.capacity, i);
             PixelWork work;
-            PixelRecord part;
+            RecordOf<E> part;
             render_pixel<Real, E>(scene, frame, intersector, film.rect.x + int(i % width), film.rect.y + int(i / width),
                                   SampleRange{thread, threads}, part, work, stack);
+            if (thread == 0) film.pixels[i] = PixelRecord();
             if (thread == 0)
-                film.pixels[i] = part;
+                static_cast<RecordOf<E>&>(film.pixels[i]) = part;
             else
-                film.pixels[i].add(part);
+                static_cast<RecordOf<E>&>(film.pixels[i]).add(part);
             film.rays.add(work.rays);
             film.flags |= work.flags;
         }
@@ -114,9 +116,12 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
     if (!camera_solids(view, BruteIntersector<Real>{view}, frame.camera.position, frame.camera_media))
         film.flags |= flag_media_overflow;
     const Intersector intersector{scene};
-    // Two masks stand for all, which spares the compiler half of its work; tests of their own compare masks.
-    constexpr int middle = 3;
-    if (least_mask(settings.effects | compiled.effects) <= middle)
+    // Three masks stand for all, which spares the compiler half of its work; tests of their own compare masks.
+    constexpr int opaque = 1, middle = 3;
+    const int least = least_mask(settings.effects | compiled.effects);
+    if (least <= opaque)
+        render_split<Real, Effects<effect_masks[opaque]>>(scene, frame, intersector, split, film, given);
+    else if (least <= middle)
         render_split<Real, Effects<effect_masks[middle]>>(scene, frame, intersector, split, film, given);
     else
         render_split<Real, Effects<all_effects>>(scene, frame, intersector, split, film, given);
@@ -190,6 +195,13 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
     check<TypeParam>("benchmark from within", scene, settings, done);
     EXPECT_GT(done.given, 1000u) << "hardly a tree was split";
     EXPECT_GT(done.plain_loops, 0);
+    // Nothing that a ledger would be for.
+    scene = read_scene(source + "/scenes/benchmark.json");
+    for (const Effect effect : {effect_transmission, effect_reflection}) scene = without_effect(scene, effect).value();
+    settings = golden::settings_for(scene);
+    settings.set_size(64, 36);
+    ASSERT_FALSE(sends_rays_on(compile_scene<TypeParam>(scene)->effects));
+    check<TypeParam>("benchmark, opaque and dull", scene, settings, done);
 }
 
 TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfGeneratedScenes) {

@@ -88,10 +88,10 @@ CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
 }
 
 #if CISTULA_ON_DEVICE
-/// Where some slab is parallel to the line. By value, as it is called.
+/// Where some slab is parallel to the line.
 template <class Real, class Scene>
-CISTULA_SELDOM ConvexInterval<Real> careful_interval(const Scene& scene, uint32_t first, uint32_t end, Vec3<Real> origin,
-                                                     Vec3<Real> direction) {
+CISTULA_INLINE ConvexInterval<Real> careful_interval(const Scene& scene, uint32_t first, uint32_t end,
+                                                     const Vec3<Real>& origin, const Vec3<Real>& direction) {
     ConvexInterval<Real> interval;
 #pragma unroll 1
     for (uint32_t i = first; i < end; ++i) {
@@ -103,6 +103,17 @@ CISTULA_SELDOM ConvexInterval<Real> careful_interval(const Scene& scene, uint32_
     }
     return interval;
 }
+
+/// The same out of the way. By value, as it is called.
+template <class Real, class Scene>
+CISTULA_SELDOM ConvexInterval<Real> called_interval(const Scene& scene, uint32_t first, uint32_t end, Vec3<Real> origin,
+                                                    Vec3<Real> direction) {
+    return careful_interval(scene, first, end, origin, direction);
+}
+
+/// Whether seldom code is called by the kernels that read this kind of scene: those of trees only spill more by that.
+template <class Scene>
+inline constexpr bool calls_seldom_code = requires(const Scene& scene) { scene.plan; };
 #endif
 
 /// `may_stop`: where it is sure not to be met, that is all that is known.
@@ -124,7 +135,12 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const So
         interval.leave = lesser(crossing.leave(), interval.leave);
         if (may_stop && interval.enter > interval.leave) break;
     }
-    if (slope < least_slope<Real>) return careful_interval(scene, solid.first_slab, end, origin, direction);
+    if (slope < least_slope<Real>) {
+        if constexpr (calls_seldom_code<Scene>)
+            return called_interval(scene, solid.first_slab, end, origin, direction);
+        else
+            return careful_interval(scene, solid.first_slab, end, origin, direction);
+    }
 #else
     for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
         alignas(32) Real enter[slab_lanes], leave[slab_lanes];
@@ -143,10 +159,10 @@ CISTULA_INLINE uint32_t leaving_face(uint32_t slab, Real slope) {
 }
 
 #if CISTULA_ON_DEVICE
-/// Where a slab is parallel to the line, or a face was skipped. By value, as it is called.
+/// Where a slab is parallel to the line, or a face was skipped.
 template <class Real, class Scene>
-CISTULA_SELDOM ConvexExit<Real> careful_exit(const Scene& scene, uint32_t first, uint32_t count, Vec3<Real> origin,
-                                             Vec3<Real> direction, uint32_t skipped) {
+CISTULA_INLINE ConvexExit<Real> careful_exit(const Scene& scene, uint32_t first, uint32_t count, const Vec3<Real>& origin,
+                                             const Vec3<Real>& direction, uint32_t skipped) {
     ConvexExit<Real> exit;
 #pragma unroll 1
     for (uint32_t i = 0; i < count; ++i) {
@@ -156,29 +172,47 @@ CISTULA_SELDOM ConvexExit<Real> careful_exit(const Scene& scene, uint32_t first,
     }
     return exit;
 }
-#endif
 
-/// Where a line from inside leaves: by another face than `skipped`, whatever rounding says about where it starts.
+/// The same out of the way. By value, as it is called.
 template <class Real, class Scene>
-CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
-                                            const Vec3<Real>& direction, uint32_t skipped = no_face) {
+CISTULA_SELDOM ConvexExit<Real> called_exit(const Scene& scene, uint32_t first, uint32_t count, Vec3<Real> origin,
+                                            Vec3<Real> direction, uint32_t skipped) {
+    return careful_exit(scene, first, count, origin, direction, skipped);
+}
+
+/// As if no slab were parallel to the line and no face skipped; with more care where one was.
+template <class Real, class Scene>
+CISTULA_INLINE ConvexExit<Real> quick_exit(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
+                                           const Vec3<Real>& direction, uint32_t skipped) {
     ConvexExit<Real> exit;
-    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
-#if CISTULA_ON_DEVICE
-    // As if no slab were parallel to the line and no face skipped; with more care where one was.
     uint32_t leaving = 0;
     Real leaving_slope = Real(0), slope = Real(1);
 #pragma unroll 1  // code that fits the instruction cache is worth more
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const SlabCrossing<Real> crossing(slabs[i], origin, direction);
+        const SlabCrossing<Real> crossing(scene.slabs.data[solid.first_slab + i], origin, direction);
         slope = lesser(magnitude(crossing.slope), slope);
         if (crossing.leave() < exit.t) leaving = i, leaving_slope = crossing.slope;
         exit.t = lesser(crossing.leave(), exit.t);
     }
     exit.face = leaving_face(leaving, leaving_slope);
     if (slope < least_slope<Real> || exit.face == skipped)
+        return called_exit(scene, solid.first_slab, solid.slab_count, origin, direction, skipped);
+    return exit;
+}
+#endif
+
+/// Where a line from inside leaves: by another face than `skipped`, whatever rounding says about where it starts.
+template <class Real, class Scene>
+CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
+                                            const Vec3<Real>& direction, uint32_t skipped = no_face) {
+#if CISTULA_ON_DEVICE
+    if constexpr (calls_seldom_code<Scene>)
+        return quick_exit(scene, solid, origin, direction, skipped);
+    else
         return careful_exit(scene, solid.first_slab, solid.slab_count, origin, direction, skipped);
 #else
+    ConvexExit<Real> exit;
+    const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;
     for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
         alignas(32) Real enter[slab_lanes], leave[slab_lanes];
         cross_slabs(scene.slab_groups[solid.first_group + first / slab_lanes], origin, direction, enter, leave);
@@ -187,8 +221,8 @@ CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& sol
             leave[skipped / 2 - first] = RealTraits<Real>::infinity;
         exit.t = least(least_lane(leave), exit.t);
     }
-#endif
     return exit;
+#endif
 }
 
 /// The first face by which the line enters, as convex_interval found it.

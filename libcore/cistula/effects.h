@@ -74,6 +74,11 @@ inline constexpr int unshadowed_mask = compiled_mask_count - 1;
 /// Of the masks that scenes run with; the last is all_effects.
 inline constexpr int effect_mask_count = unshadowed_mask;
 
+/// Whether rays are sent on, so that there is anything to cut and the ledger to write it down.
+constexpr bool sends_rays_on(uint32_t effects) {
+    return (effects & (effect_reflection | effect_transmission)) != 0;
+}
+
 /// Only what passes a face makes trees fork. Of such masks devices have all kernels: for branches that other threads
 /// follow, and for adaptive sampling, for which scenes of other masks take the least of these.
 constexpr bool trees_fork(int mask) {

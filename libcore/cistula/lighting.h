@@ -22,10 +22,10 @@ CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Rea
 }
 
 /// Adds `weight` times the local term (DESIGN, Light), seen along `ray`.
-template <class Real, class E, class Intersector, class Media, class Scene>
+template <class Real, class E, class Intersector, class Media, class Scene, class Sums>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector,
                                     const Ray<Real, Media>& ray, const Hit<Real>& hit, const Surface<Real>& s,
-                                    const Share<Real, E>& weight, PixelSums<Real>& sums, PixelRays& rays) {
+                                    const Share<Real, E>& weight, Sums& sums, PixelRays& rays) {
     const Material<Real>& m = scene.materials[s.material];
     sums.add(weight * (s.color * m.ambient));
     if constexpr (E::has(effect_diffuse | effect_specular)) {

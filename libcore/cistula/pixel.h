@@ -102,7 +102,7 @@ template <class Real>
 struct FirstSeen {
     const FrameView& frame;
     const PixelWork& work;
-    PixelRecord& record;
+    SeenRecord& record;
     bool middle;  // the sample that stands for the pixel where no mean makes sense
 
     CISTULA_INLINE void nothing(bool light) const { record.hits += light ? 1 : 0; }
@@ -115,6 +115,10 @@ struct FirstSeen {
     }
 };
 
+/// What a mask's pixels need: no ledger where it would be empty.
+template <class E>
+using RecordOf = std::conditional_t<sends_rays_on(E::mask), PixelRecord, SeenRecord>;
+
 /// Which of a pixel's samples are rendered: all, or every step-th where several threads share a pixel.
 struct SampleRange {
     int first = 0, step = 1;
@@ -122,33 +126,33 @@ struct SampleRange {
 
 /// Sample (column, row) of the k x k grid of pixel (px, py), added to the record. `settings`: frame.tree, or a budget
 /// of the sample's own.
-template <class Real, class E, class Intersector, class Stack, class Scene>
+template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
 CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, const TreeSettings& settings,
                                   const Intersector& intersector, int px, int py, int column, int row, bool middle,
-                                  PixelRecord& record, PixelWork& work, Stack& stack) {
+                                  Record& record, PixelWork& work, Stack& stack) {
     const int k = frame.supersample;
     Ray<Real, typename Intersector::Media> ray;
     // In half samples from the middle of the picture.
     const int across = 2 * (px * k + column) + 1 - frame.width * k;
     const int down = 2 * (py * k + row) + 1 - frame.height * k;
     const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
-    PixelSums<Real> sums(settings, scene, record, work.flags);
+    PixelSums<Real, Record> sums(settings, scene, record, work.flags);
     ++work.rays.primary;
     if (!primary_ray(scene, frame, direction, ray, work.start)) {
         sums.add(scene.background);
         return;
     }
     work.facing = dot(direction, frame.camera.forward);
-    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, settings.depth, sums, work.rays, stack);
+    RayTree<Real, E, Intersector, Stack, Record> tree(scene, intersector, settings.depth, sums, work.rays, stack);
     tree.trace(ray, FirstSeen<Real>{frame, work, record, middle});
 }
 
 /// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own. Branches that `stack` gives away are
-/// missing from the record: resume_branch adds them.
-template <class Real, class E, class Intersector, class Stack, class Scene>
+/// missing from the record: resume_branch adds them. `record`: a PixelRecord or RecordOf<E>.
+template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
 CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
-                                 SampleRange samples, PixelRecord& record, PixelWork& work, Stack& stack) {
-    record = PixelRecord();
+                                 SampleRange samples, Record& record, PixelWork& work, Stack& stack) {
+    record = Record();
     record.z = RealTraits<float>::infinity;
     const int k = frame.supersample;
     for (int sample = samples.first; sample < k * k; sample += samples.step) {

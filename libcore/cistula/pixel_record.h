@@ -52,10 +52,8 @@ struct RayCounts {
 };
 
 /// Sums over the pixel's samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
-struct PixelRecord {
+struct SeenRecord {
     int64_t radiance[3];
-    int64_t pruned[3];  // ledger: upper bound on what the cutoff took away
-    int64_t cut[3];     // ledger: upper bound on what the depth limit took away
     uint32_t hits;      // samples whose primary ray hit anything (a seen light too)
     uint32_t rays;      // rays of all kinds
     int32_t id;         // 1 + solid under the sample nearest the pixel's center; 0: none
@@ -65,12 +63,8 @@ struct PixelRecord {
     uint32_t unmet : 1;     // adaptive sampling wanted more than it may have
 
     /// Takes other samples of the same pixel in.
-    CISTULA_INLINE void add(const PixelRecord& o) {
-        for (int c = 0; c < 3; ++c) {
-            radiance[c] += o.radiance[c];
-            pruned[c] += o.pruned[c];
-            cut[c] += o.cut[c];
-        }
+    CISTULA_INLINE void add(const SeenRecord& o) {
+        for (int c = 0; c < 3; ++c) radiance[c] += o.radiance[c];
         hits += o.hits;
         rays += o.rays;
         samples += o.samples;
@@ -78,6 +72,20 @@ struct PixelRecord {
         id = o.id;
         z = o.z;
         for (int c = 0; c < 3; ++c) normal[c] = o.normal[c];
+    }
+};
+
+/// The same with the ledger, which stays empty where no ray is sent on: devices do without it there.
+struct PixelRecord : SeenRecord {
+    int64_t pruned[3];  // upper bound on what the cutoff took away
+    int64_t cut[3];     // upper bound on what the depth limit took away
+
+    CISTULA_INLINE void add(const PixelRecord& o) {
+        SeenRecord::add(o);
+        for (int c = 0; c < 3; ++c) {
+            pruned[c] += o.pruned[c];
+            cut[c] += o.cut[c];
+        }
     }
 };
 

@@ -27,12 +27,13 @@ CISTULA_INLINE auto greatest_word(const Vec3<Real>& a) {
     return greatest(word_of(a.x), greatest(word_of(a.y), word_of(a.z)));
 }
 
-template <class Real>
+/// Into a PixelRecord, or a SeenRecord where nothing is ever sent on.
+template <class Real, class Record = PixelRecord>
 class PixelSums {
   public:
     /// For one sample. Weights have a share per color, or one for all.
     template <class Scene>
-    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
+    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, Record& record, uint32_t& flags)
         : settings_(settings),
           bound_(scene.bound),
           largest_bound_(scene.largest_bound),
@@ -109,7 +110,7 @@ class PixelSums {
     const TreeSettings& settings_;
     const Vec3<Real>& bound_;  // the scene's radiance bound B
     const Real& largest_bound_;
-    PixelRecord& record_;
+    Record& record_;
     uint32_t& flags_;
     int64_t left_;
 };

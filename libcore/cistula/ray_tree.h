@@ -109,16 +109,17 @@ template <class Real, class E, class Media>
 using StackOf = std::conditional_t<E::has(effect_transmission), BranchStack<BranchOf<Real, E, Media>>,
                                    OneBranch<BranchOf<Real, E, Media>>>;
 
-template <class Real, class E, class Intersector, class Stack>
+template <class Real, class E, class Intersector, class Stack, class Record = PixelRecord>
 class RayTree {
   public:
+    using Sums = PixelSums<Real, Record>;
     using Media = typename Intersector::Media;
     using Scene = typename Intersector::Scene;
     using Weight = Share<Real, E>;
     using Entry = BranchOf<Real, E, Media>;
 
     CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth,
-                           PixelSums<Real>& sums, PixelRays& rays, Stack& stack)
+                           Sums& sums, PixelRays& rays, Stack& stack)
         : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums), rays_(rays), stack_(stack) {}
 
     /// Adds all that the primary ray sees to the sums, and tells what it meets first: first.surface(hit, normal), or
@@ -317,7 +318,7 @@ class RayTree {
     const Scene& scene_;
     const Intersector& intersector_;
     const int depth_;
-    PixelSums<Real>& sums_;
+    Sums& sums_;
     PixelRays& rays_;
     Stack& stack_;
 };
