@@ -1,7 +1,5 @@
-// A stream that waits until the host has enqueued all that is to run in one go.
+// A stream that waits a moment for the host to enqueue all that is to run in one go.
 #pragma once
-
-#include <cudaTypedefs.h>
 
 #include <cstdint>
 
@@ -9,9 +7,9 @@
 
 namespace cistula {
 
-/// Between an event and the kernel behind it a device may wait for the host, which takes ten microseconds to launch a kernel of
+/// Between an event and the kernel behind it a device may wait for the host, which takes some microseconds to launch a kernel of
 /// many parameters: time of the host's that the events would count as the kernel's. Belongs to the device that is current
-/// when it is made. Where the driver has no such wait all goes on without one.
+/// when it is made.
 class StreamGate {
   public:
     StreamGate();
@@ -28,13 +26,13 @@ class StreamGate {
         StreamGate& gate_;
     };
 
-    /// What is enqueued from here on starts once the hold has ended.
+    /// What is enqueued from here on starts once the hold has ended, or a tenth of a millisecond later: tools that let every
+    /// launch wait for its kernel (compute-sanitizer, CUDA_LAUNCH_BLOCKING) would wait for ever else. Throws Error (device).
     [[nodiscard]] Hold hold(cudaStream_t stream);
 
   private:
     void open();
 
-    PFN_cuStreamWaitValue32_v11070 wait_ = nullptr;
     PinnedMemory opened_;  // how often it was opened
     uint32_t closed_ = 0;  // and closed
 };
