@@ -12,7 +12,7 @@ namespace cistula {
 
 /// The root of the source tree.
 inline std::filesystem::path source_root() {
-    return std::filesystem::absolute(__FILE__).parent_path().parent_path();
+    return CISTULA_SOURCE_DIR;
 }
 
 class SceneDump {
