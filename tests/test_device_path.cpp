@@ -81,11 +81,13 @@ void render_split(const Scene& scene, const FrameView& frame, const Intersector&
             RecordOf<E> part;
             render_pixel<Real, E>(scene, frame, intersector, film.rect.x + int(i % width), film.rect.y + int(i / width),
                                   SampleRange{thread, threads}, part, work, stack);
-            if (thread == 0) film.pixels[i] = PixelRecord();
-            if (thread == 0)
-                static_cast<RecordOf<E>&>(film.pixels[i]) = part;
-            else
-                static_cast<RecordOf<E>&>(film.pixels[i]).add(part);
+            RecordOf<E>& record = film.pixels[i];
+            if (thread > 0) {
+                record.add(part);
+            } else {
+                film.pixels[i] = PixelRecord();
+                record = part;
+            }
             film.rays.add(work.rays);
             film.flags |= work.flags;
         }
