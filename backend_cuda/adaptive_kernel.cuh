@@ -67,8 +67,7 @@ class WarpPixels {
 
     /// New pixels for those that are done, while less than a sample a lane is wanted.
     __device__ void refill() {
-        const unsigned int columns = unsigned(job_.width + tile_width - 1) / tile_width;
-        const unsigned int places = columns * unsigned(job_.rows / tile_height) * warp_threads;
+        const unsigned int places = job_.block_count * warp_threads;  // blocks are tiles
         while (more_) {
             const int waiting = int(warp_sum(unsigned(wanted_ - given_)));
             const unsigned int free = __ballot_sync(whole_warp, lane_ < warp_pixels && wanted_ == 0);
@@ -81,7 +80,7 @@ class WarpPixels {
             more_ = first + unsigned(take) < places;
             const int rank = __popc(free & ((1u << lane_) - 1u));
             if ((free >> lane_ & 1u) != 0 && rank < take && first + unsigned(rank) < places)
-                begin(first + unsigned(rank), columns);
+                begin(first + unsigned(rank));
         }
         __syncwarp();
     }
@@ -133,15 +132,14 @@ class WarpPixels {
     }
 
   private:
-    __device__ void begin(unsigned int place, unsigned int columns) {
-        const unsigned int tile = place / warp_threads, in_tile = place % warp_threads;
-        const int column = int(tile % columns * tile_width + in_tile % tile_width);
-        const int row = int(tile / columns * tile_height + in_tile / tile_width);
-        const int film_row = row_of_strips(job_.first_strip, job_.strip_step, row);
-        if (column >= job_.width || film_row >= job_.height) return;
+    __device__ void begin(unsigned int place) {
+        const BlockPlace tile = job_.blocks[place / warp_threads];
+        const PixelPlace in_tile = place_in_block(Deal::shared, int(place % warp_threads));
+        const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
+        if (column >= job_.width || row >= job_.height) return;
         x_ = job_.x + column;
-        y_ = job_.y + film_row;
-        record_ = unsigned(row) * unsigned(job_.width) + unsigned(column);
+        y_ = job_.y + row;
+        record_ = place;
         records_[record_] = PixelRecord();
         rooms_[lane_].pixel.begin(job_.frame.lattice);
         given_ = 0;
@@ -158,6 +156,17 @@ class WarpPixels {
     int given_ = 0, wanted_ = 0;  // samples of this round, and those of them that lanes took; none wanted: no pixel
 };
 
+/// Ends a sample between two walks of its tree, which may be many and long.
+template <class Entry>
+class StoppableBranchStack : public BranchStack<Entry> {
+  public:
+    __device__ explicit StoppableBranchStack(const FrameJob& job) : job_(job) {}
+    __device__ bool stopped() const { return cistula::stopped(job_); }
+
+  private:
+    const FrameJob& job_;
+};
+
 template <class Real, class E, DevicePath path>
 __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     render_adaptive(const __grid_constant__ FrameJob job,
@@ -167,14 +176,15 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     BlockRoom<PixelRecord>& room = memory.get();
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
     PixelRecord& taken = room.records[threadIdx.x];
-    StackOf<Real, E, typename Intersector::Media> stack;
+    StoppableBranchStack<BranchOf<Real, E, typename Intersector::Media>> stack(job);
     const bool gradual = shades_gradually(scene);
     WarpPixels pixels(job);
     for (;;) {
         pixels.refill();
         const bool any = pixels.take_samples([&](int x, int y, LatticeRoom& pixel, int slot, PixelRecord& record) {
-            take_sample<Real, E>(scene, job.frame, Intersector{scene}, x, y, slot, gradual, taken, pixel.samples[slot],
-                                 own, stack);
+            const uint32_t met =
+                take_sample<Real, E>(scene, job.frame, Intersector{scene}, x, y, slot, gradual, taken, own, stack);
+            pixel.samples[slot].keep(taken, met);
             AtomicAdd()(record.rays, taken.rays);
             if (LatticePixel::is_chosen(job.frame.lattice, slot)) choose_sample(taken, record);
         });

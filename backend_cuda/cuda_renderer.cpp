@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "backend_cuda/device_worker.h"
-#include "backend_cuda/locked_pages.h"
 #include "scene/frame_view.h"
 
 namespace cistula {
@@ -79,7 +78,6 @@ class CudaRenderer : public Renderer {
             worker->rays = RayCounts();
             worker->flags = 0;
         }
-        const bool locked = has_locked_pages(film);
         RayCounts before;
         for (int part = 0; part < frame.parts; ++part) {
             if (progress.stop) {
@@ -93,7 +91,7 @@ class CudaRenderer : public Renderer {
             const int slot = (frame.first_slot + part) % DeviceWorker<Real>::slots;
             std::atomic<bool> stopped{false};
             tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
-                if (strips_of(frame, part, d) > 0 && !workers_[d]->fetch(slot, film, locked, progress.stop)) stopped = true;
+                if (strips_of(frame, part, d) > 0 && !workers_[d]->fetch(slot, film, progress.stop)) stopped = true;
             });
             if (stopped) {
                 drop();
@@ -128,6 +126,7 @@ class CudaRenderer : public Renderer {
     };
     struct Frame : Request {
         FrameView view;
+        std::shared_ptr<const FrameContents> contents;
         bool fits = true;      // the camera's list of media
         int mask = 0;
         int split_depth = 0;
@@ -172,7 +171,9 @@ class CudaRenderer : public Renderer {
         effects_ = effect_masks[frame.mask];
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
-        const size_t strip_pixels = size_t(rect.width) * strip_rows;
+        frame.contents = std::make_shared<const FrameContents>(frame_contents(*scene_, frame.view, settings));
+        constexpr int block = BlockShape::of(Deal::tiles).width;
+        const size_t strip_pixels = size_t((rect.width + block - 1) / block * block) * strip_rows;
         const size_t samples = samples_of(settings);
         const int per_device = (frame.strips + devices() - 1) / devices();
         int wanted = int(std::clamp<size_t>(part_samples / (strip_pixels * samples), 1, size_t(per_device)));
@@ -238,12 +239,11 @@ class CudaRenderer : public Renderer {
     void start(const Frame& frame, int part) {
         for (size_t d = 0; d < workers_.size(); ++d) {
             FramePart job;
-            job.strips = strips_of(frame, part, d);
-            if (job.strips == 0) continue;
+            job.strips = {part * frame.part_strips * devices() + int(d), devices(), strips_of(frame, part, d)};
+            if (job.strips.count == 0) continue;
             job.frame = frame.view;
             job.rect = frame.settings.crop;
-            job.first_strip = part * frame.part_strips * devices() + int(d);
-            job.strip_step = devices();
+            job.contents = frame.contents;
             job.first = first_pass(frame.settings);
             job.mask = frame.mask;
             job.split_depth = frame.split_depth;

@@ -1,34 +1,31 @@
 #include "backend_cuda/device_worker.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
-#include <cstring>
 #include <thread>
 
+#include "scene/put_pixels.h"
 #include "scene/shadow_plan.h"
 
 namespace cistula {
 namespace {
 
-constexpr size_t staging_bytes = size_t{32} << 20, copy_bytes = size_t{4} << 20;
+constexpr size_t staging_bytes = size_t{32} << 20;
+constexpr int blocks_together = 64;  // that a thread of the host unpacks
 /// Branches that may wait per pixel of a part, and in all; trees that find no room are walked to their end where they are.
 constexpr size_t queued_per_pixel = 2, most_queued = size_t{1} << 21;
-/// From so many pixels on the warps of a block interleave: all four then do much the same at a time and share the
+/// From so many pixels in blocks on the warps of a block interleave: all four then do much the same at a time and share the
 /// instructions that are fetched. Of fewer, the few that take longest are better kept apart.
-constexpr size_t many_pixels = size_t{1} << 19;
+constexpr size_t many_pixels = size_t{1} << 18;
 /// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
 constexpr int most_blocks = 6;
 /// So long the host asks again and again whether a part is done, then every hundredth of the time that it has waited.
 constexpr double patience = 5e-3, longest_nap = 1e-3;  // seconds
-
-/// Strips are whole but for a rectangle's last.
-int rows_of_last_strip(const FramePart& part) {
-    const int top = (part.first_strip + (part.strips - 1) * part.strip_step) * strip_rows;
-    return std::clamp(part.rect.height - top, 0, strip_rows);
-}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -48,14 +45,44 @@ bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
     return true;
 }
 
-/// `count` records of a mask from `from`, which are the film's from `to` on.
-void unpack(int mask, const std::byte* from, PixelRecord* to, size_t count) {
-    if (has_ledger(mask)) {
-        std::memcpy(to, from, count * sizeof(PixelRecord));
-        return;
+PixelRecord whole_record(const PixelRecord& record) {
+    return record;
+}
+PixelRecord whole_record(const SeenRecord& record) {
+    return {record, {}, {}};
+}
+
+/// The records of a block, row by row of its pixels.
+std::array<uint8_t, block_threads> rows_of_records(Deal deal) {
+    const BlockShape shape = BlockShape::of(deal);
+    std::array<uint8_t, block_threads> records{};
+    for (int i = 0; i < shape.pixels(); ++i) {
+        const PixelPlace place = place_in_block(deal, i);
+        records[size_t(place.row * shape.width + place.column)] = uint8_t(i);
     }
-    const auto* seen = reinterpret_cast<const SeenRecord*>(from);
-    for (size_t i = 0; i < count; ++i) to[i] = {seen[i], {}, {}};
+    return records;
+}
+
+/// A block's records into the film.
+template <class Record>
+void unpack(const Record* from, const std::array<uint8_t, block_threads>& records, BlockShape shape, const BlockPlace& block,
+            Film& film, const PixelWriter& writer) {
+    const int left = block.column * shape.width, top = block.row * shape.height;
+    const int width = std::min(shape.width, film.rect.width - left), height = std::min(shape.height, film.rect.height - top);
+    for (int row = 0; row < height; ++row) {
+        PixelRecord* to = &film.pixels[size_t(top + row) * size_t(film.rect.width) + size_t(left)];
+        for (int column = 0; column < width; ++column)
+            writer.put(to[column], whole_record(from[records[size_t(row * shape.width + column)]]));
+    }
+}
+
+/// Which pixels are a warp's. In large parts all warps of a block do much the same at a time.
+Deal deal_for(const FramePart& part) {
+    if (part.frame.supersample > 1) return Deal::shared;
+    size_t covered = 0;
+    for (int row = 0; row < part.rect.height; row += FrameCover::band_rows)
+        for (const PixelRun& run : part.contents->cover.runs(row)) covered += size_t(run.end - run.begin) * FrameCover::band_rows;
+    return covered / size_t(part.strips.step) >= many_pixels ? Deal::interleaved : Deal::tiles;
 }
 
 }  // namespace
@@ -81,7 +108,11 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     }
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
     scene_.view = scene.at(arena_.as<void>());
-    if (path_ == DevicePath::plain_loop) scene_.small = *small_scene(here, scene_.view);
+    if (path_ != DevicePath::plain_loop) return;
+    scene_.small = *small_scene(here, scene_.view);
+    primitives_.assign(here.solids.size, 0);
+    for (uint32_t i = 0; i < here.convex.size; ++i) primitives_[here.convex[i]] |= 1u << i;
+    for (uint32_t i = 0; i < here.clusters.size; ++i) primitives_[here.clusters[i].solid] |= 1u << (ShadowPlan::first_cluster + i);
 }
 
 /// For as many blocks as the device can have at work, or half as many until there is memory.
@@ -104,18 +135,18 @@ void DeviceWorker<Real>::prime(int mask, Pass pass) {
     const int kernel = 3 * mask + int(pass);
     if (primed_ >> kernel & 1u) return;
     PartSlot& slot = slots_[0];
-    slot.records.reserve(strip_rows * sizeof(PixelRecord));
-    FrameJob job;
+    slot.records.reserve(block_threads * sizeof(PixelRecord));
+    FrameJob job;  // of a rectangle without height: no pixel of its block is rendered
     job.records = slot.records.as<void>();
-    job.width = 1;
-    job.rows = strip_rows;  // of a rectangle without height: no pixel is rendered
     job.tally = slot.tally.as<DeviceTally>();
     job.next = job.from.size = counters_.as<unsigned int>();
+    job.blocks = counters_.as<BlockPlace>();
+    job.block_count = 1;
     job.stop = stop_.as<unsigned int>();
     if (pass == Pass::adaptive_pixels) reserve_rooms();
     job.rooms = rooms_.as<LatticeRoom>();
     job.room_blocks = room_blocks_;
-    CISTULA_CUDA_CHECK(cudaMemsetAsync(job.next, 0, sizeof(unsigned int), compute_));
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
     launch(pass, mask, path_, scene_, job, compute_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
     primed_ |= 1u << kernel;
@@ -132,7 +163,11 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, P
     const size_t branch = queued_branch_bytes<Real>(path_), wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
     if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
     bool room = true;
-    for (PartSlot& slot : slots_) room = room && slot.records.try_reserve(bytes);
+    const size_t list_bytes = pixels / (tile_width * tile_height) * sizeof(BlockPlace);
+    for (PartSlot& slot : slots_) {
+        room = room && slot.records.try_reserve(bytes) && slot.blocks.try_reserve(list_bytes);
+        slot.blocks_copy.reserve(list_bytes);
+    }
     for (DeviceMemory& queue : queue_) room = room && queue.try_reserve(wanted * branch);
     queue_capacity_ = wanted;
     if (room) return true;
@@ -147,6 +182,9 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
+    slot.list = BlockList(part.contents->cover, primitives_, part.rect, part.strips, deal_for(part));
+    const std::vector<BlockPlace>& places = slot.list.places();
+    std::copy(places.begin(), places.end(), slot.blocks_copy.as<BlockPlace>());
     FrameJob job;
     job.frame = part.frame;
     job.records = slot.records.as<void>();
@@ -154,14 +192,15 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.y = part.rect.y;
     job.width = part.rect.width;
     job.height = part.rect.height;
-    job.first_strip = part.first_strip;
-    job.strip_step = part.strip_step;
-    job.rows = part.strips * strip_rows;
-    job.interleaved = size_t(job.width) * size_t(job.rows) >= many_pixels;
+    job.blocks = slot.blocks.as<BlockPlace>();
+    job.block_count = static_cast<unsigned int>(places.size());
+    job.deal = slot.list.deal();
     job.stop = stop_.as<unsigned int>();
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.as<void>(), slot.blocks_copy.as<void>(), places.size() * sizeof(BlockPlace),
+                                       cudaMemcpyHostToDevice, compute_));
     const StreamGate::Hold held = gate_.hold(compute_);
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
     const auto queue = [&](int pass) {
@@ -179,11 +218,11 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
         job.split_depth = last ? whole_trees : depth;
         return !last;
     };
-    bool more = give(0);
+    bool more = give(0) && !places.empty();
     job.next = counters_.as<unsigned int>() + passes;
     job.rooms = rooms_.as<LatticeRoom>();
     job.room_blocks = room_blocks_;
-    launch(part.first, part.mask, path_, scene_, job, compute_);
+    if (!places.empty()) launch(part.first, part.mask, path_, scene_, job, compute_);
     for (int pass = 1; more; ++pass) {
         job.from = queue(pass - 1);
         more = give(pass);
@@ -196,16 +235,15 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
 }
 
 template <class Real>
-bool DeviceWorker<Real>::fetch(int index, Film& film, bool locked, const std::atomic<bool>& stop) {
+bool DeviceWorker<Real>::fetch(int index, Film& film, const std::atomic<bool>& stop) {
     use_device(device_);
     PartSlot& slot = slots_[index];
+    fill_gaps(slot, film);  // while the kernels are at work
     if (!await(slot.done, stop)) return false;
-    kernel_seconds += slot.end.since(slot.begin) * 1e-3;
+    const bool is_empty = slot.list.places().empty();
+    if (!is_empty) kernel_seconds += slot.end.since(slot.begin) * 1e-3;
     const auto start = std::chrono::steady_clock::now();
-    if (locked && has_ledger(slot.part.mask))
-        copy_straight(slot, film);
-    else
-        copy_rows(slot, film);
+    if (!is_empty) copy_blocks(slot, film);
     const DeviceTally& tally = *slot.tally_copy.as<DeviceTally>();
     for (const auto& counts : tally.rays) {
         rays.primary += counts[0];
@@ -235,52 +273,58 @@ void DeviceWorker<Real>::wait() {
     stopped_ = false;
 }
 
-/// Into a film in locked pages: all strips that are whole at once, and the last one.
+/// What no block renders is background.
 template <class Real>
-void DeviceWorker<Real>::copy_straight(const PartSlot& slot, Film& film) {
-    const FramePart& part = slot.part;
-    const size_t width = size_t(part.rect.width), strip = strip_rows * width, strip_bytes = strip * sizeof(PixelRecord);
-    const int last_rows = rows_of_last_strip(part), whole = last_rows == strip_rows ? part.strips : part.strips - 1;
-    const PixelRecord* from = slot.records.as<PixelRecord>();
-    PixelRecord* to = film.pixels.data() + size_t(part.first_strip) * strip;
-    if (whole > 0)
-        CISTULA_CUDA_CHECK(cudaMemcpy2DAsync(to, size_t(part.strip_step) * strip_bytes, from, strip_bytes, strip_bytes,
-                                             size_t(whole), cudaMemcpyDeviceToHost, copy_));
-    if (whole < part.strips)
-        CISTULA_CUDA_CHECK(cudaMemcpyAsync(to + size_t(whole * part.strip_step) * strip, from + size_t(whole) * strip,
-                                           size_t(last_rows) * width * sizeof(PixelRecord), cudaMemcpyDeviceToHost,
-                                           copy_));
-    CISTULA_CUDA_CHECK(cudaStreamSynchronize(copy_));
+void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
+    const BackgroundPixel& background = slot.part.contents->background;
+    std::atomic<uint64_t> pixels{0};
+    tbb::parallel_for(0, slot.list.rows(), [&](int i) {
+        const PixelWriter writer;
+        uint64_t count = 0;
+        slot.list.for_each_gap(i, [&](int row, int begin, int end) {
+            writer.fill(&film.pixels[size_t(row) * size_t(film.rect.width) + size_t(begin)], size_t(end - begin), background.record);
+            count += uint64_t(end - begin);
+        });
+        pixels += count;
+    });
+    if (pixels == 0) return;
+    rays.primary += pixels * background.work.rays.primary;
+    flags |= background.work.flags;
 }
 
 /// Through two page-locked buffers: one is filled while threads spread the other over the film.
 template <class Real>
-void DeviceWorker<Real>::copy_rows(const PartSlot& slot, Film& film) {
-    const FramePart& part = slot.part;
-    const size_t width = size_t(part.rect.width), row_bytes = width * record_bytes(part.mask);
-    const int rows = (part.strips - 1) * strip_rows + rows_of_last_strip(part);
+void DeviceWorker<Real>::copy_blocks(const PartSlot& slot, Film& film) {
+    const std::vector<BlockPlace>& places = slot.list.places();
+    const BlockShape shape = slot.list.shape();
+    const auto order = rows_of_records(slot.list.deal());
+    const int mask = slot.part.mask, count = int(places.size());
+    const size_t block_bytes = size_t(shape.pixels()) * record_bytes(mask);
     // No more than there is: to lock pages takes longer than to render a small frame.
-    const int batch = std::min(int(std::max<size_t>(staging_bytes / row_bytes, 1)), rows);
-    for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * row_bytes);
+    const int batch = std::min(int(staging_bytes / block_bytes), count);
+    for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * block_bytes);
     const auto fill = [&](int first, int buffer) {
         CISTULA_CUDA_CHECK(cudaMemcpyAsync(staging_[buffer].as<void>(),
-                                           slot.records.as<std::byte>() + size_t(first) * row_bytes,
-                                           size_t(std::min(batch, rows - first)) * row_bytes, cudaMemcpyDeviceToHost, copy_));
+                                           slot.records.as<std::byte>() + size_t(first) * block_bytes,
+                                           size_t(std::min(batch, count - first)) * block_bytes, cudaMemcpyDeviceToHost, copy_));
         CISTULA_CUDA_CHECK(cudaEventRecord(staged_[buffer], copy_));
     };
     fill(0, 0);
-    for (int first = 0, buffer = 0; first < rows; first += batch, buffer ^= 1) {
+    for (int first = 0, buffer = 0; first < count; first += batch, buffer ^= 1) {
         CISTULA_CUDA_CHECK(cudaEventSynchronize(staged_[buffer]));
-        if (first + batch < rows) fill(first + batch, buffer ^ 1);
+        if (first + batch < count) fill(first + batch, buffer ^ 1);
         const auto* from = staging_[buffer].as<std::byte>();
-        const int count = std::min(batch, rows - first);
-        // Rows that are neighbors in the film go together: large copies pass the caches by, which writers of files want.
-        const int together = part.strip_step == 1 ? std::max(int(copy_bytes / row_bytes), 1) : 1;
-        tbb::parallel_for(0, (count + together - 1) / together, [&](int i) {
-            const int begin = i * together, row = first + begin;
-            const int y = row_of_strips(part.first_strip, part.strip_step, row);
-            unpack(part.mask, from + size_t(begin) * row_bytes, &film.pixels[size_t(y) * width],
-                   size_t(std::min(together, count - begin)) * width);
+        const tbb::blocked_range<int> blocks(0, std::min(batch, count - first), blocks_together);
+        tbb::parallel_for(blocks, [&](const tbb::blocked_range<int>& some) {
+            const PixelWriter writer;
+            for (int i = some.begin(); i < some.end(); ++i) {
+                const std::byte* records = from + size_t(i) * block_bytes;
+                const BlockPlace& place = places[size_t(first + i)];
+                if (has_ledger(mask))
+                    unpack(reinterpret_cast<const PixelRecord*>(records), order, shape, place, film, writer);
+                else
+                    unpack(reinterpret_cast<const SeenRecord*>(records), order, shape, place, film, writer);
+            }
         });
     }
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "backend_cuda/block_list.h"
 #include "backend_cuda/cuda_resources.h"
 #include "backend_cuda/frame_job.h"
 #include "backend_cuda/stream_gate.h"
@@ -24,7 +26,8 @@ void use_device(int device);
 struct FramePart {
     FrameView frame;
     PixelRect rect;
-    int first_strip = 0, strip_step = 1, strips = 0;
+    std::shared_ptr<const FrameContents> contents;
+    Strips strips;
     Pass first = Pass::pixels;  // or adaptive_pixels
     int mask = 0;         // index of effect_masks
     int split_depth = 0;  // from which other threads follow a tree's branches; 0: never
@@ -32,10 +35,11 @@ struct FramePart {
 
 /// A part on its way.
 struct PartSlot {
-    DeviceMemory records, tally;
-    PinnedMemory tally_copy;
+    DeviceMemory records, blocks, tally;
+    PinnedMemory blocks_copy, tally_copy;
     CudaEvent begin, end, done;  // of the kernels; of all, the tally's copy too
     FramePart part;
+    BlockList list;
 };
 
 template <class Real>
@@ -46,16 +50,16 @@ class DeviceWorker {
     /// `here`: the scene of the arena, where this program can read it.
     DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path);
 
-    /// Room for parts of that many pixels in both slots, beside what the kernels of `mask` take for themselves, of
+    /// Room for parts of that many pixels, those of whole blocks, in both slots, beside what the kernels of `mask` take for themselves, of
     /// which `first` goes over the pixels. False where there is none. `splits`: with queues for branches.
     bool reserve(size_t pixels, size_t memory_limit, int mask, Pass first, bool splits);
 
     /// Enqueues a part; nothing is waited for. Its slot must be free.
     void start(const FramePart& part, int slot);
 
-    /// Waits for the part in a slot and puts its pixels where they belong in the film; `locked`: that lies in locked pages.
-    /// False, the part still under way, once `stop` is set.
-    bool fetch(int slot, Film& film, bool locked, const std::atomic<bool>& stop);
+    /// Waits for the part in a slot and puts its pixels where they belong in the film. False, the part still under way, once
+    /// `stop` is set.
+    bool fetch(int slot, Film& film, const std::atomic<bool>& stop);
 
     /// Makes all that was started end soon, whatever is left to do; nothing is waited for. Until wait() nothing may start.
     void stop();
@@ -74,8 +78,8 @@ class DeviceWorker {
 
     void prime(int mask, Pass pass);
     void reserve_rooms();
-    void copy_rows(const PartSlot& slot, Film& film);
-    void copy_straight(const PartSlot& slot, Film& film);
+    void fill_gaps(const PartSlot& slot, Film& film);
+    void copy_blocks(const PartSlot& slot, Film& film);
 
     const int device_;
     const DevicePath path_;
@@ -92,6 +96,7 @@ class DeviceWorker {
     PinnedMemory one_;     // from where it is set: by a copy, as a kernel that does so might have to wait for the others
     bool stopped_ = false;
     DeviceScene<Real> scene_;
+    std::vector<uint32_t> primitives_;  // of each solid, as in BlockPlace
     PartSlot slots_[slots];
 };
 

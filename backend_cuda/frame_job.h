@@ -5,19 +5,11 @@
 
 #include <vector>
 
+#include "backend_cuda/block_pixels.h"
 #include "backend_cuda/cuda_renderer.h"
-#include "cistula/pixel.h"
 #include "cistula/small_scene.h"
 
 namespace cistula {
-
-/// Rows of a frame come in strips of this many, so that several devices can take turns.
-inline constexpr int strip_rows = 8;
-
-/// The row of a rectangle on which row `row` of every step-th strip from `first_strip` on lies.
-CISTULA_INLINE int row_of_strips(int first_strip, int strip_step, int row) {
-    return (first_strip + row / strip_rows * strip_step) * strip_rows + row % strip_rows;
-}
 
 /// Ray counts and flags, added up by many blocks: spread over slots, so that they do not queue for one.
 struct DeviceTally {
@@ -51,15 +43,15 @@ struct LatticeRoom {
 /// Such pixels that a block has at work at a time: between them they want a sample for every thread.
 inline constexpr int block_pixels = 32;
 
-/// Rows of the frame's rectangle: strip s of the job is strip first_strip + s * strip_step of the rectangle.
+/// Blocks of the frame's rectangle.
 struct FrameJob {
     FrameView frame;
-    void* records = nullptr;         // rows x width, row by row: PixelRecords, or SeenRecords without a ledger
-    int x = 0, y = 0;                // of the rectangle in the frame
-    int width = 0, height = 0;       // of the rectangle
-    int first_strip = 0, strip_step = 1;
-    int rows = 0;  // whole strips; records below the rectangle are unset
-    bool interleaved = false;  // whether the four warps of a block take every other pixel and row of it, or a tile each
+    void* records = nullptr;    // by blocks: PixelRecords, or SeenRecords without a ledger; those beyond the rectangle are unset
+    int x = 0, y = 0;           // of the rectangle in the frame
+    int width = 0, height = 0;  // of the rectangle
+    const BlockPlace* blocks = nullptr;
+    unsigned int block_count = 0;
+    Deal deal = Deal::tiles;
     DeviceTally* tally = nullptr;
     BranchQueue from, to;  // passes after the first read `from`
     int split_depth = whole_trees;       // branches of this depth and more go `to` the queue

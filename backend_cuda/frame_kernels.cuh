@@ -2,12 +2,9 @@
 #pragma once
 
 #include "backend_cuda/adaptive_kernel.cuh"
-#include "backend_cuda/block_pixels.cuh"
 #include "backend_cuda/cuda_check.h"
 
 namespace cistula {
-
-static_assert(strip_rows % tile_height == 0);
 
 template <class Entry>
 struct QueuedBranch {
@@ -82,10 +79,16 @@ template <class Real, class E, class Media>
 using DeviceStack = std::conditional_t<E::has(effect_transmission), GivingBranchStack<BranchOf<Real, E, Media>>,
                                        KeepingBranch<BranchOf<Real, E, Media>>>;
 
-/// Blocks side by side. A picture of more is rendered in strips of so many or fewer, one after the other: what is at work at a
-/// time then lies close together and shares the instructions that are fetched. 16 took 1 to 4 % less time than whole rows on
-/// an H200, 8 and 32 up to 1 % more than that.
-inline constexpr unsigned int most_columns = 16;
+/// A block's threads copy its first records from shared memory to where they belong.
+template <int count, class Record>
+__device__ void write_records(const Record* staged, Record* to) {
+    constexpr int words = count * int(sizeof(Record)) / int(sizeof(uint4));
+    static_assert(count * sizeof(Record) % sizeof(uint4) == 0);
+#pragma unroll
+    for (int i = 0; i < words; i += block_threads)
+        if (i + block_threads <= words || i + int(threadIdx.x) < words)
+            reinterpret_cast<uint4*>(to)[i + int(threadIdx.x)] = reinterpret_cast<const uint4*>(staged)[i + int(threadIdx.x)];
+}
 
 template <class Real, class E, DevicePath path>
 __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
@@ -97,21 +100,20 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
     __shared__ Unset<BlockRoom<Record>> memory;
     BlockRoom<Record>& room = memory.get();
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
-    const bool shares = shares_tiles(job.frame);
-    const Deal deal = shares ? Deal::shared : job.interleaved ? Deal::interleaved : Deal::tiles;
-    const BlockShape block = BlockShape::of(job.frame);
-    const PixelPlace place = place_of_thread(deal, warp, lane);
-    // Of strip blockIdx.z; beyond the picture's last column there is nothing to do.
-    const int left = int(blockIdx.z * gridDim.x + blockIdx.x) * block.width, top = int(blockIdx.y) * block.height;
-    const int column = left + place.column, row = top + place.row;
-    const int film_row = row_of_strips(job.first_strip, job.strip_step, row);
+    const bool shares = job.deal == Deal::shared;
+    const BlockPlace block = job.blocks[blockIdx.x];
+    const BlockShape shape = BlockShape::of(job.deal);
+    const PixelPlace place = place_in_block(job.deal, shares ? lane : int(threadIdx.x));
+    const int column = block.column * shape.width + place.column, row = block.row * shape.height + place.row;
+    const unsigned int first = blockIdx.x * unsigned(shape.pixels());  // of the block's records
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
     Record& record = room.records[threadIdx.x];
-    if (column < job.width && row < job.rows && film_row < job.height) {
+    if (column < job.width && row < job.height) {
         typename Stack::Room branches;
-        Stack stack(branches, job, unsigned(row) * unsigned(job.width) + unsigned(column));
+        Stack stack(branches, job, first + (shares ? unsigned(lane) : threadIdx.x));
         const SampleRange samples{shares ? warp : 0, shares ? block_warps : 1};
-        render_pixel<Real, E>(scene, job.frame, Intersector{scene}, job.x + column, job.y + film_row, samples, record, own, stack);
+        const Intersector intersector = PathTraits<Real, path>::intersector(scene, block.in_view);
+        render_pixel<Real, E>(scene, job.frame, intersector, job.x + column, job.y + row, samples, record, own, stack);
     }
     __syncthreads();
     if (shares) {
@@ -120,7 +122,11 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
         __syncthreads();
     }
     if (warp == 0) add_block_to_tally(*job.tally, room.work);
-    write_block(room.records, deal, block, job, left, top);
+    Record* to = static_cast<Record*>(job.records) + first;
+    if (shares)
+        write_records<BlockShape::of(Deal::shared).pixels()>(room.records, to);
+    else
+        write_records<block_threads>(room.records, to);
 }
 
 template <class Real, class E, DevicePath path>
@@ -219,12 +225,8 @@ void list_resources_of_mask(std::vector<KernelResources>& list) {
 template <class Real, int mask>
 void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
     using E = Effects<effect_masks[mask]>;
-    const BlockShape block = BlockShape::of(job.frame);
-    const unsigned int columns = unsigned(job.width + block.width - 1) / unsigned(block.width);
-    const unsigned int strips = (columns + most_columns - 1) / most_columns;
-    const dim3 grid((columns + strips - 1) / strips, unsigned(job.rows / block.height), strips);
     const auto launch = [&]<DevicePath here>(const auto& own) {
-        if (pass == Pass::pixels) render_pixels<Real, E, here><<<grid, block_threads, 0, stream>>>(job, own);
+        if (pass == Pass::pixels) render_pixels<Real, E, here><<<job.block_count, block_threads, 0, stream>>>(job, own);
         if constexpr (trees_fork(mask)) {
             const auto fill = [&](auto kernel, unsigned int most) {
                 kernel<<<least(filling_blocks(kernel), most), block_threads, 0, stream>>>(job, own);

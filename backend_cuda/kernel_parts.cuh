@@ -6,10 +6,6 @@
 
 namespace cistula {
 
-inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_threads * block_warps;
-/// A warp renders 8 x 4 pixels, next to each other or every other one: neighbors see the same things.
-inline constexpr int tile_width = 8, tile_height = 4;
-
 /// What a block keeps of its pixels while it renders them: registers are dearer.
 template <class Record>
 struct alignas(16) BlockRoom {
@@ -42,11 +38,13 @@ template <class Real>
 struct PathTraits<Real, DevicePath::plain_loop> {
     using Scene = SmallScene<Real>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
+    __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
 };
 template <class Real>
 struct PathTraits<Real, DevicePath::tree> {
     using Scene = SceneView<Real>;
     using Intersector = BvhIntersector<Real, MediaList, Scene>;
+    __device__ static Intersector intersector(const Scene& scene, uint32_t) { return {scene}; }
 };
 
 /// Whether the host wants the kernel to end. Past the caches, which would keep what was there first.
@@ -68,7 +66,7 @@ __device__ inline unsigned int warp_sum(unsigned int value) {
 __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, unsigned int flags) {
     constexpr int half = 16;
     const unsigned int counts[4] = {rays.primary, rays.reflected, rays.transmitted, rays.shadow};
-    unsigned long long* to = tally.rays[(blockIdx.x + blockIdx.y * 7u) % DeviceTally::slots];
+    unsigned long long* to = tally.rays[blockIdx.x % DeviceTally::slots];
     if (__any_sync(0xffffffffu, (counts[0] | counts[1] | counts[2] | counts[3]) >= (1u << half) / warp_threads)) {
         for (int i = 0; i < 4; ++i) atomicAdd(to + i, (unsigned long long)counts[i]);
     } else {

@@ -12,7 +12,9 @@
 
 #include "cistula/adaptive_pixel.h"
 #include "cistula/bvh.h"
+#include "scene/frame_cover.h"
 #include "scene/frame_view.h"
+#include "scene/put_pixels.h"
 
 namespace cistula {
 
@@ -44,9 +46,10 @@ class StoppableStack {
     const std::atomic<bool>& stop_;
 };
 
-/// Calls render(x, y, record, work) for every pixel of the film, in tiles.
+/// Calls render(x, y, record, work) for every pixel of the film that may show something, in tiles.
 template <class Render>
-bool for_each_pixel(const FrameSettings& settings, Film& film, RenderProgress& progress, const Render& render) {
+bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
+                    const Render& render) {
     const PixelRect rect = film.rect;
     const int tile = settings.tile, columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
     std::mutex totals;
@@ -57,14 +60,26 @@ bool for_each_pixel(const FrameSettings& settings, Film& film, RenderProgress& p
             const int x1 = std::min(x0 + tile, rect.width), y1 = std::min(y0 + tile, rect.height);
             RayCounts rays;
             uint32_t flags = 0;
+            const auto add = [&](const PixelWork& own) {
+                rays.add(own.rays);
+                flags |= own.flags;
+            };
+            const PixelWriter writer;
             for (int y = y0; y < y1; ++y)
-                for (int x = x0; x < x1; ++x) {
-                    if (progress.stop.load(std::memory_order_relaxed)) return;
-                    PixelWork own;
-                    render(rect.x + x, rect.y + y, film.pixels[size_t(y) * size_t(rect.width) + size_t(x)], own);
-                    rays.add(own.rays);
-                    flags |= own.flags;
-                }
+                contents.cover.for_each_part(y, x0, x1, [&](int begin, int end, bool covered) {
+                    PixelRecord* pixel = &film.pixels[size_t(y) * size_t(rect.width) + size_t(begin)];
+                    if (!covered) {
+                        writer.fill(pixel, size_t(end - begin), contents.background.record);
+                        for (int x = begin; x < end; ++x) add(contents.background.work);
+                        return;
+                    }
+                    for (int x = begin; x < end && !progress.stop.load(std::memory_order_relaxed); ++x, ++pixel) {
+                        PixelWork own;
+                        render(rect.x + x, rect.y + y, *pixel, own);
+                        add(own);
+                    }
+                });
+            if (progress.stop.load(std::memory_order_relaxed)) return;
             progress.pixels_done += uint64_t(x1 - x0) * uint64_t(y1 - y0);
             progress.rays += rays.total();
             const std::lock_guard<std::mutex> lock(totals);
@@ -77,8 +92,8 @@ bool for_each_pixel(const FrameSettings& settings, Film& film, RenderProgress& p
 
 template <class Real, class E, class Intersector>
 bool render_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
-                  const FrameSettings& settings, Film& film, RenderProgress& progress) {
-    return for_each_pixel(settings, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+                  const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
+    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
         StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
         render_pixel<Real, E>(scene, frame, intersector, x, y, SampleRange(), pixel, own, stack);
     });
@@ -87,9 +102,9 @@ bool render_tiles(const typename Intersector::Scene& scene, const FrameView& fra
 /// Of a frame with a target error.
 template <class Real, class E, class Intersector>
 bool render_adaptive_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
-                           const FrameSettings& settings, Film& film, RenderProgress& progress) {
+                           const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
     const bool gradual = shades_gradually(scene);
-    return for_each_pixel(settings, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
         StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
         render_adaptive_pixel<Real, E>(scene, frame, intersector, x, y, gradual, pixel, own, stack);
     });
@@ -97,14 +112,15 @@ bool render_adaptive_tiles(const typename Intersector::Scene& scene, const Frame
 
 template <class Real, class Intersector>
 bool render_mask(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
-                 const FrameSettings& settings, Film& film, RenderProgress& progress, int mask, uint32_t& ran) {
+                 const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress, int mask,
+                 uint32_t& ran) {
     ran = effect_masks[mask];
     using Render = bool (*)(const typename Intersector::Scene&, const FrameView&, const Intersector&, const FrameSettings&,
-                            Film&, RenderProgress&);
+                            const FrameContents&, Film&, RenderProgress&);
     static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
         return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
     }(std::make_index_sequence<compiled_mask_count>());
-    return table[size_t(mask)](scene, frame, intersector, settings, film, progress);
+    return table[size_t(mask)](scene, frame, intersector, settings, contents, film, progress);
 }
 
 /// The device's traversal runs here to be tested only: with one mask, which spares the compiler the others.
@@ -123,15 +139,16 @@ bool render_frame(const CompiledScene<Real>& compiled, const typename Intersecto
     prepare_film(film, settings, compiled, camera);
     if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media))
         film.flags |= flag_media_overflow;
+    const FrameContents contents = frame_contents(compiled, frame, settings);
     if (settings.adaptive()) {  // one mask for all: what it would save is less than what compiling more takes
         ran = all_effects;
-        return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
+        return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, contents, film, progress);
     }
     if constexpr (!runs_every_mask<Intersector>) {
         ran = all_effects;
-        return render_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, film, progress);
+        return render_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, contents, film, progress);
     } else {
-        return render_mask<Real>(scene, frame, intersector, settings, film, progress,
+        return render_mask<Real>(scene, frame, intersector, settings, contents, film, progress,
                                  mask_to_run(compiled.effects, settings, frame), ran);
     }
 }

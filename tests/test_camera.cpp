@@ -61,6 +61,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
             FrameView frame;
             const dvec3 forward = random.direction();
             frame.camera = looking(forward * -distance, forward, greatest(4 / distance, 0.01));
+            frame.is_far = is_far(frame.camera, double(scene.extent));
             frame.width = frame.height = 100;
             frame.camera_media.add(3, 1);
             Ray<Real> ray;
@@ -94,6 +95,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
     // Looking away.
     FrameView frame;
     frame.camera = looking({0, -10, 0}, {0, -1, 0});
+    frame.is_far = true;
     frame.width = frame.height = 10;
     Ray<Real> ray;
     dvec3 direction;

@@ -6,16 +6,15 @@
 
 namespace cistula {
 
-/// Takes sample `slot` of pixel (px, py): its sums into `record` first, then into `sample`. A tree of more than
+/// Takes sample `slot` of pixel (px, py) into `record`, and gives what it met: its signature. A tree of more than
 /// most_branches is walked again with four times the budget, and so on: the ledger says so. `gradual`:
 /// shades_gradually(scene), found once. `work` is the thread's own.
 template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void take_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
-                                int py, int slot, bool gradual, PixelRecord& record, LatticeSample& sample,
-                                PixelWork& work, Stack& stack) {
+CISTULA_INLINE uint32_t take_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
+                                    int py, int slot, bool gradual, PixelRecord& record, PixelWork& work, Stack& stack) {
     const uint32_t before = work.rays.total();
     TreeSettings settings = frame.tree;
-    for (bool whole = false; !whole; settings.budget = 4 * greatest(settings.budget, int64_t(1))) {
+    for (;; settings.budget = 4 * greatest(settings.budget, int64_t(1))) {
         record = PixelRecord();
         record.z = RealTraits<float>::infinity;
         Signature signature;
@@ -23,8 +22,9 @@ CISTULA_INLINE void take_sample(const Scene& scene, const FrameView& frame, cons
         render_sample<Real, E>(scene, frame, settings, SigningIntersector<Intersector>{intersector, signature, gradual},
                                px, py, slot % lattice_side, slot / lattice_side, true, record, work, signing);
         record.rays = work.rays.total() - before;
-        sample.keep(record, signature.value);
-        whole = !signing.drop();
+        if (!signing.drop()) return signature.value;
+        if constexpr (requires { stack.stopped(); })
+            if (stack.stopped()) return signature.value;
     }
 }
 
@@ -35,12 +35,9 @@ CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel)
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
 }
 
-/// All that the pixel wants, with room of its own for samples.
-template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
-                                          int px, int py, bool gradual, PixelRecord& record, PixelWork& work,
-                                          Stack& stack) {
-    const LatticeSettings& settings = frame.lattice;
+/// All that the pixel wants, with room of its own for samples. take(slot, taken): a sample's record; gives what it met.
+template <class Take>
+CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, PixelRecord& record, const Take& take) {
     LatticeSample samples[lattice_samples];
     PixelRecord taken;
     LatticePixel pixel;
@@ -48,7 +45,8 @@ CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& f
     for (pixel.begin(settings); pixel.wanted() > 0;) {
         for (int i = 0; i < pixel.wanted(); ++i) {
             const int slot = pixel.wanted(i);
-            take_sample<Real, E>(scene, frame, intersector, px, py, slot, gradual, taken, samples[slot], work, stack);
+            const uint32_t met = take(slot, taken);
+            samples[slot].keep(taken, met);
             record.rays += taken.rays;
             if (LatticePixel::is_chosen(settings, slot)) choose_sample(taken, record);
         }
@@ -61,6 +59,15 @@ CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& f
         });
     record.samples = uint32_t(pixel.taken());
     record.unmet = pixel.unmet();
+}
+
+template <class Real, class E, class Intersector, class Stack, class Scene>
+CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
+                                          int px, int py, bool gradual, PixelRecord& record, PixelWork& work,
+                                          Stack& stack) {
+    sample_adaptively(frame.lattice, record, [&](int slot, PixelRecord& taken) {
+        return take_sample<Real, E>(scene, frame, intersector, px, py, slot, gradual, taken, work, stack);
+    });
 }
 
 }  // namespace cistula

@@ -35,6 +35,9 @@ struct BruteIntersector {
     using Media = MediaKind;
     using Scene = SceneKind;
     const Scene& scene;
+    /// The primitives of a SmallScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of the picture, as
+    /// long as they go straight on.
+    uint32_t in_view = ~0u;
 
     /// The least (t, key) after ray.after that the primitive tests accept.
     template <class E = Effects<all_effects>>
@@ -76,12 +79,22 @@ struct BruteIntersector {
     CISTULA_INLINE void find_closest(const Ray<Real, Media>& ray, Hit<Real>& best) const {
         if constexpr (E::solids)
             if (closest_solid<E>(ray, best)) return;
-        // The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
-        if constexpr (E::triangles)
-            for (uint32_t i = 0; i < scene.clusters.size; ++i)
-                if (!misses_flat(scene, i, ray, best.t))
-                    closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
+        if constexpr (!E::triangles) {
+        } else if constexpr (Media::contacts) {
+            for (uint32_t i = 0; i < scene.clusters.size; ++i) closest_in_cluster(i, ray, best);
+        } else {
+            for (uint32_t left = ahead_of(ray) & scene.plan.all_clusters; left != 0; left &= left - 1)
+                closest_in_cluster(lowest_bit(left) - scene.plan.first_cluster, ray, best);
+        }
     }
+
+    /// The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
+    CISTULA_INLINE void closest_in_cluster(uint32_t i, const Ray<Real, Media>& ray, Hit<Real>& best) const {
+        if (!misses_flat(scene, i, ray, best.t))
+            closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
+    }
+
+    CISTULA_INLINE uint32_t ahead_of(const Ray<Real, Media>& ray) const { return ray.from_solid == no_solid ? in_view : ~0u; }
 
     /// True if the ray's own way out comes first, since that solid stands alone.
     template <class E>
@@ -93,8 +106,8 @@ struct BruteIntersector {
             const uint32_t around = E::has(effect_insides) ? ray.media.only() : no_solid;
             if (around != no_solid) closest_exit(scene, around, ray, best);
             if (around != no_solid && scene.solids[around].alone) return true;
-            for (uint32_t i = 0; i < scene.convex.size; ++i) {
-                const NumberedSolid<Real>& next = scene.convex[i];
+            for (uint32_t left = ahead_of(ray) & scene.plan.all_convex; left != 0; left &= left - 1) {
+                const NumberedSolid<Real>& next = scene.convex[lowest_bit(left)];
                 // All conditions in one, so that their values are waited for but once.
                 if ((next.index != around) & (next.index != ray.from_solid) &
                     !passes_by(next.ball, ray.origin, ray.direction, best.t))

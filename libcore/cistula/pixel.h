@@ -13,11 +13,17 @@ struct FrameView {
     MediaList camera_media;  // the solids that contain the camera (camera_solids)
     double unit_length = 1;  // scene units per unit of the frame
     double half_sample = 0;  // tangent between the middle of the picture and half a sample beside it
+    bool is_far = false;     // the camera is outside the sphere of radius 2 M
     int width = 0, height = 0;
     int supersample = 1;
     TreeSettings tree;
     LatticeSettings lattice;  // with a target, of a grid of 16 x 16
 };
+
+/// Whether rays begin at the sphere of radius 2 M, not at the camera.
+CISTULA_HD inline bool is_far(const Camera& camera, double extent) {
+    return dot(camera.position, camera.position) > 4 * extent * extent;
+}
 
 /// The ray from the camera, from where it enters the sphere of radius 2 M (NUMERICS, 1), in double for either Real.
 /// `start` is how far from the camera that is. False: it passes the scene by.
@@ -25,10 +31,10 @@ template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame,
                                    const Vec3<double>& direction, Ray<Real, Media>& ray, double& start) {
     Vec3<double> origin = frame.camera.position;
-    const double radius = 2 * double(scene.extent), square = radius * radius;
     start = 0;
-    if (dot(origin, origin) > square) {
+    if (frame.is_far) {
         // By the closest approach: a camera 1e9 away loses no more than its own rounding.
+        const double radius = 2 * double(scene.extent), square = radius * radius;
         const double along_view = dot(origin, direction);
         const Vec3<double> closest = along(origin, -along_view, direction);
         const double rest = square - dot(closest, closest);
@@ -138,11 +144,15 @@ CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, co
     const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
     PixelSums<Real, Record> sums(settings, scene, record, work.flags);
     ++work.rays.primary;
-    if (!primary_ray(scene, frame, direction, ray, work.start)) {
+    double start;
+    if (!primary_ray(scene, frame, direction, ray, start)) {
         sums.add(scene.background);
         return;
     }
-    work.facing = dot(direction, frame.camera.forward);
+    if (middle) {
+        work.start = start;
+        work.facing = dot(direction, frame.camera.forward);
+    }
     RayTree<Real, E, Intersector, Stack, Record> tree(scene, intersector, settings.depth, sums, work.rays, stack);
     tree.trace(ray, FirstSeen<Real>{frame, work, record, middle});
 }

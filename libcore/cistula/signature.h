@@ -43,7 +43,8 @@ struct SigningIntersector {
     template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         const Hit<Real> hit = inner.template closest<E>(ray);
-        if (signature.counts)
+        // A ray from the camera that meets nothing tells no more than one that passes the scene by.
+        if (signature.counts && (hit.found() || ray.from_solid != no_solid))
             signature.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
         return hit;
     }

@@ -37,6 +37,7 @@ void return_free_memory() {
 
 constexpr uint32_t fewest_in_seen_tree = 9;
 constexpr size_t most_pairs = 10'000'000;
+constexpr uint32_t most_outlined = 16;  // triangles: of larger meshes the box is outlined
 constexpr double touching = 0x1p-17;  // far above the reach of a meeting
 
 /// One compilation: the parts in the order in which they need one another.
@@ -54,6 +55,7 @@ class Compiler {
         scene_.scale = frame_.scale;
         scene_.extent = rounded_up<Real>(frame_.extent);
         scene_.solids.resize(source_.solids.size());
+        scene_.hulls.resize(source_.solids.size());
         boxes_.resize(source_.solids.size());
         closed_.assign(source_.solids.size(), true);
         hash_.add(frame_.center);
@@ -70,6 +72,7 @@ class Compiler {
         }
         compile_shading();
         compile_lights();
+        add_hulls();
         find_touched();
         find_solids_alone();
         explain();
@@ -188,6 +191,7 @@ class Compiler {
         for (uint32_t t = 0; t < mesh.size(); ++t)
             for (const uint32_t corner : mesh.corners(t)) {
                 boxes_[number].add(mesh.vertex(corner));
+                if (mesh.size() <= most_outlined) scene_.hulls[number].points.push_back(mesh.vertex(corner));
                 if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
             }
         triangle_count_ += mesh.size();
@@ -315,6 +319,23 @@ class Compiler {
         }
         scene_.seen_tree = light_tree(build_tree(primitives, 1));
         reach_edge_lights(scene_, owners);
+    }
+
+    /// Of every solid, with the seen lights on its edges, and of every other seen light.
+    void add_hulls() {
+        for (const ConvexSolid& convex : convex_) scene_.hulls[convex.solid].points = convex.vertices;
+        for (uint32_t i = 0; i < source_.solids.size(); ++i)
+            if (scene_.hulls[i].points.empty() && !boxes_[i].empty())
+                for (const dvec3& corner : boxes_[i].corners()) scene_.hulls[i].points.push_back(corner);
+        for (const FramedLight& light : lights_) {
+            if (!(light.radius > 0)) continue;
+            if (light.convex < 0) {
+                scene_.hulls.push_back({{light.position}, light.radius});
+            } else {
+                Hull& hull = scene_.hulls[convex_[static_cast<size_t>(light.convex)].solid];
+                hull.reach = greatest(hull.reach, light.radius);
+            }
+        }
     }
 
     void explain() {

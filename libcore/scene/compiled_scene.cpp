@@ -102,7 +102,9 @@ SceneView<Real> CompiledScene<Real>::view() const {
 
 template <class Real>
 size_t CompiledScene<Real>::memory() const {
-    return bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) + bytes_of(clusters) + bytes_of(uvs) +
+    size_t outlined = bytes_of(hulls);
+    for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
+    return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) + bytes_of(clusters) + bytes_of(uvs) +
            bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(seen_lights) + bytes_of(textures) +
            bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) + bytes_of(seen_tree);
 }

@@ -7,6 +7,7 @@
 
 #include "cistula/scene_view.h"
 #include "scene/description.h"
+#include "scene/hull.h"
 #include "scene/required_effects.h"
 
 namespace cistula {
@@ -29,6 +30,7 @@ struct CompiledScene {
     std::vector<TreeNode> tree;  // filled by build_primitive_tree only
     std::vector<uint32_t> tree_items;
     std::vector<LightNode> seen_tree;
+    std::vector<Hull> hulls;  // around all that is seen
     Vec3<Real> background, bound;
     Real extent = 1;
 

@@ -1,7 +1,6 @@
 // What a backend fills and the programs write: sums in integers, from which every channel of a file is made.
 #pragma once
 
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -19,9 +18,6 @@ struct PixelRect {
     bool operator==(const PixelRect&) const = default;
 };
 
-/// Called with the beginning of a film's pixels before their memory is given back, for a backend that has locked its pages.
-inline std::atomic<void (*)(void*)> before_pixels_go = nullptr;
-
 /// Leaves trivial elements unset: the threads that render the pixels touch their memory first.
 template <class T>
 struct UnsetAllocator : std::allocator<T> {
@@ -29,10 +25,6 @@ struct UnsetAllocator : std::allocator<T> {
     struct rebind {
         using other = UnsetAllocator<U>;
     };
-    void deallocate(T* place, size_t count) {
-        if (const auto notice = before_pixels_go.load()) notice(place);
-        std::allocator<T>::deallocate(place, count);
-    }
     template <class U>
     void construct(U* place) {
         ::new (static_cast<void*>(place)) U;

@@ -1,6 +1,7 @@
 // The frame of reference (NUMERICS, 1): centered, and scaled by a power of two so that coordinates stay under 2.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include <glm/vec3.hpp>
@@ -19,6 +20,11 @@ struct Box {
         }
     }
     bool empty() const { return !(low.x <= high.x); }
+    std::array<glm::dvec3, 8> corners() const {
+        std::array<glm::dvec3, 8> all;
+        for (int i = 0; i < 8; ++i) all[size_t(i)] = {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z};
+        return all;
+    }
 };
 
 struct Frame {

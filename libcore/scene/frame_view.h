@@ -42,6 +42,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     frame.height = settings.full_height;
     frame.supersample = settings.grid();
     frame.half_sample = frame.camera.tan_half_width / (double(frame.width) * frame.supersample);
+    frame.is_far = is_far(frame.camera, double(scene.extent));
     frame.tree.depth = settings.depth;
     const int shift = fixed_shift(uint32_t(frame.supersample * frame.supersample));
     frame.tree.fixed_scale = float(fixed_scale(shift));

@@ -1,0 +1,49 @@
+#include "backend_cuda/block_list.h"
+
+#include <algorithm>
+
+namespace cistula {
+namespace {
+
+/// Blocks side by side. A picture of more is rendered in columns of so many or fewer, one after the other: what is at work at a
+/// time then lies close together and shares the instructions that are fetched. 16 took 1 to 4 % less time than whole rows on
+/// an H200, 8 and 32 up to 1 % more than that.
+constexpr int most_side_by_side = 16;
+
+}  // namespace
+
+BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const PixelRect& rect, const Strips& strips,
+                     Deal deal)
+    : rect_(rect), strips_(strips), deal_(deal) {
+    const BlockShape shape = this->shape();
+    columns_ = (rect.width + shape.width - 1) / shape.width;
+    const int all = strips.count * (strip_rows / shape.height);
+    listed_.assign(size_t(all) * size_t(columns_), 0);
+    std::vector<uint32_t> in_view(listed_.size());
+    int rows = 0;  // that lie in the rectangle
+    for (int i = 0; i < all && row_of(i) * shape.height < rect.height; rows = ++i) {
+        const int top = row_of(i) * shape.height, bottom = std::min(top + shape.height, rect.height);
+        for (int row = top; row < bottom; row += FrameCover::band_rows)
+            for (const FrameCover::Outline& outline : cover.outlines()) {
+                const int band = row / FrameCover::band_rows - outline.first_band;
+                if (band < 0 || band >= int(outline.runs.size())) continue;
+                const uint32_t shown = outline.hull < primitives.size() ? primitives[outline.hull] : ~0u;
+                const PixelRun& run = outline.runs[size_t(band)];
+                for (int x = run.begin; x < run.end; x += shape.width - x % shape.width) {
+                    const size_t block = size_t(i) * size_t(columns_) + size_t(x / shape.width);
+                    listed_[block] = 1;
+                    in_view[block] |= shown;
+                }
+            }
+    }
+    listed_.resize(size_t(rows) * size_t(columns_));
+    const int groups = (columns_ + most_side_by_side - 1) / most_side_by_side, width = (columns_ + groups - 1) / groups;
+    for (int left = 0; left < columns_; left += width)
+        for (int i = 0; i < rows; ++i)
+            for (int column = left; column < std::min(left + width, columns_); ++column) {
+                const size_t block = size_t(i) * size_t(columns_) + size_t(column);
+                if (listed_[block]) places_.push_back({uint16_t(column), uint16_t(row_of(i)), in_view[block]});
+            }
+}
+
+}  // namespace cistula

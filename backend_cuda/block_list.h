@@ -1,0 +1,61 @@
+// The blocks of a part of a frame that are rendered: those that its cover meets.
+#pragma once
+
+#include <vector>
+
+#include "backend_cuda/block_pixels.h"
+#include "scene/frame_cover.h"
+
+namespace cistula {
+
+/// Rows of a frame come in strips of this many, so that several devices can take turns.
+inline constexpr int strip_rows = 8;
+static_assert(strip_rows % (2 * tile_height) == 0 && tile_height % FrameCover::band_rows == 0);
+
+/// Strips first, first + step, ... of a frame's rectangle: `count` of them.
+struct Strips {
+    int first = 0, step = 1, count = 0;
+};
+
+class BlockList {
+  public:
+    BlockList() = default;
+    /// primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all there is where it has no such number.
+    BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const PixelRect& rect, const Strips& strips,
+              Deal deal);
+
+    /// In the order in which they are rendered.
+    const std::vector<BlockPlace>& places() const { return places_; }
+    Deal deal() const { return deal_; }
+    BlockShape shape() const { return BlockShape::of(deal_); }
+
+    /// Rows of blocks; visit(row, begin, end) for the pixels in the i-th that no block renders, row by row of the rectangle.
+    int rows() const { return int(listed_.size()) / std::max(columns_, 1); }
+    template <class Visit>
+    void for_each_gap(int i, const Visit& visit) const {
+        const BlockShape shape = this->shape();
+        const int top = row_of(i) * shape.height, bottom = std::min(top + shape.height, rect_.height);
+        const uint8_t* listed = listed_.data() + size_t(i) * size_t(columns_);
+        for (int begin = 0, end; begin < columns_; begin = end) {
+            for (end = begin + 1; end < columns_ && listed[end] == listed[begin];) ++end;
+            if (listed[begin]) continue;
+            for (int row = top; row < bottom; ++row) visit(row, begin * shape.width, std::min(end * shape.width, rect_.width));
+        }
+    }
+
+  private:
+    /// In the rectangle, of the i-th row of blocks of the part.
+    int row_of(int i) const {
+        const int in_strip = strip_rows / shape().height;
+        return (strips_.first + i / in_strip * strips_.step) * in_strip + i % in_strip;
+    }
+
+    PixelRect rect_;
+    Strips strips_;
+    Deal deal_ = Deal::tiles;
+    int columns_ = 0;
+    std::vector<uint8_t> listed_;  // by rows of blocks
+    std::vector<BlockPlace> places_;
+};
+
+}  // namespace cistula

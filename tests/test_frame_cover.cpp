@@ -1,0 +1,204 @@
+// What a frame leaves out shows background, whatever the camera; and it leaves out much of what does.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "backend_embree/host_renderer.h"
+#include "cistula/bvh.h"
+#include "golden.h"
+#include "scene/frame_cover.h"
+#include "scene/frame_view.h"
+#include "scene/generated_scene.h"
+
+using namespace cistula;
+
+namespace {
+
+const std::string source = CISTULA_SOURCE_DIR;
+
+bool same_bytes(const PixelRecord& a, const PixelRecord& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+struct Share {
+    size_t left_out = 0, background = 0, all = 0;
+};
+
+/// Renders every pixel, covered or not, and expects those that are left out to be background.
+template <class Real>
+void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view, const CameraFrame& camera,
+                  const FrameSettings& settings, const std::string& what, Share& share) {
+    const BvhIntersector<Real> intersector{view};
+    FrameView frame = frame_view(scene, camera, settings);
+    camera_solids(view, intersector, frame.camera.position, frame.camera_media);
+    const PixelRect& rect = settings.crop;
+    const auto [cover, background] = frame_contents(scene, frame, settings);
+    const bool gradual = shades_gradually(view);
+    size_t wrong = 0;
+    for (int y = 0; y < rect.height; ++y)
+        cover.for_each_part(y, 0, rect.width, [&, &background = background](int begin, int end, bool covered) {
+            for (int x = begin; x < end; ++x) {
+                PixelRecord record;
+                PixelWork work;
+                using E = Effects<all_effects>;
+                StackOf<Real, E, MediaList> stack;
+                if (settings.adaptive())
+                    render_adaptive_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, gradual, record, work, stack);
+                else
+                    render_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, SampleRange(), record, work, stack);
+                const bool is_background = same_bytes(record, background.record);
+                share.all += 1;
+                share.background += is_background;
+                share.left_out += !covered;
+                if (!covered) wrong += !is_background || work.rays.total() != background.work.rays.total();
+            }
+        });
+    EXPECT_EQ(wrong, 0u) << what;
+}
+
+/// Cameras of all kinds: far and near, wide and narrow, in the middle of things and turned away from them.
+CameraDescription random_camera(std::mt19937_64& random, const CameraDescription& like, double size) {
+    const auto uniform = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
+    const auto anywhere = [&](double most) { return glm::dvec3{uniform(-most, most), uniform(-most, most), uniform(-most, most)}; };
+    CameraDescription camera = like;
+    camera.position_path.reset();
+    camera.target_path.reset();
+    const double distance = size * std::exp(uniform(std::log(0.01), std::log(300.0)));
+    camera.position = anywhere(distance);
+    camera.target = random() % 3 != 0 ? anywhere(0.5 * size) : camera.position + anywhere(1.0);
+    camera.field_of_view = random() % 2 != 0 ? uniform(5, 175) : std::exp(uniform(std::log(0.5), std::log(90.0)));
+    return camera;
+}
+
+template <class Real>
+class Cover : public ::testing::Test {};
+using Reals = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(Cover, Reals);
+
+TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
+    std::mt19937_64 random(19);
+    Share share;
+    const auto check = [&](const SceneDescription& description, const std::string& what, double size) {
+        const auto scene = compile_scene<TypeParam>(description);
+        build_primitive_tree(*scene);
+        const SceneView<TypeParam> view = scene->view();
+        FrameSettings settings;
+        settings.set_size(64, 36);
+        settings.depth = 1;
+        expect_sound(*scene, view, camera_at(description.camera, 0), settings, what, share);
+        settings.crop = {5, 3, 51, 30};
+        for (int i = 0; i < 6; ++i) {
+            settings.supersample = i % 2 + 1;
+            const CameraDescription camera = random_camera(random, description.camera, size);
+            expect_sound(*scene, view, camera_at(camera, 0), settings, what + ", camera " + std::to_string(i), share);
+        }
+        settings.supersample = 1;
+        settings.target_error = 0.01;
+        settings.max_samples = 32;
+        expect_sound(*scene, view, camera_at(description.camera, 0), settings, what + ", adaptive", share);
+    };
+    for (const std::string& name : golden::scene_names(source + "/scenes"))
+        check(read_scene(source + "/scenes/" + name + ".json"), name, 5);
+    for (uint64_t seed = 0; seed < generated_scene_count; seed += 4)
+        check(generated_scene(seed, source + "/scenes"), "seed " + std::to_string(seed), 5);
+    SceneDescription lamps = read_scene(source + "/scenes/benchmark.json");
+    for (int i = 0; i < 100; ++i) {
+        LightDescription lamp;
+        lamp.position = {4.5 * std::cos(0.3 * i), 4.5 * std::sin(0.3 * i), 0.05 * i};
+        lamp.color = glm::dvec3{0};
+        lamp.glow = glm::dvec3{1};
+        lamp.radius = 0.05;
+        lamps.lights.push_back(lamp);
+        if (i == 9 || i == 99) check(lamps, std::to_string(i + 1) + " lamps", 5);  // with an outline each, or one for all
+    }
+    // All in all little background is rendered.
+    EXPECT_GT(share.left_out, share.background / 2);
+}
+
+TYPED_TEST(Cover, IsTightAroundConvexThings) {
+    const SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    const auto scene = compile_scene<TypeParam>(description);
+    build_primitive_tree(*scene);
+    FrameSettings settings;
+    settings.set_size(640, 360);
+    settings.depth = 1;
+    Share share;
+    expect_sound(*scene, scene->view(), camera_at(description.camera, 0), settings, "benchmark", share);
+    EXPECT_GT(share.background, share.all / 2);
+    EXPECT_GT(share.left_out, share.background - share.all / 20);
+}
+
+TYPED_TEST(Cover, ManyHullsHaveOneOutline) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    FrameSettings settings;
+    settings.set_size(40, 30);
+    for (const int lamps : {10, 100}) {
+        LightDescription lamp;
+        lamp.radius = 0.05;
+        description.lights.assign(size_t(lamps), lamp);
+        const auto scene = compile_scene<TypeParam>(description);
+        const FrameView frame = frame_view(*scene, camera_at(description.camera, 0), settings);
+        const auto outlines = frame_contents(*scene, frame, settings).cover.outlines();
+        ASSERT_EQ(outlines.size(), lamps == 10 ? 14u : 1u);
+        EXPECT_EQ(outlines.back().hull, lamps == 10 ? size_t{13} : FrameCover::Outline::all);
+    }
+}
+
+TYPED_TEST(Cover, CoversAllAroundACameraWithinAHull) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    description.camera = CameraDescription();
+    description.camera.position = {-2.5, 2.5, 2};
+    description.camera.target = {1, 2, 3};
+    const auto scene = compile_scene<TypeParam>(description);
+    FrameSettings settings;
+    settings.set_size(40, 30);
+    const FrameView frame = frame_view(*scene, camera_at(description.camera, 0), settings);
+    const FrameCover cover = frame_contents(*scene, frame, settings).cover;
+    const std::vector<PixelRun> all = {{0, 40}};
+    for (int y = 0; y < 30; ++y) EXPECT_TRUE(std::ranges::equal(cover.runs(y), all)) << y;
+}
+
+TYPED_TEST(Cover, IsEmptyWhereAllIsBehindTheCamera) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    description.camera = CameraDescription();
+    description.camera.position = {30, 0, 0};
+    description.camera.target = {60, 0, 0};
+    const auto scene = compile_scene<TypeParam>(description);
+    FrameSettings settings;
+    settings.set_size(40, 30);
+    const FrameView frame = frame_view(*scene, camera_at(description.camera, 0), settings);
+    const FrameCover cover = frame_contents(*scene, frame, settings).cover;
+    for (int y = 0; y < 30; ++y) EXPECT_TRUE(cover.runs(y).empty()) << y;
+}
+
+TEST(FrameCover, PartsOfARowAreInOrderAndWhole) {
+    Hull left, right;
+    left.points = {{-0.5, -0.1, 0}, {-0.4, 0.1, 0}, {-0.4, -0.1, 0}};
+    right.points = {{0.4, -0.1, 0}, {0.5, 0.1, 0}, {0.5, -0.1, 0}};
+    FrameView frame;
+    frame.camera.position = {0, 0, 2};
+    frame.camera.forward = {0, 0, -1};
+    frame.camera.right = {1, 0, 0};
+    frame.camera.up = {0, 1, 0};
+    frame.camera.tan_half_width = 0.5;
+    frame.width = 100;
+    frame.height = 50;
+    FrameCover cover({0, 0, 100, 50});
+    cover.add(0, right, 1, frame);
+    cover.add(1, left, 1, frame);
+    ASSERT_EQ(cover.runs(25).size(), 2u);
+    EXPECT_LT(cover.runs(25)[0].end, cover.runs(25)[1].begin);
+    EXPECT_TRUE(cover.runs(2).empty());
+    std::string row(100, '?');
+    cover.for_each_part(25, 10, 90, [&](int begin, int end, bool covered) {
+        for (int x = begin; x < end; ++x) row[size_t(x)] = covered ? '#' : '.';
+    });
+    EXPECT_EQ(row.substr(0, 10), std::string(10, '?'));
+    EXPECT_EQ(row.substr(10, 80).find('?'), std::string::npos);
+    EXPECT_EQ(row[27], '#');  // where x / z is -0.225
+    EXPECT_EQ(row[50], '.');
+    EXPECT_EQ(row[72], '#');
+}
+
+}  // namespace
