@@ -24,10 +24,10 @@ struct Choice {
 };
 
 template <class Real>
-void time_scene(GpuRecord& record, const EffectScene& scene, int supersample, int runs) {
+void time_scene(GpuRecord& record, const EffectScene& scene, int width, int height, int supersample, int runs) {
     const auto renderer = make_cuda_renderer<Real>(compile_scene<Real>(scene.scene));
     FrameSettings settings;
-    settings.set_size(1280, 720);
+    settings.set_size(width, height);
     settings.depth = scene.scene.depth;
     settings.supersample = supersample;
     std::array<Choice, 2> choices = {Choice{"auto", 0, {}, 0}, Choice{"all", all_effects, {}, 0}};
@@ -42,8 +42,8 @@ void time_scene(GpuRecord& record, const EffectScene& scene, int supersample, in
             choices[i].ran = renderer->effects();
             if (run == -warm_up) hashes[i] = film_hash(film);
         }
-    const std::string name =
-        fmt::format("effects/{}/{}x{}/{}", scene.name, supersample, supersample, RealTraits<Real>::name);
+    const std::string size = width == 1280 ? fmt::format("{0}x{0}", supersample) : fmt::format("{}x{}", width, height);
+    const std::string name = fmt::format("effects/{}/{}/{}", scene.name, size, RealTraits<Real>::name);
     for (const Choice& choice : choices)
         record.add_times(name + "/" + choice.name, choice.kernel, {{"mask", choice.ran}, {"rays", film.rays.total()}});
     record.add_parity(name, film.pixels.size(), hashes[0] == hashes[1] ? 0 : 1);
@@ -52,13 +52,17 @@ void time_scene(GpuRecord& record, const EffectScene& scene, int supersample, in
 }  // namespace
 
 void time_effects(GpuRecord& record, const std::string& folder, int runs) {
-    // A frame of one sample takes so little of simple scenes that the memory of its pixels counts as much as the kernel.
-    for (const EffectScene& scene : effect_scenes(folder))
-        for (const int supersample : {1, 4}) {
-            if (supersample > 1 && scene.scene.depth > 4) continue;
-            time_scene<float>(record, scene, supersample, runs);
-            time_scene<double>(record, scene, supersample, runs);
-        }
+    // With one sample a small frame of a simple scene takes some ten microseconds, three of which are a kernel's begin and end.
+    const auto time_both = [&](const EffectScene& scene, int width, int height, int supersample) {
+        time_scene<float>(record, scene, width, height, supersample, runs);
+        time_scene<double>(record, scene, width, height, supersample, runs);
+    };
+    for (const EffectScene& scene : effect_scenes(folder)) {
+        time_both(scene, 1280, 720, 1);
+        if (scene.scene.depth > 4) continue;
+        time_both(scene, 1280, 720, 4);
+        if (scene.is_for_bars) time_both(scene, 3840, 2160, 1);
+    }
     Json kernels = Json::array();
     for (const KernelResources& k : kernel_resources())
         kernels.push_back({{"kernel", k.name},
