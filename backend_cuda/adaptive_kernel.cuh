@@ -136,11 +136,11 @@ class WarpPixels {
         const BlockPlace tile = job_.blocks[place / warp_threads];
         const PixelPlace in_tile = place_in_block(Deal::shared, int(place % warp_threads));
         const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
+        record_ = place;
+        records_[record_] = PixelRecord();  // beyond the rectangle too: all of a tile are copied
         if (column >= job_.width || row >= job_.height) return;
         x_ = job_.x + column;
         y_ = job_.y + row;
-        record_ = place;
-        records_[record_] = PixelRecord();
         rooms_[lane_].pixel.begin(job_.frame.lattice);
         given_ = 0;
         wanted_ = rooms_[lane_].pixel.wanted();
