@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <random>
 #include <string>
@@ -210,6 +211,19 @@ Count cross_all(const Intersector& intersector, Ray<Real> ray) {
     }
     ADD_FAILURE() << "crossings do not advance or do not end";
     return count;
+}
+
+/// On a spiral, around what scenes/benchmark.json shows: lights that are seen and light nothing, after those that are there.
+inline void add_seen_lights(SceneDescription& scene, int count) {
+    for (int i = 0; i < count; ++i) {
+        const double turn = 0.3 * double(scene.lights.size());
+        LightDescription light;
+        light.position = {4.5 * std::cos(turn), 4.5 * std::sin(turn), turn / 6};
+        light.color = glm::dvec3{0};
+        light.glow = glm::dvec3{1};
+        light.radius = 0.05;
+        scene.lights.push_back(light);
+    }
 }
 
 }  // namespace cistula::test

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cmath>
 #include <cstring>
 #include <thread>
 
@@ -14,6 +13,7 @@
 #include "scene/generated_scene.h"
 #include "scene/without_effect.h"
 #include "stopping.h"
+#include "support_scene.h"
 
 using namespace cistula;
 
@@ -326,15 +326,9 @@ TYPED_TEST(Cuda, ManySeenLightsAreEqual) {
     CISTULA_NEEDS_GPU();
     SceneDescription scene = scene_of("benchmark");
     const FrameSettings settings = golden::settings_for(scene);
-    for (int i = 0; i < 100; ++i) {
-        LightDescription lamp;
-        lamp.position = {4.5 * std::cos(0.3 * i), 4.5 * std::sin(0.3 * i), 0.05 * i};
-        lamp.color = glm::dvec3{0};
-        lamp.glow = glm::dvec3{1};
-        lamp.radius = 0.05;
-        scene.lights.push_back(lamp);
-        // Blocks know what they show by an outline of each, or know nothing.
-        if (i == 9 || i == 99) EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << i;
+    for (const int lamps : {10, 90}) {  // blocks know what they show by an outline of each, or know nothing
+        test::add_seen_lights(scene, lamps);
+        EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << lamps;
     }
 }
 

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <random>
 
 #include "backend_embree/host_renderer.h"
 #include "cistula/bvh.h"
@@ -10,6 +9,7 @@
 #include "scene/frame_cover.h"
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
+#include "support_scene.h"
 
 using namespace cistula;
 
@@ -58,16 +58,14 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
 }
 
 /// Cameras of all kinds: far and near, wide and narrow, in the middle of things and turned away from them.
-CameraDescription random_camera(std::mt19937_64& random, const CameraDescription& like, double size) {
-    const auto uniform = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
-    const auto anywhere = [&](double most) { return glm::dvec3{uniform(-most, most), uniform(-most, most), uniform(-most, most)}; };
+CameraDescription random_camera(test::Random& random, const CameraDescription& like, double size) {
     CameraDescription camera = like;
     camera.position_path.reset();
     camera.target_path.reset();
-    const double distance = size * std::exp(uniform(std::log(0.01), std::log(300.0)));
-    camera.position = anywhere(distance);
-    camera.target = random() % 3 != 0 ? anywhere(0.5 * size) : camera.position + anywhere(1.0);
-    camera.field_of_view = random() % 2 != 0 ? uniform(5, 175) : std::exp(uniform(std::log(0.5), std::log(90.0)));
+    const double distance = size * std::exp(random.between(std::log(0.01), std::log(300.0)));
+    camera.position = random.in_cube(distance);
+    camera.target = random.below(3) != 0 ? random.in_cube(0.5 * size) : camera.position + random.in_cube(1.0);
+    camera.field_of_view = random.below(2) != 0 ? random.between(5, 175) : std::exp(random.between(std::log(0.5), std::log(90.0)));
     return camera;
 }
 
@@ -77,7 +75,7 @@ using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(Cover, Reals);
 
 TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
-    std::mt19937_64 random(19);
+    test::Random random(19);
     Share share;
     const auto check = [&](const SceneDescription& description, const std::string& what, double size) {
         const auto scene = compile_scene<TypeParam>(description);
@@ -103,14 +101,9 @@ TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
     for (uint64_t seed = 0; seed < generated_scene_count; seed += 4)
         check(generated_scene(seed, source + "/scenes"), "seed " + std::to_string(seed), 5);
     SceneDescription lamps = read_scene(source + "/scenes/benchmark.json");
-    for (int i = 0; i < 100; ++i) {
-        LightDescription lamp;
-        lamp.position = {4.5 * std::cos(0.3 * i), 4.5 * std::sin(0.3 * i), 0.05 * i};
-        lamp.color = glm::dvec3{0};
-        lamp.glow = glm::dvec3{1};
-        lamp.radius = 0.05;
-        lamps.lights.push_back(lamp);
-        if (i == 9 || i == 99) check(lamps, std::to_string(i + 1) + " lamps", 5);  // with an outline each, or one for all
+    for (const int more : {10, 90}) {  // with an outline each, then one for all
+        test::add_seen_lights(lamps, more);
+        check(lamps, std::to_string(lamps.lights.size()) + " lights", 5);
     }
     // All in all little background is rendered.
     EXPECT_GT(share.left_out, share.background / 2);
@@ -129,17 +122,21 @@ TYPED_TEST(Cover, IsTightAroundConvexThings) {
     EXPECT_GT(share.left_out, share.background - share.all / 20);
 }
 
-TYPED_TEST(Cover, ManyHullsHaveOneOutline) {
-    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+/// Of a small frame.
+template <class Real>
+FrameCover cover_of(const SceneDescription& description) {
+    const auto scene = compile_scene<Real>(description);
     FrameSettings settings;
     settings.set_size(40, 30);
+    return frame_contents(*scene, frame_view(*scene, camera_at(description.camera, 0), settings), settings).cover;
+}
+
+TYPED_TEST(Cover, ManyHullsHaveOneOutline) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
     for (const int lamps : {10, 100}) {
-        LightDescription lamp;
-        lamp.radius = 0.05;
-        description.lights.assign(size_t(lamps), lamp);
-        const auto scene = compile_scene<TypeParam>(description);
-        const FrameView frame = frame_view(*scene, camera_at(description.camera, 0), settings);
-        const auto outlines = frame_contents(*scene, frame, settings).cover.outlines();
+        description.lights.clear();
+        test::add_seen_lights(description, lamps);
+        const auto outlines = cover_of<TypeParam>(description).outlines();
         ASSERT_EQ(outlines.size(), lamps == 10 ? 14u : 1u);
         EXPECT_EQ(outlines.back().hull, lamps == 10 ? size_t{13} : FrameCover::Outline::all);
     }
@@ -150,11 +147,7 @@ TYPED_TEST(Cover, CoversAllAroundACameraWithinAHull) {
     description.camera = CameraDescription();
     description.camera.position = {-2.5, 2.5, 2};
     description.camera.target = {1, 2, 3};
-    const auto scene = compile_scene<TypeParam>(description);
-    FrameSettings settings;
-    settings.set_size(40, 30);
-    const FrameView frame = frame_view(*scene, camera_at(description.camera, 0), settings);
-    const FrameCover cover = frame_contents(*scene, frame, settings).cover;
+    const FrameCover cover = cover_of<TypeParam>(description);
     const std::vector<PixelRun> all = {{0, 40}};
     for (int y = 0; y < 30; ++y) EXPECT_TRUE(std::ranges::equal(cover.runs(y), all)) << y;
 }
@@ -164,11 +157,7 @@ TYPED_TEST(Cover, IsEmptyWhereAllIsBehindTheCamera) {
     description.camera = CameraDescription();
     description.camera.position = {30, 0, 0};
     description.camera.target = {60, 0, 0};
-    const auto scene = compile_scene<TypeParam>(description);
-    FrameSettings settings;
-    settings.set_size(40, 30);
-    const FrameView frame = frame_view(*scene, camera_at(description.camera, 0), settings);
-    const FrameCover cover = frame_contents(*scene, frame, settings).cover;
+    const FrameCover cover = cover_of<TypeParam>(description);
     for (int y = 0; y < 30; ++y) EXPECT_TRUE(cover.runs(y).empty()) << y;
 }
 
