@@ -63,23 +63,24 @@ class WarpPixels {
         : job_(job),
           records_(static_cast<PixelRecord*>(job.records)),
           lane_(threadIdx.x % warp_threads),
+          places_(job.block_count * warp_threads),
+          at_once_(clamped(int(places_ / (gridDim.x * block_warps)), 1, warp_pixels)),
           rooms_(job.rooms + (blockIdx.x * block_warps + threadIdx.x / warp_threads) * warp_pixels) {}
 
     /// New pixels for those that are done, while less than a sample a lane is wanted.
     __device__ void refill() {
-        const unsigned int places = job_.block_count * warp_threads;  // blocks are tiles
         while (more_) {
             const int waiting = int(warp_sum(unsigned(wanted_ - given_)));
-            const unsigned int free = __ballot_sync(whole_warp, lane_ < warp_pixels && wanted_ == 0);
+            const unsigned int free = __ballot_sync(whole_warp, lane_ < at_once_ && wanted_ == 0);
             if (waiting >= warp_threads || free == 0) break;
             const int take =
                 least(__popc(free), (warp_threads - waiting + least_lattice_samples - 1) / least_lattice_samples);
             unsigned int first = 0;
             if (lane_ == 0) first = atomicAdd(job_.next, unsigned(take));
             first = __shfl_sync(whole_warp, first, 0);
-            more_ = first + unsigned(take) < places;
+            more_ = first + unsigned(take) < places_;
             const int rank = __popc(free & ((1u << lane_) - 1u));
-            if ((free >> lane_ & 1u) != 0 && rank < take && first + unsigned(rank) < places)
+            if ((free >> lane_ & 1u) != 0 && rank < take && first + unsigned(rank) < places_)
                 begin(first + unsigned(rank));
         }
         __syncwarp();
@@ -149,6 +150,8 @@ class WarpPixels {
     const FrameJob& job_;
     PixelRecord* const records_;
     const int lane_;
+    const unsigned int places_;  // of pixels: blocks are tiles
+    const int at_once_;          // pixels: of a small frame fewer, so that all warps have some
     LatticeRoom* const rooms_;
     bool more_ = true;  // pixels that nobody has begun
     int x_ = 0, y_ = 0;

@@ -62,7 +62,7 @@ void time_devices(GpuRecord& record, const std::string& folder, int runs) {
     const SceneDescription scene = read_scene(folder + "/scenes/benchmark.json");
     const std::shared_ptr<const CompiledScene<float>> compiled = compile_scene<float>(scene);
     const size_t present = list_cuda_devices().size();
-    constexpr int samples = 6;  // along a pixel's side: some 80 ms on an H200
+    constexpr int samples = 6;  // along a pixel's side: some 100 ms on an H200
     std::string hash;
     for (size_t count = 1; count <= present; count *= 2) {
         CudaOptions options;
