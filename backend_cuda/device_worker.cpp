@@ -76,7 +76,7 @@ void unpack(const Record* from, const std::array<uint8_t, block_threads>& record
     }
 }
 
-/// Which pixels are a warp's. In large parts all warps of a block do much the same at a time.
+/// Which pixels are a warp's. In large frames all warps of a block do much the same at a time.
 Deal deal_for(const FramePart& part) {
     if (part.frame.supersample > 1) return Deal::shared;
     size_t covered = 0;

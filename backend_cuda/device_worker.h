@@ -50,8 +50,8 @@ class DeviceWorker {
     /// `here`: the scene of the arena, where this program can read it.
     DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path);
 
-    /// Room for parts of that many pixels, those of whole blocks, in both slots, beside what the kernels of `mask` take for themselves, of
-    /// which `first` goes over the pixels. False where there is none. `splits`: with queues for branches.
+    /// Room for parts of that many pixels, those of whole blocks, in both slots, beside what the kernels of `mask` take for
+    /// themselves, of which `first` goes over the pixels. False where there is none. `splits`: with queues for branches.
     bool reserve(size_t pixels, size_t memory_limit, int mask, Pass first, bool splits);
 
     /// Enqueues a part; nothing is waited for. Its slot must be free.
