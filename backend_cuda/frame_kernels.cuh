@@ -108,13 +108,21 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
     const unsigned int first = blockIdx.x * unsigned(shape.pixels());  // of the block's records
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
     Record& record = room.records[threadIdx.x];
-    if (column < job.width && row < job.height) {
-        typename Stack::Room branches;
-        Stack stack(branches, job, first + (shares ? unsigned(lane) : threadIdx.x));
-        const SampleRange samples{shares ? warp : 0, shares ? block_warps : 1};
-        const Intersector intersector = PathTraits<Real, path>::intersector(scene, block.in_view);
-        render_pixel<Real, E>(scene, job.frame, intersector, job.x + column, job.y + row, samples, record, own, stack);
+    typename Stack::Room branches;
+    Stack stack(branches, job, first + (shares ? unsigned(lane) : threadIdx.x));
+    const Intersector intersector = PathTraits<Real, path>::intersector(scene, block.in_view);
+    const bool is_inside = column < job.width && row < job.height;
+    const int samples = job.frame.supersample * job.frame.supersample;
+    if (is_inside) begin_pixel(record);
+    for (int round = 0; round < samples; round += block_warps) {
+        // Samples begin together: the warps of a block then do much the same at a time and share the instructions and constants
+        // that are fetched.
+        if (round != 0) __syncthreads();
+        const int i = round + (shares ? warp : 0);
+        if (is_inside && i < samples)
+            add_sample<Real, E>(scene, job.frame, intersector, job.x + column, job.y + row, i, record, own, stack);
     }
+    if (is_inside) end_pixel(record, own);
     __syncthreads();
     if (shares) {
         if (warp == 0)

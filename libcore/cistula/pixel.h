@@ -157,21 +157,36 @@ CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, co
     tree.trace(ray, FirstSeen<Real>{frame, work, record, middle});
 }
 
+/// A pixel's record before its first sample, and after its last.
+template <class Record>
+CISTULA_INLINE void begin_pixel(Record& record) {
+    record = Record();
+    record.z = RealTraits<float>::infinity;
+}
+template <class Record>
+CISTULA_INLINE void end_pixel(Record& record, const PixelWork& work) {
+    record.rays = work.rays.total();
+    record.samples = work.rays.primary;
+}
+
+/// Sample i of pixel (px, py), row by row of its k x k grid.
+template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
+CISTULA_INLINE void add_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py, int i,
+                               Record& record, PixelWork& work, Stack& stack) {
+    const int k = frame.supersample, row = k == 1 ? 0 : i / k, column = i - row * k;
+    render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row, column == k / 2 && row == k / 2, record,
+                           work, stack);
+}
+
 /// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own. Branches that `stack` gives away are
 /// missing from the record: resume_branch adds them. `record`: a PixelRecord or RecordOf<E>.
 template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
 CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
                                  SampleRange samples, Record& record, PixelWork& work, Stack& stack) {
-    record = Record();
-    record.z = RealTraits<float>::infinity;
-    const int k = frame.supersample;
-    for (int sample = samples.first; sample < k * k; sample += samples.step) {
-        const int row = k == 1 ? 0 : sample / k, column = sample - row * k;
-        render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row,
-                               column == k / 2 && row == k / 2, record, work, stack);
-    }
-    record.rays = work.rays.total();
-    record.samples = work.rays.primary;
+    begin_pixel(record);
+    for (int i = samples.first; i < frame.supersample * frame.supersample; i += samples.step)
+        add_sample<Real, E>(scene, frame, intersector, px, py, i, record, work, stack);
+    end_pixel(record, work);
 }
 
 /// The rest of a tree from a branch that another stack gave away; `record` and `work` get what is its own.
