@@ -10,8 +10,6 @@ template <class Visit>
 CISTULA_INLINE void walk_lights(const Span<LightNode>& nodes, BoxRay box_ray, const Visit& visit) {
     constexpr int width = LightNode::width;
     constexpr int32_t none = INT32_MIN;
-    uint32_t first_met[3];
-    for (uint32_t k = 0; k < 3; ++k) first_met[k] = 2 * k + (box_ray.inverse[k] < 0.0f ? 1 : 0);
     // Finite, as least and greatest of boxes beside which a line runs are not.
     const auto limited = [](float far_limit) { return least(far_limit, RealTraits<float>::largest); };
     box_ray.far_limit = limited(box_ray.far_limit);
@@ -26,12 +24,14 @@ CISTULA_INLINE void walk_lights(const Span<LightNode>& nodes, BoxRay box_ray, co
             const LightNode& node = nodes[uint32_t(next)];
             float near_t[width], far_t[width];
             for (int i = 0; i < width; ++i) near_t[i] = box_ray.near_limit, far_t[i] = box_ray.far_limit;
-            for (int k = 0; k < 3; ++k) {  // copies of whole planes: wide loads
-                const LightNode::Planes first = node.planes[first_met[k]], last = node.planes[first_met[k] ^ 1u];
+            for (int k = 0; k < 3; ++k) {  // copies of all lanes: wide loads
+                const LightNode::Lanes center = node.center[k], half = node.half[k];
+                const float pace = magnitude(box_ray.inverse[k]);
                 CISTULA_VECTORS
                 for (int i = 0; i < width; ++i) {
-                    near_t[i] = greater(box_ray.meets(k, first.of[i]), near_t[i]);
-                    far_t[i] = lesser(box_ray.meets(k, last.of[i]), far_t[i]);
+                    const float middle = box_ray.meets(k, center.of[i]);
+                    near_t[i] = greater(fused(-half.of[i], pace, middle), near_t[i]);
+                    far_t[i] = lesser(fused(half.of[i], pace, middle), far_t[i]);
                 }
             }
             const LightNode::Children children = node.children;

@@ -183,16 +183,17 @@ struct alignas(16) TreeNode {
 };
 
 /// A node of a tree over seen lights: few rays come near one, so that four boxes at a time are worth more than the nearer of
-/// two first. Boxes are already padded; that of a child that is not there is a point at infinity.
+/// two first. Boxes are already padded, and stored so that a ray from any side reads them alike; that of a child that is not
+/// there is less than empty.
 struct alignas(16) LightNode {
     static constexpr int width = 4;
-    struct alignas(16) Planes {
+    struct alignas(16) Lanes {
         float of[width];
     };
     struct alignas(16) Children {
         int32_t of[width];  // a node, or ~light
     };
-    Planes planes[6];  // 2 axis: the low ones, 2 axis + 1: the high ones
+    Lanes center[3], half[3];  // by axis
     Children children;
 };
 

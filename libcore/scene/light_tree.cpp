@@ -61,8 +61,10 @@ class Widening {
         for (size_t i = 0; i < LightNode::width; ++i) {
             const bool is_there = i < parts.size();
             for (int k = 0; k < 3; ++k) {
-                nodes[index].planes[2 * k].of[i] = is_there ? parts[i].low[k] : INFINITY;
-                nodes[index].planes[2 * k + 1].of[i] = is_there ? parts[i].high[k] : INFINITY;
+                const float center = is_there ? (parts[i].low[k] + parts[i].high[k]) / 2 : 0;
+                nodes[index].center[k].of[i] = center;
+                const float half = is_there ? std::max(parts[i].high[k] - center, center - parts[i].low[k]) : -INFINITY;
+                nodes[index].half[k].of[i] = is_there ? std::nextafter(half, INFINITY) : half;  // whatever was rounded
             }
             nodes[index].children.of[i] = 0;
         }
