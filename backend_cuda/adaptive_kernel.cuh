@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-inline constexpr int warp_pixels = block_pixels / block_warps;
+inline constexpr int warp_pixels = pixels_at_work / block_warps;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
 
 /// Work of a warp's pixels, counted through: lane s knows how many pieces come before pixel s's.

@@ -12,22 +12,21 @@ constexpr int most_side_by_side = 16;
 
 }  // namespace
 
-BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const PixelRect& rect, const Strips& strips,
-                     Deal deal)
-    : rect_(rect), strips_(strips), deal_(deal) {
+BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const Strips& strips, Deal deal)
+    : rect_(cover.rect()), strips_(strips), deal_(deal) {
     const BlockShape shape = this->shape();
-    columns_ = (rect.width + shape.width - 1) / shape.width;
+    columns_ = (rect_.width + shape.width - 1) / shape.width;
     const int all = strips.count * (strip_rows / shape.height);
     listed_.assign(size_t(all) * size_t(columns_), 0);
     std::vector<uint32_t> in_view(listed_.size());
     int rows = 0;  // that lie in the rectangle
-    for (int i = 0; i < all && row_of(i) * shape.height < rect.height; rows = ++i) {
-        const int top = row_of(i) * shape.height, bottom = std::min(top + shape.height, rect.height);
+    for (int i = 0; i < all && row_of(i) * shape.height < rect_.height; rows = ++i) {
+        const int top = row_of(i) * shape.height, bottom = std::min(top + shape.height, rect_.height);
         for (int row = top; row < bottom; row += FrameCover::band_rows)
             for (const FrameCover::Outline& outline : cover.outlines()) {
                 const int band = row / FrameCover::band_rows - outline.first_band;
                 if (band < 0 || band >= int(outline.runs.size())) continue;
-                const uint32_t shown = outline.hull < primitives.size() ? primitives[outline.hull] : ~0u;
+                const uint32_t shown = outline.hull < primitives.size() ? primitives[outline.hull] : ~light_in_view;
                 const PixelRun& run = outline.runs[size_t(band)];
                 for (int x = run.begin; x < run.end; x += shape.width - x % shape.width) {
                     const size_t block = size_t(i) * size_t(columns_) + size_t(x / shape.width);
@@ -36,6 +35,14 @@ BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primi
                 }
             }
     }
+    for (const PixelRect& light : cover.lights())
+        for (int row = light.y / shape.height; row * shape.height < light.y + light.height; ++row) {
+            const int i = index_of(row);
+            if (i < 0 || i >= all) continue;
+            const size_t first = size_t(i) * size_t(columns_);
+            for (int column = light.x / shape.width; column * shape.width < light.x + light.width; ++column)
+                in_view[first + size_t(column)] |= light_in_view;
+        }
     listed_.resize(size_t(rows) * size_t(columns_));
     const int groups = (columns_ + most_side_by_side - 1) / most_side_by_side, width = (columns_ + groups - 1) / groups;
     for (int left = 0; left < columns_; left += width)

@@ -20,9 +20,8 @@ struct Strips {
 class BlockList {
   public:
     BlockList() = default;
-    /// primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all there is where it has no such number.
-    BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const PixelRect& rect, const Strips& strips,
-              Deal deal);
+    /// primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all primitives where it has no such number.
+    BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const Strips& strips, Deal deal);
 
     /// In the order in which they are rendered.
     const std::vector<BlockPlace>& places() const { return places_; }
@@ -48,6 +47,12 @@ class BlockList {
     int row_of(int i) const {
         const int in_strip = strip_rows / shape().height;
         return (strips_.first + i / in_strip * strips_.step) * in_strip + i % in_strip;
+    }
+
+    /// ... and the other way round; -1: another device's.
+    int index_of(int row) const {
+        const int in_strip = strip_rows / shape().height, strip = row / in_strip - strips_.first;
+        return strip < 0 || strip % strips_.step != 0 ? -1 : strip / strips_.step * in_strip + row % in_strip;
     }
 
     PixelRect rect_;

@@ -20,6 +20,9 @@ constexpr size_t part_samples = size_t{1} << 25;
 /// Frames of up to so many samples split trees of more surfaces than `deep`, after so many levels.
 constexpr size_t few_samples = size_t{1} << 19;
 constexpr int deep = 5, split_levels = 4;
+/// From so many pixels of a device on the warps of a block interleave: all four then do much the same at a time and share the
+/// instructions that are fetched. Of fewer, the few that take longest are better kept apart.
+constexpr size_t many_pixels = size_t{1} << 18;
 
 template <class Real>
 bool fits_plain_loop(const SceneView<Real>& scene) {
@@ -151,6 +154,11 @@ class CudaRenderer : public Renderer {
         return settings.adaptive() ? Pass::adaptive_pixels : Pass::pixels;
     }
 
+    Deal deal_for(const Frame& frame) const {
+        if (frame.view.supersample > 1) return Deal::shared;
+        return frame.contents->cover.pixels() / workers_.size() >= many_pixels ? Deal::interleaved : Deal::tiles;
+    }
+
     /// A pixel's, more or less.
     static size_t samples_of(const FrameSettings& settings) {
         constexpr size_t adaptive = 16;
@@ -242,8 +250,8 @@ class CudaRenderer : public Renderer {
             job.strips = {part * frame.part_strips * devices() + int(d), devices(), strips_of(frame, part, d)};
             if (job.strips.count == 0) continue;
             job.frame = frame.view;
-            job.rect = frame.settings.crop;
             job.contents = frame.contents;
+            job.deal = deal_for(frame);
             job.first = first_pass(frame.settings);
             job.mask = frame.mask;
             job.split_depth = frame.split_depth;

@@ -19,9 +19,6 @@ constexpr size_t staging_bytes = size_t{32} << 20;
 constexpr int blocks_together = 64;  // that a thread of the host unpacks
 /// Branches that may wait per pixel of a part, and in all; trees that find no room are walked to their end where they are.
 constexpr size_t queued_per_pixel = 2, most_queued = size_t{1} << 21;
-/// From so many pixels in blocks on the warps of a block interleave: all four then do much the same at a time and share the
-/// instructions that are fetched. Of fewer, the few that take longest are better kept apart.
-constexpr size_t many_pixels = size_t{1} << 18;
 /// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
 constexpr int most_blocks = 6;
 /// So long the host asks again and again whether a part is done, then every hundredth of the time that it has waited.
@@ -76,15 +73,6 @@ void unpack(const Record* from, const std::array<uint8_t, block_threads>& record
     }
 }
 
-/// Which pixels are a warp's. In large frames all warps of a block do much the same at a time.
-Deal deal_for(const FramePart& part) {
-    if (part.frame.supersample > 1) return Deal::shared;
-    size_t covered = 0;
-    for (int row = 0; row < part.rect.height; row += FrameCover::band_rows)
-        for (const PixelRun& run : part.contents->cover.runs(row)) covered += size_t(run.end - run.begin) * FrameCover::band_rows;
-    return covered / size_t(part.strips.step) >= many_pixels ? Deal::interleaved : Deal::tiles;
-}
-
 }  // namespace
 
 void use_device(int device) {
@@ -121,7 +109,7 @@ void DeviceWorker<Real>::reserve_rooms() {
     if (room_blocks_ != 0) return;
     int multiprocessors = 0;
     CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
-    constexpr size_t block = block_pixels * sizeof(LatticeRoom);
+    constexpr size_t block = pixels_at_work * sizeof(LatticeRoom);
     unsigned int blocks = unsigned(multiprocessors * most_blocks);
     while (blocks > 1 && !rooms_.try_reserve(blocks * block)) blocks /= 2;
     rooms_.reserve(blocks * block);
@@ -182,16 +170,17 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
-    slot.list = BlockList(part.contents->cover, primitives_, part.rect, part.strips, deal_for(part));
+    slot.list = BlockList(part.contents->cover, primitives_, part.strips, part.deal);
     const std::vector<BlockPlace>& places = slot.list.places();
     std::copy(places.begin(), places.end(), slot.blocks_copy.as<BlockPlace>());
+    const PixelRect& rect = part.contents->cover.rect();
     FrameJob job;
     job.frame = part.frame;
     job.records = slot.records.as<void>();
-    job.x = part.rect.x;
-    job.y = part.rect.y;
-    job.width = part.rect.width;
-    job.height = part.rect.height;
+    job.x = rect.x;
+    job.y = rect.y;
+    job.width = rect.width;
+    job.height = rect.height;
     job.blocks = slot.blocks.as<BlockPlace>();
     job.block_count = static_cast<unsigned int>(places.size());
     job.deal = slot.list.deal();
@@ -287,9 +276,7 @@ void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
         });
         pixels += count;
     });
-    if (pixels == 0) return;
-    rays.primary += pixels * background.work.rays.primary;
-    flags |= background.work.flags;
+    background.count(pixels, rays, flags);
 }
 
 /// Through two page-locked buffers: one is filled while threads spread the other over the film.

@@ -22,12 +22,12 @@ bool kernels_run_on_capability(int capability);
 /// Makes a device current for the calls of this thread.
 void use_device(int device);
 
-/// Strips of a frame's rectangle that a device renders in one go.
+/// Strips of the rectangle of a frame's cover that a device renders in one go.
 struct FramePart {
     FrameView frame;
-    PixelRect rect;
     std::shared_ptr<const FrameContents> contents;
     Strips strips;
+    Deal deal = Deal::tiles;
     Pass first = Pass::pixels;  // or adaptive_pixels
     int mask = 0;         // index of effect_masks
     int split_depth = 0;  // from which other threads follow a tree's branches; 0: never

@@ -41,7 +41,7 @@ struct LatticeRoom {
     LatticeSample samples[lattice_samples];
 };
 /// Such pixels that a block has at work at a time: between them they want a sample for every thread.
-inline constexpr int block_pixels = 32;
+inline constexpr int pixels_at_work = 32;
 
 /// Blocks of the frame's rectangle.
 struct FrameJob {
@@ -57,7 +57,7 @@ struct FrameJob {
     int split_depth = whole_trees;       // branches of this depth and more go `to` the queue
     const unsigned int* stop = nullptr;  // to a 1: the kernel ends, and what it has written means nothing
     unsigned int* next = nullptr;   // of adaptive sampling: the pixel that the next free warp takes,
-    LatticeRoom* rooms = nullptr;   // ... block_pixels for each of room_blocks
+    LatticeRoom* rooms = nullptr;   // ... pixels_at_work for each of room_blocks
     unsigned int room_blocks = 0;
 };
 

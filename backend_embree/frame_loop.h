@@ -60,23 +60,20 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
             const int x1 = std::min(x0 + tile, rect.width), y1 = std::min(y0 + tile, rect.height);
             RayCounts rays;
             uint32_t flags = 0;
-            const auto add = [&](const PixelWork& own) {
-                rays.add(own.rays);
-                flags |= own.flags;
-            };
             const PixelWriter writer;
             for (int y = y0; y < y1; ++y)
                 contents.cover.for_each_part(y, x0, x1, [&](int begin, int end, bool covered) {
                     PixelRecord* pixel = &film.pixels[size_t(y) * size_t(rect.width) + size_t(begin)];
                     if (!covered) {
                         writer.fill(pixel, size_t(end - begin), contents.background.record);
-                        for (int x = begin; x < end; ++x) add(contents.background.work);
+                        contents.background.count(uint64_t(end - begin), rays, flags);
                         return;
                     }
                     for (int x = begin; x < end && !progress.stop.load(std::memory_order_relaxed); ++x, ++pixel) {
                         PixelWork own;
                         render(rect.x + x, rect.y + y, *pixel, own);
-                        add(own);
+                        rays.add(own.rays);
+                        flags |= own.flags;
                     }
                 });
             if (progress.stop.load(std::memory_order_relaxed)) return;

@@ -1,6 +1,7 @@
 // Which blocks a device renders: each pixel of a frame is one block's or background, whoever the strips are dealt to.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "backend_cuda/block_list.h"
@@ -13,6 +14,7 @@ constexpr Deal deals[] = {Deal::shared, Deal::tiles, Deal::interleaved};
 
 FrameView frame_of(const PixelRect& rect) {
     FrameView frame;
+    frame.camera.position = {0, 0, 0};
     frame.camera.forward = {0, 0, -1};
     frame.camera.right = {1, 0, 0};
     frame.camera.up = {0, 1, 0};
@@ -52,7 +54,7 @@ TEST(BlockList, EveryPixelIsABlocksOrInAGap) {
                 size_t blocks = 0;
                 for (int first = 0; first < step; ++first) {
                     // As many for each, though the last may lie beyond the rectangle.
-                    const BlockList list(cover, {1u, 8u}, rect, {first, step, (strips + step - 1) / step}, deal);
+                    const BlockList list(cover, {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
                     const BlockShape shape = list.shape();
                     blocks += list.places().size();
                     for (const BlockPlace& block : list.places()) {
@@ -85,27 +87,57 @@ TEST(BlockList, BlocksThatAreRenderedTogetherLieCloseTogether) {
     const PixelRect rect{0, 0, 3840, 2160};
     FrameCover cover(rect);
     cover.add_all(FrameCover::Outline::all);
-    const BlockList list(cover, {1u, 2u}, rect, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    const BlockList list(cover, {1u, 2u}, {0, 1, rect.height / strip_rows}, Deal::tiles);
     ASSERT_EQ(list.places().size(), size_t(3840 / 16 * (2160 / 8)));
     EXPECT_EQ(list.places()[15].column, 15);
     EXPECT_EQ(list.places()[16].column, 0);
     EXPECT_EQ(list.places()[16].row, 1);
-    for (const BlockPlace& block : list.places()) EXPECT_EQ(block.in_view, ~0u);
+    for (const BlockPlace& block : list.places()) EXPECT_EQ(block.in_view, ~light_in_view);
 }
 
 TEST(BlockList, BlocksKnowWhatMayShow) {
     const PixelRect rect{0, 0, 640, 368};
     const FrameCover cover = cover_of(rect);
     for (const Deal deal : deals) {
-        const BlockList list(cover, {4u}, rect, {0, 1, rect.height / strip_rows}, deal);
+        const BlockList list(cover, {4u}, {0, 1, rect.height / strip_rows}, deal);
         size_t known = 0;
         for (const BlockPlace& block : list.places()) {
-            EXPECT_TRUE(block.in_view == 4u || block.in_view == ~0u) << block.in_view;  // hull 1 has no number
+            EXPECT_TRUE(block.in_view == 4u || block.in_view == ~light_in_view) << block.in_view;  // hull 1 has no number
             known += block.in_view == 4u;
         }
         EXPECT_GT(known, list.places().size() / 2);
         EXPECT_LT(known, list.places().size());
     }
+}
+
+TEST(BlockList, BlocksKnowWhereLightsMayShow) {
+    const PixelRect rect{7, 5, 333, 171};
+    FrameCover cover = cover_of(rect);
+    cover.add_light({{{0, 0, -1}}, 0.02}, 1, frame_of(rect));
+    cover.add_light({{{-0.3, -0.2, -1}}, 0.1}, 1, frame_of(rect));
+    cover.add_light({{{0, 0, 1}}, 0.1}, 1, frame_of(rect));  // behind the camera
+    cover.add_light({{{5, 0, -1}}, 0.1}, 1, frame_of(rect));  // beside the picture
+    ASSERT_EQ(cover.lights().size(), 2u);
+    const int strips = (rect.height + strip_rows - 1) / strip_rows;
+    for (const Deal deal : deals)
+        for (const int step : {1, 3}) {
+            size_t lit = 0, dark = 0;
+            for (int first = 0; first < step; ++first) {
+                const BlockList list(cover, {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
+                const BlockShape shape = list.shape();
+                for (const BlockPlace& block : list.places()) {
+                    const int left = block.column * shape.width, top = block.row * shape.height;
+                    const bool meets = std::ranges::any_of(cover.lights(), [&](const PixelRect& light) {
+                        return left < light.x + light.width && left + shape.width > light.x && top < light.y + light.height &&
+                               top + shape.height > light.y;
+                    });
+                    EXPECT_EQ((block.in_view & light_in_view) != 0, meets);
+                    ++(meets ? lit : dark);
+                }
+            }
+            EXPECT_GT(lit, 2u);
+            EXPECT_GT(dark, lit);
+        }
 }
 
 }  // namespace

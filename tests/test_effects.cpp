@@ -9,6 +9,7 @@
 #include "scene/compiled_scene.h"
 #include "scene/generated_scene.h"
 #include "scene/without_effect.h"
+#include "support_scene.h"
 
 using namespace cistula;
 
@@ -93,6 +94,33 @@ TYPED_TEST(EffectTest, EveryMaskRuns) {
     ASSERT_EQ(scenes.size(), size_t(effect_mask_count));
     for (size_t i = 0; i < scenes.size(); ++i)
         EXPECT_EQ(this->compare(scenes[i], small_frame(scenes[i]), "scene " + std::to_string(i)), effect_masks[i]) << i;
+}
+
+/// Where no ray bends a line is searched for lights once; with all effects, anew from every face that it passes.
+TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
+    SceneDescription scene = load("benchmark");
+    const int glass = test::add_material(scene, 0.1, 0.8);
+    for (const double y : {-1.0, 0.5, 1.0}) {
+        TrianglesObject window;
+        window.vertices = {{-4, y, 0.5}, {4, y, 0.5}, {4, y, 4}, {-4, y, 4}};
+        window.triangles = {{0, 1, 2}, {0, 2, 3}};
+        test::add_object(scene, window, glass);
+    }
+    const FrameSettings settings = small_frame(scene);
+    const auto hash = [&] {
+        const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
+        return film_hash(golden::render_with(*renderer, scene, settings));
+    };
+    const std::string dark = hash();
+    for (ObjectDescription& object : scene.objects)
+        if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
+            solid->edge_lights.count = 4;
+            solid->edge_lights.glow = glm::dvec3{1};
+            solid->edge_lights.radius = 0.05;
+        }
+    test::add_seen_lights(scene, 40);
+    EXPECT_EQ(this->compare(scene, settings, "lights"), effect_masks[4]);
+    EXPECT_NE(hash(), dark);
 }
 
 TYPED_TEST(EffectTest, ACameraInASolidCallsForInsides) {

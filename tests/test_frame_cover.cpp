@@ -71,6 +71,15 @@ CameraDescription random_camera(test::Random& random, const CameraDescription& l
     return camera;
 }
 
+/// Of a small frame.
+template <class Real>
+FrameCover cover_of(const SceneDescription& description) {
+    const auto scene = compile_scene<Real>(description);
+    FrameSettings settings;
+    settings.set_size(40, 30);
+    return frame_contents(*scene, frame_view(*scene, camera_at(description.camera, 0), settings), settings).cover;
+}
+
 template <class Real>
 class Cover : public ::testing::Test {};
 using Reals = ::testing::Types<float, double>;
@@ -111,6 +120,75 @@ TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
     EXPECT_GT(share.left_out, share.background / 2);
 }
 
+/// Looks for lights nowhere on the lines from the camera.
+template <class Real>
+struct Unlit : BvhIntersector<Real> {
+    bool passes_lights(const Ray<Real>& ray) const { return ray.from_solid == no_solid; }
+};
+
+TYPED_TEST(Cover, LightsShowWhereItTells) {
+    test::Random random(20);
+    size_t apart = 0, elsewhere = 0, wrong = 0, all = 0;
+    const auto check = [&](const SceneDescription& description) {
+        const auto scene = compile_scene<TypeParam>(description);
+        build_primitive_tree(*scene);
+        const SceneView<TypeParam> view = scene->view();
+        const BvhIntersector<TypeParam> whole{view};
+        const Unlit<TypeParam> unlit{{view}};
+        FrameSettings settings;
+        settings.set_size(64, 36);
+        settings.crop = {5, 3, 51, 30};
+        settings.depth = 4;
+        for (int i = 0; i < 6; ++i) {
+            const CameraDescription camera = i == 0 ? description.camera : random_camera(random, description.camera);
+            FrameView frame = frame_view(*scene, camera_at(camera, 0), settings);
+            camera_solids(view, whole, frame.camera.position, frame.camera_media);
+            const FrameCover cover = frame_contents(*scene, frame, settings).cover;
+            for (int y = 0; y < settings.crop.height; ++y)
+                for (int x = 0; x < settings.crop.width; ++x) {
+                    const auto rendered = [&](const auto& intersector) {
+                        using E = Effects<all_effects>;
+                        PixelRecord record;
+                        PixelWork work;
+                        StackOf<TypeParam, E, MediaList> stack;
+                        render_pixel<TypeParam, E>(view, frame, intersector, settings.crop.x + x, settings.crop.y + y, SampleRange(),
+                                                   record, work, stack);
+                        return record;
+                    };
+                    const bool differs = !same_bytes(rendered(whole), rendered(unlit));
+                    const bool told = std::ranges::any_of(cover.lights(), [&](const PixelRect& light) {
+                        return x >= light.x && x < light.x + light.width && y >= light.y && y < light.y + light.height;
+                    });
+                    ++all;
+                    apart += differs;
+                    elsewhere += !told;
+                    wrong += differs && !told;
+                }
+        }
+    };
+    SceneDescription lamps = read_scene(source + "/scenes/benchmark.json");
+    for (ObjectDescription& object : lamps.objects)
+        if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
+            solid->edge_lights.count = 3;
+            solid->edge_lights.glow = glm::dvec3{1};
+            solid->edge_lights.radius = 0.05;
+        }
+    check(lamps);
+    test::add_seen_lights(lamps, 30);
+    check(lamps);
+    for (uint64_t seed = 0; seed < generated_scene_count; seed += 8) check(generated_scene(seed, source + "/scenes"));
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(apart, all / 200);
+    EXPECT_GT(elsewhere, all / 2);
+}
+
+TYPED_TEST(Cover, ManyLightsMayShowAnywhere) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    test::add_seen_lights(description, 1100);
+    const std::vector<PixelRect> anywhere = {{0, 0, 40, 30}};
+    EXPECT_EQ(cover_of<TypeParam>(description).lights(), anywhere);
+}
+
 TYPED_TEST(Cover, IsTightAroundConvexThings) {
     const SceneDescription description = read_scene(source + "/scenes/benchmark.json");
     const auto scene = compile_scene<TypeParam>(description);
@@ -122,15 +200,6 @@ TYPED_TEST(Cover, IsTightAroundConvexThings) {
     expect_sound(*scene, scene->view(), camera_at(description.camera, 0), settings, "benchmark", share);
     EXPECT_GT(share.background, share.all / 2);
     EXPECT_GT(share.left_out, share.background - share.all / 20);
-}
-
-/// Of a small frame.
-template <class Real>
-FrameCover cover_of(const SceneDescription& description) {
-    const auto scene = compile_scene<Real>(description);
-    FrameSettings settings;
-    settings.set_size(40, 30);
-    return frame_contents(*scene, frame_view(*scene, camera_at(description.camera, 0), settings), settings).cover;
 }
 
 TYPED_TEST(Cover, ManyHullsHaveOneOutline) {

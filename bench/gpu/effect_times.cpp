@@ -16,6 +16,13 @@ namespace {
 
 constexpr int warm_up = 3;
 
+/// A frame's, and what its figures are named by.
+struct Size {
+    const char* name;
+    int width, height, supersample;
+};
+constexpr Size one_sample = {"1x1", 1280, 720, 1}, sixteen_samples = {"4x4", 1280, 720, 4}, large = {"3840x2160", 3840, 2160, 1};
+
 struct Choice {
     const char* name;
     uint32_t effects;  // as FrameSettings::effects
@@ -24,12 +31,12 @@ struct Choice {
 };
 
 template <class Real>
-void time_scene(GpuRecord& record, const EffectScene& scene, int width, int height, int supersample, int runs) {
+void time_scene(GpuRecord& record, const EffectScene& scene, const Size& size, int runs) {
     const auto renderer = make_cuda_renderer<Real>(compile_scene<Real>(scene.scene));
     FrameSettings settings;
-    settings.set_size(width, height);
+    settings.set_size(size.width, size.height);
     settings.depth = scene.scene.depth;
-    settings.supersample = supersample;
+    settings.supersample = size.supersample;
     std::array<Choice, 2> choices = {Choice{"auto", 0, {}, 0}, Choice{"all", all_effects, {}, 0}};
     std::array<std::string, 2> hashes;
     Film film;
@@ -42,8 +49,7 @@ void time_scene(GpuRecord& record, const EffectScene& scene, int width, int heig
             choices[i].ran = renderer->effects();
             if (run == -warm_up) hashes[i] = film_hash(film);
         }
-    const std::string size = width == 1280 ? fmt::format("{0}x{0}", supersample) : fmt::format("{}x{}", width, height);
-    const std::string name = fmt::format("effects/{}/{}/{}", scene.name, size, RealTraits<Real>::name);
+    const std::string name = fmt::format("effects/{}/{}/{}", scene.name, size.name, RealTraits<Real>::name);
     for (const Choice& choice : choices)
         record.add_times(name + "/" + choice.name, choice.kernel, {{"mask", choice.ran}, {"rays", film.rays.total()}});
     record.add_parity(name, film.pixels.size(), hashes[0] == hashes[1] ? 0 : 1);
@@ -53,15 +59,15 @@ void time_scene(GpuRecord& record, const EffectScene& scene, int width, int heig
 
 void time_effects(GpuRecord& record, const std::string& folder, int runs) {
     // With one sample a small frame of a simple scene takes some ten microseconds, three of which are a kernel's begin and end.
-    const auto time_both = [&](const EffectScene& scene, int width, int height, int supersample) {
-        time_scene<float>(record, scene, width, height, supersample, runs);
-        time_scene<double>(record, scene, width, height, supersample, runs);
+    const auto time_both = [&](const EffectScene& scene, const Size& size) {
+        time_scene<float>(record, scene, size, runs);
+        time_scene<double>(record, scene, size, runs);
     };
     for (const EffectScene& scene : effect_scenes(folder)) {
-        time_both(scene, 1280, 720, 1);
+        time_both(scene, one_sample);
         if (scene.scene.depth > 4) continue;
-        time_both(scene, 1280, 720, 4);
-        if (scene.is_for_bars) time_both(scene, 3840, 2160, 1);
+        time_both(scene, sixteen_samples);
+        if (scene.is_for_bars) time_both(scene, large);
     }
     Json kernels = Json::array();
     for (const KernelResources& k : kernel_resources())

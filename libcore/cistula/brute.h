@@ -30,13 +30,16 @@ CISTULA_INLINE void shadow_primitive(const Scene& scene, uint32_t primitive, con
         shadow_cluster<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, sum);
 }
 
+/// Beside primitives, in BruteIntersector::in_view: a seen light.
+inline constexpr uint32_t light_in_view = 1u << 31;
+
 template <class Real, class MediaKind = MediaList, class SceneKind = SceneView<Real>>
 struct BruteIntersector {
     using Media = MediaKind;
     using Scene = SceneKind;
     const Scene& scene;
     /// The primitives of a SmallScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of the picture, as
-    /// long as they go straight on.
+    /// long as they go straight on; and light_in_view if they can meet any.
     uint32_t in_view = ~0u;
 
     /// The least (t, key) after ray.after that the primitive tests accept.
@@ -49,6 +52,9 @@ struct BruteIntersector {
         if (!best.found()) best.t = RealTraits<Real>::infinity;
         return best;
     }
+
+    /// Whether the ray surely meets no seen light.
+    CISTULA_INLINE bool passes_lights(const Ray<Real, Media>& ray) const { return (ahead_of(ray) & light_in_view) == 0; }
 
     /// The share of the light's intensity that reaches the ray's origin.
     template <class E>

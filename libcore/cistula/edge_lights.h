@@ -98,7 +98,8 @@ CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& r
     const auto near = [&](const Solid& solid, const SlabGroup<Real>& first, Real& near_from, Real& near_to) {
         return nears_edge(&first, solid.slab_count, first.light_reach, ray.origin, ray.direction, near_from, near_to);
     };
-    if (const uint32_t around = enclosing(scene, ray); around != no_solid) {
+    const bool ends = to < RealTraits<Real>::infinity;  // at the face by which the ray leaves, or before
+    if (const uint32_t around = ends ? enclosing(scene, ray) : no_solid; around != no_solid) {
         const SlabGroup<Real>& first = scene.slab_groups[scene.solids[around].first_group];
         if (first.lights_apart) return near(scene.solids[around], first, from, to);
     }

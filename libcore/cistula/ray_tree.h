@@ -18,11 +18,19 @@ inline constexpr uint32_t turns_between_stops = 64;
 /// The branch that is followed while k others wait weighs at most 2^-k, and one under 2^-62 is dropped.
 inline constexpr int branch_stack = 67;
 
+/// How far a line is known to meet no seen light: it is searched once, however many faces it passes straight on.
+template <class Real, bool sees_lights>
+struct SearchedLine {
+    Real dark_until = 0;
+};
+template <class Real>
+struct SearchedLine<Real, false> {};
+
 /// Part of a tree that is still to be followed: `weight`, a Share, times what `ray` sees.
-template <class Real, class Media = MediaList, class Weight = Vec3<Real>>
-struct Branch {
+template <class Real, class Media = MediaList, class Weight = Vec3<Real>, bool sees_lights = true>
+struct Branch : SearchedLine<Real, sees_lights> {
     Ray<Real, Media> ray;
-    Weight weight;
+    Weight weight{Real(1)};
     uint32_t depth : 31 = 0;  // surfaces above it
     uint32_t mirrored : 1 = 0;
 };
@@ -104,7 +112,7 @@ class OneBranch {
 
 /// The branches of a mask's trees, and what keeps them.
 template <class Real, class E, class Media>
-using BranchOf = Branch<Real, Media, Share<Real, E>>;
+using BranchOf = Branch<Real, Media, Share<Real, E>, E::has(effect_visible_lights)>;
 template <class Real, class E, class Media>
 using StackOf = std::conditional_t<E::has(effect_transmission), BranchStack<BranchOf<Real, E, Media>>,
                                    OneBranch<BranchOf<Real, E, Media>>>;
@@ -126,7 +134,8 @@ class RayTree {
     /// first.nothing(light) where that is no surface but perhaps a seen light.
     template <class First>
     CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
-        Entry branch{primary, Weight(Real(1))};
+        Entry branch;
+        branch.ray = primary;
         walk(branch, first);
     }
 
@@ -228,7 +237,7 @@ class RayTree {
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray);
             if constexpr (E::has(effect_visible_lights)) {
-                const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, hit.t);
+                const SeenHit<Real> seen = light_before(hit, branch);
                 if (seen.light != no_light) {
                     light = true;
                     absorption.dim(scene_, branch.ray.media, seen.t, branch.weight);
@@ -254,6 +263,20 @@ class RayTree {
                 return false;
             }
         }
+    }
+
+    /// The seen light that the ray meets before `hit`. A line that may go straight on from there is searched to its end.
+    CISTULA_INLINE SeenHit<Real> light_before(const Hit<Real>& hit, Entry& branch) {
+        SeenHit<Real> seen;
+        if (lesser(hit.t, RealTraits<Real>::largest) < branch.dark_until) return seen;
+        if constexpr (requires { intersector_.passes_lights(branch.ray); })
+            if (intersector_.passes_lights(branch.ray)) return seen;
+        const bool goes_on = lines_go_on && hit.found() && int(branch.depth) + 1 < depth_ &&
+                             scene_.materials[scene_.solids[key_solid(hit.key)].material].transmission > Real(0);
+        seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t);
+        if (seen.t <= hit.t) return seen;
+        branch.dark_until = seen.t;
+        return SeenHit<Real>();
     }
 
     /// Adds a face's local light. What it sends on waits, before the lights are looked at: nothing of the branch has to be
@@ -309,11 +332,15 @@ class RayTree {
             child.ray = spawned(far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
         } else {
             child.ray = parent.ray;
+            if constexpr (E::has(effect_visible_lights)) child.dark_until = parent.dark_until;
             Absorption<false> later;  // counted from there on
             pass(child.ray, meeting, later);
         }
         return child;
     }
+
+    /// Whether rays pass faces without bending, all of them.
+    static constexpr bool lines_go_on = E::has(effect_transmission) && !E::has(effect_refraction);
 
     const Scene& scene_;
     const Intersector& intersector_;

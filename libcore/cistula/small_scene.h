@@ -36,7 +36,7 @@ struct InlineSpan {
 struct ShadowPlan {
     static constexpr uint32_t solids = 24, lights = 8, convex = 16, clusters = 4;
     static constexpr uint32_t first_cluster = convex;
-    static_assert(solids <= 32 && first_cluster + clusters <= 32);
+    static_assert(solids <= 32 && first_cluster + clusters <= 31);  // the last bit is light_in_view
 
     uint32_t all_convex, all_clusters;  // bit p: convex[p]; bit first_cluster + p: clusters[p]
     uint32_t beyond[lights];            // bit i: the light is well outside of convex solid i

@@ -20,6 +20,8 @@ constexpr double share_of_growth = 0x1p-12;
 constexpr double margin = 0x1p-6;
 /// Scenes of more hulls are covered by one box: to outline each would take longer than it spares.
 constexpr size_t most_hulls = 64;
+/// ... and lights of more are looked for everywhere.
+constexpr size_t most_lights = 1024;
 
 double cross(double ax, double ay, double bx, double by) {
     return ax * by - ay * bx;
@@ -57,37 +59,58 @@ Hull box_around(const std::vector<Hull>& hulls) {
 
 }  // namespace
 
+size_t FrameCover::pixels() const {
+    size_t columns = 0;
+    for (const std::vector<PixelRun>& runs : bands_)
+        for (const PixelRun& run : runs) columns += size_t(run.end - run.begin);
+    return columns * band_rows;
+}
+
 void FrameCover::add_all(size_t number) {
     add({number, 0, std::vector<PixelRun>(bands_.size(), {0, rect_.width})});
 }
 
 void FrameCover::add(size_t number, const Hull& hull, double extent, const FrameView& frame) {
+    std::optional<std::vector<Point>> points = projected(hull, extent, frame);
+    if (!points) return add_all(number);
+    add(filled(number, points->empty() ? *points : convex_outline(*points)));
+}
+
+void FrameCover::add_all_lights() {
+    lights_ = {{0, 0, rect_.width, rect_.height}};
+}
+
+void FrameCover::add_light(const Hull& ball, double extent, const FrameView& frame) {
+    const std::optional<std::vector<Point>> points = projected(ball, extent, frame);
+    if (!points) return add_all_lights();
+    if (points->empty()) return;
+    double left = rect_.width, right = 0, top = rect_.height, bottom = 0;
+    for (const Point& p : *points) {
+        left = std::min(left, p.x - margin), right = std::max(right, p.x + margin);
+        top = std::min(top, p.y - margin), bottom = std::max(bottom, p.y + margin);
+    }
+    const int x = int(std::floor(std::max(left, 0.0))), y = int(std::floor(std::max(top, 0.0)));
+    const int width = int(std::ceil(std::min(right, double(rect_.width)))) - x;
+    const int height = int(std::ceil(std::min(bottom, double(rect_.height)))) - y;
+    if (width > 0 && height > 0) lights_.push_back({x, y, width, height});
+}
+
+/// The corners of what shows of a hull, and points between them; none where it is all behind the camera. Nothing where they
+/// are in doubt.
+std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& hull, double extent, const FrameView& frame) const {
     const Camera& camera = frame.camera;
     const double distance = length(camera.position), tangent = camera.tan_half_width;
     const bool is_sure = distance <= farthest * extent && tangent * std::max(1.0, double(frame.height) / frame.width) <= widest_tangent;
-    const std::vector<Point> found = is_sure ? corners(hull, extent, frame) : std::vector<Point>();
-    const bool is_known = std::all_of(found.begin(), found.end(), [](const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
-    if (is_sure && is_known)
-        add(filled(number, found));
-    else
-        add_all(number);
-}
-
-/// Of a hull's outline; none where it is all behind the camera.
-std::vector<FrameCover::Point> FrameCover::corners(const Hull& hull, double extent, const FrameView& frame) const {
-    const Camera& camera = frame.camera;
-    const double growth = share_of_extent * extent + share_of_distance * length(camera.position);
+    if (!is_sure) return {};
+    const double growth = share_of_extent * extent + share_of_distance * distance;
     const double reach = hull.reach + growth, nearest = share_of_growth * growth;
     std::vector<Vec3<double>> ahead, behind;  // along right, up and forward; cubes instead of balls
     for (const Vec3<double>& point : hull.points) {
         const Vec3<double> there = point - camera.position;
         const Vec3<double> p(dot(there, camera.right), dot(there, camera.up), dot(there, camera.forward));
-        for (int corner = 0; corner < 8; ++corner) {
-            const Vec3<double> q = p + reach * Vec3<double>(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-            (q.z < nearest ? behind : ahead).push_back(q);
-        }
+        for (const Vec3<double>& q : Box{p - reach, p + reach}.corners()) (q.z < nearest ? behind : ahead).push_back(q);
     }
-    const double pixels = frame.width / (2 * camera.tan_half_width);  // to tangent 1
+    const double pixels = frame.width / (2 * tangent);  // to tangent 1
     std::vector<Point> points;
     const auto put = [&](const Vec3<double>& p) {
         points.push_back({frame.width / 2.0 + p.x / p.z * pixels - rect_.x, frame.height / 2.0 - p.y / p.z * pixels - rect_.y});
@@ -99,7 +122,8 @@ std::vector<FrameCover::Point> FrameCover::corners(const Hull& hull, double exte
             put({a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), nearest});
         }
     }
-    return points.empty() ? points : convex_outline(points);
+    const bool is_known = std::all_of(points.begin(), points.end(), [](const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
+    return is_known ? std::optional(points) : std::nullopt;
 }
 
 FrameCover::Outline FrameCover::filled(size_t number, const std::vector<Point>& corners) const {
@@ -171,6 +195,11 @@ FrameCover frame_cover(const CompiledScene<Real>& scene, const FrameView& frame,
         cover.add(FrameCover::Outline::all, box_around(scene.hulls), extent, frame);
     else
         for (size_t i = 0; i < scene.hulls.size(); ++i) cover.add(i, scene.hulls[i], extent, frame);
+    if (scene.seen_lights.size() > most_lights)
+        cover.add_all_lights();
+    else
+        for (const SeenLight<Real>& light : scene.seen_lights)
+            cover.add_light({{Vec3<double>(light.center)}, double(light.radius)}, extent, frame);
     return cover;
 }
 

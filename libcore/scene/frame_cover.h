@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,10 @@ class FrameCover {
     explicit FrameCover(const PixelRect& rect)
         : rect_(rect), bands_(size_t((rect.height + band_rows - 1) / band_rows)) {}
 
+    const PixelRect& rect() const { return rect_; }
+    /// Pixels of its bands, whole ones.
+    size_t pixels() const;
+
     /// Ascending and apart; `row` counts from the top of the rectangle.
     std::span<const PixelRun> runs(int row) const { return bands_[size_t(row / band_rows)]; }
 
@@ -41,6 +46,9 @@ class FrameCover {
         std::vector<PixelRun> runs;
     };
     const std::vector<Outline>& outlines() const { return outlines_; }
+
+    /// Around each seen light, in the rectangle; where they are many or unknown, the rectangle itself.
+    const std::vector<PixelRect>& lights() const { return lights_; }
 
     /// visit(begin, end, covered) for all columns from `from` to `to` of a row, from left to right.
     template <class Visit>
@@ -58,24 +66,34 @@ class FrameCover {
     void add_all(size_t number);
     /// Of hull `number`; `extent`: the scene's M.
     void add(size_t number, const Hull& hull, double extent, const FrameView& frame);
+    void add_light(const Hull& ball, double extent, const FrameView& frame);
+    void add_all_lights();
 
   private:
     struct Point {
         double x, y;  // in pixels from the rectangle's top left corner
     };
-    std::vector<Point> corners(const Hull& hull, double extent, const FrameView& frame) const;
+    std::optional<std::vector<Point>> projected(const Hull& hull, double extent, const FrameView& frame) const;
     Outline filled(size_t number, const std::vector<Point>& corners) const;
     void add(Outline outline);
 
     PixelRect rect_;
     std::vector<std::vector<PixelRun>> bands_;
     std::vector<Outline> outlines_;
+    std::vector<PixelRect> lights_;
 };
 
 /// What rendering leaves of a pixel that shows background alone.
 struct BackgroundPixel {
     PixelRecord record;
     PixelWork work;
+
+    /// Adds what so many of them count.
+    void count(uint64_t pixels, RayCounts& rays, uint32_t& flags) const {
+        if (pixels == 0) return;
+        rays.primary += pixels * work.rays.primary;
+        flags |= work.flags;
+    }
 };
 
 /// Where a frame may show something, and what is everywhere else. `cover` is over settings.crop.
