@@ -9,6 +9,7 @@
 #include <atomic>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "cistula/adaptive_pixel.h"
 #include "cistula/bvh.h"
@@ -46,12 +47,31 @@ class StoppableStack {
     const std::atomic<bool>& stop_;
 };
 
-/// Calls render(x, y, record, work) for every pixel of the film that may show something, in tiles.
+/// Of tiles row by row: where a line from the camera may meet a seen light.
+inline std::vector<uint8_t> lit_tiles(const FrameCover& cover, int tile, int columns, int rows) {
+    std::vector<uint8_t> lit(size_t(columns) * size_t(rows));
+    for (const PixelRect& light : cover.lights())
+        for (int y = light.y / tile; y * tile < light.y + light.height; ++y)
+            for (int x = light.x / tile; x * tile < light.x + light.width; ++x) lit[size_t(y) * size_t(columns) + size_t(x)] = 1;
+    return lit;
+}
+
+/// Looks for no light on lines from the camera where none shows.
+template <class Intersector>
+Intersector in_tile(const Intersector& intersector, [[maybe_unused]] bool lit) {
+    Intersector here = intersector;
+    if constexpr (requires { here.in_view; })
+        if (!lit) here.in_view &= ~light_in_view;
+    return here;
+}
+
+/// Calls render(x, y, lit, record, work) for every pixel of the film that may show something, in tiles.
 template <class Render>
 bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
                     const Render& render) {
     const PixelRect rect = film.rect;
     const int tile = settings.tile, columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
+    const std::vector<uint8_t> lit = lit_tiles(contents.cover, tile, columns, rows);
     std::mutex totals;
     tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
         use_default_rounding();
@@ -71,7 +91,7 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
                     }
                     for (int x = begin; x < end && !progress.stop.load(std::memory_order_relaxed); ++x, ++pixel) {
                         PixelWork own;
-                        render(rect.x + x, rect.y + y, *pixel, own);
+                        render(rect.x + x, rect.y + y, lit[size_t(t)] != 0, *pixel, own);
                         rays.add(own.rays);
                         flags |= own.flags;
                     }
@@ -90,9 +110,9 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
 template <class Real, class E, class Intersector>
 bool render_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                   const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
-    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, bool lit, PixelRecord& pixel, PixelWork& own) {
         StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-        render_pixel<Real, E>(scene, frame, intersector, x, y, SampleRange(), pixel, own, stack);
+        render_pixel<Real, E>(scene, frame, in_tile(intersector, lit), x, y, SampleRange(), pixel, own, stack);
     });
 }
 
@@ -101,9 +121,9 @@ template <class Real, class E, class Intersector>
 bool render_adaptive_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                            const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
     const bool gradual = shades_gradually(scene);
-    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, bool lit, PixelRecord& pixel, PixelWork& own) {
         StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-        render_adaptive_pixel<Real, E>(scene, frame, intersector, x, y, gradual, pixel, own, stack);
+        render_adaptive_pixel<Real, E>(scene, frame, in_tile(intersector, lit), x, y, gradual, pixel, own, stack);
     });
 }
 
