@@ -21,15 +21,13 @@ CISTULA_INLINE bool passes_lights(const Solid& solid, Real square, const Vec3<Re
 }
 
 /// Bit i: whether a[i] >= limit, or a[i] <= limit.
-template <class Real>
-CISTULA_INLINE uint32_t lanes_from(const Real (&a)[slab_lanes], Real limit) {
+CISTULA_INLINE uint32_t lanes_from(const float (&a)[slab_lanes], float limit) {
     alignas(32) int32_t is[slab_lanes];
     CISTULA_VECTORS
     for (int i = 0; i < slab_lanes; ++i) is[i] = a[i] >= limit ? -1 : 0;
     return sign_bits(is);
 }
-template <class Real>
-CISTULA_INLINE uint32_t lanes_to(const Real (&a)[slab_lanes], Real limit) {
+CISTULA_INLINE uint32_t lanes_to(const float (&a)[slab_lanes], float limit) {
     alignas(32) int32_t is[slab_lanes];
     CISTULA_VECTORS
     for (int i = 0; i < slab_lanes; ++i) is[i] = a[i] <= limit ? -1 : 0;
@@ -37,24 +35,25 @@ CISTULA_INLINE uint32_t lanes_to(const Real (&a)[slab_lanes], Real limit) {
 }
 
 /// Whether a line is within `reach` of two faces of a solid at once, somewhere between `from` and `to`, which come closer to
-/// where. Of an entering plane a line is near up to some time, of a leaving one from some time on.
+/// where. Of an entering plane a line is near up to some time, of a leaving one from some time on. In single precision for
+/// either: `reach` is 2^-14 M beyond the lights, and what is rounded here is under 2^-19 M.
 template <class Real>
-CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, Real reach, const Vec3<Real>& origin,
-                               const Vec3<Real>& direction, Real& from, Real& to) {
+CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, float reach, const Vec3<float>& origin,
+                               const Vec3<float>& direction, float& from, float& to) {
     constexpr int most_groups = most_slabs_of_edge_lights / slab_lanes;
-    alignas(32) Real past[most_groups][slab_lanes], soon[most_groups][slab_lanes];
+    alignas(32) float past[most_groups][slab_lanes], soon[most_groups][slab_lanes];
     const int count = int(slabs + slab_lanes - 1) / slab_lanes;
     for (int g = 0; g < count; ++g) {
-        alignas(32) Real enter[slab_lanes], leave[slab_lanes];
+        alignas(32) float enter[slab_lanes], leave[slab_lanes];
         const SlabGroup<Real>& group = groups[g];
 #pragma GCC ivdep
         for (int i = 0; i < slab_lanes; ++i) {
-            const Vec3<Real> normal(group.nx[i], group.ny[i], group.nz[i]);
-            const Real nd = dot(normal, direction), no = dot(normal, origin);
+            const Vec3<float> normal(float(group.nx[i]), float(group.ny[i]), float(group.nz[i]));
+            const float nd = dot(normal, direction), no = dot(normal, origin);
             // Of a slab that it is parallel to, a line is near from very early to very late or not at all.
-            const Real inverse = Real(1) / (magnitude(nd) < Real(0x1p-60) ? Real(0x1p-60) : nd);
-            const Real at_low = (group.low[i] - no) * inverse, at_high = (group.high[i] - no) * inverse;
-            const Real half = reach * magnitude(inverse), in = lesser(at_low, at_high), out = greater(at_low, at_high);
+            const float inverse = 1.0f / (magnitude(nd) < 0x1p-60f ? 0x1p-60f : nd);
+            const float at_low = (float(group.low[i]) - no) * inverse, at_high = (float(group.high[i]) - no) * inverse;
+            const float half = reach * magnitude(inverse), in = lesser(at_low, at_high), out = greater(at_low, at_high);
             enter[i] = in - half;
             past[g][i] = in + half;
             soon[g][i] = out - half;
@@ -71,7 +70,7 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, Re
     }
     const bool two_at_first = (entering & (entering - 1)) != 0, two_at_last = (leaving & (leaving - 1)) != 0;
     if (!two_at_first && !two_at_last && (entering == 0 || leaving == 0)) return false;
-    Real first = to, last = from;
+    float first = to, last = from;
     for (uint32_t left = two_at_first ? 0 : leaving; left != 0; left &= left - 1)
         first = least(soon[lowest_bit(left) / slab_lanes][lowest_bit(left) % slab_lanes], first);
     for (uint32_t left = two_at_last ? 0 : entering; left != 0; left &= left - 1)
@@ -95,8 +94,13 @@ CISTULA_INLINE const Solid& listed(const Scene& scene, uint32_t index) {
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& ray, Real& from, Real& to) {
     if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return true;
+    const Vec3<float> origin(ray.origin), direction(ray.direction);
     const auto near = [&](const Solid& solid, const SlabGroup<Real>& first, Real& near_from, Real& near_to) {
-        return nears_edge(&first, solid.slab_count, first.light_reach, ray.origin, ray.direction, near_from, near_to);
+        float first_near = float(near_from), last_near = float(near_to);
+        const bool nears = nears_edge(&first, solid.slab_count, float(first.light_reach), origin, direction, first_near, last_near);
+        near_from = first_near;
+        near_to = last_near;
+        return nears;
     };
     const bool ends = to < RealTraits<Real>::infinity;  // at the face by which the ray leaves, or before
     if (const uint32_t around = ends ? enclosing(scene, ray) : no_solid; around != no_solid) {
