@@ -232,6 +232,27 @@ TYPED_TEST(Cover, IsEmptyWhereAllIsBehindTheCamera) {
     for (int y = 0; y < 30; ++y) EXPECT_TRUE(cover.runs(y).empty()) << y;
 }
 
+TEST(FrameCover, LightsFarBesideThePictureHaveNoRectangle) {
+    FrameView frame;
+    frame.camera.position = {0, 0, 0};
+    frame.camera.forward = {0, 0, -1};
+    frame.camera.right = {1, 0, 0};
+    frame.camera.up = {0, 1, 0};
+    frame.camera.tan_half_width = 1e-6;
+    frame.width = 20000;
+    frame.height = 10000;
+    const PixelRect rect{100, 50, 400, 300};
+    FrameCover cover(rect);
+    for (const double side : {-1.0, 1.0}) {  // by more pixels than integers count
+        cover.add_light({{{side, 0, -1e-4}}, 1e-6}, 1, frame);
+        cover.add_light({{{0, side, -1e-4}}, 1e-6}, 1, frame);
+    }
+    EXPECT_TRUE(cover.lights().empty());
+    cover.add_light({{{0, 0, -1}}, 1e-3}, 1, frame);  // larger than the picture
+    const std::vector<PixelRect> anywhere = {{0, 0, 400, 300}};
+    EXPECT_EQ(cover.lights(), anywhere);
+}
+
 TEST(FrameCover, PartsOfARowAreInOrderAndWhole) {
     Hull left, right;
     left.points = {{-0.5, -0.1, 0}, {-0.4, 0.1, 0}, {-0.4, -0.1, 0}};

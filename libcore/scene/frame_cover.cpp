@@ -89,9 +89,9 @@ void FrameCover::add_light(const Hull& ball, double extent, const FrameView& fra
         left = std::min(left, p.x - margin), right = std::max(right, p.x + margin);
         top = std::min(top, p.y - margin), bottom = std::max(bottom, p.y + margin);
     }
-    const int x = int(std::floor(std::max(left, 0.0))), y = int(std::floor(std::max(top, 0.0)));
-    const int width = int(std::ceil(std::min(right, double(rect_.width)))) - x;
-    const int height = int(std::ceil(std::min(bottom, double(rect_.height)))) - y;
+    const auto inside = [](double value, int size) { return std::clamp(value, 0.0, double(size)); };  // whatever fits no int
+    const int x = int(std::floor(inside(left, rect_.width))), y = int(std::floor(inside(top, rect_.height)));
+    const int width = int(std::ceil(inside(right, rect_.width))) - x, height = int(std::ceil(inside(bottom, rect_.height))) - y;
     if (width > 0 && height > 0) lights_.push_back({x, y, width, height});
 }
 
