@@ -115,6 +115,7 @@ TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
     for (ObjectDescription& object : scene.objects)
         if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
             solid->edge_lights.count = 4;
+            solid->edge_lights.color = glm::dvec3{0};
             solid->edge_lights.glow = glm::dvec3{1};
             solid->edge_lights.radius = 0.05;
         }
