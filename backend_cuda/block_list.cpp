@@ -35,14 +35,10 @@ BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primi
                 }
             }
     }
-    for (const PixelRect& light : cover.lights())
-        for (int row = light.y / shape.height; row * shape.height < light.y + light.height; ++row) {
-            const int i = index_of(row);
-            if (i < 0 || i >= all) continue;
-            const size_t first = size_t(i) * size_t(columns_);
-            for (int column = light.x / shape.width; column * shape.width < light.x + light.width; ++column)
-                in_view[first + size_t(column)] |= light_in_view;
-        }
+    cover.for_each_lit_cell(shape.width, shape.height, [&](int column, int row) {
+        const int i = index_of(row);
+        if (i >= 0 && i < all) in_view[size_t(i) * size_t(columns_) + size_t(column)] |= light_in_view;
+    });
     listed_.resize(size_t(rows) * size_t(columns_));
     const int groups = (columns_ + most_side_by_side - 1) / most_side_by_side, width = (columns_ + groups - 1) / groups;
     for (int left = 0; left < columns_; left += width)

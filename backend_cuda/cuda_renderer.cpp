@@ -130,6 +130,7 @@ class CudaRenderer : public Renderer {
     struct Frame : Request {
         FrameView view;
         std::shared_ptr<const FrameContents> contents;
+        Deal deal = Deal::tiles;
         bool fits = true;      // the camera's list of media
         int mask = 0;
         int split_depth = 0;
@@ -180,6 +181,7 @@ class CudaRenderer : public Renderer {
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
         frame.contents = std::make_shared<const FrameContents>(frame_contents(*scene_, frame.view, settings));
+        frame.deal = deal_for(frame);
         constexpr int block = BlockShape::of(Deal::tiles).width;
         const size_t strip_pixels = size_t((rect.width + block - 1) / block * block) * strip_rows;
         const size_t samples = samples_of(settings);
@@ -251,7 +253,7 @@ class CudaRenderer : public Renderer {
             if (job.strips.count == 0) continue;
             job.frame = frame.view;
             job.contents = frame.contents;
-            job.deal = deal_for(frame);
+            job.deal = frame.deal;
             job.first = first_pass(frame.settings);
             job.mask = frame.mask;
             job.split_depth = frame.split_depth;

@@ -50,9 +50,7 @@ class StoppableStack {
 /// Of tiles row by row: where a line from the camera may meet a seen light.
 inline std::vector<uint8_t> lit_tiles(const FrameCover& cover, int tile, int columns, int rows) {
     std::vector<uint8_t> lit(size_t(columns) * size_t(rows));
-    for (const PixelRect& light : cover.lights())
-        for (int y = light.y / tile; y * tile < light.y + light.height; ++y)
-            for (int x = light.x / tile; x * tile < light.x + light.width; ++x) lit[size_t(y) * size_t(columns) + size_t(x)] = 1;
+    cover.for_each_lit_cell(tile, tile, [&](int column, int row) { lit[size_t(row) * size_t(columns) + size_t(column)] = 1; });
     return lit;
 }
 

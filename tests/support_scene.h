@@ -214,6 +214,17 @@ Count cross_all(const Intersector& intersector, Ray<Real> ray) {
 }
 
 /// On a spiral, around what scenes/benchmark.json shows: lights that are seen and light nothing, after those that are there.
+/// On every edge of every solid: they glow, and light nothing.
+inline void add_edge_lights(SceneDescription& scene, int count) {
+    for (ObjectDescription& object : scene.objects)
+        if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
+            solid->edge_lights.count = count;
+            solid->edge_lights.color = glm::dvec3{0};
+            solid->edge_lights.glow = glm::dvec3{1};
+            solid->edge_lights.radius = 0.05;
+        }
+}
+
 inline void add_seen_lights(SceneDescription& scene, int count) {
     for (int i = 0; i < count; ++i) {
         const double turn = 0.3 * double(scene.lights.size());

@@ -112,13 +112,7 @@ TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
         return film_hash(golden::render_with(*renderer, scene, settings));
     };
     const std::string dark = hash();
-    for (ObjectDescription& object : scene.objects)
-        if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
-            solid->edge_lights.count = 4;
-            solid->edge_lights.color = glm::dvec3{0};
-            solid->edge_lights.glow = glm::dvec3{1};
-            solid->edge_lights.radius = 0.05;
-        }
+    test::add_edge_lights(scene, 4);
     test::add_seen_lights(scene, 40);
     EXPECT_EQ(this->compare(scene, settings, "lights"), effect_masks[4]);
     EXPECT_NE(hash(), dark);

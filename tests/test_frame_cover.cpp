@@ -167,12 +167,7 @@ TYPED_TEST(Cover, LightsShowWhereItTells) {
         }
     };
     SceneDescription lamps = read_scene(source + "/scenes/benchmark.json");
-    for (ObjectDescription& object : lamps.objects)
-        if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
-            solid->edge_lights.count = 3;
-            solid->edge_lights.glow = glm::dvec3{1};
-            solid->edge_lights.radius = 0.05;
-        }
+    test::add_edge_lights(lamps, 3);
     check(lamps);
     test::add_seen_lights(lamps, 30);
     check(lamps);
@@ -232,15 +227,21 @@ TYPED_TEST(Cover, IsEmptyWhereAllIsBehindTheCamera) {
     for (int y = 0; y < 30; ++y) EXPECT_TRUE(cover.runs(y).empty()) << y;
 }
 
-TEST(FrameCover, LightsFarBesideThePictureHaveNoRectangle) {
+/// From `position` along -z.
+FrameView frame_from(const glm::dvec3& position, double tangent, int width, int height) {
     FrameView frame;
-    frame.camera.position = {0, 0, 0};
+    frame.camera.position = position;
     frame.camera.forward = {0, 0, -1};
     frame.camera.right = {1, 0, 0};
     frame.camera.up = {0, 1, 0};
-    frame.camera.tan_half_width = 1e-6;
-    frame.width = 20000;
-    frame.height = 10000;
+    frame.camera.tan_half_width = tangent;
+    frame.width = width;
+    frame.height = height;
+    return frame;
+}
+
+TEST(FrameCover, LightsFarBesideThePictureHaveNoRectangle) {
+    const FrameView frame = frame_from({0, 0, 0}, 1e-6, 20000, 10000);
     const PixelRect rect{100, 50, 400, 300};
     FrameCover cover(rect);
     for (const double side : {-1.0, 1.0}) {  // by more pixels than integers count
@@ -257,14 +258,7 @@ TEST(FrameCover, PartsOfARowAreInOrderAndWhole) {
     Hull left, right;
     left.points = {{-0.5, -0.1, 0}, {-0.4, 0.1, 0}, {-0.4, -0.1, 0}};
     right.points = {{0.4, -0.1, 0}, {0.5, 0.1, 0}, {0.5, -0.1, 0}};
-    FrameView frame;
-    frame.camera.position = {0, 0, 2};
-    frame.camera.forward = {0, 0, -1};
-    frame.camera.right = {1, 0, 0};
-    frame.camera.up = {0, 1, 0};
-    frame.camera.tan_half_width = 0.5;
-    frame.width = 100;
-    frame.height = 50;
+    const FrameView frame = frame_from({0, 0, 2}, 0.5, 100, 50);
     FrameCover cover({0, 0, 100, 50});
     cover.add(0, right, 1, frame);
     cover.add(1, left, 1, frame);

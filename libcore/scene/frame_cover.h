@@ -50,6 +50,15 @@ class FrameCover {
     /// Around each seen light, in the rectangle; where they are many or unknown, the rectangle itself.
     const std::vector<PixelRect>& lights() const { return lights_; }
 
+    /// visit(column, row) for the cells of that size, counted from the rectangle's top left corner, that a light's rectangle meets;
+    /// for some more than once.
+    template <class Visit>
+    void for_each_lit_cell(int width, int height, const Visit& visit) const {
+        for (const PixelRect& light : lights_)
+            for (int row = light.y / height; row * height < light.y + light.height; ++row)
+                for (int column = light.x / width; column * width < light.x + light.width; ++column) visit(column, row);
+    }
+
     /// visit(begin, end, covered) for all columns from `from` to `to` of a row, from left to right.
     template <class Visit>
     void for_each_part(int row, int from, int to, const Visit& visit) const {
