@@ -12,8 +12,8 @@ inline constexpr uint32_t most_solids_of_edge_lights = 16, most_slabs_of_edge_li
 
 /// Whether the line between `from` and `to` passes the sphere around a solid's lights by.
 template <class Real>
-CISTULA_INLINE bool passes_lights(const Solid& solid, Real square, const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                  Real from, Real to) {
+CISTULA_INLINE bool passes_edge_lights(const Solid& solid, Real square, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                                       Real from, Real to) {
     const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
     const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - square;
     const Real nearest = clamped(ahead, from, to);
@@ -112,7 +112,7 @@ CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& r
         const Solid& solid = listed(scene, entry);
         const SlabGroup<Real>& first = scene.slab_groups[solid.first_group];
         Real near_from = from, near_to = to;
-        if (passes_lights(solid, first.light_square, ray.origin, ray.direction, from, to) ||
+        if (passes_edge_lights(solid, first.light_square, ray.origin, ray.direction, from, to) ||
             !near(solid, first, near_from, near_to))
             continue;
         earliest = least(near_from, earliest);
