@@ -16,7 +16,7 @@ namespace cistula {
 namespace {
 
 constexpr size_t staging_bytes = size_t{32} << 20;
-constexpr int blocks_together = 64;  // that a thread of the host unpacks
+constexpr int blocks_together = 16;  // that a thread of the host unpacks
 /// Branches that may wait per pixel of a part, and in all; trees that find no room are walked to their end where they are.
 constexpr size_t queued_per_pixel = 2, most_queued = size_t{1} << 21;
 /// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
