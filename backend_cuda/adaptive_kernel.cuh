@@ -56,12 +56,13 @@ struct AtomicAdd {
     }
 };
 
-/// The pixels that a warp has at work: lane s < warp_pixels has the s-th.
+/// The pixels that a warp has at work: lane s < warp_pixels has the s-th. Record: RecordOf a mask.
+template <class Record>
 class WarpPixels {
   public:
     __device__ WarpPixels(const FrameJob& job)
         : job_(job),
-          records_(static_cast<PixelRecord*>(job.records)),
+          records_(static_cast<Record*>(job.records)),
           lane_(threadIdx.x % warp_threads),
           places_(job.block_count * warp_threads),
           at_once_(clamped(int(places_ / (gridDim.x * block_warps)), 1, warp_pixels)),
@@ -107,29 +108,34 @@ class WarpPixels {
         const bool ready = wanted_ != 0 && given_ == wanted_;
         if (!__any_sync(whole_warp, ready)) return;
         const LatticeSettings& settings = job_.frame.lattice;
-        const WarpDeal cells = WarpDeal::of(ready ? rooms_[lane_].pixel.cells() : 0);
+        const WarpDeal cells = WarpDeal::of(ready ? cells_ : 0);
         cells.for_each([&](int pixel, int i) { rooms_[pixel].pixel.judge(settings, rooms_[pixel].samples, i); });
-        if (ready) rooms_[lane_].pixel.divide(settings);
+        if (ready) {
+            rooms_[lane_].pixel.divide(settings);
+            note_wishes();
+        }
         __syncwarp();
-        const bool done = ready && rooms_[lane_].pixel.wanted() == 0;
-        const WarpDeal standing = WarpDeal::of(done ? rooms_[lane_].pixel.cells() : 0);
+        const bool done = ready && wanted_ == 0;
+        const WarpDeal standing = WarpDeal::of(done ? cells_ : 0);
         const unsigned int record = record_;
         for (int j = lane_; __any_sync(whole_warp, j < standing.total); j += warp_threads) {
             int pixel = 0, i = 0;
             standing.find(j, pixel, i);
-            PixelRecord& to = records_[__shfl_sync(whole_warp, record, pixel)];
-            if (j < standing.total)
-                rooms_[pixel].pixel.settle(settings, i, [&](int slot, int weight) {
-                    rooms_[pixel].samples[slot].give(to, weight, AtomicAdd());
-                });
+            Record& to = records_[__shfl_sync(whole_warp, record, pixel)];
+            if (j >= standing.total) continue;
+            // One sum: what is read for the next sample would wait for what was added where other lanes add, too.
+            Record cell = Record();
+            rooms_[pixel].pixel.settle(settings, i, [&](int slot, int weight) {
+                rooms_[pixel].samples[slot].give(cell, weight, [](auto& sum, auto value) { sum += value; });
+            });
+            LatticeSample sum;
+            sum.keep(cell, 0);
+            sum.give(to, 1, AtomicAdd());
         }
-        if (!ready) return;
-        const LatticePixel& pixel = rooms_[lane_].pixel;
-        given_ = 0;
-        wanted_ = pixel.wanted();
-        if (wanted_ != 0) return;
-        records_[record_].samples = uint32_t(pixel.taken());
-        records_[record_].unmet = pixel.unmet();
+        if (!done) return;
+        const uint32_t taken = uint32_t(rooms_[lane_].pixel.taken()), unmet = rooms_[lane_].pixel.unmet();
+        records_[record_].samples = taken;
+        records_[record_].unmet = unmet;
     }
 
   private:
@@ -138,17 +144,23 @@ class WarpPixels {
         const PixelPlace in_tile = place_in_block(Deal::shared, int(place % warp_threads));
         const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
         record_ = place;
-        records_[record_] = PixelRecord();  // beyond the rectangle too: all of a tile are copied
+        records_[record_] = Record();  // beyond the rectangle too: all of a tile are copied
         if (column >= job_.width || row >= job_.height) return;
         x_ = job_.x + column;
         y_ = job_.y + row;
         rooms_[lane_].pixel.begin(job_.frame.lattice);
+        note_wishes();
+    }
+
+    /// Right after the pixel has decided, while it is at hand.
+    __device__ void note_wishes() {
         given_ = 0;
         wanted_ = rooms_[lane_].pixel.wanted();
+        cells_ = rooms_[lane_].pixel.cells();
     }
 
     const FrameJob& job_;
-    PixelRecord* const records_;
+    Record* const records_;
     const int lane_;
     const unsigned int places_;  // of pixels: blocks are tiles
     const int at_once_;          // pixels: of a small frame fewer, so that all warps have some
@@ -156,12 +168,13 @@ class WarpPixels {
     bool more_ = true;  // pixels that nobody has begun
     int x_ = 0, y_ = 0;
     unsigned int record_ = 0;
-    int given_ = 0, wanted_ = 0;  // samples of this round, and those of them that lanes took; none wanted: no pixel
+    int given_ = 0, wanted_ = 0;  // samples of this round that lanes took, and all of them; none wanted: no pixel
+    int cells_ = 0;
 };
 
-/// Ends a sample between two walks of its tree, which may be many and long.
-template <class Entry>
-class StoppableBranchStack : public BranchStack<Entry> {
+/// Ends a sample between two walks of its tree, which may be many and long. Base: StackOf a mask.
+template <class Base>
+class StoppableBranchStack : public Base {
   public:
     __device__ explicit StoppableBranchStack(const FrameJob& job) : job_(job) {}
     __device__ bool stopped() const { return cistula::stopped(job_); }
@@ -175,23 +188,25 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     render_adaptive(const __grid_constant__ FrameJob job,
                     const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, path>::Intersector;
-    __shared__ Unset<BlockRoom<PixelRecord>> memory;
-    BlockRoom<PixelRecord>& room = memory.get();
+    using Record = RecordOf<E>;
+    __shared__ Unset<BlockRoom<Record>> memory;
+    BlockRoom<Record>& room = memory.get();
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
-    PixelRecord& taken = room.records[threadIdx.x];
-    StoppableBranchStack<BranchOf<Real, E, typename Intersector::Media>> stack(job);
+    Record& taken = room.records[threadIdx.x];
+    StoppableBranchStack<StackOf<Real, E, typename Intersector::Media>> stack(job);
     const bool gradual = shades_gradually(scene);
-    WarpPixels pixels(job);
+    WarpPixels<Record> pixels(job);
     for (;;) {
         pixels.refill();
-        const bool any = pixels.take_samples([&](int x, int y, LatticeRoom& pixel, int slot, PixelRecord& record) {
+        const bool ends = stopped(job);  // asked before it counts, as the answer takes a while
+        const bool any = pixels.take_samples([&](int x, int y, LatticeRoom& pixel, int slot, Record& record) {
             const uint32_t met =
                 take_sample<Real, E>(scene, job.frame, Intersector{scene}, x, y, slot, gradual, taken, own, stack);
             pixel.samples[slot].keep(taken, met);
             AtomicAdd()(record.rays, taken.rays);
             if (LatticePixel::is_chosen(job.frame.lattice, slot)) choose_sample(taken, record);
         });
-        if (!any || __any_sync(whole_warp, stopped(job))) break;
+        if (!any || __any_sync(whole_warp, ends)) break;
         pixels.settle();
     }
     add_to_tally(*job.tally, own.rays, own.flags);

@@ -216,10 +216,8 @@ void list_resources(std::vector<KernelResources>& list) {
         list.push_back(r);
     };
     add(resources_of("render_pixels", render_pixels<Real, E, path>));
-    if constexpr (trees_fork(mask)) {
-        add(resources_of("render_adaptive", render_adaptive<Real, E, path>));
-        add(resources_of("render_branches", render_branches<Real, E, path>));
-    }
+    if constexpr (mask != unshadowed_mask) add(resources_of("render_adaptive", render_adaptive<Real, E, path>));
+    if constexpr (trees_fork(mask)) add(resources_of("render_branches", render_branches<Real, E, path>));
 }
 
 /// Of the kernels of one mask of effects.
@@ -235,13 +233,13 @@ void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, con
     using E = Effects<effect_masks[mask]>;
     const auto launch = [&]<DevicePath here>(const auto& own) {
         if (pass == Pass::pixels) render_pixels<Real, E, here><<<job.block_count, block_threads, 0, stream>>>(job, own);
-        if constexpr (trees_fork(mask)) {
-            const auto fill = [&](auto kernel, unsigned int most) {
-                kernel<<<least(filling_blocks(kernel), most), block_threads, 0, stream>>>(job, own);
-            };
+        const auto fill = [&](auto kernel, unsigned int most) {
+            kernel<<<least(filling_blocks(kernel), most), block_threads, 0, stream>>>(job, own);
+        };
+        if constexpr (mask != unshadowed_mask)
             if (pass == Pass::adaptive_pixels) fill(render_adaptive<Real, E, here>, job.room_blocks);
+        if constexpr (trees_fork(mask))
             if (pass == Pass::branches) fill(render_branches<Real, E, here>, ~0u);
-        }
     };
     if (path == DevicePath::plain_loop)
         launch.template operator()<DevicePath::plain_loop>(scene.small);

@@ -79,16 +79,15 @@ constexpr bool sends_rays_on(uint32_t effects) {
     return (effects & (effect_reflection | effect_transmission)) != 0;
 }
 
-/// Only what passes a face makes trees fork. Of such masks devices have all kernels: for branches that other threads
-/// follow, and for adaptive sampling, for which scenes of other masks take the least of these.
+/// Only what passes a face makes trees fork. Of such masks devices have a kernel for branches that other threads follow.
 constexpr bool trees_fork(int mask) {
     return mask < effect_mask_count && (effect_masks[mask] & effect_transmission) != 0;
 }
 
 /// The index in effect_masks of the least mask that contains `required`.
-constexpr int least_mask(uint32_t required, bool adaptive = false) {
+constexpr int least_mask(uint32_t required) {
     for (int i = 0; i < effect_mask_count; ++i)
-        if ((required & ~effect_masks[i]) == 0 && (!adaptive || trees_fork(i))) return i;
+        if ((required & ~effect_masks[i]) == 0) return i;
     return effect_mask_count - 1;
 }
 

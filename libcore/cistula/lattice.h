@@ -53,26 +53,34 @@ struct LatticeSample {
     uint32_t hits, rays;
     uint32_t signature;  // of its ray tree (signature.h)
 
-    CISTULA_INLINE void keep(const PixelRecord& record, uint32_t met) {
-        for (int c = 0; c < 3; ++c) {
-            radiance[c] = record.radiance[c];
-            pruned[c] = record.pruned[c];
-            cut[c] = record.cut[c];
-        }
+    CISTULA_INLINE void keep(const SeenRecord& record, uint32_t met) {
+        for (int c = 0; c < 3; ++c) radiance[c] = record.radiance[c];
         hits = record.hits;
         rays = record.rays;
         signature = met;
     }
+    CISTULA_INLINE void keep(const PixelRecord& record, uint32_t met) {
+        keep(static_cast<const SeenRecord&>(record), met);
+        for (int c = 0; c < 3; ++c) {
+            pruned[c] = record.pruned[c];
+            cut[c] = record.cut[c];
+        }
+    }
 
-    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice.
+    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice. Of the ledger
+    /// only what records like this one told it.
+    template <class Add>
+    CISTULA_INLINE void give(SeenRecord& record, int weight, const Add& add) const {
+        for (int c = 0; c < 3; ++c) add(record.radiance[c], weight * radiance[c]);
+        add(record.hits, uint32_t(weight) * hits);
+    }
     template <class Add>
     CISTULA_INLINE void give(PixelRecord& record, int weight, const Add& add) const {
+        give(static_cast<SeenRecord&>(record), weight, add);
         for (int c = 0; c < 3; ++c) {
-            add(record.radiance[c], weight * radiance[c]);
             add(record.pruned[c], weight * pruned[c]);
             add(record.cut[c], weight * cut[c]);
         }
-        add(record.hits, uint32_t(weight) * hits);
     }
 };
 
@@ -85,24 +93,30 @@ struct LatticeSample {
 class LatticePixel {
   public:
     CISTULA_INLINE void begin(const LatticeSettings& settings) {
-        unmet_ = bushy_ = 0;
-        first_rays_ = 0;
-        range_ = jump_ = 0;
-        for (int y = 0; y < lattice_side; ++y) taken_[y] = fresh_[y] = 0;
-        count_ = 1;
-        cells_[0] = whole_cell();
-        wanted_ = 0;
-        for (int c = 0; c < 4; ++c) want(corner(cells_[0], c));
-        if (settings.fine) want(lattice_middle);
-        due_ = wanted_;
+        const Cell whole = whole_cell();
+        cells_[0] = whole;
+        // As want() would the corners and the middle, but that nothing is read: a device would wait for each.
+        const int middle_row = settings.fine ? lattice_middle / lattice_side : lattice_side;
+        for (int y = 0; y < lattice_side; ++y) {
+            const bool is_outer = y == 0 || y == lattice_side - 1;
+            taken_[y] = fresh_[y] = is_outer          ? uint16_t(1u | 1u << (lattice_side - 1))
+                                    : y == middle_row ? uint16_t(1u << lattice_middle % lattice_side)
+                                                      : uint16_t(0);
+        }
+        for (int c = 0; c < 4; ++c) slots_[c] = uint8_t(corner(whole, c));
+        slots_[4] = uint8_t(lattice_middle);
+        Tally now = Tally();
+        now.cells = 1;
+        now.due = now.wanted = settings.fine ? 5 : 4;
+        tally_ = now;
     }
 
     /// The slots of the samples that this round wants, none if the pixel is done: wanted(0) to wanted(wanted() - 1).
-    CISTULA_INLINE int wanted() const { return wanted_; }
+    CISTULA_INLINE int wanted() const { return tally_.wanted; }
     CISTULA_INLINE int wanted(int i) const { return slots_[i]; }
 
     /// Cells that the pixel consists of, to be judged once all that was wanted is there.
-    CISTULA_INLINE int cells() const { return count_; }
+    CISTULA_INLINE int cells() const { return tally_.cells; }
 
     /// What the corners of the index-th cell, if it is new, tell of it and of its pixel, and what was taken beside it.
     CISTULA_INLINE void judge(const LatticeSettings& settings, const LatticeSample* samples, int index) {
@@ -114,32 +128,34 @@ class LatticePixel {
 
     /// Splits those of the cells that should be and still may.
     CISTULA_INLINE void divide(const LatticeSettings& settings) {
-        const int count = count_;
+        Tally now = tally_;
+        const int count = now.cells;
         for (int i = 0; i < count; ++i) {
             const Cell& cell = cells_[i];
-            bushy_ |= cell.bushy;
-            first_rays_ = greatest(first_rays_, cell.first_rays);
-            range_ = greatest(range_, cell.range);
-            jump_ = greatest(jump_, cell.jump);
+            now.bushy |= cell.bushy;
+            now.first_rays = greatest(now.first_rays, cell.first_rays);
+            now.range = greatest(now.range, cell.range);
+            now.jump = greatest(now.jump, cell.jump);
         }
-        wanted_ = 0;
+        now.wanted = 0;
         for (int y = 0; y < lattice_side; ++y) fresh_[y] = 0;
         for (int i = 0; i < count; ++i) {
             const Cell cell = cells_[i];
-            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, cell.differs, area_of(cell)))) continue;
+            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, now, cell.differs, area_of(cell)))) continue;
             const bool first = settings.fine && is_whole(cell);
             const int in_four = first ? 11 : 12, in_two = 4;  // of the first the middle is there
-            if ((first || wants_four(settings, cell)) && due_ + in_four <= settings.most) {
-                due_ += in_four;
-                for (int q = 0; q < 4; ++q) add_child(i, q, cell, q & 1 ? 1 : -1, q & 2 ? 1 : -1);
-            } else if (!first && due_ + in_two <= settings.most) {
-                due_ += in_two;
+            if ((first || wants_four(settings, now, cell)) && now.due + in_four <= settings.most) {
+                now.due += in_four;
+                for (int q = 0; q < 4; ++q) add_child(now, i, q, cell, q & 1 ? 1 : -1, q & 2 ? 1 : -1);
+            } else if (!first && now.due + in_two <= settings.most) {
+                now.due += in_two;
                 for (int half = 0; half < 2; ++half)
-                    add_child(i, half, cell, cell.across ? 2 * half - 1 : 0, cell.across ? 0 : 2 * half - 1);
+                    add_child(now, i, half, cell, cell.across ? 2 * half - 1 : 0, cell.across ? 0 : 2 * half - 1);
             } else {
-                unmet_ = 1;
+                now.unmet = true;
             }
         }
+        tally_ = now;
     }
 
     /// stand(slot, weight): samples that stand for cell i once the pixel is done.
@@ -156,8 +172,8 @@ class LatticePixel {
     }
 
     /// Samples taken.
-    CISTULA_INLINE int taken() const { return due_; }
-    CISTULA_INLINE bool unmet() const { return unmet_ != 0; }
+    CISTULA_INLINE int taken() const { return tally_.due; }
+    CISTULA_INLINE bool unmet() const { return tally_.unmet; }
 
     /// Whether the sample is the one that stands for the pixel where no mean makes sense: of those taken the one in its
     /// middle, else the first.
@@ -175,6 +191,14 @@ class LatticePixel {
         int64_t range, jump;  // of colors: of all corners; in a small cell, of those that met the same
     };
 
+    /// Of the pixel. Worked on in a copy, which stays in registers: stores of slots, being bytes, could be to any member.
+    struct Tally {
+        int cells, due, wanted;  // samples due: taken and wanted
+        bool unmet, bushy;       // bushy: whether a cell had a bushy corner
+        uint32_t first_rays;     // of the largest of the first trees
+        int64_t range, jump;     // greatest of any cell
+    };
+
     CISTULA_INLINE static Cell whole_cell() {
         Cell cell = Cell();
         cell.width = cell.height = lattice_side;
@@ -190,13 +214,13 @@ class LatticePixel {
         return (cell.y + (c & 2 ? cell.height - 1 : 0)) * lattice_side + cell.x + (c & 1 ? cell.width - 1 : 0);
     }
     /// Unless it is there.
-    CISTULA_INLINE void want(int slot) {
+    CISTULA_INLINE void want(Tally& now, int slot) {
         const int y = slot / lattice_side;
         const uint16_t bit = uint16_t(1u << slot % lattice_side);
         if ((taken_[y] & bit) != 0) return;
         taken_[y] = uint16_t(taken_[y] | bit);
         fresh_[y] = uint16_t(fresh_[y] | bit);
-        slots_[wanted_++] = uint8_t(slot);
+        slots_[now.wanted++] = uint8_t(slot);
     }
 
     CISTULA_INLINE static int64_t color(const LatticeSample& sample, int c) {
@@ -262,13 +286,12 @@ class LatticePixel {
                     cell.jump = greatest(cell.jump, magnitude_of(color(*at[i], c) - color(*at[j], c)));
     }
 
-    /// Whether a sample right beside a cell, between the corners of one of its sides, is brighter or darker than both by
-    /// so much that two thirds of the cell would be worth the target: what comes in through that side may end before it
-    /// meets a corner. Or, for small targets, whether one beside a corner tells of a bend (bends_between). `rows`: the
-    /// samples to look at.
+    /// Whether a sample right beside a cell tells of what its corners do not: between the corners of a side of something
+    /// that comes in there (comes_in), beside a corner, for small targets, of a bend (bends_between). `rows`: the samples to
+    /// look at.
     CISTULA_INLINE static bool is_crossed(const LatticeSettings& settings, const LatticeSample* samples, const Cell& cell,
                                           const uint16_t* rows) {
-        const int64_t area = area_of(cell), allowed = settings.target * lattice_samples;
+        const int64_t area = area_of(cell);
         for (int side = 0; side < 4; ++side) {  // left, right, upper, lower
             const bool upright = side < 2, far = side % 2 != 0;
             const int size = upright ? cell.width : cell.height, length = upright ? cell.height : cell.width;
@@ -288,13 +311,20 @@ class LatticePixel {
                         return true;
                     continue;
                 }
-                for (int c = 0; c < 3; ++c) {
-                    const int64_t one = color(a, c), other = color(b, c),
-                                  there = color(samples[y * lattice_side + x], c);
-                    const int64_t beyond = greatest(least(one, other) - there, there - greatest(one, other));
-                    if (3 * beyond * area > 2 * allowed) return true;
-                }
+                if (comes_in(settings, a, b, samples[y * lattice_side + x], area)) return true;
             }
+        }
+        return false;
+    }
+
+    /// Whether a sample beside the side between two corners is brighter or darker than both by so much that two thirds of
+    /// the cell would be worth the target: what comes in through that side may end before it meets a corner.
+    CISTULA_INLINE static bool comes_in(const LatticeSettings& settings, const LatticeSample& a, const LatticeSample& b,
+                                        const LatticeSample& beside, int64_t area) {
+        for (int c = 0; c < 3; ++c) {
+            const int64_t one = color(a, c), other = color(b, c), there = color(beside, c);
+            const int64_t beyond = greatest(least(one, other) - there, there - greatest(one, other));
+            if (3 * beyond * area > 2 * settings.target * lattice_samples) return true;
         }
         return false;
     }
@@ -315,42 +345,38 @@ class LatticePixel {
 
     /// Whether a cell that is split is so in four at once, which spares a round: where its halves would be too, whatever
     /// they show, and where trees are bushy and the target coarse, as all that wait in a round wait for its largest tree.
-    CISTULA_INLINE bool wants_four(const LatticeSettings& settings, const Cell& cell) const {
+    CISTULA_INLINE static bool wants_four(const LatticeSettings& settings, const Tally& now, const Cell& cell) {
         static_assert(unseen_alike <= unseen_unlike, "cells overlook more if they differ");
         return cell.width >= 4 && cell.height >= 4 &&
-               (overlooks(settings, false, area_of(cell) / 2) || (bushy_ && !settings.fine));
+               (overlooks(settings, now, false, area_of(cell) / 2) || (now.bushy && !settings.fine));
     }
 
     /// Whether a cell whose corners agree (or differ) may well hide what is worth the target, by what the pixel shows so
     /// far.
-    CISTULA_INLINE bool overlooks(const LatticeSettings& settings, bool differs, int64_t area) const {
+    CISTULA_INLINE static bool overlooks(const LatticeSettings& settings, const Tally& now, bool differs, int64_t area) {
         const int64_t allowed = settings.target * lattice_samples;
         // Bushy trees see so much that some of it may well lie between a few samples that agree, be these bushy or not:
         // a light's image ends a tree early, and hides between others as others do between lights.
-        if (settings.fine && bushy_ && (area > bushy_area || unseen_range * area > allowed)) return true;
-        if (settings.fine && first_rays_ >= many_rays && area == lattice_samples) return true;
-        if (settings.fine && first_rays_ >= some_rays && area > wide_area && range_ >= wide_range * settings.target) return true;
-        return (differs ? unseen_unlike * range_ : unseen_alike * jump_) * area > 8 * allowed;
+        if (settings.fine && now.bushy && (area > bushy_area || unseen_range * area > allowed)) return true;
+        if (settings.fine && now.first_rays >= many_rays && area == lattice_samples) return true;
+        if (settings.fine && now.first_rays >= some_rays && area > wide_area && now.range >= wide_range * settings.target) return true;
+        return (differs ? unseen_unlike * now.range : unseen_alike * now.jump) * area > 8 * allowed;
     }
 
     /// Child `nth` of cell i: the left or right half (-1, 1; 0: both) of the upper or lower half; wants the corners
     /// that are not there.
-    CISTULA_INLINE void add_child(int i, int nth, const Cell& parent, int right, int lower) {
+    CISTULA_INLINE void add_child(Tally& now, int i, int nth, const Cell& parent, int right, int lower) {
         Cell child = parent;
         child.is_new = true;
         if (right != 0) child.width /= 2;
         if (lower != 0) child.height /= 2;
         if (right > 0) child.x = uint8_t(child.x + child.width);
         if (lower > 0) child.y = uint8_t(child.y + child.height);
-        for (int c = 0; c < 4; ++c) want(corner(child, c));
-        cells_[nth == 0 ? i : count_++] = child;
+        for (int c = 0; c < 4; ++c) want(now, corner(child, c));
+        cells_[nth == 0 ? i : now.cells++] = child;
     }
 
-    int count_;             // cells
-    int due_, wanted_;      // samples taken and wanted, and of these the latter
-    int unmet_, bushy_;     // bushy_: whether a cell had a bushy corner
-    uint32_t first_rays_;   // of the largest of the first trees
-    int64_t range_, jump_;  // greatest of any cell
+    Tally tally_;
     uint16_t taken_[lattice_side], fresh_[lattice_side];  // samples by row, a bit a column: all, and this round's
     uint8_t slots_[lattice_samples * 3 / 4];              // no split wants more than three of four new samples
     Cell cells_[most_cells];

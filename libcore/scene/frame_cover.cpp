@@ -213,12 +213,10 @@ BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameVi
         pixel.work.rays.primary += 1;
     };
     PixelRecord& record = pixel.record;
-    record = PixelRecord();
-    record.z = RealTraits<float>::infinity;
+    begin_pixel(record);
     if (adaptive) {
         sample_adaptively(frame.lattice, record, [&](int, PixelRecord& taken) {
-            taken = PixelRecord();
-            taken.z = RealTraits<float>::infinity;
+            begin_pixel(taken);
             add_sample(taken);
             return 0u;
         });

@@ -59,7 +59,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
 inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.unshadowed) return unshadowed_mask;
     const uint32_t of_camera = frame.camera_media.empty() ? 0u : uint32_t(effect_insides);
-    return least_mask(settings.effects | effects | of_camera, settings.adaptive());
+    return least_mask(settings.effects | effects | of_camera);
 }
 
 /// A film of the right size for a frame, its pixels unset.
