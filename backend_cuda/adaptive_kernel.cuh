@@ -123,7 +123,7 @@ class WarpPixels {
             standing.find(j, pixel, i);
             Record& to = records_[__shfl_sync(whole_warp, record, pixel)];
             if (j >= standing.total) continue;
-            // One sum: what is read for the next sample would wait for what was added where other lanes add, too.
+            // In one sum: to read the next sample after adding where others add would be to wait for it.
             Record cell = Record();
             rooms_[pixel].pixel.settle(settings, i, [&](int slot, int weight) {
                 rooms_[pixel].samples[slot].give(cell, weight, [](auto& sum, auto value) { sum += value; });
@@ -198,7 +198,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     WarpPixels<Record> pixels(job);
     for (;;) {
         pixels.refill();
-        const bool ends = stopped(job);  // asked before it counts, as the answer takes a while
+        const bool ends = stopped(job);  // asked ahead: the answer takes a while
         const bool any = pixels.take_samples([&](int x, int y, LatticeRoom& pixel, int slot, Record& record) {
             const uint32_t met =
                 take_sample<Real, E>(scene, job.frame, Intersector{scene}, x, y, slot, gradual, taken, own, stack);

@@ -40,8 +40,8 @@ struct LatticeRoom {
     LatticePixel pixel;
     LatticeSample samples[lattice_samples];
 };
-/// Such pixels that a block has at work at a time. Between them they want a sample for most threads at first, for all after;
-/// of twice as many, platonic.json's at 320x180 take 15 % longer on an H200, since the last warps are then longer alone.
+/// Such pixels that a block has at work at a time. At first they want a sample for most of its threads, later for all. With
+/// twice as many platonic.json takes 15 % longer at 320x180 (H200), as the last warps are longer alone with theirs.
 inline constexpr int pixels_at_work = 16;
 
 /// Blocks of the frame's rectangle.

@@ -163,8 +163,7 @@ std::string pareto_section(const std::vector<Shown>& scenes) {
         text += "<p class=\"note\">" + reference_text(shown) + "</p>\n";
         if (!shown.scene->left_out.empty()) {
             text += fmt::format(
-                "<details><summary>{} settings left out, as a frame takes too long</summary><p "
-                "class=\"note\">",
+                "<details><summary>Left out, as a frame takes too long: {}</summary><p class=\"note\">",
                 shown.scene->left_out.size());
             for (const std::string& name : shown.scene->left_out) text += escaped(name) + "<br>";
             text += "</p></details>\n";

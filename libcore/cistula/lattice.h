@@ -67,8 +67,8 @@ struct LatticeSample {
         }
     }
 
-    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice. Of the ledger
-    /// only what records like this one told it.
+    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice; for a ledger
+    /// only if what was kept had one.
     template <class Add>
     CISTULA_INLINE void give(SeenRecord& record, int weight, const Add& add) const {
         for (int c = 0; c < 3; ++c) add(record.radiance[c], weight * radiance[c]);
