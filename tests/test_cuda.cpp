@@ -82,7 +82,8 @@ TYPED_TEST(Cuda, GoldenScenesAreEqual) {
 
 TYPED_TEST(Cuda, AdaptiveFramesAreEqual) {
     CISTULA_NEEDS_GPU();
-    std::vector<SceneDescription> all = {scene_of("benchmark"), dull(scene_of("benchmark")), scene_of("hard/mirrors"),
+    std::vector<SceneDescription> all = {scene_of("benchmark"), dull(scene_of("benchmark")),
+                                         without_effect(scene_of("benchmark"), effect_transmission).value(),
                                          scene_of("glass"), scene_of("mesh")};
     for (uint64_t seed = 3; seed < generated_scene_count; seed += 31)
         all.push_back(generated_scene(seed, source + "/scenes"));

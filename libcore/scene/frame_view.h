@@ -30,6 +30,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
         refuse("supersample " + std::to_string(settings.supersample) + ": must be from 1 to 64");
     if (!(settings.cutoff >= 0)) refuse("cutoff: must be at least 0");
     if (!(settings.target_error >= 0)) refuse("target error: must be at least 0");
+    if (settings.unshadowed && settings.adaptive()) refuse("target error: not of a frame without shadows");
     if (settings.max_samples < least_lattice_samples || settings.max_samples > lattice_samples)
         refuse("max samples " + std::to_string(settings.max_samples) + ": must be from " +
                std::to_string(least_lattice_samples) + " to " + std::to_string(lattice_samples));

@@ -1,4 +1,4 @@
-#include "scene/generated_state.h"
+#include "scene/generated_parts.h"
 
 namespace cistula::generated {
 

@@ -3,7 +3,7 @@
 
 #include "scene/frame.h"
 #include "scene/generated_mesh.h"
-#include "scene/generated_state.h"
+#include "scene/generated_parts.h"
 #include "scene/platonic.h"
 #include "scene/quad.h"
 #include "scene/rotation.h"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "scene/frame.h"
-#include "scene/generated_state.h"
+#include "scene/generated_parts.h"
 #include "scene/platonic.h"
 #include "scene/rotation.h"
 

@@ -1,6 +1,6 @@
 #include "scene/frame.h"
 #include "scene/generated_mesh.h"
-#include "scene/generated_state.h"
+#include "scene/generated_parts.h"
 #include "scene/rotation.h"
 
 namespace cistula::generated {

@@ -1,8 +1,9 @@
-// A scene that is being made by number: what its parts have in common. Inside libcore/scene.
+// A scene that is being made by number: its state, and the makers of its parts. Inside libcore/scene.
 #pragma once
 
 #include <random>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cistula/vec.h"
