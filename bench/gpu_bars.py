@@ -83,9 +83,9 @@ def judge(log):
 def read_sanitizer(folder):
     runs = []
     for path in sorted(glob.glob(f"{folder}/sanitizer/*.log")):
-        tool, scene, precision, sampling = os.path.basename(path)[:-len(".log")].split("-")
+        tool, *scene, precision, sampling = os.path.basename(path)[:-len(".log")].split("-")
         with open(path, errors="replace") as file:
-            runs.append({"tool": tool, "scene": scene, "precision": precision, "sampling": sampling, **judge(file.read())})
+            runs.append({"tool": tool, "scene": "-".join(scene), "precision": precision, "sampling": sampling, **judge(file.read())})
     return runs
 
 
