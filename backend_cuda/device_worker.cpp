@@ -42,13 +42,6 @@ bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
     return true;
 }
 
-PixelRecord whole_record(const PixelRecord& record) {
-    return record;
-}
-PixelRecord whole_record(const SeenRecord& record) {
-    return {record, {}, {}};
-}
-
 /// The records of a block, row by row of its pixels.
 std::array<uint8_t, block_threads> rows_of_records(Deal deal) {
     const BlockShape shape = BlockShape::of(deal);

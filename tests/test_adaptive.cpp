@@ -6,6 +6,7 @@
 #include "golden.h"
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
+#include "scene/put_pixels.h"
 #include "scene/without_effect.h"
 #include "support_scene.h"
 
@@ -101,8 +102,7 @@ void expect_same_with_mask(const SceneDescription& scene, const std::string& wha
         RecordOf<E> record;
         render_adaptive_pixel<Real, E>(view, frame, intersector, i % film.rect.width, i / film.rect.width, shades_gradually(view),
                                        record, work, stack);
-        film.pixels[size_t(i)] = PixelRecord();
-        static_cast<RecordOf<E>&>(film.pixels[size_t(i)]) = record;
+        film.pixels[size_t(i)] = whole_record(record);
         film.rays.add(work.rays);
         samples += record.samples;
     }

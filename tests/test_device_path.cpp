@@ -9,6 +9,7 @@
 #include "golden.h"
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
+#include "scene/put_pixels.h"
 #include "scene/shadow_plan.h"
 #include "scene/without_effect.h"
 
@@ -82,12 +83,10 @@ void render_split(const Scene& scene, const FrameView& frame, const Intersector&
             render_pixel<Real, E>(scene, frame, intersector, film.rect.x + int(i % width), film.rect.y + int(i / width),
                                   SampleRange{thread, threads}, part, work, stack);
             RecordOf<E>& record = film.pixels[i];
-            if (thread > 0) {
+            if (thread > 0)
                 record.add(part);
-            } else {
-                film.pixels[i] = PixelRecord();
-                record = part;
-            }
+            else
+                film.pixels[i] = whole_record(part);
             film.rays.add(work.rays);
             film.flags |= work.flags;
         }

@@ -92,6 +92,11 @@ class Objects : Part {
         scene_.objects.push_back(std::move(object));
     }
 
+    /// By its planes, or else as a mesh.
+    void add_of(bool planes, const SolidObject& solid) {
+        add(planes ? Shape(solid) : Shape(triangulated_solid(solid)), true);
+    }
+
     void add_edge_lights(EdgeLights& lights) {
         --edge_lights_left_;
         lights.count = 1 + static_cast<int>(random_.below(2));
@@ -154,10 +159,7 @@ class Objects : Part {
                 for (uint32_t i = 0; i < count; ++i) {
                     const dvec3 turned = turn + dvec3(random_.of({0, 90}), 0, 0);
                     const SolidObject s = cube(center + (i - 0.5 * (count - 1)) * along, radius, turned);
-                    if (random_.chance(0.6))
-                        add(s, true);
-                    else
-                        add(triangulated_solid(s), true);
+                    add_of(random_.chance(0.6), s);
                 }
                 break;
             }
@@ -168,20 +170,14 @@ class Objects : Part {
                 TrianglesObject twin = beyond_face(s, faces[random_.below(static_cast<uint32_t>(faces.size()))]);
                 const bool planes = random_.chance(0.5), twin_first = random_.chance(0.5);
                 if (twin_first) add(twin, true);
-                if (planes)
-                    add(s, true);
-                else
-                    add(triangulated_solid(s), true);
+                add_of(planes, s);
                 if (!twin_first) add(std::move(twin), true);
                 break;
             }
             case 3: {  // two in the same place
                 const SolidObject s = shapes_.solid(center, 0.9);
                 add(s, true);
-                if (random_.chance(0.5))
-                    add(s, true);
-                else
-                    add(triangulated_solid(s), true);
+                add_of(random_.chance(0.5), s);
                 break;
             }
             case 4: {  // faces in one plane that overlap in part
@@ -209,10 +205,7 @@ class Objects : Part {
                 SolidObject inner = cube(center, octahedron ? half : 1, turn);
                 inner.solid = octahedron ? PlatonicSolid::octahedron : PlatonicSolid::tetrahedron;
                 add(cube(center, 1, turn), true);
-                if (random_.chance(0.5))
-                    add(inner, true);
-                else
-                    add(triangulated_solid(inner), true);
+                add_of(random_.chance(0.5), inner);
             }
         }
     }
