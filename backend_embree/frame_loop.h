@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "backend_embree/packet_tracer.h"
 #include "cistula/adaptive_pixel.h"
 #include "cistula/bvh.h"
 #include "scene/frame_cover.h"
@@ -63,10 +64,10 @@ Intersector in_tile(const Intersector& intersector, [[maybe_unused]] bool lit) {
     return here;
 }
 
-/// Calls render(x, y, lit, record, work) for every pixel of the film that may show something, in tiles.
+/// Calls render(x, y, count, lit, writer, records, rays, flags) for runs of pixels of the film that may show something, in tiles.
 template <class Render>
-bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
-                    const Render& render) {
+bool for_each_run(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
+                  const Render& render) {
     const PixelRect rect = film.rect;
     const int tile = settings.tile, columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
     const std::vector<uint8_t> lit = lit_tiles(contents.cover, tile, columns, rows);
@@ -81,18 +82,11 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
             const PixelWriter writer;
             for (int y = y0; y < y1; ++y)
                 contents.cover.for_each_part(y, x0, x1, [&](int begin, int end, bool covered) {
-                    PixelRecord* pixel = &film.pixels[size_t(y) * size_t(rect.width) + size_t(begin)];
-                    if (!covered) {
-                        writer.fill(pixel, size_t(end - begin), contents.background.record);
-                        contents.background.count(uint64_t(end - begin), rays, flags);
-                        return;
-                    }
-                    for (int x = begin; x < end && !progress.stop.load(std::memory_order_relaxed); ++x, ++pixel) {
-                        PixelWork own;
-                        render(rect.x + x, rect.y + y, lit[size_t(t)] != 0, *pixel, own);
-                        rays.add(own.rays);
-                        flags |= own.flags;
-                    }
+                    PixelRecord* pixels = &film.pixels[size_t(y) * size_t(rect.width) + size_t(begin)];
+                    if (covered)
+                        return render(rect.x + begin, rect.y + y, end - begin, lit[size_t(t)] != 0, writer, pixels, rays, flags);
+                    writer.fill(pixels, size_t(end - begin), contents.background.record);
+                    contents.background.count(uint64_t(end - begin), rays, flags);
                 });
             if (progress.stop.load(std::memory_order_relaxed)) return;
             progress.pixels_done += uint64_t(x1 - x0) * uint64_t(y1 - y0);
@@ -105,13 +99,46 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
     return !progress.stop.load();
 }
 
+/// Calls render(x, y, lit, record, work) for each of them.
+template <class Render>
+bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
+                    const Render& render) {
+    return for_each_run(settings, contents, film, progress,
+                        [&](int x, int y, int count, bool lit, const PixelWriter&, PixelRecord* pixels, RayCounts& rays,
+                            uint32_t& flags) {
+                            for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); ++i) {
+                                PixelWork own;
+                                render(x + i, y, lit, pixels[i], own);
+                                rays.add(own.rays);
+                                flags |= own.flags;
+                            }
+                        });
+}
+
+/// By packets.
+template <class Real, class E>
+bool render_packets(const SmallScene<Real>& scene, const FrameView& frame, uint32_t in_view, const FrameSettings& settings,
+                    const FrameContents& contents, Film& film, RenderProgress& progress) {
+    return for_each_run(
+        settings, contents, film, progress,
+        [&](int x, int y, int count, bool, const PixelWriter& writer, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
+            PacketTracer<Real, E> tracer(scene, frame, in_view, progress.stop, rays, flags);
+            for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); i += lane_count)
+                tracer.render(x + i, y, std::min(count - i, lane_count), writer, pixels + i);
+        });
+}
+
 template <class Real, class E, class Intersector>
 bool render_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                   const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
-    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, bool lit, PixelRecord& pixel, PixelWork& own) {
-        StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-        render_pixel<Real, E>(scene, frame, in_tile(intersector, lit), x, y, SampleRange(), pixel, own, stack);
-    });
+    if constexpr (fits_packets<E> && std::is_same_v<typename Intersector::Scene, SmallScene<Real>>) {
+        return render_packets<Real, E>(scene, frame, intersector.in_view, settings, contents, film, progress);
+    } else {
+        return for_each_pixel(settings, contents, film, progress, [&](int x, int y, bool lit, PixelRecord& pixel, PixelWork& own) {
+            StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
+            render_pixel<Real, E>(scene, frame, in_tile(intersector, lit), x, y, SampleRange(), pixel, own, stack);
+        });
+    }
 }
 
 /// Of a frame with a target error.

@@ -20,17 +20,20 @@ CISTULA_INLINE Real highlight(const Material<Real>& material, Real cosine) {
     return Real(fractional_power(double(base), double(material.exponent)));
 }
 
-/// What a light of unit transmittance adds, before the local share: I a(r) (C kd N.L + ks S (R.V)^n). n_l = N.L > 0.
+/// R.V, of the light's direction mirrored at the face and of the viewer's.
+template <class Real>
+CISTULA_INLINE Real mirror_cosine(const Vec3<Real>& normal, const Vec3<Real>& to_light, const Vec3<Real>& to_viewer, Real n_l) {
+    return Real(2) * n_l * dot(normal, to_viewer) - dot(to_light, to_viewer);
+}
+
+/// What a light of unit transmittance adds, before the local share: I a(r) (C kd N.L + ks S (R.V)^n). n_l = N.L > 0;
+/// `shine`: (R.V)^n.
 template <class Real, class E>
-CISTULA_INLINE Vec3<Real> phong(const Material<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
-                                const Vec3<Real>& normal, const Vec3<Real>& to_light, const Vec3<Real>& to_viewer,
-                                Real n_l, Real distance) {
+CISTULA_INLINE Vec3<Real> phong(const Material<Real>& material, const Vec3<Real>& color, const Light<Real>& light, Real n_l,
+                                Real shine, Real distance) {
     Vec3<Real> result(Real(0));
     if constexpr (E::has(effect_diffuse)) result += color * (material.diffuse * n_l);
-    if constexpr (E::has(effect_specular)) {
-        const Real r_v = Real(2) * n_l * dot(normal, to_viewer) - dot(to_light, to_viewer);
-        result += material.specular * highlight(material, r_v);
-    }
+    if constexpr (E::has(effect_specular)) result += material.specular * shine;
     result *= light.intensity;
     if constexpr (E::has(effect_light_falloff)) {
         if (light.clamp_distance > Real(0)) {
@@ -39,6 +42,15 @@ CISTULA_INLINE Vec3<Real> phong(const Material<Real>& material, const Vec3<Real>
         }
     }
     return result;
+}
+
+template <class Real, class E>
+CISTULA_INLINE Vec3<Real> phong(const Material<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
+                                const Vec3<Real>& normal, const Vec3<Real>& to_light, const Vec3<Real>& to_viewer,
+                                Real n_l, Real distance) {
+    Real shine = Real(0);
+    if constexpr (E::has(effect_specular)) shine = highlight(material, mirror_cosine(normal, to_light, to_viewer, n_l));
+    return phong<Real, E>(material, color, light, n_l, shine, distance);
 }
 
 }  // namespace cistula

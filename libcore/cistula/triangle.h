@@ -252,14 +252,20 @@ CISTULA_INLINE SheetPlane<Real> plane_of(const Scene& scene, uint32_t cluster) {
     }
 }
 
-/// Whether a line surely meets nothing of a cluster up to `limit` because that belongs to a flat sheet.
+/// Whether a line surely meets nothing of a flat sheet up to `limit`. `from`: the solid that it leaves.
+template <class Real>
+CISTULA_INLINE bool misses_flat(const SheetPlane<Real>& plane, uint32_t from, const Vec3<Real>& origin,
+                                const Vec3<Real>& direction, Real limit) {
+    const Real off = dot(plane.normal, origin) - plane.offset, slant = dot(plane.normal, direction);
+    // Two questions without branches of their own: what each asks is there at once.
+    if ((plane.flat != 0) & ((from == plane.solid) | stays_off(off, slant, limit))) return true;
+    return (plane.flat != 0) & crosses_beside(plane, origin, direction, off, slant);
+}
+
+/// The same of a cluster, if that belongs to a flat sheet.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
-    const SheetPlane<Real> plane = plane_of<Real>(scene, cluster);
-    const Real off = dot(plane.normal, ray.origin) - plane.offset, slant = dot(plane.normal, ray.direction);
-    // Two questions without branches of their own: what each asks is there at once.
-    if ((plane.flat != 0) & ((ray.from_solid == plane.solid) | stays_off(off, slant, limit))) return true;
-    return (plane.flat != 0) & crosses_beside(plane, ray.origin, ray.direction, off, slant);
+    return misses_flat(plane_of<Real>(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
 }
 
 /// Takes an accepted crossing if it is the ray's next.
