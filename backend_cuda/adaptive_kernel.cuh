@@ -126,11 +126,9 @@ class WarpPixels {
             // In one sum: to read the next sample after adding where others add would be to wait for it.
             Record cell = Record();
             rooms_[pixel].pixel.settle(settings, i, [&](int slot, int weight) {
-                rooms_[pixel].samples[slot].give(cell, weight, [](auto& sum, auto value) { sum += value; });
+                rooms_[pixel].samples[slot].give(cell, weight, Plus());
             });
-            LatticeSample sum;
-            sum.keep(cell, 0);
-            sum.give(to, 1, AtomicAdd());
+            cell.give(to, AtomicAdd());
         }
         if (!done) return;
         const uint32_t taken = uint32_t(rooms_[lane_].pixel.taken()), unmet = rooms_[lane_].pixel.unmet();

@@ -158,14 +158,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
         rays.add(own.rays);
         flags |= own.flags;
         PixelRecord& record = static_cast<PixelRecord*>(job.records)[item.record];
-        for (int c = 0; c < 3; ++c) {
-            const auto add = [](int64_t& to, int64_t value) {
-                if (value != 0) atomicAdd(reinterpret_cast<unsigned long long*>(&to), (unsigned long long)value);
-            };
-            add(record.radiance[c], part.radiance[c]);
-            add(record.pruned[c], part.pruned[c]);
-            add(record.cut[c], part.cut[c]);
-        }
+        part.give(record, AtomicAdd());
         atomicAdd(&record.rays, part.rays);
     }
     add_to_tally(*job.tally, rays, flags);

@@ -55,7 +55,7 @@ CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, Record& r
     }
     for (int i = 0; i < pixel.cells(); ++i)
         pixel.settle(settings, i, [&](int slot, int weight) {
-            samples[slot].give(record, weight, [](auto& to, auto value) { to += value; });
+            samples[slot].give(record, weight, Plus());
         });
     record.samples = uint32_t(pixel.taken());
     record.unmet = pixel.unmet();

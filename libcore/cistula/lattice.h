@@ -107,7 +107,7 @@ class LatticePixel {
         slots_[4] = uint8_t(lattice_middle);
         Tally now = Tally();
         now.cells = 1;
-        now.due = now.wanted = settings.fine ? 5 : 4;
+        now.due = now.wanted = settings.fine ? least_lattice_samples : least_lattice_samples - 1;
         tally_ = now;
     }
 

@@ -51,6 +51,13 @@ struct RayCounts {
     CISTULA_INLINE uint64_t total() const { return primary + reflected + transmitted + shadow; }
 };
 
+struct Plus {
+    template <class T>
+    CISTULA_INLINE void operator()(T& to, T value) const {
+        to += value;
+    }
+};
+
 /// Sums over the pixel's samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
 struct SeenRecord {
     int64_t radiance[3];
@@ -62,10 +69,21 @@ struct SeenRecord {
     uint32_t samples : 31;  // that were rendered
     uint32_t unmet : 1;     // adaptive sampling wanted more than it may have
 
+    /// add(to, value) for the sums; not for the counts of rays and samples.
+    template <class Add>
+    CISTULA_INLINE void give(SeenRecord& to, const Add& add) const {
+        for (int c = 0; c < 3; ++c) add(to.radiance[c], radiance[c]);
+        add(to.hits, hits);
+    }
+
     /// Takes other samples of the same pixel in.
     CISTULA_INLINE void add(const SeenRecord& o) {
-        for (int c = 0; c < 3; ++c) radiance[c] += o.radiance[c];
-        hits += o.hits;
+        o.give(*this, Plus());
+        take_rest(o);
+    }
+
+  protected:
+    CISTULA_INLINE void take_rest(const SeenRecord& o) {
         rays += o.rays;
         samples += o.samples;
         if (o.id == 0) return;
@@ -80,12 +98,18 @@ struct PixelRecord : SeenRecord {
     int64_t pruned[3];  // upper bound on what the cutoff took away
     int64_t cut[3];     // upper bound on what the depth limit took away
 
-    CISTULA_INLINE void add(const PixelRecord& o) {
-        SeenRecord::add(o);
+    template <class Add>
+    CISTULA_INLINE void give(PixelRecord& to, const Add& add) const {
+        SeenRecord::give(to, add);
         for (int c = 0; c < 3; ++c) {
-            pruned[c] += o.pruned[c];
-            cut[c] += o.cut[c];
+            add(to.pruned[c], pruned[c]);
+            add(to.cut[c], cut[c]);
         }
+    }
+
+    CISTULA_INLINE void add(const PixelRecord& o) {
+        o.give(*this, Plus());
+        take_rest(o);
     }
 };
 
