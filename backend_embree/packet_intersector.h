@@ -41,7 +41,8 @@ class PacketIntersector {
 
     explicit PacketIntersector(const Scene& scene) : scene_(scene) {}
 
-    /// `origin`: the packet's, maybe as one that all share. `primitives`: as BruteIntersector::in_view. The lanes that hit anything.
+    /// The lanes that hit anything. `origin`: the packet's, maybe as one that all share; `primitives`: as
+    /// BruteIntersector::in_view.
     template <class Origin>
     uint32_t closest(const RayPacket<Real>& packet, const Origin& origin, uint32_t primitives, uint32_t lanes,
                      PacketHits<Real>& hits) const {
@@ -135,7 +136,8 @@ class PacketIntersector {
         for_lanes([&](int i) {
             const Real t = greatest(at.enter.of[i], Real(0));
             const bool nearer = (t < hits.t.of[i]) | ((t == hits.t.of[i]) & (index < hits.solid.of[i]));
-            const bool takes = (packet.from_solid.of[i] != index) & at.met(i, extent) & nearer & (t < RealTraits<Real>::infinity);
+            const bool takes =
+                (packet.from_solid.of[i] != index) & at.met(i, extent) & nearer & (t < RealTraits<Real>::infinity);
             hits.t.of[i] = takes ? t : hits.t.of[i];
             hits.solid.of[i] = takes ? index : hits.solid.of[i];
             hits.face.of[i] = takes ? at.face.of[i] : hits.face.of[i];
@@ -158,10 +160,12 @@ class PacketIntersector {
     }
 
     /// The lanes that do not surely miss a cluster's sheet.
-    CISTULA_INLINE uint32_t near_sheet(const RayPacket<Real>& packet, uint32_t cluster, const Lanes<Real>& limit, uint32_t lanes) const {
+    CISTULA_INLINE uint32_t near_sheet(const RayPacket<Real>& packet, uint32_t cluster, const Lanes<Real>& limit,
+                                       uint32_t lanes) const {
         const SheetPlane<Real> plane = scene_.planes[cluster];
         return lanes & lanes_where([&](int i) {
-                   return !misses_flat(plane, uint32_t(packet.from_solid.of[i]), packet.origin[i], packet.direction[i], limit.of[i]);
+                   return !misses_flat(plane, uint32_t(packet.from_solid.of[i]), packet.origin[i], packet.direction[i],
+                                       limit.of[i]);
                });
     }
 

@@ -36,7 +36,7 @@ class PacketTracer {
             render_sample(x * k + column, y * k + row, (1u << count) - 1, column == k / 2 && row == k / 2);
         }
         for (int i = 0; i < count; ++i) end(i);
-        for (int i = 0; i < count; ++i) writer.put(pixels[i], whole_record(records_[i]));  // all are in the cache by now
+        for (int i = 0; i < count; ++i) writer.put(pixels[i], whole_record(records_[i]));  // long after they were set
     }
 
   private:
@@ -65,13 +65,14 @@ class PacketTracer {
 
     void begin() {
         for (Record& record : records_) begin_pixel(record);
-        samples_ = reflected_ = shadow_ = {};
+        samples_ = 0;
+        reflected_ = shadow_ = {};
         for (Lanes<int64_t>& sums : radiance_) sums = {};
     }
 
     void end(int i) {
         PixelWork work;
-        work.rays = {samples_.of[i], reflected_.of[i], 0, shadow_.of[i]};
+        work.rays = {samples_, reflected_.of[i], 0, shadow_.of[i]};
         end_pixel(records_[i], work);
         for (int c = 0; c < 3; ++c) records_[i].radiance[c] = radiance_[c].of[i];
         rays_.add(work.rays);
@@ -87,7 +88,7 @@ class PacketTracer {
         const int k = frame_.supersample, right = 2 * across + 1 - frame_.width * k, below = 2 * down + 1 - frame_.height * k;
         const Camera camera = frame_.camera;
         const double half_sample = frame_.half_sample;
-        Path path;
+        Path path{};  // of lanes without a ray too: whatever is computed for those is left alone
         VecLanes<double> direction;
         for_lanes([&](int i) {
             direction.put(i, camera_direction(camera, double(right + 2 * k * i), double(below), half_sample));
@@ -95,8 +96,8 @@ class PacketTracer {
             path.from_solid.of[i] = Index(no_solid);
             path.from_face.of[i] = 0;
             path.weight.of[i] = Real(1);
-            samples_.of[i] += 1;
         });
+        ++samples_;
         Seen seen;
         seen.middle = middle;
         for_lanes([&](int i) {
@@ -132,7 +133,7 @@ class PacketTracer {
                 for_lanes([&](int i) { ends.put(i, path.weight.of[i] * background); });
                 add(lanes & ~found, ends);
             }
-            Path next;
+            Path next{};
             uint32_t on = 0;
             for (uint32_t left = found; left != 0;) {
                 const uint32_t alike = on_the_same_face(hits, left);
@@ -194,7 +195,8 @@ class PacketTracer {
         });
     }
 
-    CISTULA_INLINE uint32_t send_on(const Path& path, const Face& face, uint32_t lanes, int depth, Ledgers& of_lanes, Path& next) {
+    CISTULA_INLINE uint32_t send_on(const Path& path, const Face& face, uint32_t lanes, int depth, Ledgers& of_lanes,
+                                    Path& next) {
         const Real share = face.material.reflection;
         uint32_t on = 0;
         for_each_lane(lanes, [&](int i) {
@@ -253,7 +255,8 @@ class PacketTracer {
             if constexpr (E::has(effect_specular))
                 for_each_lane(lit, [&](int i) { shine.of[i] = highlight(material, shine.of[i]); });
             lit &= lanes_where([&](int i) {
-                const Vec3<Real> of_light = phong<Real, E>(material, face.color[i], light, n_l.of[i], shine.of[i], distance.of[i]);
+                const Vec3<Real> of_light =
+                    phong<Real, E>(material, face.color[i], light, n_l.of[i], shine.of[i], distance.of[i]);
                 adds.put(i, of_light);
                 return (of_light.x != Real(0)) | (of_light.y != Real(0)) | (of_light.z != Real(0));
             });
@@ -294,7 +297,8 @@ class PacketTracer {
     const PacketIntersector<Real, E> intersector_;
     // Of the pixels under way:
     Record records_[lane_count];
-    Lanes<uint32_t> samples_, reflected_, shadow_;
+    uint32_t samples_;  // of each
+    Lanes<uint32_t> reflected_, shadow_;
     Lanes<int64_t> radiance_[3];
 };
 
