@@ -24,7 +24,7 @@ struct alignas(T) Unset {
 /// slower with more blocks of fewer registers, and plain loops over what sends nothing on are quicker.
 constexpr int blocks_at_work(uint32_t mask, DevicePath path, bool in_float) {
     const auto within = [&](uint32_t effects) { return path == DevicePath::plain_loop && (mask & ~effects) == 0; };
-    if (within(opaque_solids)) return in_float ? 8 : 6;
+    if (within(opaque_solids)) return in_float ? 9 : 6;
     if (within(opaque_bodies)) return in_float ? 8 : 5;
     if (within(mirrors)) return in_float ? 7 : 4;
     return in_float ? 6 : 4;

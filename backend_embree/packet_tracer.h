@@ -279,9 +279,10 @@ class PacketTracer {
         for (int c = 0; c < 3; ++c) {
             Lanes<Real> units;
             const uint32_t faults = lanes & lanes_where([&](int i) {
-                                        bool has_fault = false;
-                                        units.of[i] = in_units(of_color[c]->of[i], scale, has_fault);
-                                        return has_fault;
+                                        Real of_lane = fused(of_color[c]->of[i], scale, Real(0));
+                                        const bool is_fault = clear_fault(of_lane, scale);
+                                        units.of[i] = of_lane;
+                                        return is_fault;
                                     });
             if (faults != 0) flags_ |= flag_not_finite;
             for_each_lane(lanes, [&](int i) { radiance_[c].of[i] += whole_of(units.of[i]); });

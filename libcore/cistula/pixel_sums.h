@@ -27,14 +27,13 @@ CISTULA_INLINE auto greatest_word(const Vec3<Real>& a) {
     return greatest(word_of(a.x), greatest(word_of(a.y), word_of(a.z)));
 }
 
-/// A radiance in units of the sums, exact. What is not in [0, 1] is a fault, and counts as 0, without a jump: no other channel is
+/// A radiance in units of the sums that is not in [0, 1] is a fault, and counts as 0, without a jump: no other channel is
 /// touched by it. `scale` is settings.fixed_scale.
 template <class Real>
-CISTULA_INLINE Real in_units(Real a, Real scale, bool& has_fault) {
-    const Real units = fused(a, scale, Real(0));  // makes 0 of -0
+CISTULA_INLINE bool clear_fault(Real& units, Real scale) {
     const bool is_fault = word_of(units) > word_of(scale);
-    has_fault |= is_fault;
-    return is_fault ? Real(0) : units;
+    units = is_fault ? Real(0) : units;
+    return is_fault;
 }
 
 /// Into a PixelRecord, or a SeenRecord where nothing is ever sent on.
@@ -103,11 +102,12 @@ class PixelSums {
         return worst;
     }
 
+    /// Exact.
     CISTULA_INLINE Vec3<Real> in_units(const Vec3<Real>& a) {
-        const Real scale = Real(settings_.fixed_scale);
+        const Real scale = Real(settings_.fixed_scale), zero = Real(0);
+        Vec3<Real> units(fused(a.x, scale, zero), fused(a.y, scale, zero), fused(a.z, scale, zero));  // makes 0 of -0
         bool has_fault = false;
-        const Vec3<Real> units(cistula::in_units(a.x, scale, has_fault), cistula::in_units(a.y, scale, has_fault),
-                               cistula::in_units(a.z, scale, has_fault));
+        for (int c = 0; c < 3; ++c) has_fault |= clear_fault(units[c], scale);
         if (has_fault) flags_ |= flag_not_finite;
         return units;
     }
