@@ -29,8 +29,15 @@ constexpr int blocks_at_work(uint32_t mask, DevicePath path, bool in_float) {
     if (within(mirrors)) return in_float ? 7 : 4;
     return in_float ? 6 : 4;
 }
+/// As many as have room: a multiprocessor of capability 7.5 takes 1,024 threads, later ones 1,536 and more.
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
+inline constexpr int most_blocks_at_work = 1024 / block_threads;
+#else
+inline constexpr int most_blocks_at_work = 1536 / block_threads;
+#endif
 template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
-inline constexpr int least_blocks = blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float));
+inline constexpr int least_blocks =
+    least(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)), most_blocks_at_work);
 
 template <class Real, DevicePath path>
 struct PathTraits;

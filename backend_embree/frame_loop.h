@@ -1,4 +1,4 @@
-// The host's launcher: render_pixel over tiles, spread by TBB, for any intersector.
+// The host's launcher: render_pixel for any intersector, or packets of pixels, over tiles that TBB spreads.
 #pragma once
 
 #include <immintrin.h>
@@ -99,7 +99,7 @@ bool for_each_run(const FrameSettings& settings, const FrameContents& contents, 
     return !progress.stop.load();
 }
 
-/// Calls render(x, y, lit, record, work) for each of them.
+/// Calls render(x, y, lit, record, work) for each pixel of such runs.
 template <class Render>
 bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
                     const Render& render) {
@@ -115,7 +115,7 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
                         });
 }
 
-/// By packets.
+/// As render_tiles does, eight pixels at a time.
 template <class Real, class E>
 bool render_packets(const SmallScene<Real>& scene, const FrameView& frame, uint32_t in_view, const FrameSettings& settings,
                     const FrameContents& contents, Film& film, RenderProgress& progress) {

@@ -48,9 +48,9 @@ CISTULA_INLINE void for_lanes(const Visit& visit) {
 /// Bit i: is(i).
 template <class Is>
 CISTULA_INLINE uint32_t lanes_where(const Is& is) {
-    alignas(32) int32_t lanes[lane_count];
-    for_lanes([&](int i) { lanes[i] = is(i) ? -1 : 0; });
-    return sign_bits(lanes);
+    alignas(32) int32_t signs[lane_count];
+    for_lanes([&](int i) { signs[i] = is(i) ? -1 : 0; });
+    return sign_bits(signs);
 }
 
 /// In ascending order.

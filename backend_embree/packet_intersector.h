@@ -25,7 +25,7 @@ struct RayPacket {
     }
 };
 
-/// What each of them meets next. Only lanes that were asked for are set.
+/// What each of them meets next: of lanes that closest() says hit anything.
 template <class Real>
 struct PacketHits {
     Lanes<Real> t;
@@ -133,6 +133,7 @@ class PacketIntersector {
         Intervals at;
         cross(next.solid, origin, packet.direction, at);
         const Real extent = scene_.extent;
+        // All lanes: the slabs refuse what passes the ball by.
         for_lanes([&](int i) {
             const Real t = greatest(at.enter.of[i], Real(0));
             const bool nearer = (t < hits.t.of[i]) | ((t == hits.t.of[i]) & (index < hits.solid.of[i]));

@@ -13,9 +13,9 @@
 
 namespace cistula {
 
-/// Masks that packets can be traced with: nothing but bodies, lamps, shadows that let nothing through, and mirrors.
+/// Masks that packets can be traced with: bodies, lamps, shadows that let nothing through, perhaps mirrors, and nothing else.
 template <class E>
-inline constexpr bool fits_packets = (E::mask & ~mirrors) == 0;
+inline constexpr bool fits_packets = E::has(effect_opaque_shadows) && (E::mask & ~mirrors) == 0;
 
 template <class Real, class E>
 class PacketTracer {
@@ -36,14 +36,14 @@ class PacketTracer {
             render_sample(x * k + column, y * k + row, (1u << count) - 1, column == k / 2 && row == k / 2);
         }
         for (int i = 0; i < count; ++i) end(i);
-        for (int i = 0; i < count; ++i) writer.put(pixels[i], whole_record(records_[i]));  // long after they were set
+        for (int i = 0; i < count; ++i) writer.put(pixels[i], whole_record(records_[i]));  // apart: what was just set in parts takes long to read as a whole
     }
 
   private:
     using Index = LaneIndex<Real>;
     using Record = RecordOf<E>;
     using Hits = PacketHits<Real>;
-    using Ledgers = std::array<PixelSums<Real, Record>, lane_count>;
+    using Ledgers = std::array<PixelSums<Real, Record>, lane_count>;  // for what is cut; add() has the radiance
 
     struct Path : RayPacket<Real> {
         Lanes<Real> weight;
@@ -56,7 +56,7 @@ class PacketTracer {
     /// A face that some of the rays meet.
     struct Face {
         const Material<Real>& material;
-        uint32_t solid, number;
+        uint32_t solid, index;  // as in a key
         Vec3<Real> normal;
         VecLanes<Real> place, color;  // where rays on the viewer's side start; the material's, times its texture
     };
@@ -88,7 +88,7 @@ class PacketTracer {
         const int k = frame_.supersample, right = 2 * across + 1 - frame_.width * k, below = 2 * down + 1 - frame_.height * k;
         const Camera camera = frame_.camera;
         const double half_sample = frame_.half_sample;
-        Path path{};  // of lanes without a ray too: whatever is computed for those is left alone
+        Path path{};  // lanes without a ray hold numbers too, of which nothing is kept
         VecLanes<double> direction;
         for_lanes([&](int i) {
             direction.put(i, camera_direction(camera, double(right + 2 * k * i), double(below), half_sample));
@@ -208,7 +208,7 @@ class PacketTracer {
             on |= 1u << i;
             next.weight.of[i] = mirrored;
             next.from_solid.of[i] = Index(face.solid);
-            next.from_face.of[i] = Index(face.number);
+            next.from_face.of[i] = Index(face.index);
             next.origin.put(i, face.place[i]);
             next.direction.put(i, reflected(path.direction[i], face.normal));
         });
@@ -227,12 +227,11 @@ class PacketTracer {
             adds.put(i, weight.of[i] * (face.color[i] * ambient));
         });
         add(lanes, adds);
-        if constexpr (!E::has(effect_diffuse | effect_specular)) return;
         RayPacket<Real> shadow;
         for_lanes([&](int i) {
             shadow.origin.put(i, face.place[i]);
             shadow.from_solid.of[i] = Index(face.solid);
-            shadow.from_face.of[i] = Index(face.number);
+            shadow.from_face.of[i] = Index(face.index);
         });
         const Real least_height = incidence<Real> * scene_.extent;
         for (uint32_t number = 0; number < scene_.lights.size; ++number) {
@@ -297,7 +296,7 @@ class PacketTracer {
     uint32_t& flags_;
     const PacketIntersector<Real, E> intersector_;
     // Of the pixels under way:
-    Record records_[lane_count];
+    Record records_[lane_count];  // their radiance only once they are done
     uint32_t samples_;  // of each
     Lanes<uint32_t> reflected_, shadow_;
     Lanes<int64_t> radiance_[3];

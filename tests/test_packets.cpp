@@ -33,13 +33,13 @@ SceneDescription bodies_alone() {
 template <class Real>
 class Packets : public testing::Test {
   protected:
-    /// What --effects all renders, one pixel at a time, against what runs without it.
-    static Film compare(const SceneDescription& scene, FrameSettings settings, const std::string& what) {
+    /// What --effects all renders, one pixel at a time, against what runs without it: `mask`.
+    static Film compare(const SceneDescription& scene, FrameSettings settings, uint32_t mask, const std::string& what) {
         const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
         EXPECT_NE(make_small_renderer<Real>(compiled), nullptr) << what << ": not by packets";
         const auto renderer = make_embree_renderer<Real>(compiled, EmbreeOptions());
         const Film packets = golden::render_with(*renderer, scene, settings);
-        EXPECT_EQ(renderer->effects() & ~mirrors, 0u) << what << ": not by packets";
+        EXPECT_EQ(renderer->effects(), mask) << what;
         settings.effects = all_effects;
         const FilmDifference difference = film_difference(packets, golden::render_with(*renderer, scene, settings));
         EXPECT_EQ(difference.differing, 0u) << what << ", first at pixel " << difference.first.value_or(0);
@@ -56,23 +56,57 @@ using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(Packets, Reals);
 
 TYPED_TEST(Packets, OfAnyWidth) {
-    for (const SceneDescription& scene : {bodies_alone(), bodies_on_a_floor(), mirrors_on_a_floor()})
+    const std::pair<SceneDescription, uint32_t> scenes[] = {
+        {bodies_alone(), opaque_solids}, {bodies_on_a_floor(), opaque_bodies}, {mirrors_on_a_floor(), mirrors}};
+    for (const auto& [scene, mask] : scenes)
         for (int width = 1; width <= 18; ++width) {
             FrameSettings settings = this->frame(97, 55);
             settings.crop = {41 - width, 11, width, 33};
             settings.tile = width % 3 == 0 ? 13 : 16;
-            const Film film = this->compare(scene, settings, std::to_string(width) + " pixels wide");
+            const Film film = this->compare(scene, settings, mask, std::to_string(width) + " pixels wide");
             EXPECT_GT(film.rays.shadow, 0u);
         }
 }
 
+/// Of every sample a budget of its own, and lamps beside what is cut.
 TYPED_TEST(Packets, OfManySamples) {
-    for (const int supersample : {2, 3, 8}) {
-        FrameSettings settings = this->frame(61, 35, 6);
-        settings.supersample = supersample;
-        this->compare(mirrors_on_a_floor(), settings, std::to_string(supersample) + " samples along a side");
-        this->compare(bodies_on_a_floor(), settings, std::to_string(supersample) + " samples along a side, no mirrors");
+    for (const int supersample : {2, 3, 8})
+        for (const double cutoff : {0.0, 0.02, 0.3}) {
+            FrameSettings settings = this->frame(61, 35, 6);
+            settings.supersample = supersample;
+            settings.cutoff = cutoff;
+            const std::string what = std::to_string(supersample) + " samples along a side, cutoff " + std::to_string(cutoff);
+            this->compare(mirrors_on_a_floor(), settings, mirrors, what);
+            this->compare(bodies_on_a_floor(), settings, opaque_bodies, what);
+        }
+}
+
+TYPED_TEST(Packets, OfOneSurface) {
+    const Film film = this->compare(mirrors_on_a_floor(), this->frame(96, 54, 1), mirrors, "depth 1");
+    EXPECT_EQ(film.rays.reflected, 0u);
+}
+
+/// Exponents that are no integers, a lamp that adds nothing, and more lamps than one.
+TYPED_TEST(Packets, OfManyLamps) {
+    SceneDescription scene = mirrors_on_a_floor();
+    scene.materials[0].exponent = 7.5;
+    scene.materials[1].diffuse = 0;
+    scene.materials[1].exponent = 1000;
+    for (int i = 0; i < 6; ++i) test::add_light(scene, {2.0 * i - 5, 5.0 - i, 4});
+    this->compare(scene, this->frame(160, 90), mirrors, "many lamps");
+}
+
+/// Crossings at equal times: sheets in one place, and in the plane of a solid's face.
+TYPED_TEST(Packets, OfFacesInOnePlace) {
+    SceneDescription scene = mirrors_on_a_floor();
+    test::add_solid(scene, PlatonicSolid::cube, {-2.5, -2.5, 1}, std::sqrt(3.0));  // from 0 to 2
+    for (const double height : {2.0, 2.0, 0.0}) {
+        TrianglesObject sheet;
+        sheet.vertices = {{-5, -5, height}, {0, -5, height}, {0, 0, height}, {-5, 0, height}};
+        sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+        test::add_object(scene, sheet, test::add_material(scene, 0.3));
     }
+    this->compare(scene, this->frame(192, 108, 8), mirrors, "faces in one place");
 }
 
 TYPED_TEST(Packets, OfLongPathsAndWhatIsCutFromThem) {
@@ -81,7 +115,7 @@ TYPED_TEST(Packets, OfLongPathsAndWhatIsCutFromThem) {
         for (MaterialDescription& material : scene.materials) material.reflection = cutoff > 0 ? 0.8 : 1;
         FrameSettings settings = this->frame(96, 54, 40);
         settings.cutoff = cutoff;
-        const Film film = this->compare(scene, settings, "cutoff " + std::to_string(cutoff));
+        const Film film = this->compare(scene, settings, mirrors, "cutoff " + std::to_string(cutoff));
         bool is_cut = false, is_pruned = false;
         for (const PixelRecord& pixel : film.pixels) {
             is_cut |= pixel.cut[0] != 0;
@@ -93,14 +127,16 @@ TYPED_TEST(Packets, OfLongPathsAndWhatIsCutFromThem) {
 }
 
 TYPED_TEST(Packets, FromFarAway) {
-    for (SceneDescription scene : {bodies_alone(), mirrors_on_a_floor()}) {
+    for (auto [scene, mask] : {std::pair{bodies_alone(), opaque_solids}, std::pair{mirrors_on_a_floor(), mirrors}}) {
         scene.camera.position_path.reset();
         scene.camera.target_path.reset();
         scene.camera.position = {300, -200, 150};
         scene.camera.target = {0, 0, 1};
         scene.camera.field_of_view = 2.5;
-        const Film film = this->compare(scene, this->frame(96, 54), "from far away");
-        EXPECT_GT(film.rays.shadow, 500u);
+        FrameSettings settings = this->frame(96, 54);
+        EXPECT_GT(this->compare(scene, settings, mask, "from far away").rays.shadow, 500u);
+        settings.supersample = 3;
+        this->compare(scene, settings, mask, "from far away, in many samples");
     }
 }
 
@@ -115,11 +151,11 @@ TYPED_TEST(Packets, AmongSheets) {
         leaves.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     test::add_object(scene, leaves, test::add_material(scene, 0.5));
-    this->compare(scene, this->frame(192, 108, 12), "among leaves");
-    this->compare(without_effect(scene, effect_solids).value(), this->frame(192, 108, 12), "among leaves alone");
+    this->compare(scene, this->frame(192, 108, 12), mirrors, "among leaves");
+    this->compare(without_effect(scene, effect_solids).value(), this->frame(192, 108, 12), mirrors, "among leaves alone");
 }
 
-TYPED_TEST(Packets, StopWithinAPath) {
+TYPED_TEST(Packets, StopAmongSamples) {
     const SceneDescription scene = without_effect(test::room_of_mirrors(), effect_transmission).value();
     FrameSettings settings = test::endless_settings(64, 36);
     settings.supersample = 64;
