@@ -36,8 +36,10 @@ inline constexpr int most_blocks_at_work = 1024 / block_threads;
 inline constexpr int most_blocks_at_work = 1536 / block_threads;
 #endif
 template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
+inline constexpr int blocks_wanted = blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float));
+template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
 inline constexpr int least_blocks =
-    least(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)), most_blocks_at_work);
+    blocks_wanted<Real, E, path> < most_blocks_at_work ? blocks_wanted<Real, E, path> : most_blocks_at_work;
 
 template <class Real, DevicePath path>
 struct PathTraits;
