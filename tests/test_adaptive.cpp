@@ -4,6 +4,7 @@
 
 #include "cistula/adaptive_pixel.h"
 #include "golden.h"
+#include "scene/film_difference.h"
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
 #include "scene/put_pixels.h"
@@ -25,18 +26,7 @@ FrameSettings small(const SceneDescription& scene, int width = 96, int height = 
 
 void expect_equal(const Film& a, const Film& b, const std::string& what) {
     ASSERT_EQ(a.pixels.size(), b.pixels.size());
-    size_t differ = 0;
-    for (size_t i = 0; i < a.pixels.size(); ++i) {
-        const PixelRecord &p = a.pixels[i], &q = b.pixels[i];
-        bool same = p.hits == q.hits && p.rays == q.rays && p.id == q.id && p.samples == q.samples &&
-                    p.unmet == q.unmet && bits_as<uint32_t>(p.z) == bits_as<uint32_t>(q.z);
-        for (int c = 0; c < 3; ++c)
-            same &= p.radiance[c] == q.radiance[c] && p.pruned[c] == q.pruned[c] && p.cut[c] == q.cut[c] &&
-                    bits_as<uint32_t>(p.normal[c]) == bits_as<uint32_t>(q.normal[c]);
-        differ += !same;
-    }
-    EXPECT_EQ(differ, 0u) << what;
-    EXPECT_EQ(a.rays.total(), b.rays.total()) << what;
+    EXPECT_EQ(film_difference(a, b).differing, 0u) << what;
 }
 
 template <class Real>
