@@ -8,16 +8,21 @@
 
 namespace cistula {
 
-/// A new line from a face.
+/// Starts a new line from a face.
 template <class Real, class Media>
-CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
-                                 const Media& media) {
-    Ray<Real, Media> ray;
+CISTULA_INLINE void spawn(Ray<Real, Media>& ray, const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
+                          const Media& media) {
     ray.origin = origin;
     ray.direction = direction;
     ray.from_solid = key_solid(hit.key);
     ray.from_face = key_face(hit.key);
     ray.media = media;
+}
+template <class Real, class Media>
+CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
+                                        const Media& media) {
+    Ray<Real, Media> ray;
+    spawn(ray, origin, direction, hit, media);
     return ray;
 }
 

@@ -2,6 +2,8 @@
 // few entries hold any tree. Whatever is not followed goes into the ledger.
 #pragma once
 
+#include <new>
+
 #include "cistula/absorption.h"
 #include "cistula/interface.h"
 #include "cistula/lighting.h"
@@ -18,49 +20,77 @@ inline constexpr uint32_t turns_between_stops = 64;
 /// The branch that is followed while k others wait weighs at most 2^-k, and one under 2^-62 is dropped.
 inline constexpr int branch_stack = 67;
 
-/// How far a line is known to meet no seen light: it is searched once, however many faces it passes straight on.
-template <class Real, bool sees_lights>
-struct SearchedLine {
-    Real dark_until = 0;
-};
-template <class Real>
-struct SearchedLine<Real, false> {};
+/// Whether rays pass faces without bending, all of them.
+template <class E>
+inline constexpr bool lines_go_on = E::has(effect_transmission) && !E::has(effect_refraction);
 
 /// Part of a tree that is still to be followed: `weight`, a Share, times what `ray` sees.
-template <class Real, class Media = MediaList, class Weight = Vec3<Real>, bool sees_lights = true>
-struct Branch : SearchedLine<Real, sees_lights> {
+template <class Real, class Media = MediaList, class Weight = Vec3<Real>>
+struct Branch {
     Ray<Real, Media> ray;
     Weight weight{Real(1)};
-    uint32_t depth : 31 = 0;  // surfaces above it
+    uint32_t depth : 30 = 0;  // surfaces above it
     uint32_t mirrored : 1 = 0;
+    uint32_t dark : 1 = 0;  // its line is known to meet no seen light, however many faces it passes
 };
 
-/// A branch as it lies in memory, unset until then.
 template <class Entry>
-struct alignas(Entry) BranchWords {
-    static constexpr int count = sizeof(Entry) / sizeof(uint32_t);
-    static_assert(sizeof(Entry) % sizeof(uint32_t) == 0);
-
-    uint32_t word[count];
-
-    CISTULA_INLINE static BranchWords of(const Entry& branch) { return bits_as<BranchWords>(branch); }
-    CISTULA_INLINE void give(Entry& branch) const { memcpy(&branch, word, sizeof branch); }
-};
-
-/// Room for branches, unset: a Branch sets itself, and most trees need a few.
-template <class Entry, int size>
-class BranchRoom {
+class WaitingBranch;
+/// A branch as it lies in memory: value by value, as a processor waits before it reads as a whole what was just set in
+/// parts, and without gaps, as all threads of a device together have little room.
+template <class Real, class Media, class Weight>
+class WaitingBranch<Branch<Real, Media, Weight>> {
   public:
-    using Words = BranchWords<Entry>;
+    using Entry = Branch<Real, Media, Weight>;
 
-    CISTULA_INLINE void put(int i, const Entry& branch) { entries_[i] = Words::of(branch); }
-    CISTULA_INLINE void get(int i, Entry& branch) const {
-        const Words copy = entries_[i];  // in words: memcpy from an unknown place goes byte by byte
-        copy.give(branch);
+    CISTULA_INLINE explicit WaitingBranch(const Entry& branch)
+        : origin_(branch.ray.origin),
+          direction_(branch.ray.direction),
+          weight_(branch.weight),
+          after_(branch.ray.after.t),
+          key_{uint32_t(branch.ray.after.key), uint32_t(branch.ray.after.key >> 32)},
+          from_solid_(branch.ray.from_solid),
+          from_face_(branch.ray.from_face),
+          depth_(branch.depth),
+          mirrored_(branch.mirrored),
+          dark_(branch.dark),
+          media_(branch.ray.media) {}
+
+    CISTULA_INLINE void give(Entry& branch) const {
+        branch.ray.origin = origin_;
+        branch.ray.direction = direction_;
+        branch.ray.from_solid = from_solid_;
+        branch.ray.from_face = from_face_;
+        branch.ray.after = {after_, uint64_t(key_[1]) << 32 | key_[0]};
+        branch.ray.media = media_;
+        branch.weight = weight_;
+        branch.depth = depth_;
+        branch.mirrored = mirrored_;
+        branch.dark = dark_;
     }
 
   private:
-    Words entries_[size];
+    Vec3<Real> origin_, direction_;
+    Weight weight_;
+    Real after_;
+    uint32_t key_[2], from_solid_, from_face_;
+    uint32_t depth_ : 30, mirrored_ : 1, dark_ : 1;
+    Media media_;
+};
+
+/// Room for branches, unset: most trees need a few.
+template <class Entry, int size>
+class BranchRoom {
+  public:
+    CISTULA_INLINE BranchRoom() {}
+
+    CISTULA_INLINE void put(int i, const Entry& branch) { new (&entries_[i]) WaitingBranch<Entry>(branch); }
+    CISTULA_INLINE void get(int i, Entry& branch) const { entries_[i].give(branch); }
+
+  private:
+    union {
+        WaitingBranch<Entry> entries_[size];
+    };
 };
 
 /// The branches that wait, in the thread's own memory.
@@ -112,7 +142,7 @@ class OneBranch {
 
 /// The branches of a mask's trees, and what keeps them.
 template <class Real, class E, class Media>
-using BranchOf = Branch<Real, Media, Share<Real, E>, E::has(effect_visible_lights)>;
+using BranchOf = Branch<Real, Media, Share<Real, E>>;
 template <class Real, class E, class Media>
 using StackOf = std::conditional_t<E::has(effect_transmission), BranchStack<BranchOf<Real, E, Media>>,
                                    OneBranch<BranchOf<Real, E, Media>>>;
@@ -267,16 +297,15 @@ class RayTree {
 
     /// The seen light that the ray meets before `hit`. A line that may go straight on from there is searched to its end.
     CISTULA_INLINE SeenHit<Real> light_before(const Hit<Real>& hit, Entry& branch) {
-        SeenHit<Real> seen;
-        if (lesser(hit.t, RealTraits<Real>::largest) < branch.dark_until) return seen;
+        if constexpr (lines_go_on<E>)
+            if (branch.dark) return SeenHit<Real>();
         if constexpr (requires { intersector_.passes_lights(branch.ray); })
-            if (intersector_.passes_lights(branch.ray)) return seen;
-        const bool goes_on = lines_go_on && hit.found() && int(branch.depth) + 1 < depth_ &&
+            if (intersector_.passes_lights(branch.ray)) return SeenHit<Real>();
+        const bool goes_on = lines_go_on<E> && hit.found() && int(branch.depth) + 1 < depth_ &&
                              scene_.materials[scene_.solids[key_solid(hit.key)].material].transmission > Real(0);
-        seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t);
-        if (seen.t <= hit.t) return seen;
-        branch.dark_until = seen.t;
-        return SeenHit<Real>();
+        const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t);
+        if (seen.light == no_light) branch.dark = goes_on;
+        return seen.t <= hit.t ? seen : SeenHit<Real>();
     }
 
     /// Adds a face's local light. What it sends on waits, before the lights are looked at: nothing of the branch has to be
@@ -326,21 +355,17 @@ class RayTree {
         child.weight = weight;
         child.mirrored = !goes_through;
         if (!goes_through) {
-            child.ray =
-                spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
+            spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
         } else if (shares.bends) {
-            child.ray = spawned(far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
+            spawn(child.ray, far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
         } else {
             child.ray = parent.ray;
-            if constexpr (E::has(effect_visible_lights)) child.dark_until = parent.dark_until;
+            if constexpr (lines_go_on<E>) child.dark = parent.dark;
             Absorption<false> later;  // counted from there on
             pass(child.ray, meeting, later);
         }
         return child;
     }
-
-    /// Whether rays pass faces without bending, all of them.
-    static constexpr bool lines_go_on = E::has(effect_transmission) && !E::has(effect_refraction);
 
     const Scene& scene_;
     const Intersector& intersector_;

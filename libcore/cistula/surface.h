@@ -150,8 +150,9 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     s.color = material.color;
     s.normal = normal_at<E>(scene, hit);
     if (is_convex<E>(solid)) {
-        s.point = along(ray.origin, hit.t, ray.direction);
-        s.viewer_side = s.point;
+        const Vec3<Real> point = along(ray.origin, hit.t, ray.direction);
+        s.point = Vec3<Real>(point.x, point.y, point.z);  // number by number, as WaitingBranch
+        s.viewer_side = Vec3<Real>(point.x, point.y, point.z);
         return s;
     }
     Vec3<Real> corner[3];
