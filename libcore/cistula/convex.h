@@ -78,13 +78,20 @@ CISTULA_INLINE void cross_slabs(const SlabGroup<Real>& group, const Vec3<Real>& 
                    enter[i], leave[i]);
 }
 
+/// In halves, which are vectors too.
 template <class Real>
 CISTULA_INLINE Real greatest_lane(const Real (&a)[slab_lanes]) {
-    return greatest(greatest(greatest(a[0], a[4]), greatest(a[2], a[6])), greatest(greatest(a[1], a[5]), greatest(a[3], a[7])));
+    alignas(32) Real half[4];
+    CISTULA_VECTORS
+    for (int i = 0; i < 4; ++i) half[i] = greatest(a[i], a[i + 4]);
+    return greatest(greatest(half[0], half[2]), greatest(half[1], half[3]));
 }
 template <class Real>
 CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
-    return least(least(least(a[0], a[4]), least(a[2], a[6])), least(least(a[1], a[5]), least(a[3], a[7])));
+    alignas(32) Real half[4];
+    CISTULA_VECTORS
+    for (int i = 0; i < 4; ++i) half[i] = least(a[i], a[i + 4]);
+    return least(least(half[0], half[2]), least(half[1], half[3]));
 }
 
 #if CISTULA_ON_DEVICE

@@ -64,17 +64,15 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
     }
     if (!(from <= to)) return false;
     uint32_t entering = 0, leaving = 0;  // planes
+    float first = to, last = from;
     for (int g = 0; g < count; ++g) {
         entering |= lanes_from(past[g], from) << g * slab_lanes;
         leaving |= lanes_to(soon[g], to) << g * slab_lanes;
+        first = least(least_lane(soon[g]), first);
+        last = greatest(greatest_lane(past[g]), last);
     }
     const bool two_at_first = (entering & (entering - 1)) != 0, two_at_last = (leaving & (leaving - 1)) != 0;
     if (!two_at_first && !two_at_last && (entering == 0 || leaving == 0)) return false;
-    float first = to, last = from;
-    for (uint32_t left = two_at_first ? 0 : leaving; left != 0; left &= left - 1)
-        first = least(soon[lowest_bit(left) / slab_lanes][lowest_bit(left) % slab_lanes], first);
-    for (uint32_t left = two_at_last ? 0 : entering; left != 0; left &= left - 1)
-        last = greatest(past[lowest_bit(left) / slab_lanes][lowest_bit(left) % slab_lanes], last);
     if (!two_at_first) from = greatest(first, from);
     if (!two_at_last) to = least(last, to);
     return from <= to;
