@@ -75,12 +75,12 @@ struct alignas(16) SheetPlane {
     }
 };
 
-/// A solid, its number, and what is asked of it first.
+/// A solid, its number, and what is asked of it first: side by side, as most rays ask for no more.
 template <class Real>
 struct NumberedSolid {
     Ball<Real> ball;
-    Solid solid;
     uint32_t index;
+    Solid solid;
 };
 
 /// So much that rounding never turns a ray that the slabs accept into one that passes the sphere by: the terms of the

@@ -8,10 +8,13 @@
 
 namespace cistula {
 
+/// Bytes of a line of the cache of constants, which holds few of them.
+inline constexpr int constant_line = 64;
+
 /// Up to `capacity` elements in place.
 template <class T, uint32_t capacity>
 struct InlineSpan {
-    T data[capacity];
+    alignas(constant_line) T data[capacity];
     uint32_t size;
 
     CISTULA_INLINE const T& operator[](uint32_t i) const { return data[i]; }
@@ -117,7 +120,7 @@ struct SmallScene {
 
   private:
     static NumberedSolid<Real> numbered(const SceneView<Real>& scene, uint32_t index) {
-        return {Ball<Real>::of(scene.solids[index]), scene.solids[index], index};
+        return {Ball<Real>::of(scene.solids[index]), index, scene.solids[index]};
     }
 
     static SheetPlane<Real> boxed_plane(const SceneView<Real>& scene, uint32_t index) {
