@@ -1,6 +1,8 @@
 // What the kernels share: the shape of blocks, the intersectors of a path, counting.
 #pragma once
 
+#include <algorithm>
+
 #include "backend_cuda/frame_job.h"
 #include "cistula/bvh.h"
 
@@ -36,10 +38,7 @@ inline constexpr int most_blocks_at_work = 1024 / block_threads;
 inline constexpr int most_blocks_at_work = 1536 / block_threads;
 #endif
 template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
-inline constexpr int blocks_wanted = blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float));
-template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
-inline constexpr int least_blocks =
-    blocks_wanted<Real, E, path> < most_blocks_at_work ? blocks_wanted<Real, E, path> : most_blocks_at_work;
+inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)), most_blocks_at_work);
 
 template <class Real, DevicePath path>
 struct PathTraits;

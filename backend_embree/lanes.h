@@ -41,7 +41,7 @@ struct SameVec {
 template <class Visit>
 CISTULA_INLINE void for_lanes(const Visit& visit) {
 #pragma GCC ivdep
-#pragma GCC unroll 1
+    CISTULA_VECTORS
     for (int i = 0; i < lane_count; ++i) visit(i);
 }
 

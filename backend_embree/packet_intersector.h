@@ -47,7 +47,7 @@ class PacketIntersector {
     uint32_t closest(const RayPacket<Real>& packet, const Origin& origin, uint32_t primitives, uint32_t lanes,
                      PacketHits<Real>& hits) const {
         for_lanes([&](int i) {
-            const bool finite = nothing_of(origin[i]) + nothing_of(packet.direction[i]) == Real(0);
+            const bool finite = is_finite<Real>(origin[i], packet.direction[i]);
             hits.t.of[i] = finite ? RealTraits<Real>::infinity : Real(-1);  // nothing is nearer than that
             hits.solid.of[i] = -1;
             hits.face.of[i] = 0;
@@ -74,9 +74,7 @@ class PacketIntersector {
     uint32_t shadowed(const RayPacket<Real>& packet, uint32_t from, uint32_t light, const Lanes<Real>& distance,
                       uint32_t lanes) const {
         const uint32_t near = scene_.plan.near[from][light];
-        uint32_t dark = lanes & lanes_where([&](int i) {
-                            return !(nothing_of(packet.origin[i]) + nothing_of(packet.direction[i]) == Real(0));
-                        });
+        uint32_t dark = lanes & lanes_where([&](int i) { return !is_finite(packet.origin[i], packet.direction[i]); });
         if constexpr (E::solids)
             for (uint32_t left = near & scene_.plan.all_convex; left != 0 && dark != lanes; left &= left - 1) {
                 const NumberedSolid<Real>& other = scene_.convex[lowest_bit(left)];
@@ -95,7 +93,7 @@ class PacketIntersector {
         Lanes<Index> face;
 
         CISTULA_INLINE bool met(int i, Real extent) const {
-            return (enter.of[i] <= leave.of[i]) & (leave.of[i] > incidence<Real> * extent);
+            return ConvexInterval<Real>{enter.of[i], leave.of[i]}.met(extent);
         }
     };
 

@@ -116,10 +116,14 @@ struct Ray {
     CISTULA_INLINE void meet_all() { after.t = Real(-0.5); }
 };
 
-/// A ray that is not finite meets nothing.
+/// A line that is not finite meets nothing.
+template <class Real>
+CISTULA_INLINE bool is_finite(const Vec3<Real>& origin, const Vec3<Real>& direction) {
+    return nothing_of(origin) + nothing_of(direction) == Real(0);
+}
 template <class Real, class Media>
 CISTULA_INLINE bool is_finite(const Ray<Real, Media>& ray) {
-    return nothing_of(ray.origin) + nothing_of(ray.direction) == Real(0);
+    return is_finite(ray.origin, ray.direction);
 }
 
 }  // namespace cistula
