@@ -167,5 +167,41 @@ TYPED_TEST(Packets, StopAmongSamples) {
     EXPECT_LT(stopped.seconds, 2);
 }
 
+/// What no scene file can bring about, so that the compiled scene is changed: a channel that is out of range counts as 0 and
+/// is flagged, and the others are as ever.
+TYPED_TEST(Packets, OutOfRange) {
+    const auto render = [](std::shared_ptr<const CompiledScene<TypeParam>> compiled, const SceneDescription& scene,
+                           FrameSettings settings) {
+        return golden::render_with(*make_embree_renderer<TypeParam>(std::move(compiled), EmbreeOptions()), scene, settings);
+    };
+    const TypeParam infinity = RealTraits<TypeParam>::infinity, faults[] = {infinity, infinity - infinity, -1};
+    FrameSettings settings = this->frame(61, 35);
+    for (const SceneDescription& scene : {bodies_alone(), bodies_on_a_floor(), mirrors_on_a_floor()}) {
+        const Film whole = render(compile_scene<TypeParam>(scene), scene, settings);
+        ASSERT_EQ(whole.flags, 0u);
+        for (const TypeParam fault : faults)
+            for (int channel = 0; channel < 3; ++channel) {
+                const std::string what = std::to_string(fault) + " in channel " + std::to_string(channel);
+                std::shared_ptr<CompiledScene<TypeParam>> compiled = compile_scene<TypeParam>(scene);
+                compiled->lights[0].intensity[channel] = fault;
+                settings.effects = 0;
+                const Film packets = render(compiled, scene, settings);
+                settings.effects = all_effects;
+                const FilmDifference difference = film_difference(packets, render(compiled, scene, settings));
+                EXPECT_EQ(difference.differing, 0u) << what << ", first at pixel " << difference.first.value_or(0);
+                EXPECT_EQ(packets.flags, uint32_t(flag_not_finite)) << what;
+                for (size_t i = 0; i < whole.pixels.size(); ++i)
+                    for (int other = 0; other < 3; ++other) {
+                        if (other != channel) {
+                            ASSERT_EQ(packets.pixels[i].radiance[other], whole.pixels[i].radiance[other]) << what << ", pixel " << i;
+                        } else {
+                            ASSERT_LE(packets.pixels[i].radiance[other], whole.pixels[i].radiance[other]) << what << ", pixel " << i;
+                        }
+                    }
+                settings.effects = 0;
+            }
+    }
+}
+
 }  // namespace
 }  // namespace cistula
