@@ -8,8 +8,8 @@ namespace cistula {
 
 template <class Entry>
 struct QueuedBranch {
-    Entry branch;
-    unsigned long long record;  // no padding behind it: that would be copied unset
+    WaitingBranch<Entry> branch;
+    unsigned long long record;  // as wide as a double: padding would be copied unset
 };
 
 /// A place in a queue for every lane that is here: one addition for all of them.
@@ -54,10 +54,8 @@ class GivingBranchStack {
             atomicSub(queue->size, 1u);  // it stays full, and never wraps
             return false;
         }
-        QueuedBranch<Entry> item;
-        room->get(i, item.branch);
-        item.record = record;
-        static_cast<QueuedBranch<Entry>*>(queue->items)[place] = item;
+        static_assert(sizeof(QueuedBranch<Entry>) == sizeof(WaitingBranch<Entry>) + sizeof(unsigned long long));
+        static_cast<QueuedBranch<Entry>*>(queue->items)[place] = {room->waiting(i), record};
         return true;
     }
 
@@ -149,12 +147,14 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     unsigned int flags = 0;
     for (unsigned int i = blockIdx.x * block_threads + threadIdx.x; i < count && !stopped(job);
          i += gridDim.x * block_threads) {
-        Item item = static_cast<const Item*>(job.from.items)[i];
+        const Item item = static_cast<const Item*>(job.from.items)[i];
+        BranchOf<Real, E, Media> branch;
+        item.branch.give(branch);
         PixelRecord part;
         PixelWork own;
         typename Stack::Room room;
         Stack stack(room, job, item.record);
-        resume_branch<Real, E>(scene, job.frame, Intersector{scene}, item.branch, part, own, stack);
+        resume_branch<Real, E>(scene, job.frame, Intersector{scene}, branch, part, own, stack);
         rays.add(own.rays);
         flags |= own.flags;
         PixelRecord& record = static_cast<PixelRecord*>(job.records)[item.record];

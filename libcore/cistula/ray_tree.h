@@ -85,7 +85,8 @@ class BranchRoom {
     CISTULA_INLINE BranchRoom() {}
 
     CISTULA_INLINE void put(int i, const Entry& branch) { new (&entries_[i]) WaitingBranch<Entry>(branch); }
-    CISTULA_INLINE void get(int i, Entry& branch) const { entries_[i].give(branch); }
+    CISTULA_INLINE void get(int i, Entry& branch) const { waiting(i).give(branch); }
+    CISTULA_INLINE const WaitingBranch<Entry>& waiting(int i) const { return entries_[i]; }
 
   private:
     union {
