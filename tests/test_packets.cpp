@@ -168,8 +168,8 @@ TYPED_TEST(Packets, StopAmongSamples) {
     EXPECT_LT(stopped.seconds, 2);
 }
 
-/// What no scene file can bring about, so that the compiled scene is changed: a channel of a light that is out of range adds
-/// nothing and is flagged, and the others are as ever.
+/// What no scene file can bring about, so that the compiled scene is changed: a channel of the lights that is out of range
+/// adds nothing and is flagged, and the others are as ever.
 TYPED_TEST(Packets, OutOfRange) {
     using Real = TypeParam;
     const std::pair<SceneDescription, uint32_t> scenes[] = {
@@ -180,7 +180,7 @@ TYPED_TEST(Packets, OutOfRange) {
         for (int channel = 0; channel < 3; ++channel) {
             const auto render = [&](Real intensity, uint32_t effects) {
                 std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(scene);
-                compiled->lights[0].intensity[channel] = intensity;
+                for (Light<Real>& light : compiled->lights) light.intensity[channel] = intensity;
                 EXPECT_NE(make_small_renderer<Real>(compiled), nullptr);
                 const auto renderer = make_embree_renderer<Real>(compiled, EmbreeOptions());
                 settings.effects = effects;
