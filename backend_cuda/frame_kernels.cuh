@@ -9,7 +9,7 @@ namespace cistula {
 template <class Entry>
 struct QueuedBranch {
     WaitingBranch<Entry> branch;
-    unsigned long long record;  // as wide as a double: padding would be copied unset
+    unsigned long long record;  // an unsigned int, widened: padding would be copied unset
 };
 
 /// A place in a queue for every lane that is here: one addition for all of them.

@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-/// Starts a new line from a face.
+/// Starts a new line from a face. `ray`: as constructed.
 template <class Real, class Media>
 CISTULA_INLINE void spawn(Ray<Real, Media>& ray, const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
                           const Media& media) {

@@ -75,7 +75,7 @@ struct alignas(16) SheetPlane {
     }
 };
 
-/// A solid, its number, and what is asked of it first: side by side, as most rays ask for no more.
+/// A solid, and what is asked of it first: its sphere with the number beside it, as most rays ask for no more.
 template <class Real>
 struct NumberedSolid {
     Ball<Real> ball;

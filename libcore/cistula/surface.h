@@ -151,7 +151,7 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     s.normal = normal_at<E>(scene, hit);
     if (is_convex<E>(solid)) {
         const Vec3<Real> point = along(ray.origin, hit.t, ray.direction);
-        s.point = Vec3<Real>(point.x, point.y, point.z);  // number by number, as WaitingBranch
+        s.point = Vec3<Real>(point.x, point.y, point.z);  // number by number: see WaitingBranch
         s.viewer_side = Vec3<Real>(point.x, point.y, point.z);
         return s;
     }
