@@ -47,7 +47,7 @@ class PacketIntersector {
     uint32_t closest(const RayPacket<Real>& packet, const Origin& origin, uint32_t primitives, uint32_t lanes,
                      PacketHits<Real>& hits) const {
         for_lanes([&](int i) {
-            const bool finite = is_finite<Real>(origin[i], packet.direction[i]);
+            const bool finite = is_finite(origin[i], packet.direction[i]);
             hits.t.of[i] = finite ? RealTraits<Real>::infinity : Real(-1);  // nothing is nearer than that
             hits.solid.of[i] = -1;
             hits.face.of[i] = 0;

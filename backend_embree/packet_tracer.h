@@ -36,7 +36,8 @@ class PacketTracer {
             render_sample(x * k + column, y * k + row, (1u << count) - 1, column == k / 2 && row == k / 2);
         }
         for (int i = 0; i < count; ++i) end(i);
-        for (int i = 0; i < count; ++i) writer.put(pixels[i], whole_record(records_[i]));  // apart: what was just set in parts takes long to read as a whole
+        // Apart: what was just set in parts takes long to read as a whole.
+        for (int i = 0; i < count; ++i) writer.put(pixels[i], whole_record(records_[i]));
     }
 
   private:

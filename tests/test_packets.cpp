@@ -31,6 +31,11 @@ SceneDescription bodies_alone() {
     return without_effect(bodies_on_a_floor(), effect_triangles).value();
 }
 
+/// Of every mask that goes by packets.
+std::vector<std::pair<SceneDescription, uint32_t>> scenes_and_masks() {
+    return {{bodies_alone(), opaque_solids}, {bodies_on_a_floor(), opaque_bodies}, {mirrors_on_a_floor(), mirrors}};
+}
+
 template <class Real>
 class Packets : public testing::Test {
   protected:
@@ -57,9 +62,7 @@ using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(Packets, Reals);
 
 TYPED_TEST(Packets, OfAnyWidth) {
-    const std::pair<SceneDescription, uint32_t> scenes[] = {
-        {bodies_alone(), opaque_solids}, {bodies_on_a_floor(), opaque_bodies}, {mirrors_on_a_floor(), mirrors}};
-    for (const auto& [scene, mask] : scenes)
+    for (const auto& [scene, mask] : scenes_and_masks())
         for (int width = 1; width <= 18; ++width) {
             FrameSettings settings = this->frame(97, 55);
             settings.crop = {41 - width, 11, width, 33};
@@ -172,11 +175,9 @@ TYPED_TEST(Packets, StopAmongSamples) {
 /// adds nothing and is flagged, and the others are as ever.
 TYPED_TEST(Packets, OutOfRange) {
     using Real = TypeParam;
-    const std::pair<SceneDescription, uint32_t> scenes[] = {
-        {bodies_alone(), opaque_solids}, {bodies_on_a_floor(), opaque_bodies}, {mirrors_on_a_floor(), mirrors}};
     const Real infinity = RealTraits<Real>::infinity, faults[] = {infinity, infinity - infinity, -1};
     FrameSettings settings = this->frame(61, 35);
-    for (const auto& [scene, mask] : scenes)
+    for (const auto& [scene, mask] : scenes_and_masks())
         for (int channel = 0; channel < 3; ++channel) {
             const auto render = [&](Real intensity, uint32_t effects) {
                 std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(scene);

@@ -57,6 +57,8 @@ class WaitingBranch<Branch<Real, Media, Weight>> {
           media_(branch.ray.media) {}
 
     CISTULA_INLINE void give(Entry& branch) const {
+        static_assert(sizeof *this == sizeof origin_ + sizeof direction_ + sizeof weight_ + sizeof after_ + sizeof key_ +
+                                          sizeof from_solid_ + sizeof from_face_ + sizeof(uint32_t) + sizeof media_);
         branch.ray.origin = origin_;
         branch.ray.direction = direction_;
         branch.ray.from_solid = from_solid_;
