@@ -12,7 +12,8 @@ constexpr int most_side_by_side = 16;
 
 }  // namespace
 
-BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const Strips& strips, Deal deal)
+BlockList::BlockList(const FrameCover& cover, const LightImages& lights, const std::vector<uint32_t>& primitives,
+                     const Strips& strips, Deal deal)
     : rect_(cover.rect()), strips_(strips), deal_(deal) {
     const BlockShape shape = this->shape();
     columns_ = (rect_.width + shape.width - 1) / shape.width;
@@ -35,18 +36,31 @@ BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primi
                 }
             }
     }
-    cover.for_each_lit_cell(shape.width, shape.height, [&](int column, int row) {
-        const int i = index_of(row);
-        if (i >= 0 && i < all) in_view[size_t(i) * size_t(columns_) + size_t(column)] |= light_in_view;
-    });
+    const LitCells lit(lights, tile_width, tile_height);
     listed_.resize(size_t(rows) * size_t(columns_));
+    const size_t count = size_t(std::count(listed_.begin(), listed_.end(), 1));
+    places_.reserve(count);
+    if (lit.knows_mirrors()) lit_mirrors_.reserve(count * size_t(shape.tiles()));
     const int groups = (columns_ + most_side_by_side - 1) / most_side_by_side, width = (columns_ + groups - 1) / groups;
     for (int left = 0; left < columns_; left += width)
         for (int i = 0; i < rows; ++i)
             for (int column = left; column < std::min(left + width, columns_); ++column) {
                 const size_t block = size_t(i) * size_t(columns_) + size_t(column);
-                if (listed_[block]) places_.push_back({uint16_t(column), uint16_t(row_of(i)), in_view[block]});
+                if (listed_[block]) list(column, row_of(i), in_view[block], lit);
             }
+}
+
+void BlockList::list(int column, int row, uint32_t in_view, const LitCells& lights) {
+    const BlockShape shape = this->shape();
+    const int tile_columns = shape.width / tile_width, tile_rows = shape.height / tile_height;
+    for (int y = row * tile_rows; y < (row + 1) * tile_rows; ++y)
+        for (int x = column * tile_columns; x < (column + 1) * tile_columns; ++x) {
+            const bool beyond = x * tile_width >= rect_.width || y * tile_height >= rect_.height;
+            const LitCells::Lit lit = beyond ? LitCells::Lit() : lights.at(x, y);
+            if (lit.straight) in_view |= light_in_view;
+            if (lights.knows_mirrors()) lit_mirrors_.push_back(lit.mirrors);
+        }
+    places_.push_back({uint16_t(column), uint16_t(row), in_view});
 }
 
 }  // namespace cistula

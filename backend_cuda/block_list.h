@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "backend_cuda/block_pixels.h"
-#include "scene/frame_cover.h"
+#include "scene/frame_contents.h"
 
 namespace cistula {
 
@@ -21,10 +21,14 @@ class BlockList {
   public:
     BlockList() = default;
     /// primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all primitives where it has no such number.
-    BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const Strips& strips, Deal deal);
+    BlockList(const FrameCover& cover, const LightImages& lights, const std::vector<uint32_t>& primitives, const Strips& strips,
+              Deal deal);
 
     /// In the order in which they are rendered.
     const std::vector<BlockPlace>& places() const { return places_; }
+    /// By places, shape().tiles() for each: the mirrors that may show a light there, as BruteIntersector::lit_mirrors. Empty:
+    /// nothing is known about them.
+    const std::vector<uint64_t>& lit_mirrors() const { return lit_mirrors_; }
     Deal deal() const { return deal_; }
     BlockShape shape() const { return BlockShape::of(deal_); }
 
@@ -43,6 +47,8 @@ class BlockList {
     }
 
   private:
+    void list(int column, int row, uint32_t in_view, const LitCells& lights);
+
     /// In the rectangle, of the i-th row of blocks of the part.
     int row_of(int i) const {
         const int in_strip = strip_rows / shape().height;
@@ -61,6 +67,7 @@ class BlockList {
     int columns_ = 0;
     std::vector<uint8_t> listed_;  // by rows of blocks
     std::vector<BlockPlace> places_;
+    std::vector<uint64_t> lit_mirrors_;
 };
 
 }  // namespace cistula

@@ -25,6 +25,11 @@ struct BlockShape {
         return deal == Deal::shared ? BlockShape{tile_width, tile_height} : BlockShape{2 * tile_width, 2 * tile_height};
     }
     CISTULA_INLINE constexpr int pixels() const { return width * height; }
+    /// Parts of tile_width x tile_height pixels, row by row.
+    CISTULA_INLINE constexpr int tiles() const { return pixels() / (tile_width * tile_height); }
+    CISTULA_INLINE constexpr int tile_of(int column, int row) const {
+        return row / tile_height * (width / tile_width) + column / tile_width;
+    }
 };
 
 /// Where a block lies in the frame's rectangle, in blocks. Its records come one after the other, in the order of threads.

@@ -144,7 +144,7 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, P
     const size_t branch = queued_branch_bytes<Real>(path_), wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
     if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
     bool room = true;
-    const size_t list_bytes = pixels / (tile_width * tile_height) * sizeof(BlockPlace);
+    const size_t tiles = pixels / (tile_width * tile_height), list_bytes = tiles * (sizeof(BlockPlace) + sizeof(uint64_t));
     for (PartSlot& slot : slots_) {
         room = room && slot.records.try_reserve(bytes) && slot.blocks.try_reserve(list_bytes);
         slot.blocks_copy.reserve(list_bytes);
@@ -163,9 +163,11 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
-    slot.list = BlockList(part.contents->cover, primitives_, part.strips, part.deal);
+    slot.list = BlockList(part.contents->cover, part.contents->lights, primitives_, part.strips, part.deal);
     const std::vector<BlockPlace>& places = slot.list.places();
+    const std::vector<uint64_t>& lit_mirrors = slot.list.lit_mirrors();
     std::copy(places.begin(), places.end(), slot.blocks_copy.as<BlockPlace>());
+    std::copy(lit_mirrors.begin(), lit_mirrors.end(), reinterpret_cast<uint64_t*>(slot.blocks_copy.as<BlockPlace>() + places.size()));
     const PixelRect& rect = part.contents->cover.rect();
     FrameJob job;
     job.frame = part.frame;
@@ -175,13 +177,15 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.width = rect.width;
     job.height = rect.height;
     job.blocks = slot.blocks.as<BlockPlace>();
+    if (!lit_mirrors.empty()) job.lit_mirrors = reinterpret_cast<const uint64_t*>(job.blocks + places.size());
     job.block_count = static_cast<unsigned int>(places.size());
     job.deal = slot.list.deal();
     job.stop = stop_.as<unsigned int>();
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
-    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.as<void>(), slot.blocks_copy.as<void>(), places.size() * sizeof(BlockPlace),
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.as<void>(), slot.blocks_copy.as<void>(),
+                                       places.size() * sizeof(BlockPlace) + lit_mirrors.size() * sizeof(uint64_t),
                                        cudaMemcpyHostToDevice, compute_));
     const StreamGate::Hold held = gate_.hold(compute_);
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));

@@ -51,6 +51,7 @@ struct FrameJob {
     int x = 0, y = 0;           // of the rectangle in the frame
     int width = 0, height = 0;  // of the rectangle
     const BlockPlace* blocks = nullptr;
+    const uint64_t* lit_mirrors = nullptr;  // BlockList::lit_mirrors; null: nothing is known about them
     unsigned int block_count = 0;
     Deal deal = Deal::tiles;
     DeviceTally* tally = nullptr;

@@ -108,7 +108,11 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
     Record& record = room.records[threadIdx.x];
     typename Stack::Room branches;
     Stack stack(branches, job, first + (shares ? unsigned(lane) : threadIdx.x));
-    const Intersector intersector = PathTraits<Real, path>::intersector(scene, block.in_view);
+    const uint64_t lit_mirrors =
+        job.lit_mirrors == nullptr
+            ? ~uint64_t{0}
+            : job.lit_mirrors[blockIdx.x * unsigned(shape.tiles()) + unsigned(shape.tile_of(place.column, place.row))];
+    const Intersector intersector = PathTraits<Real, path>::intersector(scene, block.in_view, lit_mirrors);
     const bool is_inside = column < job.width && row < job.height;
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);

@@ -46,13 +46,15 @@ template <class Real>
 struct PathTraits<Real, DevicePath::plain_loop> {
     using Scene = SmallScene<Real>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
-    __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
+    __device__ static Intersector intersector(const Scene& scene, uint32_t in_view, uint64_t lit_mirrors) {
+        return {scene, in_view, lit_mirrors};
+    }
 };
 template <class Real>
 struct PathTraits<Real, DevicePath::tree> {
     using Scene = SceneView<Real>;
     using Intersector = BvhIntersector<Real, MediaList, Scene>;
-    __device__ static Intersector intersector(const Scene& scene, uint32_t) { return {scene}; }
+    __device__ static Intersector intersector(const Scene& scene, uint32_t, uint64_t) { return {scene}; }
 };
 
 /// Whether the host wants the kernel to end. Past the caches, which would keep what was there first.

@@ -14,7 +14,7 @@
 #include "backend_embree/packet_tracer.h"
 #include "cistula/adaptive_pixel.h"
 #include "cistula/bvh.h"
-#include "scene/frame_cover.h"
+#include "scene/frame_contents.h"
 #include "scene/frame_view.h"
 #include "scene/put_pixels.h"
 
@@ -48,29 +48,26 @@ class StoppableStack {
     const std::atomic<bool>& stop_;
 };
 
-/// Of tiles row by row: where a line from the camera may meet a seen light.
-inline std::vector<uint8_t> lit_tiles(const FrameCover& cover, int tile, int columns, int rows) {
-    std::vector<uint8_t> lit(size_t(columns) * size_t(rows));
-    cover.for_each_lit_cell(tile, tile, [&](int column, int row) { lit[size_t(row) * size_t(columns) + size_t(column)] = 1; });
-    return lit;
-}
+/// Pixels along the side of a cell of LitCells.
+inline constexpr int lit_cell = 8;
 
-/// Looks for no light on lines from the camera where none shows.
+/// Looks for no light where none shows.
 template <class Intersector>
-Intersector in_tile(const Intersector& intersector, [[maybe_unused]] bool lit) {
+Intersector among_lights(const Intersector& intersector, [[maybe_unused]] const LitCells::Lit& lit) {
     Intersector here = intersector;
-    if constexpr (requires { here.in_view; })
-        if (!lit) here.in_view &= ~light_in_view;
+    if constexpr (requires { here.in_view; }) {
+        if (!lit.straight) here.in_view &= ~light_in_view;
+        here.lit_mirrors = lit.mirrors;
+    }
     return here;
 }
 
-/// Calls render(x, y, count, lit, writer, records, rays, flags) for runs of pixels of the film that may show something, in tiles.
+/// Calls render(x, y, count, writer, records, rays, flags) for runs of pixels of the film that may show something, in tiles.
 template <class Render>
 bool for_each_run(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
                   const Render& render) {
     const PixelRect rect = film.rect;
     const int tile = settings.tile, columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
-    const std::vector<uint8_t> lit = lit_tiles(contents.cover, tile, columns, rows);
     std::mutex totals;
     tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
         use_default_rounding();
@@ -84,7 +81,7 @@ bool for_each_run(const FrameSettings& settings, const FrameContents& contents, 
                 contents.cover.for_each_part(y, x0, x1, [&](int begin, int end, bool covered) {
                     PixelRecord* pixels = &film.pixels[size_t(y) * size_t(rect.width) + size_t(begin)];
                     if (covered)
-                        return render(rect.x + begin, rect.y + y, end - begin, lit[size_t(t)] != 0, writer, pixels, rays, flags);
+                        return render(rect.x + begin, rect.y + y, end - begin, writer, pixels, rays, flags);
                     writer.fill(pixels, size_t(end - begin), contents.background.record);
                     contents.background.count(uint64_t(end - begin), rays, flags);
                 });
@@ -103,12 +100,12 @@ bool for_each_run(const FrameSettings& settings, const FrameContents& contents, 
 template <class Render>
 bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
                     const Render& render) {
+    const LitCells lights(contents.lights, lit_cell, lit_cell);
     return for_each_run(settings, contents, film, progress,
-                        [&](int x, int y, int count, bool lit, const PixelWriter&, PixelRecord* pixels, RayCounts& rays,
-                            uint32_t& flags) {
+                        [&](int x, int y, int count, const PixelWriter&, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
                             for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); ++i) {
                                 PixelWork own;
-                                render(x + i, y, lit, pixels[i], own);
+                                render(x + i, y, lights.at((x + i - film.rect.x) / lit_cell, (y - film.rect.y) / lit_cell), pixels[i], own);
                                 rays.add(own.rays);
                                 flags |= own.flags;
                             }
@@ -121,7 +118,7 @@ bool render_packets(const SmallScene<Real>& scene, const FrameView& frame, uint3
                     const FrameContents& contents, Film& film, RenderProgress& progress) {
     return for_each_run(
         settings, contents, film, progress,
-        [&](int x, int y, int count, bool, const PixelWriter& writer, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
+        [&](int x, int y, int count, const PixelWriter& writer, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
             PacketTracer<Real, E> tracer(scene, frame, in_view, progress.stop, rays, flags);
             for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); i += lane_count)
                 tracer.render(x + i, y, std::min(count - i, lane_count), writer, pixels + i);
@@ -134,9 +131,9 @@ bool render_tiles(const typename Intersector::Scene& scene, const FrameView& fra
     if constexpr (fits_packets<E> && std::is_same_v<typename Intersector::Scene, SmallScene<Real>>) {
         return render_packets<Real, E>(scene, frame, intersector.in_view, settings, contents, film, progress);
     } else {
-        return for_each_pixel(settings, contents, film, progress, [&](int x, int y, bool lit, PixelRecord& pixel, PixelWork& own) {
+        return for_each_pixel(settings, contents, film, progress, [&](int x, int y, const LitCells::Lit& lit, PixelRecord& pixel, PixelWork& own) {
             StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-            render_pixel<Real, E>(scene, frame, in_tile(intersector, lit), x, y, SampleRange(), pixel, own, stack);
+            render_pixel<Real, E>(scene, frame, among_lights(intersector, lit), x, y, SampleRange(), pixel, own, stack);
         });
     }
 }
@@ -146,9 +143,9 @@ template <class Real, class E, class Intersector>
 bool render_adaptive_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                            const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
     const bool gradual = shades_gradually(scene);
-    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, bool lit, PixelRecord& pixel, PixelWork& own) {
+    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, const LitCells::Lit& lit, PixelRecord& pixel, PixelWork& own) {
         StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-        render_adaptive_pixel<Real, E>(scene, frame, in_tile(intersector, lit), x, y, gradual, pixel, own, stack);
+        render_adaptive_pixel<Real, E>(scene, frame, among_lights(intersector, lit), x, y, gradual, pixel, own, stack);
     });
 }
 

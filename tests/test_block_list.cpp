@@ -5,6 +5,7 @@
 #include <set>
 
 #include "backend_cuda/block_list.h"
+#include "support_camera.h"
 
 using namespace cistula;
 
@@ -13,14 +14,7 @@ namespace {
 constexpr Deal deals[] = {Deal::shared, Deal::tiles, Deal::interleaved};
 
 FrameView frame_of(const PixelRect& rect) {
-    FrameView frame;
-    frame.camera.position = {0, 0, 0};
-    frame.camera.forward = {0, 0, -1};
-    frame.camera.right = {1, 0, 0};
-    frame.camera.up = {0, 1, 0};
-    frame.width = rect.x + rect.width;
-    frame.height = rect.y + rect.height;
-    return frame;
+    return test::frame_from({0, 0, 0}, 1, rect.x + rect.width, rect.y + rect.height);
 }
 
 /// A triangle and something in a corner.
@@ -54,7 +48,7 @@ TEST(BlockList, EveryPixelIsABlocksOrInAGap) {
                 size_t blocks = 0;
                 for (int first = 0; first < step; ++first) {
                     // As many for each, though the last may lie beyond the rectangle.
-                    const BlockList list(cover, {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
+                    const BlockList list(cover, LightImages(rect), {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
                     const BlockShape shape = list.shape();
                     blocks += list.places().size();
                     for (const BlockPlace& block : list.places()) {
@@ -87,7 +81,7 @@ TEST(BlockList, BlocksThatAreRenderedTogetherLieCloseTogether) {
     const PixelRect rect{0, 0, 3840, 2160};
     FrameCover cover(rect);
     cover.add_all(FrameCover::Outline::all);
-    const BlockList list(cover, {1u, 2u}, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    const BlockList list(cover, LightImages(rect), {1u, 2u}, {0, 1, rect.height / strip_rows}, Deal::tiles);
     ASSERT_EQ(list.places().size(), size_t(3840 / 16 * (2160 / 8)));
     EXPECT_EQ(list.places()[15].column, 15);
     EXPECT_EQ(list.places()[16].column, 0);
@@ -99,7 +93,7 @@ TEST(BlockList, BlocksKnowWhatMayShow) {
     const PixelRect rect{0, 0, 640, 368};
     const FrameCover cover = cover_of(rect);
     for (const Deal deal : deals) {
-        const BlockList list(cover, {4u}, {0, 1, rect.height / strip_rows}, deal);
+        const BlockList list(cover, LightImages(rect), {4u}, {0, 1, rect.height / strip_rows}, deal);
         size_t known = 0;
         for (const BlockPlace& block : list.places()) {
             EXPECT_TRUE(block.in_view == 4u || block.in_view == ~light_in_view) << block.in_view;  // hull 1 has no number
@@ -110,34 +104,65 @@ TEST(BlockList, BlocksKnowWhatMayShow) {
     }
 }
 
+/// Images of lights, two of them in mirrors.
+LightImages lights_in(const PixelRect& rect) {
+    LightImages lights(rect);
+    lights.know_mirrors();
+    lights.add({{160, 80, 9, 7}, LightImage::straight});
+    lights.add({{100, 100, 40, 30}, LightImage::straight});
+    lights.add({{130, 90, 60, 9}, 3});
+    lights.add({{170, 70, 3, 40}, MirrorNumbers::most - 1});
+    return lights;
+}
+
 TEST(BlockList, BlocksKnowWhereLightsMayShow) {
     const PixelRect rect{7, 5, 333, 171};
-    FrameCover cover = cover_of(rect);
-    cover.add_light({{{0, 0, -1}}, 0.02}, 1, frame_of(rect));
-    cover.add_light({{{-0.3, -0.2, -1}}, 0.1}, 1, frame_of(rect));
-    cover.add_light({{{0, 0, 1}}, 0.1}, 1, frame_of(rect));  // behind the camera
-    cover.add_light({{{5, 0, -1}}, 0.1}, 1, frame_of(rect));  // beside the picture
-    ASSERT_EQ(cover.lights().size(), 2u);
+    const FrameCover cover = cover_of(rect);
+    const LightImages lights = lights_in(rect);
     const int strips = (rect.height + strip_rows - 1) / strip_rows;
     for (const Deal deal : deals)
         for (const int step : {1, 3}) {
-            size_t lit = 0, dark = 0;
+            size_t lit = 0, dark = 0, mirrored = 0, unmirrored = 0;
             for (int first = 0; first < step; ++first) {
-                const BlockList list(cover, {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
+                const BlockList list(cover, lights, {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
                 const BlockShape shape = list.shape();
-                for (const BlockPlace& block : list.places()) {
-                    const int left = block.column * shape.width, top = block.row * shape.height;
-                    const bool meets = std::ranges::any_of(cover.lights(), [&](const PixelRect& light) {
-                        return left < light.x + light.width && left + shape.width > light.x && top < light.y + light.height &&
-                               top + shape.height > light.y;
-                    });
-                    EXPECT_EQ((block.in_view & light_in_view) != 0, meets);
-                    ++(meets ? lit : dark);
+                ASSERT_EQ(list.lit_mirrors().size(), list.places().size() * size_t(shape.tiles()));
+                for (size_t b = 0; b < list.places().size(); ++b) {
+                    const BlockPlace& block = list.places()[b];
+                    const auto meets = [&](int x, int y, int width, int height, uint32_t mirror) {
+                        const int left = block.column * shape.width + x, top = block.row * shape.height + y;
+                        return std::ranges::any_of(lights.images(), [&](const LightImage& image) {
+                            return image.mirror == mirror && left < image.rect.x + image.rect.width && left + width > image.rect.x &&
+                                   top < image.rect.y + image.rect.height && top + height > image.rect.y;
+                        });
+                    };
+                    const bool is_lit = (block.in_view & light_in_view) != 0;
+                    EXPECT_EQ(is_lit, meets(0, 0, shape.width, shape.height, LightImage::straight));
+                    ++(is_lit ? lit : dark);
+                    for (int i = 0; i < shape.pixels(); ++i) {
+                        const PixelPlace place = place_in_block(deal, i);
+                        const int tile = shape.tile_of(place.column, place.row);
+                        ASSERT_LT(tile, shape.tiles());
+                        uint64_t expected = 0;
+                        for (uint32_t mirror = 0; mirror < MirrorNumbers::most; ++mirror)
+                            expected |= uint64_t{meets(place.column / tile_width * tile_width, place.row / tile_height * tile_height,
+                                                       tile_width, tile_height, mirror)}
+                                        << mirror;
+                        EXPECT_EQ(list.lit_mirrors()[b * size_t(shape.tiles()) + size_t(tile)], expected);
+                        ++(expected != 0 ? mirrored : unmirrored);
+                    }
                 }
             }
             EXPECT_GT(lit, 2u);
             EXPECT_GT(dark, lit);
+            EXPECT_GT(mirrored, 100u);
+            EXPECT_GT(unmirrored, mirrored);
         }
+}
+
+TEST(BlockList, NothingIsKnownOfMirrorsThatNobodyAsks) {
+    const PixelRect rect{0, 0, 64, 32};
+    EXPECT_TRUE(BlockList(cover_of(rect), LightImages(rect), {1u, 8u}, {0, 1, 4}, Deal::tiles).lit_mirrors().empty());
 }
 
 }  // namespace

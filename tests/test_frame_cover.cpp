@@ -2,14 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 
+#include "cistula/adaptive_pixel.h"
 #include "cistula/bvh.h"
 #include "golden.h"
-#include "scene/frame_cover.h"
+#include "scene/frame_contents.h"
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
+#include "support_camera.h"
 #include "support_scene.h"
 
 using namespace cistula;
@@ -17,10 +17,6 @@ using namespace cistula;
 namespace {
 
 const std::string source = CISTULA_SOURCE_DIR;
-
-bool same_bytes(const PixelRecord& a, const PixelRecord& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-}
 
 struct Share {
     size_t left_out = 0, background = 0, all = 0;
@@ -34,11 +30,11 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
     FrameView frame = frame_view(scene, camera, settings);
     camera_solids(view, intersector, frame.camera.position, frame.camera_media);
     const PixelRect& rect = settings.crop;
-    const auto [cover, background] = frame_contents(scene, frame, settings);
+    const FrameContents contents = frame_contents(scene, frame, settings);
     const bool gradual = shades_gradually(view);
     size_t wrong = 0;
     for (int y = 0; y < rect.height; ++y)
-        cover.for_each_part(y, 0, rect.width, [&, &background = background](int begin, int end, bool covered) {
+        contents.cover.for_each_part(y, 0, rect.width, [&](int begin, int end, bool covered) {
             for (int x = begin; x < end; ++x) {
                 PixelRecord record;
                 PixelWork work;
@@ -48,27 +44,14 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
                     render_adaptive_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, gradual, record, work, stack);
                 else
                     render_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, SampleRange(), record, work, stack);
-                const bool is_background = same_bytes(record, background.record);
+                const bool is_background = test::same_bytes(record, contents.background.record);
                 share.all += 1;
                 share.background += is_background;
                 share.left_out += !covered;
-                if (!covered) wrong += !is_background || work.rays.total() != background.work.rays.total();
+                if (!covered) wrong += !is_background || work.rays.total() != contents.background.work.rays.total();
             }
         });
     EXPECT_EQ(wrong, 0u) << what;
-}
-
-/// Cameras of all kinds: far and near, wide and narrow, in the middle of things and turned away from them.
-CameraDescription random_camera(test::Random& random, const CameraDescription& like) {
-    constexpr double size = 5;  // of most scenes
-    CameraDescription camera = like;
-    camera.position_path.reset();
-    camera.target_path.reset();
-    const double distance = size * std::exp(random.between(std::log(0.01), std::log(300.0)));
-    camera.position = random.in_cube(distance);
-    camera.target = random.below(3) != 0 ? random.in_cube(0.5 * size) : camera.position + random.in_cube(1.0);
-    camera.field_of_view = random.below(2) != 0 ? random.between(5, 175) : std::exp(random.between(std::log(0.5), std::log(90.0)));
-    return camera;
 }
 
 /// Of a small frame.
@@ -99,7 +82,7 @@ TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
         settings.crop = {5, 3, 51, 30};
         for (int i = 0; i < 6; ++i) {
             settings.supersample = i % 2 + 1;
-            const CameraDescription camera = random_camera(random, description.camera);
+            const CameraDescription camera = test::random_camera(random, description.camera);
             expect_sound(*scene, view, camera_at(camera, 0), settings, what + ", camera " + std::to_string(i), share);
         }
         settings.supersample = 1;
@@ -118,70 +101,6 @@ TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
     }
     // All in all little background is rendered.
     EXPECT_GT(share.left_out, share.background / 2);
-}
-
-/// Looks for lights nowhere on the lines from the camera.
-template <class Real>
-struct Unlit : BvhIntersector<Real> {
-    bool passes_lights(const Ray<Real>& ray) const { return ray.from_solid == no_solid; }
-};
-
-TYPED_TEST(Cover, LightsShowWhereItTells) {
-    test::Random random(20);
-    size_t apart = 0, elsewhere = 0, wrong = 0, all = 0;
-    const auto check = [&](const SceneDescription& description) {
-        const auto scene = compile_scene<TypeParam>(description);
-        build_primitive_tree(*scene);
-        const SceneView<TypeParam> view = scene->view();
-        const BvhIntersector<TypeParam> whole{view};
-        const Unlit<TypeParam> unlit{{view}};
-        FrameSettings settings;
-        settings.set_size(64, 36);
-        settings.crop = {5, 3, 51, 30};
-        settings.depth = 4;
-        for (int i = 0; i < 6; ++i) {
-            const CameraDescription camera = i == 0 ? description.camera : random_camera(random, description.camera);
-            FrameView frame = frame_view(*scene, camera_at(camera, 0), settings);
-            camera_solids(view, whole, frame.camera.position, frame.camera_media);
-            const FrameCover cover = frame_contents(*scene, frame, settings).cover;
-            for (int y = 0; y < settings.crop.height; ++y)
-                for (int x = 0; x < settings.crop.width; ++x) {
-                    const auto rendered = [&](const auto& intersector) {
-                        using E = Effects<all_effects>;
-                        PixelRecord record;
-                        PixelWork work;
-                        StackOf<TypeParam, E, MediaList> stack;
-                        render_pixel<TypeParam, E>(view, frame, intersector, settings.crop.x + x, settings.crop.y + y, SampleRange(),
-                                                   record, work, stack);
-                        return record;
-                    };
-                    const bool differs = !same_bytes(rendered(whole), rendered(unlit));
-                    const bool told = std::ranges::any_of(cover.lights(), [&](const PixelRect& light) {
-                        return x >= light.x && x < light.x + light.width && y >= light.y && y < light.y + light.height;
-                    });
-                    ++all;
-                    apart += differs;
-                    elsewhere += !told;
-                    wrong += differs && !told;
-                }
-        }
-    };
-    SceneDescription lamps = read_scene(source + "/scenes/benchmark.json");
-    test::add_edge_lights(lamps, 3);
-    check(lamps);
-    test::add_seen_lights(lamps, 30);
-    check(lamps);
-    for (uint64_t seed = 0; seed < generated_scene_count; seed += 8) check(generated_scene(seed, source + "/scenes"));
-    EXPECT_EQ(wrong, 0u);
-    EXPECT_GT(apart, all / 200);
-    EXPECT_GT(elsewhere, all / 2);
-}
-
-TYPED_TEST(Cover, ManyLightsMayShowAnywhere) {
-    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
-    test::add_seen_lights(description, 1100);
-    const std::vector<PixelRect> anywhere = {{0, 0, 40, 30}};
-    EXPECT_EQ(cover_of<TypeParam>(description).lights(), anywhere);
 }
 
 TYPED_TEST(Cover, IsTightAroundConvexThings) {
@@ -227,38 +146,11 @@ TYPED_TEST(Cover, IsEmptyWhereAllIsBehindTheCamera) {
     for (int y = 0; y < 30; ++y) EXPECT_TRUE(cover.runs(y).empty()) << y;
 }
 
-/// From `position` along -z.
-FrameView frame_from(const glm::dvec3& position, double tangent, int width, int height) {
-    FrameView frame;
-    frame.camera.position = position;
-    frame.camera.forward = {0, 0, -1};
-    frame.camera.right = {1, 0, 0};
-    frame.camera.up = {0, 1, 0};
-    frame.camera.tan_half_width = tangent;
-    frame.width = width;
-    frame.height = height;
-    return frame;
-}
-
-TEST(FrameCover, LightsFarBesideThePictureHaveNoRectangle) {
-    const FrameView frame = frame_from({0, 0, 0}, 1e-6, 20000, 10000);
-    const PixelRect rect{100, 50, 400, 300};
-    FrameCover cover(rect);
-    for (const double side : {-1.0, 1.0}) {  // by more pixels than integers count
-        cover.add_light({{{side, 0, -1e-4}}, 1e-6}, 1, frame);
-        cover.add_light({{{0, side, -1e-4}}, 1e-6}, 1, frame);
-    }
-    EXPECT_TRUE(cover.lights().empty());
-    cover.add_light({{{0, 0, -1}}, 1e-3}, 1, frame);  // larger than the picture
-    const std::vector<PixelRect> anywhere = {{0, 0, 400, 300}};
-    EXPECT_EQ(cover.lights(), anywhere);
-}
-
 TEST(FrameCover, PartsOfARowAreInOrderAndWhole) {
     Hull left, right;
     left.points = {{-0.5, -0.1, 0}, {-0.4, 0.1, 0}, {-0.4, -0.1, 0}};
     right.points = {{0.4, -0.1, 0}, {0.5, 0.1, 0}, {0.5, -0.1, 0}};
-    const FrameView frame = frame_from({0, 0, 2}, 0.5, 100, 50);
+    const FrameView frame = test::frame_from({0, 0, 2}, 0.5, 100, 50);
     FrameCover cover({0, 0, 100, 50});
     cover.add(0, right, 1, frame);
     cover.add(1, left, 1, frame);

@@ -41,6 +41,8 @@ struct BruteIntersector {
     /// The primitives of a SmallScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of the picture, as
     /// long as they go straight on; and light_in_view if they can meet any.
     uint32_t in_view = ~0u;
+    /// Of a SmallScene: the mirrors, bits by MirrorNumbers, from which such rays may go on to a seen light there.
+    uint64_t lit_mirrors = ~uint64_t{0};
 
     /// The least (t, key) after ray.after that the primitive tests accept.
     template <class E = Effects<all_effects>>
@@ -55,6 +57,13 @@ struct BruteIntersector {
 
     /// Whether the ray surely meets no seen light.
     CISTULA_INLINE bool passes_lights(const Ray<Real, Media>& ray) const { return (ahead_of(ray) & light_in_view) == 0; }
+    /// Whether the line on which a face sends such a ray back surely meets none, however far it goes on straight.
+    CISTULA_INLINE bool mirrors_no_light([[maybe_unused]] uint32_t solid, [[maybe_unused]] uint32_t face) const {
+        if constexpr (requires { scene.mirrors; })
+            return scene.mirrors.misses(lit_mirrors, solid, face);
+        else
+            return false;
+    }
 
     /// The share of the light's intensity that reaches the ray's origin.
     template <class E>

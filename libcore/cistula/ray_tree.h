@@ -359,6 +359,10 @@ class RayTree {
         child.mirrored = !goes_through;
         if (!goes_through) {
             spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
+            if constexpr (lines_go_on<E> && E::has(effect_visible_lights) &&
+                          requires { intersector_.mirrors_no_light(0u, 0u); })
+                child.dark = parent.ray.from_solid == no_solid &&
+                             intersector_.mirrors_no_light(child.ray.from_solid, child.ray.from_face);
         } else if (shares.bends) {
             spawn(child.ray, far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
         } else {

@@ -55,6 +55,21 @@ struct ShadowPlan {
     }
 };
 
+/// Numbers of flat faces that mirror: bits of a word (scene/light_images.h).
+struct MirrorNumbers {
+    static constexpr uint32_t most = 64, none = 1u << 31;
+
+    uint32_t first[ShadowPlan::solids];  // the face's number less its number in keys; none: that solid's have no numbers
+
+    /// `most` or more: it has no number.
+    CISTULA_INLINE uint32_t of(uint32_t solid, uint32_t face) const { return first[solid] + face; }
+    /// Whether the face has a bit, and it is 0.
+    CISTULA_INLINE bool misses(uint64_t bits, uint32_t solid, uint32_t face) const {
+        const uint32_t number = of(solid, face);
+        return number < most && (bits >> number & 1u) == 0;
+    }
+};
+
 template <class Real>
 struct SmallScene {
     using Scalar = Real;
@@ -69,6 +84,7 @@ struct SmallScene {
     InlineSpan<Light<Real>, ShadowPlan::lights> lights;
     KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
     ShadowPlan plan;
+    MirrorNumbers mirrors;
     InlineSpan<Texture, 8> textures;
     // Elsewhere, as in the view that it was made of:
     Span<SlabGroup<Real>> slab_groups;
@@ -111,6 +127,7 @@ struct SmallScene {
         });
         find_shares();
         plan.clear(convex.size, clusters.size);
+        for (uint32_t& first : mirrors.first) first = MirrorNumbers::none;
         background = here.background;
         bound = here.bound;
         largest_bound = here.largest_bound;

@@ -6,10 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "cistula/adaptive_pixel.h"
-#include "scene/compiled_scene.h"
+#include "cistula/pixel.h"
 #include "scene/film.h"
-#include "scene/renderer.h"
+#include "scene/hull.h"
 
 namespace cistula {
 
@@ -47,18 +46,6 @@ class FrameCover {
     };
     const std::vector<Outline>& outlines() const { return outlines_; }
 
-    /// Around each seen light, in the rectangle; where they are many or unknown, the rectangle itself.
-    const std::vector<PixelRect>& lights() const { return lights_; }
-
-    /// visit(column, row) for the cells of that size, counted from the rectangle's top left corner, that a light's rectangle meets;
-    /// for some more than once.
-    template <class Visit>
-    void for_each_lit_cell(int width, int height, const Visit& visit) const {
-        for (const PixelRect& light : lights_)
-            for (int row = light.y / height; row * height < light.y + light.height; ++row)
-                for (int column = light.x / width; column * width < light.x + light.width; ++column) visit(column, row);
-    }
-
     /// visit(begin, end, covered) for all columns from `from` to `to` of a row, from left to right.
     template <class Visit>
     void for_each_part(int row, int from, int to, const Visit& visit) const {
@@ -75,8 +62,6 @@ class FrameCover {
     void add_all(size_t number);
     /// Of hull `number`; `extent`: the scene's M.
     void add(size_t number, const Hull& hull, double extent, const FrameView& frame);
-    void add_light(const Hull& ball, double extent, const FrameView& frame);
-    void add_all_lights();
 
   private:
     struct Point {
@@ -89,28 +74,6 @@ class FrameCover {
     PixelRect rect_;
     std::vector<std::vector<PixelRun>> bands_;
     std::vector<Outline> outlines_;
-    std::vector<PixelRect> lights_;
 };
-
-/// What rendering leaves of a pixel that shows background alone.
-struct BackgroundPixel {
-    PixelRecord record;
-    PixelWork work;
-
-    /// Adds what so many of them count.
-    void count(uint64_t pixels, RayCounts& rays, uint32_t& flags) const {
-        if (pixels == 0) return;
-        rays.primary += pixels * work.rays.primary;
-        flags |= work.flags;
-    }
-};
-
-/// Where a frame may show something, and what is everywhere else. `cover` is over settings.crop.
-struct FrameContents {
-    FrameCover cover;
-    BackgroundPixel background;
-};
-template <class Real>
-FrameContents frame_contents(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings);
 
 }  // namespace cistula

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "scene/mirror_planes.h"
 #include "scene/solid_planes.h"
 
 namespace cistula {
@@ -117,6 +118,7 @@ std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& here, const
     auto small = std::make_unique<SmallScene<Real>>();
     if (!small->assign(here, there)) return nullptr;
     plan_shadows(here, small->plan);
+    small->mirrors = number_mirrors(here);
     return small;
 }
 

@@ -1,0 +1,33 @@
+// Where a frame may show something, where lights may show there, and what is everywhere else.
+#pragma once
+
+#include "scene/compiled_scene.h"
+#include "scene/frame_cover.h"
+#include "scene/light_images.h"
+#include "scene/renderer.h"
+
+namespace cistula {
+
+/// What rendering leaves of a pixel that shows background alone.
+struct BackgroundPixel {
+    PixelRecord record;
+    PixelWork work;
+
+    /// Adds what so many of them count.
+    void count(uint64_t pixels, RayCounts& rays, uint32_t& flags) const {
+        if (pixels == 0) return;
+        rays.primary += pixels * work.rays.primary;
+        flags |= work.flags;
+    }
+};
+
+/// `cover` and `lights` are over settings.crop.
+struct FrameContents {
+    FrameCover cover;
+    LightImages lights;
+    BackgroundPixel background;
+};
+template <class Real>
+FrameContents frame_contents(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings);
+
+}  // namespace cistula

@@ -1,0 +1,161 @@
+#include "scene/light_images.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/frame_cover.h"
+#include "scene/frame_view.h"
+#include "scene/mirror_planes.h"
+#include "scene/picture_margins.h"
+
+namespace cistula {
+namespace {
+
+/// More lights are looked for everywhere.
+constexpr size_t most_lights = 1024;
+/// By so much of M a line that was mirrored once may be off, and more: its direction by a few u, its start by some u M.
+constexpr double mirrored_share = 0x1p-14;
+
+/// The tangents at which a circle around (x, z) begins and ends, for an eye at the origin that looks along z.
+struct Range {
+    double low, high;
+};
+Range range_of(double x, double z, double radius) {
+    constexpr double infinity = RealTraits<double>::infinity;
+    const double square = x * x + z * z - radius * radius;
+    if (!(square > 0)) return {-infinity, infinity};
+    const double reach = std::sqrt(square);  // to where lines touch it
+    const double z_low = z * reach + x * radius, z_high = z * reach - x * radius;
+    return {z_low > 0 ? (x * reach - z * radius) / z_low : -infinity, z_high > 0 ? (x * reach + z * radius) / z_high : infinity};
+}
+
+/// First and last of the whole pixels from `low` to `high`, within [begin, end].
+void clip(double low, double high, int begin, int end, int& first, int& size) {
+    const auto inside = [&](double value) { return std::clamp(value, double(begin), double(end)); };  // whatever fits no int
+    first = int(std::floor(inside(low - picture_margin)));
+    size = int(std::ceil(inside(high + picture_margin))) - first;
+}
+
+Camera mirrored(const Camera& camera, const MirrorPlane& mirror) {
+    const auto turned = [&](const Vec3<double>& v) { return v - 2 * dot(mirror.normal, v) * mirror.normal; };
+    return {turned(camera.position) + 2 * mirror.offset * mirror.normal, turned(camera.forward), turned(camera.right),
+            turned(camera.up), camera.tan_half_width};
+}
+
+/// The pixels around a hull's outline.
+PixelRect window_of(const FrameCover& cover, size_t hull) {
+    const PixelRect& rect = cover.rect();
+    for (const FrameCover::Outline& outline : cover.outlines()) {
+        if (outline.hull != hull) continue;
+        int left = rect.width, right = 0, top = rect.height, bottom = 0;
+        for (size_t i = 0; i < outline.runs.size(); ++i) {
+            const PixelRun& run = outline.runs[i];
+            const int row = (outline.first_band + int(i)) * FrameCover::band_rows;
+            if (run.begin >= run.end) continue;
+            left = std::min(left, run.begin), right = std::max(right, run.end);
+            top = std::min(top, row), bottom = std::min(row + FrameCover::band_rows, rect.height);
+        }
+        return {left, top, std::max(right - left, 0), std::max(bottom - top, 0)};
+    }
+    return {0, 0, rect.width, rect.height};
+}
+
+/// Whether the mask that runs asks what mirrors show.
+bool asks_mirrors(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
+    if (settings.adaptive()) return false;
+    const uint32_t mask = effect_masks[mask_to_run(effects, settings, frame)];
+    return (mask & effect_visible_lights) != 0 && (mask & effect_refraction) == 0;
+}
+
+}  // namespace
+
+LitCells::LitCells(const LightImages& lights, int width, int height)
+    : columns_((lights.rect().width + width - 1) / width),
+      straight_(size_t(columns_) * size_t((lights.rect().height + height - 1) / height)),
+      mirrors_(lights.knows_mirrors() ? straight_.size() : 0) {
+    for (const auto& [rect, mirror] : lights.images()) {
+        const int first = rect.x / width, end = (rect.x + rect.width + width - 1) / width;
+        const uint64_t bit = uint64_t{1} << mirror % MirrorNumbers::most;
+        for (int row = rect.y / height; row * height < rect.y + rect.height; ++row) {
+            const size_t begin = size_t(row) * size_t(columns_);
+            if (mirror == LightImage::straight)
+                for (int column = first; column < end; ++column) straight_[begin + size_t(column)] = 1;
+            else
+                for (int column = first; column < end; ++column) mirrors_[begin + size_t(column)] |= bit;
+        }
+    }
+}
+
+LightView::LightView(const FrameView& frame, const Camera& camera, const PixelRect& rect, const PixelRect& window)
+    : camera_(camera), window_(window) {
+    pixels_ = frame.width / (2 * camera.tan_half_width);
+    middle_x_ = frame.width / 2.0 - rect.x;
+    middle_y_ = frame.height / 2.0 - rect.y;
+    const auto side = [&](double pixels, double& tangent, double& at) {
+        tangent = pixels / pixels_;
+        at = std::sqrt(1 + tangent * tangent);
+    };
+    side(window.x - picture_margin - middle_x_, left_, at_left_);
+    side(window.x + window.width + picture_margin - middle_x_, right_, at_right_);
+    side(middle_y_ - (window.y + window.height + picture_margin), bottom_, at_bottom_);
+    side(middle_y_ - (window.y - picture_margin), top_, at_top_);
+}
+
+PixelRect LightView::image_of(const Vec3<double>& center, double radius) const {
+    const Vec3<double> there = center - camera_.position;
+    const double x = dot(there, camera_.right), y = dot(there, camera_.up), z = dot(there, camera_.forward);
+    // Behind the eye, or on the outer side of one of the planes through it and a side of the window.
+    if (z < -radius || x - left_ * z < -radius * at_left_ || right_ * z - x < -radius * at_right_ ||
+        y - bottom_ * z < -radius * at_bottom_ || top_ * z - y < -radius * at_top_)
+        return {};
+    const Range across = range_of(x, z, radius), upward = range_of(y, z, radius);
+    PixelRect image;
+    clip(middle_x_ + across.low * pixels_, middle_x_ + across.high * pixels_, window_.x, window_.x + window_.width, image.x,
+         image.width);
+    clip(middle_y_ - upward.high * pixels_, middle_y_ - upward.low * pixels_, window_.y, window_.y + window_.height, image.y,
+         image.height);
+    return image.width > 0 && image.height > 0 ? image : PixelRect();
+}
+
+template <class Real>
+LightImages light_images(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings,
+                         const FrameCover& cover) {
+    LightImages images(cover.rect());
+    const double extent = double(scene.extent);
+    if (scene.seen_lights.empty()) return images;
+    if (scene.seen_lights.size() > most_lights || !margins_suffice(frame, extent)) {
+        images.add_everywhere(LightImage::straight);
+        return images;
+    }
+    const double growth = picture_growth(frame, extent);
+    const PixelRect all = {0, 0, cover.rect().width, cover.rect().height};
+    const LightView straight(frame, frame.camera, cover.rect(), all);
+    for (const SeenLight<Real>& light : scene.seen_lights)
+        if (const PixelRect image = straight.image_of(Vec3<double>(light.center), double(light.radius) + growth); image.width > 0)
+            images.add({image, LightImage::straight});
+    if (!asks_mirrors(scene.effects, settings, frame)) return images;
+    const std::vector<MirrorPlane> planes = mirror_planes(scene.view());
+    if (!planes.empty()) images.know_mirrors();
+    for (const MirrorPlane& mirror : planes) {
+        const double side = dot(mirror.normal, frame.camera.position) - mirror.offset;
+        const double off = growth + mirrored_share * extent + 2 * mirror.thickness + mirror.shift;
+        if (!(magnitude(side) > off)) {  // nobody knows which lights are before it
+            images.add_everywhere(mirror.number);
+            continue;
+        }
+        const double toward = side > 0 ? 1 : -1;  // the camera's side, from which lines come and to which they return
+        const LightView view(frame, mirrored(frame.camera, mirror), cover.rect(), window_of(cover, mirror.solid));
+        for (const SeenLight<Real>& light : scene.seen_lights) {
+            const Vec3<double> center(light.center);
+            const double reach = double(light.radius) + off;
+            if (toward * (dot(mirror.normal, center) - mirror.offset) < -reach) continue;
+            if (const PixelRect image = view.image_of(center, reach); image.width > 0) images.add({image, mirror.number});
+        }
+    }
+    return images;
+}
+
+template LightImages light_images(const CompiledScene<float>&, const FrameView&, const FrameSettings&, const FrameCover&);
+template LightImages light_images(const CompiledScene<double>&, const FrameView&, const FrameSettings&, const FrameCover&);
+
+}  // namespace cistula

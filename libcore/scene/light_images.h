@@ -1,0 +1,95 @@
+// Where in a picture lines from the camera may come upon seen lights: straight on, or where the first mirror that they meet
+// sends them. What a plane mirror shows is what a camera beyond it would see.
+#pragma once
+
+#include <vector>
+
+#include "cistula/small_scene.h"
+#include "scene/compiled_scene.h"
+#include "scene/film.h"
+#include "scene/renderer.h"
+
+namespace cistula {
+
+class FrameCover;
+struct FrameView;
+
+/// Pixels of a frame's rectangle around the image of a light.
+struct LightImage {
+    static constexpr uint32_t straight = MirrorNumbers::most;
+
+    PixelRect rect;
+    uint32_t mirror = straight;  // its number, or straight
+
+    bool operator==(const LightImage&) const = default;
+};
+
+/// Conservative: lights are grown by far more than rounding moves a ray or a face.
+class LightImages {
+  public:
+    /// Without lights.
+    explicit LightImages(const PixelRect& rect) : rect_(rect) {}
+
+    const std::vector<LightImage>& images() const { return images_; }
+    /// False: only straight lines are told about.
+    bool knows_mirrors() const { return knows_mirrors_; }
+
+    const PixelRect& rect() const { return rect_; }
+
+    void add(const LightImage& image) { images_.push_back(image); }
+    /// The rectangle itself.
+    void add_everywhere(uint32_t mirror) { add({{0, 0, rect_.width, rect_.height}, mirror}); }
+    /// From now on mirrors without images are known to show no light.
+    void know_mirrors() { knows_mirrors_ = true; }
+
+  private:
+    PixelRect rect_;
+    std::vector<LightImage> images_;
+    bool knows_mirrors_ = false;
+};
+
+/// What the images meet, by cells of so many pixels from the rectangle's top left corner.
+class LitCells {
+  public:
+    struct Lit {
+        bool straight;     // lines from the camera may meet a light
+        uint64_t mirrors;  // bits by MirrorNumbers: or where they are mirrored first
+    };
+
+    LitCells(const LightImages& lights, int width, int height);
+
+    bool knows_mirrors() const { return !mirrors_.empty(); }
+    Lit at(int column, int row) const {
+        const size_t i = size_t(row) * size_t(columns_) + size_t(column);
+        return {straight_[i] != 0, mirrors_.empty() ? ~uint64_t{0} : mirrors_[i]};
+    }
+
+  private:
+    int columns_;
+    std::vector<uint8_t> straight_;
+    std::vector<uint64_t> mirrors_;  // empty: nothing is known about them
+};
+
+/// A camera, or its image behind a mirror, that looks through a window of the picture: pixels from the top left corner of
+/// a frame's rectangle.
+class LightView {
+  public:
+    LightView(const FrameView& frame, const Camera& camera, const PixelRect& rect, const PixelRect& window);
+
+    /// The pixels of the window around a ball; none if it is not seen there.
+    PixelRect image_of(const Vec3<double>& center, double radius) const;
+
+  private:
+    Camera camera_;
+    PixelRect window_;
+    double middle_x_, middle_y_, pixels_;         // where forward meets the picture; pixels to tangent 1
+    double left_, right_, bottom_, top_;          // tangents
+    double at_left_, at_right_, at_bottom_, at_top_;  // lengths of the directions with these
+};
+
+/// Of a frame whose cover is known. Mirrors are told about where the mask that runs has use for it.
+template <class Real>
+LightImages light_images(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings,
+                         const FrameCover& cover);
+
+}  // namespace cistula

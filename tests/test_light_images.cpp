@@ -1,0 +1,236 @@
+// Lines from the camera meet seen lights only where their images are, straight on or mirrored once.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "cistula/bvh.h"
+#include "scene/frame_contents.h"
+#include "scene/frame_view.h"
+#include "scene/generated_scene.h"
+#include "scene/read_scene.h"
+#include "scene/shadow_plan.h"
+#include "scene/without_effect.h"
+#include "support_camera.h"
+#include "support_scene.h"
+
+using namespace cistula;
+
+namespace {
+
+const std::string source = CISTULA_SOURCE_DIR;
+
+bool holds(const PixelRect& rect, int x, int y) {
+    return x >= rect.x && x < rect.x + rect.width && y >= rect.y && y < rect.y + rect.height;
+}
+
+FrameSettings small_frame() {
+    FrameSettings settings;
+    settings.set_size(64, 36);
+    settings.crop = {5, 3, 51, 30};
+    settings.depth = 4;
+    return settings;
+}
+
+template <class Real, class E, class Intersector>
+PixelRecord rendered(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector, int x, int y) {
+    PixelRecord record;
+    PixelWork work;
+    StackOf<Real, E, typename Intersector::Media> stack;
+    render_pixel<Real, E>(scene, frame, intersector, x, y, SampleRange(), record, work, stack);
+    return record;
+}
+
+template <class Real>
+LightImages images_of(const SceneDescription& description) {
+    const auto scene = compile_scene<Real>(description);
+    FrameSettings settings;
+    settings.set_size(40, 30);
+    return frame_contents(*scene, frame_view(*scene, camera_at(description.camera, 0), settings), settings).lights;
+}
+
+/// Benchmark.json among few lights and many.
+std::vector<SceneDescription> lit_benchmarks() {
+    SceneDescription edges = read_scene(source + "/scenes/benchmark.json");
+    test::add_edge_lights(edges, 3);
+    SceneDescription more = edges;
+    test::add_seen_lights(more, 30);
+    return {edges, more};
+}
+
+template <class Real>
+class LightsIn : public ::testing::Test {};
+using Reals = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(LightsIn, Reals);
+
+/// Looks for lights nowhere on the lines from the camera.
+template <class Real>
+struct Unlit : BvhIntersector<Real> {
+    bool passes_lights(const Ray<Real>& ray) const { return ray.from_solid == no_solid; }
+};
+
+TYPED_TEST(LightsIn, ThePictureShowWhereTheirImagesAre) {
+    test::Random random(20);
+    size_t apart = 0, elsewhere = 0, wrong = 0, all = 0;
+    const auto check = [&](const SceneDescription& description) {
+        const auto scene = compile_scene<TypeParam>(description);
+        build_primitive_tree(*scene);
+        const SceneView<TypeParam> view = scene->view();
+        const BvhIntersector<TypeParam> whole{view};
+        const Unlit<TypeParam> unlit{{view}};
+        const FrameSettings settings = small_frame();
+        for (int i = 0; i < 6; ++i) {
+            const CameraDescription camera = i == 0 ? description.camera : test::random_camera(random, description.camera);
+            FrameView frame = frame_view(*scene, camera_at(camera, 0), settings);
+            camera_solids(view, whole, frame.camera.position, frame.camera_media);
+            const LightImages lights = frame_contents(*scene, frame, settings).lights;
+            for (int y = 0; y < settings.crop.height; ++y)
+                for (int x = 0; x < settings.crop.width; ++x) {
+                    using E = Effects<all_effects>;
+                    const int px = settings.crop.x + x, py = settings.crop.y + y;
+                    const bool differs = !test::same_bytes(rendered<TypeParam, E>(view, frame, whole, px, py),
+                                                           rendered<TypeParam, E>(view, frame, unlit, px, py));
+                    const bool told = std::ranges::any_of(lights.images(), [&](const LightImage& image) {
+                        return image.mirror == LightImage::straight && holds(image.rect, x, y);
+                    });
+                    ++all;
+                    apart += differs;
+                    elsewhere += !told;
+                    wrong += differs && !told;
+                }
+        }
+    };
+    for (const SceneDescription& lamps : lit_benchmarks()) check(lamps);
+    for (uint64_t seed = 0; seed < generated_scene_count; seed += 8) check(generated_scene(seed, source + "/scenes"));
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(apart, all / 200);
+    EXPECT_GT(elsewhere, all / 2);
+}
+
+/// What a mask whose lines go on straight renders.
+SceneDescription straight(SceneDescription description) {
+    for (const uint32_t effect : {effect_refraction, effect_fresnel, effect_absorption, effect_light_falloff})
+        if (auto without = without_effect(description, Effect(effect))) description = *without;
+    return description;
+}
+
+TYPED_TEST(LightsIn, MirrorsShowWhereTheirImagesAre) {
+    using E = Effects<clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces>;
+    using Loop = BruteIntersector<TypeParam, OneMedium, SmallScene<TypeParam>>;
+    test::Random random(21);
+    size_t apart = 0, told = 0, asked = 0, wrong = 0, all = 0, scenes = 0;
+    const auto check = [&](const SceneDescription& description, const std::string& what) {
+        const auto scene = compile_scene<TypeParam>(description);
+        const auto small = small_scene(scene->view());
+        if (!small || (scene->effects & ~E::mask) != 0) return;
+        const FrameSettings settings = small_frame();
+        for (int i = 0; i < 8; ++i) {
+            const CameraDescription camera = i == 0 ? description.camera : test::random_camera(random, description.camera);
+            FrameView frame = frame_view(*scene, camera_at(camera, 0), settings);
+            Loop whole{*small}, none{*small}, some{*small};
+            camera_solids(*small, whole, frame.camera.position, frame.camera_media);
+            const LightImages lights = frame_contents(*scene, frame, settings).lights;
+            if (!lights.knows_mirrors()) continue;
+            scenes += i == 0;
+            none.lit_mirrors = 0;
+            for (int y = 0; y < settings.crop.height; ++y)
+                for (int x = 0; x < settings.crop.width; ++x) {
+                    some.lit_mirrors = 0;
+                    for (const auto& [rect, mirror] : lights.images())
+                        if (mirror != LightImage::straight && holds(rect, x, y)) some.lit_mirrors |= uint64_t{1} << mirror;
+                    const int px = settings.crop.x + x, py = settings.crop.y + y;
+                    const PixelRecord right = rendered<TypeParam, E>(*small, frame, whole, px, py);
+                    const bool is_wrong = !test::same_bytes(right, rendered<TypeParam, E>(*small, frame, some, px, py));
+                    EXPECT_TRUE(!is_wrong || wrong != 0) << what << ", camera " << i << ", pixel " << px << ", " << py;  // the first
+                    wrong += is_wrong;
+                    apart += !test::same_bytes(right, rendered<TypeParam, E>(*small, frame, none, px, py));
+                    told += size_t(std::popcount(some.lit_mirrors));
+                    asked += MirrorNumbers::most;
+                    ++all;
+                }
+        }
+    };
+    for (const SceneDescription& lamps : lit_benchmarks()) check(lamps, "benchmark");
+    for (uint64_t seed = 0; seed < generated_scene_count; ++seed) {
+        SceneDescription description = straight(generated_scene(seed, source + "/scenes"));
+        description.frame.reset();  // it might hold no more lights
+        test::add_edge_lights(description, 2);
+        test::add_seen_lights(description, 20);
+        check(description, "seed " + std::to_string(seed));
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(scenes, 20u);
+    EXPECT_GT(apart, all / 200);
+    EXPECT_LT(told, asked / 10);
+}
+
+TYPED_TEST(LightsIn, AThousandAndMoreMayShowAnywhere) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    test::add_seen_lights(description, 1100);
+    const LightImages lights = images_of<TypeParam>(description);
+    const std::vector<LightImage> anywhere = {{{0, 0, 40, 30}, LightImage::straight}};
+    EXPECT_EQ(lights.images(), anywhere);
+    EXPECT_FALSE(lights.knows_mirrors());
+}
+
+TYPED_TEST(LightsIn, MirrorsAreKnownWhereTheyAreAskedFor) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    EXPECT_FALSE(images_of<TypeParam>(description).knows_mirrors());  // no lights
+    test::add_edge_lights(description, 2);
+    EXPECT_TRUE(images_of<TypeParam>(description).knows_mirrors());
+    EXPECT_FALSE(images_of<TypeParam>(*without_effect(description, effect_reflection)).knows_mirrors());
+    EXPECT_FALSE(images_of<TypeParam>(read_scene(source + "/scenes/glass.json")).knows_mirrors());
+}
+
+/// A mirror on one face of which the camera lies sends lines back from either side, for all that rounding tells.
+TYPED_TEST(LightsIn, MirrorsWhoseSideIsInDoubtShowAnywhere) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    test::add_edge_lights(description, 2);
+    description.camera = CameraDescription();
+    description.camera.position = {4, 4, 0};  // on the floor, which is two triangles
+    description.camera.target = {0, 0, 2};
+    const LightImages lights = images_of<TypeParam>(description);
+    EXPECT_EQ(std::ranges::count_if(lights.images(),
+                                    [](const LightImage& image) {
+                                        return image.mirror != LightImage::straight && image.rect == PixelRect{0, 0, 40, 30};
+                                    }),
+              2);
+}
+
+TEST(LightView, HasNoImageFarBesideThePicture) {
+    const FrameView frame = test::frame_from({0, 0, 0}, 1e-6, 20000, 10000);
+    const LightView view(frame, frame.camera, {100, 50, 400, 300}, {0, 0, 400, 300});
+    for (const double side : {-1.0, 1.0}) {  // by more pixels than integers count
+        EXPECT_EQ(view.image_of({side, 0, -1e-4}, 1e-6), PixelRect());
+        EXPECT_EQ(view.image_of({0, side, -1e-4}, 1e-6), PixelRect());
+    }
+    EXPECT_EQ(view.image_of({0, 0, 1}, 1e-3), PixelRect());  // behind
+    EXPECT_EQ(view.image_of({0, 0, -1}, 1e-3), (PixelRect{0, 0, 400, 300}));  // larger than the picture
+}
+
+/// All around the eye, balls near it and far: each pixel whose line meets one is in its image, and few others are.
+TEST(LightView, ImagesAreTightAroundBalls) {
+    const FrameView frame = test::frame_from({0, 0, 0}, 2, 200, 120);
+    const PixelRect rect{0, 0, 200, 120}, window{30, 20, 140, 70};
+    const LightView view(frame, frame.camera, rect, window);
+    test::Random random(22);
+    size_t met = 0, images = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3<double> center = random.in_cube(1);
+        const double radius = 0.4 * random.unit() * random.unit();
+        const PixelRect image = view.image_of(center, radius);
+        images += size_t(image.width) * size_t(image.height);
+        for (int y = window.y; y < window.y + window.height; ++y)
+            for (int x = window.x; x < window.x + window.width; ++x) {
+                const Vec3<double> direction = camera_direction(frame.camera, x + 0.5, y + 0.5, frame.width, frame.height);
+                const double ahead = dot(center, direction);
+                const bool meets = dot(center, center) < radius * radius ||
+                                   (ahead > 0 && dot(center, center) - ahead * ahead < radius * radius);
+                EXPECT_TRUE(!meets || holds(image, x, y)) << i << ": " << x << ", " << y;
+                met += meets;
+            }
+    }
+    EXPECT_GT(met, images / 2);
+}
+
+}  // namespace
