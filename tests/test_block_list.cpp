@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <set>
 
 #include "backend_cuda/block_list.h"
@@ -87,6 +88,27 @@ TEST(BlockList, BlocksThatAreRenderedTogetherLieCloseTogether) {
     EXPECT_EQ(list.places()[16].column, 0);
     EXPECT_EQ(list.places()[16].row, 1);
     for (const BlockPlace& block : list.places()) EXPECT_EQ(block.in_view, ~light_in_view);
+}
+
+/// Solids before sheets, several things before one.
+TEST(BlockList, BlocksThatTakeLongestComeFirst) {
+    const PixelRect rect{0, 0, 640, 368};
+    const FrameView frame = frame_of(rect);
+    FrameCover cover(rect);
+    for (size_t hull = 0; hull < 3; ++hull) {
+        const double x = 0.2 * double(hull);
+        cover.add(hull, {{{x - 0.5, -0.3, -1}, {x, -0.3, -1}, {x - 0.2, 0.2, -1}}, 0}, 1, frame);
+    }
+    constexpr uint32_t sheet = 1u << ShadowPlan::first_cluster;
+    const BlockList list(cover, LightImages(rect), {1u, 2u, sheet}, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    std::vector<uint32_t> seen;
+    for (const BlockPlace& block : list.places())
+        if (seen.empty() || seen.back() != block.in_view) seen.push_back(block.in_view);
+    ASSERT_GT(seen.size(), 3u);
+    EXPECT_EQ(seen.front(), 1u | 2u | sheet);
+    EXPECT_EQ(seen.back(), sheet);
+    const auto first_of_one = std::ranges::find_if(seen, [](uint32_t in_view) { return std::popcount(in_view) == 1; });
+    EXPECT_TRUE(std::all_of(first_of_one, seen.end(), [](uint32_t in_view) { return std::popcount(in_view) == 1; }));
 }
 
 TEST(BlockList, BlocksKnowWhatMayShow) {
