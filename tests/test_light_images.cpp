@@ -164,6 +164,51 @@ TYPED_TEST(LightsIn, MirrorsShowWhereTheirImagesAre) {
     EXPECT_LT(told, asked / 10);
 }
 
+/// Lines leave a triangle toward a point above its middle: in float an eighth of the way to it where that lies some u M high.
+TEST(LightsInSlivers, ShowWhereTheLinesThatTheySendBackStart) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    constexpr double width = 1e-5;
+    ObjectDescription sliver = description.objects.back();
+    sliver.shape = TrianglesObject{{{0, -width, 0}, {6, 0, 0}, {0, width, 0}}, {{0, 1, 2}}, {}};
+    description.objects = {sliver};
+    description.textures.clear();
+    for (MaterialDescription& material : description.materials) material.texture = -1;
+    description.lights.clear();
+    LightDescription light;
+    light.position = {0.51, 0, 3};  // over where lines start that meet the sliver at 0.3
+    light.color = glm::dvec3{0};
+    light.glow = glm::dvec3{1};
+    light.radius = 0.1;
+    description.lights = {light};
+    description.camera = CameraDescription();
+    description.camera.position = {0.3, 0, 5};
+    description.camera.target = {0.3, 0, 0};
+    description.camera.up = {0, 1, 0};
+    description.camera.field_of_view = 4e-4;
+    const auto scene = compile_scene<float>(description);
+    const auto small = small_scene(scene->view());
+    ASSERT_TRUE(small);
+    FrameSettings settings = small_frame();
+    const FrameView frame = frame_view(*scene, camera_at(description.camera, 0), settings);
+    const LightImages lights = frame_contents(*scene, frame, settings).lights;
+    ASSERT_TRUE(lights.knows_mirrors());
+    using E = Effects<clear_bodies | effect_visible_lights>;
+    BruteIntersector<float, OneMedium, SmallScene<float>> loop{*small};
+    size_t met = 0;
+    for (int y = settings.crop.y; y < settings.crop.y + settings.crop.height; ++y) {
+        const int x = settings.crop.x + 20;
+        loop.lit_mirrors = ~uint64_t{0};
+        const PixelRecord whole = rendered<float, E>(*small, frame, loop, x, y);
+        loop.lit_mirrors = 0;
+        if (test::same_bytes(whole, rendered<float, E>(*small, frame, loop, x, y))) continue;
+        ++met;
+        EXPECT_TRUE(std::ranges::any_of(lights.images(), [&](const LightImage& image) {
+            return image.mirror != LightImage::straight && holds(image.rect, x - settings.crop.x, y - settings.crop.y);
+        })) << y;
+    }
+    EXPECT_GT(met, 5u);
+}
+
 TYPED_TEST(LightsIn, AThousandAndMoreMayShowAnywhere) {
     SceneDescription description = read_scene(source + "/scenes/benchmark.json");
     test::add_seen_lights(description, 1100);
