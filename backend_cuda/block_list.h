@@ -20,8 +20,9 @@ struct Strips {
 class BlockList {
   public:
     BlockList() = default;
-    /// primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all primitives where it has no such number.
-    BlockList(const FrameCover& cover, const LightImages& lights, const std::vector<uint32_t>& primitives, const Strips& strips,
+    /// `lights`: of the cover's rectangle, by cells of tile_width x tile_height. primitives[h]: what the cover's hull h shows, as
+    /// in BlockPlace::in_view; all primitives where it has no such number.
+    BlockList(const FrameCover& cover, const LitCells& lights, const std::vector<uint32_t>& primitives, const Strips& strips,
               Deal deal);
 
     /// In the order in which they are rendered.

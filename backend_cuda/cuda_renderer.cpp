@@ -130,6 +130,7 @@ class CudaRenderer : public Renderer {
     struct Frame : Request {
         FrameView view;
         std::shared_ptr<const FrameContents> contents;
+        std::shared_ptr<const LitCells> lights;  // by tiles
         Deal deal = Deal::tiles;
         bool fits = true;      // the camera's list of media
         int mask = 0;
@@ -181,6 +182,7 @@ class CudaRenderer : public Renderer {
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
         frame.contents = std::make_shared<const FrameContents>(frame_contents(*scene_, frame.view, settings));
+        frame.lights = std::make_shared<const LitCells>(frame.contents->lights, tile_width, tile_height);
         frame.deal = deal_for(frame);
         constexpr int block = BlockShape::of(Deal::tiles).width;
         const size_t strip_pixels = size_t((rect.width + block - 1) / block * block) * strip_rows;
@@ -253,6 +255,7 @@ class CudaRenderer : public Renderer {
             if (job.strips.count == 0) continue;
             job.frame = frame.view;
             job.contents = frame.contents;
+            job.lights = frame.lights;
             job.deal = frame.deal;
             job.first = first_pass(frame.settings);
             job.mask = frame.mask;

@@ -163,11 +163,13 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
-    slot.list = BlockList(part.contents->cover, part.contents->lights, primitives_, part.strips, part.deal);
+    slot.list = BlockList(part.contents->cover, *part.lights, primitives_, part.strips, part.deal);
     const std::vector<BlockPlace>& places = slot.list.places();
     const std::vector<uint64_t>& lit_mirrors = slot.list.lit_mirrors();
     std::copy(places.begin(), places.end(), slot.blocks_copy.as<BlockPlace>());
-    std::copy(lit_mirrors.begin(), lit_mirrors.end(), reinterpret_cast<uint64_t*>(slot.blocks_copy.as<BlockPlace>() + places.size()));
+    static_assert(sizeof(BlockPlace) % alignof(uint64_t) == 0);  // they come one after the other
+    std::copy(lit_mirrors.begin(), lit_mirrors.end(),
+              reinterpret_cast<uint64_t*>(slot.blocks_copy.as<BlockPlace>() + places.size()));
     const PixelRect& rect = part.contents->cover.rect();
     FrameJob job;
     job.frame = part.frame;

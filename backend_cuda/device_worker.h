@@ -26,6 +26,7 @@ void use_device(int device);
 struct FramePart {
     FrameView frame;
     std::shared_ptr<const FrameContents> contents;
+    std::shared_ptr<const LitCells> lights;  // by tiles
     Strips strips;
     Deal deal = Deal::tiles;
     Pass first = Pass::pixels;  // or adaptive_pixels

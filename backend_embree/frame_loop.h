@@ -105,7 +105,8 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
                         [&](int x, int y, int count, const PixelWriter&, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
                             for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); ++i) {
                                 PixelWork own;
-                                render(x + i, y, lights.at((x + i - film.rect.x) / lit_cell, (y - film.rect.y) / lit_cell), pixels[i], own);
+                                const int column = (x + i - film.rect.x) / lit_cell, row = (y - film.rect.y) / lit_cell;
+                                render(x + i, y, lights.at(column, row), pixels[i], own);
                                 rays.add(own.rays);
                                 flags |= own.flags;
                             }

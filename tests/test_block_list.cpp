@@ -18,6 +18,10 @@ FrameView frame_of(const PixelRect& rect) {
     return test::frame_from({0, 0, 0}, 1, rect.x + rect.width, rect.y + rect.height);
 }
 
+LitCells by_tiles(const LightImages& lights) {
+    return LitCells(lights, tile_width, tile_height);
+}
+
 /// A triangle and something in a corner.
 FrameCover cover_of(const PixelRect& rect) {
     FrameCover cover(rect);
@@ -49,7 +53,7 @@ TEST(BlockList, EveryPixelIsABlocksOrInAGap) {
                 size_t blocks = 0;
                 for (int first = 0; first < step; ++first) {
                     // As many for each, though the last may lie beyond the rectangle.
-                    const BlockList list(cover, LightImages(rect), {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
+                    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
                     const BlockShape shape = list.shape();
                     blocks += list.places().size();
                     for (const BlockPlace& block : list.places()) {
@@ -82,7 +86,7 @@ TEST(BlockList, BlocksThatAreRenderedTogetherLieCloseTogether) {
     const PixelRect rect{0, 0, 3840, 2160};
     FrameCover cover(rect);
     cover.add_all(FrameCover::Outline::all);
-    const BlockList list(cover, LightImages(rect), {1u, 2u}, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 2u}, {0, 1, rect.height / strip_rows}, Deal::tiles);
     ASSERT_EQ(list.places().size(), size_t(3840 / 16 * (2160 / 8)));
     EXPECT_EQ(list.places()[15].column, 15);
     EXPECT_EQ(list.places()[16].column, 0);
@@ -100,7 +104,7 @@ TEST(BlockList, BlocksThatTakeLongestComeFirst) {
         cover.add(hull, {{{x - 0.5, -0.3, -1}, {x, -0.3, -1}, {x - 0.2, 0.2, -1}}, 0}, 1, frame);
     }
     constexpr uint32_t sheet = 1u << ShadowPlan::first_cluster;
-    const BlockList list(cover, LightImages(rect), {1u, 2u, sheet}, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 2u, sheet}, {0, 1, rect.height / strip_rows}, Deal::tiles);
     std::vector<uint32_t> seen;
     for (const BlockPlace& block : list.places())
         if (seen.empty() || seen.back() != block.in_view) seen.push_back(block.in_view);
@@ -115,7 +119,7 @@ TEST(BlockList, BlocksKnowWhatMayShow) {
     const PixelRect rect{0, 0, 640, 368};
     const FrameCover cover = cover_of(rect);
     for (const Deal deal : deals) {
-        const BlockList list(cover, LightImages(rect), {4u}, {0, 1, rect.height / strip_rows}, deal);
+        const BlockList list(cover, by_tiles(LightImages(rect)), {4u}, {0, 1, rect.height / strip_rows}, deal);
         size_t known = 0;
         for (const BlockPlace& block : list.places()) {
             EXPECT_TRUE(block.in_view == 4u || block.in_view == ~light_in_view) << block.in_view;  // hull 1 has no number
@@ -146,7 +150,7 @@ TEST(BlockList, BlocksKnowWhereLightsMayShow) {
         for (const int step : {1, 3}) {
             size_t lit = 0, dark = 0, mirrored = 0, unmirrored = 0;
             for (int first = 0; first < step; ++first) {
-                const BlockList list(cover, lights, {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
+                const BlockList list(cover, by_tiles(lights), {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
                 const BlockShape shape = list.shape();
                 ASSERT_EQ(list.lit_mirrors().size(), list.places().size() * size_t(shape.tiles()));
                 for (size_t b = 0; b < list.places().size(); ++b) {
@@ -184,7 +188,7 @@ TEST(BlockList, BlocksKnowWhereLightsMayShow) {
 
 TEST(BlockList, NothingIsKnownOfMirrorsThatNobodyAsks) {
     const PixelRect rect{0, 0, 64, 32};
-    EXPECT_TRUE(BlockList(cover_of(rect), LightImages(rect), {1u, 8u}, {0, 1, 4}, Deal::tiles).lit_mirrors().empty());
+    EXPECT_TRUE(BlockList(cover_of(rect), by_tiles(LightImages(rect)), {1u, 8u}, {0, 1, 4}, Deal::tiles).lit_mirrors().empty());
 }
 
 }  // namespace

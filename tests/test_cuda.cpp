@@ -127,7 +127,7 @@ TYPED_TEST(Cuda, GeneratedScenesAreEqualWhateverThePath) {
 
 TYPED_TEST(Cuda, AFrameInPartsIsTheSame) {
     CISTULA_NEEDS_GPU();
-    for (const char* name : {"benchmark", "glass"}) {
+    for (const char* name : {"benchmark", "glass", "platonic"}) {  // mirrors show lights in the last
         const SceneDescription scene = scene_of(name);
         const FrameSettings settings = golden::settings_for(scene);
         CudaOptions options;
@@ -355,7 +355,9 @@ TYPED_TEST(Cuda, LargeFramesAreEqual) {
     CISTULA_NEEDS_GPU();
     // Their warps take every other two pixels; the widths leave the last block whole, even and odd.
     FrameSettings settings = golden::settings_for(scene_of("benchmark"));
-    for (const SceneDescription& scene : {scene_of("benchmark"), dull(scene_of("benchmark"))})
+    SceneDescription lit = scene_of("benchmark");
+    test::add_edge_lights(lit, 2);
+    for (const SceneDescription& scene : {scene_of("benchmark"), dull(scene_of("benchmark")), lit})
         for (const int width : {1040, 1030, 1029}) {
             settings.set_size(width, 516);
             EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << width;

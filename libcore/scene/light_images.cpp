@@ -13,6 +13,8 @@ namespace {
 
 /// More lights are looked for everywhere.
 constexpr size_t most_lights = 1024;
+/// Mirrors whose images hold more pixels, in windows, show lights all over theirs.
+constexpr int64_t overlap = 4;
 /// By so much of M a line that was mirrored once may be off, and more: its direction by a few u, its start by some u M.
 constexpr double mirrored_share = 0x1p-14;
 
@@ -29,11 +31,16 @@ Range range_of(double x, double z, double radius) {
     return {z_low > 0 ? (x * reach - z * radius) / z_low : -infinity, z_high > 0 ? (x * reach + z * radius) / z_high : infinity};
 }
 
-/// First and last of the whole pixels from `low` to `high`, within [begin, end].
+/// The whole pixels from `low` to `high`, within [begin, end]; all of these if nobody knows.
 void clip(double low, double high, int begin, int end, int& first, int& size) {
+    if (!(low <= high)) low = begin, high = end;
     const auto inside = [&](double value) { return std::clamp(value, double(begin), double(end)); };  // whatever fits no int
     first = int(std::floor(inside(low - picture_margin)));
     size = int(std::ceil(inside(high + picture_margin))) - first;
+}
+
+int64_t area(const PixelRect& rect) {
+    return int64_t{rect.width} * rect.height;
 }
 
 Camera mirrored(const Camera& camera, const MirrorPlane& mirror) {
@@ -60,7 +67,8 @@ PixelRect window_of(const FrameCover& cover, size_t hull) {
     return {0, 0, rect.width, rect.height};
 }
 
-/// Whether the mask that runs asks what mirrors show.
+/// Whether the mask that runs asks what mirrors show. Adaptive frames do not: on the CPU they run with all effects, and on
+/// devices a warp renders pixels of several blocks.
 bool asks_mirrors(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.adaptive()) return false;
     const uint32_t mask = effect_masks[mask_to_run(effects, settings, frame)];
@@ -143,14 +151,23 @@ LightImages light_images(const CompiledScene<Real>& scene, const FrameView& fram
             images.add_everywhere(mirror.number);
             continue;
         }
+        const PixelRect window = window_of(cover, mirror.solid);
+        const int64_t most = overlap * area(window);
+        if (most == 0) continue;
         const double toward = side > 0 ? 1 : -1;  // the camera's side, from which lines come and to which they return
-        const LightView view(frame, mirrored(frame.camera, mirror), cover.rect(), window_of(cover, mirror.solid));
+        const LightView view(frame, mirrored(frame.camera, mirror), cover.rect(), window);
+        std::vector<LightImage> shown;
+        int64_t pixels = 0;
         for (const SeenLight<Real>& light : scene.seen_lights) {
             const Vec3<double> center(light.center);
             const double reach = double(light.radius) + off;
             if (toward * (dot(mirror.normal, center) - mirror.offset) < -reach) continue;
-            if (const PixelRect image = view.image_of(center, reach); image.width > 0) images.add({image, mirror.number});
+            const PixelRect image = view.image_of(center, reach);
+            if (image.width > 0) shown.push_back({image, mirror.number});
+            if ((pixels += area(image)) > most) break;
         }
+        if (pixels > most) shown = {{window, mirror.number}};
+        for (const LightImage& image : shown) images.add(image);
     }
     return images;
 }

@@ -82,8 +82,8 @@ class LightView {
   private:
     Camera camera_;
     PixelRect window_;
-    double middle_x_, middle_y_, pixels_;         // where forward meets the picture; pixels to tangent 1
-    double left_, right_, bottom_, top_;          // tangents
+    double middle_x_, middle_y_, pixels_;             // where forward meets the picture; pixels to tangent 1
+    double left_, right_, bottom_, top_;              // tangents
     double at_left_, at_right_, at_bottom_, at_top_;  // lengths of the directions with these
 };
 

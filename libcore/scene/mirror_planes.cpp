@@ -21,7 +21,8 @@ uint32_t faces_of(const SceneView<Real>& scene, uint32_t index) {
     const Solid& solid = scene.solids[index];
     if (solid.kind == SolidKind::convex) return 2 * solid.slab_count;
     uint32_t faces = 0;
-    for_each_triangle(scene, index, [&](uint32_t triangle, uint32_t) { faces = std::max(faces, triangle - solid.first_triangle + 1); });
+    for_each_triangle(scene, index,
+                      [&](uint32_t triangle, uint32_t) { faces = std::max(faces, triangle - solid.first_triangle + 1); });
     return faces;
 }
 
