@@ -5,7 +5,7 @@
 
 namespace cistula {
 
-/// Which boxes a line meets between its limits, which are finite and not negative. Devices ask from 0 on.
+/// Which boxes a line meets between its limits, which are finite and not negative. Devices ask from 0 on: some more, perhaps.
 CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, bool (&meets)[LightNode::width]) {
     constexpr int width = LightNode::width;
     float near_t[3][width], far_t[3][width];
@@ -20,7 +20,7 @@ CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, boo
         }
     }
 #if CISTULA_ON_DEVICE
-    // All finite: as integers they compare alike but for two that are negative, and the limits are not. Of integers one
+    // None is NaN: as integers they compare alike but for two that are negative, and the limits are not. Of integers one
     // instruction tells the greatest of three.
     for (int i = 0; i < width; ++i) {
         const int near_bits = __vimax3_s32_relu(__float_as_int(near_t[0][i]), __float_as_int(near_t[1][i]), __float_as_int(near_t[2][i]));

@@ -359,6 +359,7 @@ class RayTree {
         child.mirrored = !goes_through;
         if (!goes_through) {
             spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
+            // The first mirror of a line from the camera: of others nothing is known.
             if constexpr (lines_go_on<E> && E::has(effect_visible_lights) &&
                           requires { intersector_.mirrors_no_light(0u, 0u); })
                 child.dark = parent.ray.from_solid == no_solid &&
