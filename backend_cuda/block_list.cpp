@@ -8,9 +8,8 @@ namespace cistula {
 namespace {
 
 /// Blocks side by side. A picture of more is rendered in columns of so many or fewer, one after the other among blocks of one
-/// weight: what is at work at a
-/// time then lies close together and shares the instructions that are fetched. 16 took 1 to 4 % less time than whole rows on
-/// an H200, 8 and 32 up to 1 % more than that.
+/// weight: what is at work at a time then lies close together and shares the instructions that are fetched. 16 took 1 to 4 %
+/// less time than whole rows on an H200, 8 and 32 up to 1 % more than that.
 constexpr int most_side_by_side = 16;
 
 /// Blocks of more weight come first: what takes longest, so that no block is long at work alone in the end. Where solids may
