@@ -78,9 +78,10 @@ bool asks_mirrors(uint32_t effects, const FrameSettings& settings, const FrameVi
 }  // namespace
 
 LitCells::LitCells(const LightImages& lights, int width, int height)
-    : columns_((lights.rect().width + width - 1) / width),
-      straight_(size_t(columns_) * size_t((lights.rect().height + height - 1) / height)),
-      mirrors_(lights.knows_mirrors() ? straight_.size() : 0) {
+    : columns_((lights.rect().width + width - 1) / width) {
+    if (lights.images().empty() && !lights.knows_mirrors()) return;
+    straight_.resize(size_t(columns_) * size_t((lights.rect().height + height - 1) / height));
+    if (lights.knows_mirrors()) mirrors_.resize(straight_.size());
     for (const auto& [rect, mirror] : lights.images()) {
         const int first = rect.x / width, end = (rect.x + rect.width + width - 1) / width;
         const uint64_t bit = uint64_t{1} << mirror % MirrorNumbers::most;

@@ -60,13 +60,14 @@ class LitCells {
 
     bool knows_mirrors() const { return !mirrors_.empty(); }
     Lit at(int column, int row) const {
+        if (straight_.empty()) return {false, ~uint64_t{0}};
         const size_t i = size_t(row) * size_t(columns_) + size_t(column);
         return {straight_[i] != 0, mirrors_.empty() ? ~uint64_t{0} : mirrors_[i]};
     }
 
   private:
     int columns_;
-    std::vector<uint8_t> straight_;
+    std::vector<uint8_t> straight_;  // empty: there are no images, and nothing is known about mirrors
     std::vector<uint64_t> mirrors_;  // empty: nothing is known about them
 };
 
