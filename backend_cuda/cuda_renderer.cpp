@@ -25,7 +25,7 @@ constexpr size_t few_samples = size_t{1} << 19;
 constexpr int split_levels = 4;
 /// From so many pixels of a device on the warps of a block interleave: all four then do much the same at a time and share the
 /// instructions that are fetched. Of fewer, the few that take longest are better kept apart; so are those of deep trees in float,
-/// where that takes up to 15 % less time on an H200. In double, which has more instructions to share, it takes longer.
+/// which mostly takes less time there, up to 15 % (H200), but more in double.
 constexpr size_t many_pixels = size_t{1} << 18;
 
 template <class Real>

@@ -11,6 +11,13 @@ mark_as_advanced(CISTULA_GIT)
 if(CISTULA_GIT AND EXISTS "${PROJECT_SOURCE_DIR}/.git")
     execute_process(COMMAND "${CISTULA_GIT}" -C "${PROJECT_SOURCE_DIR}" describe --always --dirty --abbrev=12
         OUTPUT_VARIABLE _commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    # The log of HEAD grows with every commit and checkout: the next build then configures first, and records name what they ran.
+    execute_process(COMMAND "${CISTULA_GIT}" -C "${PROJECT_SOURCE_DIR}" rev-parse --git-path logs/HEAD
+        OUTPUT_VARIABLE _head_log OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    get_filename_component(_head_log "${_head_log}" ABSOLUTE BASE_DIR "${PROJECT_SOURCE_DIR}")
+    if(EXISTS "${_head_log}" AND NOT IS_DIRECTORY "${_head_log}")
+        set_property(DIRECTORY "${PROJECT_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${_head_log}")
+    endif()
 endif()
 if(NOT _commit)
     set(_commit "unknown")
