@@ -45,6 +45,7 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame,
     }
     ray.origin = Vec3<Real>(origin);
     ray.direction = Vec3<Real>(direction);
+    for (int axis = 0; axis < 3; ++axis) settle(ray.origin[axis]), settle(ray.direction[axis]);
     assign(ray.media, frame.camera_media);
     return true;
 }

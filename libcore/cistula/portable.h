@@ -65,7 +65,7 @@ CISTULA_INLINE double square_root(double a) {
 }
 
 /// 1 / a, correctly rounded, for |a| in [2^-120, 2^120]. On the device without the branches that other values need: one
-/// Newton step from the hardware's estimate is exact there (bench/gpu checks every significand).
+/// Newton step from the hardware's estimate is exact there for floats (bench/gpu checks every significand).
 CISTULA_INLINE float reciprocal(float a) {
 #if CISTULA_ON_DEVICE
     float r;
@@ -75,8 +75,19 @@ CISTULA_INLINE float reciprocal(float a) {
     return 1.0f / a;
 #endif
 }
+/// The same of doubles: the third-order step leaves less than an ulp, from which Newton's is exact (Markstein 1990) but where
+/// all bits of the significand are set. There it is exact from above, where the estimate's lower half puts it.
 CISTULA_INLINE double reciprocal(double a) {
+#if CISTULA_ON_DEVICE
+    double r;
+    asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(r) : "d"(a));
+    r = __hiloint2double(__double2hiint(r), 0x40000000);
+    const double off = ::fma(-a, r, 1.0);
+    r = ::fma(r, ::fma(off, off, off), r);
+    return ::fma(r, ::fma(-a, r, 1.0), r);
+#else
     return 1.0 / a;
+#endif
 }
 
 /// The lesser and the greater of two numbers that are not NaN and not both zero: one instruction on the device.
@@ -100,6 +111,14 @@ CISTULA_INLINE double lesser(double a, double b) {
 CISTULA_INLINE double greater(double a, double b) {
     return a < b ? b : a;
 }
+
+/// Once and for all: without it the compiler for devices may work the value out anew at every use.
+CISTULA_INLINE void settle([[maybe_unused]] float& a) {
+#if CISTULA_ON_DEVICE
+    asm volatile("" : "+f"(a));
+#endif
+}
+CISTULA_INLINE void settle(double&) {}
 
 CISTULA_INLINE float floor_of(float a) {
     return floorf(a);
