@@ -184,8 +184,8 @@ class StoppableBranchStack : public Base {
 template <class Real, class E, DevicePath path>
 __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
     render_adaptive(const __grid_constant__ FrameJob job,
-                    const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
-    using Intersector = typename PathTraits<Real, path>::Intersector;
+                    const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
+    using Intersector = typename PathTraits<Real, E, path>::Intersector;
     using Record = RecordOf<E>;
     __shared__ Unset<BlockRoom<Record>> memory;
     BlockRoom<Record>& room = memory.get();

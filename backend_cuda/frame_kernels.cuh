@@ -90,8 +90,8 @@ __device__ void write_records(const Record* staged, Record* to) {
 
 template <class Real, class E, DevicePath path>
 __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
-    render_pixels(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
-    using Intersector = typename PathTraits<Real, path>::Intersector;
+    render_pixels(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
+    using Intersector = typename PathTraits<Real, E, path>::Intersector;
     using Media = typename Intersector::Media;
     using Stack = DeviceStack<Real, E, Media>;
     using Record = RecordOf<E>;
@@ -112,7 +112,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
         job.lit_mirrors == nullptr
             ? ~uint64_t{0}
             : job.lit_mirrors[blockIdx.x * unsigned(shape.tiles()) + unsigned(shape.tile_of(place.column, place.row))];
-    const Intersector intersector = PathTraits<Real, path>::intersector(scene, block.in_view, lit_mirrors);
+    const Intersector intersector = PathTraits<Real, E, path>::intersector(scene, block.in_view, lit_mirrors);
     const bool is_inside = column < job.width && row < job.height;
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);
@@ -141,8 +141,8 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
 
 template <class Real, class E, DevicePath path>
 __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
-    render_branches(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
-    using Intersector = typename PathTraits<Real, path>::Intersector;
+    render_branches(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
+    using Intersector = typename PathTraits<Real, E, path>::Intersector;
     using Media = typename Intersector::Media;
     using Item = QueuedBranch<BranchOf<Real, E, Media>>;
     using Stack = DeviceStack<Real, E, Media>;

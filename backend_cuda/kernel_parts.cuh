@@ -40,18 +40,18 @@ inline constexpr int most_blocks_at_work = 1536 / block_threads;
 template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
 inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)), most_blocks_at_work);
 
-template <class Real, DevicePath path>
+template <class Real, class E, DevicePath path>
 struct PathTraits;
-template <class Real>
-struct PathTraits<Real, DevicePath::plain_loop> {
-    using Scene = SmallScene<Real>;
+template <class Real, class E>
+struct PathTraits<Real, E, DevicePath::plain_loop> {
+    using Scene = std::conditional_t<(E::mask & ~opaque_solids) == 0, SolidScene<Real>, SmallScene<Real>>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t in_view, uint64_t lit_mirrors) {
         return {scene, in_view, lit_mirrors};
     }
 };
-template <class Real>
-struct PathTraits<Real, DevicePath::tree> {
+template <class Real, class E>
+struct PathTraits<Real, E, DevicePath::tree> {
     using Scene = SceneView<Real>;
     using Intersector = BvhIntersector<Real, MediaList, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t, uint64_t) { return {scene}; }

@@ -26,9 +26,9 @@ static_assert(compiled_mask_count == 8, "name the new masks above and in CMakeLi
 
 template <class Real>
 size_t queued_branch_bytes(DevicePath path) {
-    using Loop = typename PathTraits<Real, DevicePath::plain_loop>::Intersector::Media;
-    using Tree = typename PathTraits<Real, DevicePath::tree>::Intersector::Media;
     using Largest = Effects<all_effects>;
+    using Loop = typename PathTraits<Real, Largest, DevicePath::plain_loop>::Intersector::Media;
+    using Tree = typename PathTraits<Real, Largest, DevicePath::tree>::Intersector::Media;
     return path == DevicePath::plain_loop ? sizeof(QueuedBranch<BranchOf<Real, Largest, Loop>>)
                                           : sizeof(QueuedBranch<BranchOf<Real, Largest, Tree>>);
 }

@@ -80,11 +80,7 @@ struct BruteIntersector {
             const uint32_t light = uint32_t(shadow.light - scene.lights.data), from = shadow.ray.from_solid;
             const uint32_t near = from == no_solid ? ~0u : scene.plan.near[from][light];
             if constexpr (E::solids) add_planned_solids(near, light, shadow, sum);
-            for (uint32_t left = E::triangles ? near & scene.plan.all_clusters : 0; left != 0 && !sum.dark();
-                 left &= left - 1) {
-                const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
-                if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
-            }
+            if constexpr (E::triangles) add_planned_clusters(near, shadow, sum);
         }
         return sum.template share<Real>(scene);
     }
@@ -130,6 +126,14 @@ struct BruteIntersector {
             }
         }
         return false;
+    }
+
+    template <class E>
+    CISTULA_INLINE void add_planned_clusters(uint32_t near, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) const {
+        for (uint32_t left = near & scene.plan.all_clusters; left != 0 && !sum.dark(); left &= left - 1) {
+            const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
+            if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
+        }
     }
 
     /// Those among `near`, and the one around the ray.

@@ -43,13 +43,11 @@ struct Meeting {
     }
 };
 
-/// `hit` is the ray's next crossing. A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so
-/// crossings of other solids within twice that of the face belong to the same meeting.
+/// A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so crossings of other solids within twice
+/// that of the face belong to the same meeting.
 template <class Real, class Intersector, class Media, class Scene>
-CISTULA_INLINE void meet(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
-                         const Hit<Real>& hit, Meeting<Real, Media>& meeting) {
-    meeting.begin(ray, hit);
-    if (!Media::contacts || !scene.solids[key_solid(hit.key)].touched) return;
+CISTULA_INLINE void meet_touching(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
+                                  const Hit<Real>& hit, Meeting<Real, Media>& meeting) {
     const Real cosine = magnitude(dot(normal_at(scene, hit), ray.direction));
     const Real reach = hit.t + incidence<Real> * scene.extent / greatest(cosine, Real(0x1p-10));
     // A mesh's two crossings at an edge may come in the wrong order: then both are taken.
@@ -66,6 +64,15 @@ CISTULA_INLINE void meet(const Scene& scene, const Intersector& intersector, con
         meeting.take(next);
         if (higher) meeting.hit = next;
     }
+}
+
+/// `hit` is the ray's next crossing.
+template <class Real, class Intersector, class Media, class Scene>
+CISTULA_INLINE void meet(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
+                         const Hit<Real>& hit, Meeting<Real, Media>& meeting) {
+    meeting.begin(ray, hit);
+    if constexpr (Media::contacts)
+        if (scene.solids[key_solid(hit.key)].touched) meet_touching(scene, intersector, ray, hit, meeting);
 }
 
 }  // namespace cistula

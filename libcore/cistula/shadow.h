@@ -111,9 +111,9 @@ CISTULA_SELDOM LightSide light_on_convex(const Scene& scene, const Light<Real>& 
 
 template <class E, class Real, class Media, class Scene>
 CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow) {
-    if constexpr (!E::has(effect_lights_on_faces)) return LightSide::none;
-    return shadow.light->incident_count == 0 ? LightSide::none
-                                             : light_on_convex(scene, *shadow.light, index, shadow.ray.origin);
+    if constexpr (E::has(effect_lights_on_faces))
+        if (shadow.light->incident_count != 0) return light_on_convex(scene, *shadow.light, index, shadow.ray.origin);
+    return LightSide::none;
 }
 
 /// A convex solid that the ray starts in. A light on its own face is never beyond that, whatever the rounding of two

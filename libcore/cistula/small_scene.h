@@ -70,20 +70,34 @@ struct MirrorNumbers {
     }
 };
 
+/// The part of a SmallScene that kernels of opaque convex solids need: launches take longer the larger their parameters are,
+/// 0.08 us a KiB (H200).
 template <class Real>
-struct SmallScene {
+struct SolidScene {
     using Scalar = Real;
 
     InlineSpan<Solid, ShadowPlan::solids> solids;
     InlineSpan<Slab<Real>, 96> slabs;
     InlineSpan<NumberedSolid<Real>, ShadowPlan::convex> convex;  // copies: a look at one needs no other first
-    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;   // of the clusters: such copies too
-    InlineSpan<Cluster<Real>, ShadowPlan::clusters> clusters;
-    InlineSpan<TriangleSides<Real>, ShadowPlan::clusters * cluster_lanes> sides;  // by slot
     InlineSpan<Material<Real>, 16> materials;
     InlineSpan<Light<Real>, ShadowPlan::lights> lights;
-    KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
     ShadowPlan plan;
+    Vec3<Real> background;
+    Vec3<Real> bound;
+    Real largest_bound;
+    Real extent;
+};
+
+template <class Real>
+struct SmallScene : SolidScene<Real> {
+    using SolidScene<Real>::solids, SolidScene<Real>::slabs, SolidScene<Real>::convex, SolidScene<Real>::materials,
+        SolidScene<Real>::lights, SolidScene<Real>::plan, SolidScene<Real>::background, SolidScene<Real>::bound,
+        SolidScene<Real>::largest_bound, SolidScene<Real>::extent;
+
+    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;  // of the clusters: copies, as of the solids
+    InlineSpan<Cluster<Real>, ShadowPlan::clusters> clusters;
+    InlineSpan<TriangleSides<Real>, ShadowPlan::clusters * cluster_lanes> sides;  // by slot
+    KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
     MirrorNumbers mirrors;
     InlineSpan<Texture, 8> textures;
     // Elsewhere, as in the view that it was made of:
@@ -96,10 +110,6 @@ struct SmallScene {
     Span<TreeNode> tree;
     Span<uint32_t> tree_items;
     Span<LightNode> seen_tree;
-    Vec3<Real> background;
-    Vec3<Real> bound;
-    Real largest_bound;
-    Real extent;
 
     /// False if `here`, a view that can be read, is too large, or if a ray in it may be inside more than one solid or a mesh:
     /// OneMedium asks for that. `there`: the same scene where kernels read it.

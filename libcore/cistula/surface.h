@@ -123,7 +123,8 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
         return outward == hit.enters ? normal : -normal;
     }
     Vec3<Real> normal;
-    if constexpr (requires { scene.sides; }) {
+    if constexpr (!E::triangles) {
+    } else if constexpr (requires { scene.sides; }) {
         normal = scene.sides[hit.slot].normal;
     } else {
         Vec3<Real> corner[3];
@@ -143,7 +144,6 @@ CISTULA_INLINE bool lies_at_start(const Scene& scene, const Ray<Real, Media>& ra
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
-    const uint32_t face = key_face(hit.key);
     Surface<Real> s;
     s.material = solid.material;
     const Material<Real>& material = scene.materials[s.material];
@@ -155,12 +155,15 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
         s.viewer_side = Vec3<Real>(point.x, point.y, point.z);
         return s;
     }
-    Vec3<Real> corner[3];
-    triangle_corners(scene, hit.slot, corner);
-    s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
-    s.viewer_side = off_triangle(scene, hit, s.point, corner, s.normal, hit.enters);
+    if constexpr (E::triangles) {
+        Vec3<Real> corner[3];
+        triangle_corners(scene, hit.slot, corner);
+        s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
+        s.viewer_side = off_triangle(scene, hit, s.point, corner, s.normal, hit.enters);
+    }
     if constexpr (E::has(effect_texture)) {
         if (material.texture >= 0) {
+            const uint32_t face = key_face(hit.key);
             const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (face - solid.first_triangle);
             const Vec2<Real> at = uv[0] * (Real(1) - hit.u - hit.v) + uv[1] * hit.u + uv[2] * hit.v;
             s.color *= texture_at(scene, scene.textures[uint32_t(material.texture)], at);
