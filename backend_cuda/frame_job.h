@@ -70,11 +70,17 @@ enum class DevicePath {
 };
 inline constexpr int device_path_count = 2;
 
-/// The scene in both forms; `small` is set for the plain loop only.
+/// Whether plain loops of these effects take an OpaqueScene.
+constexpr bool takes_opaque_scene(uint32_t effects) {
+    return (effects & ~opaque_solids) == 0;
+}
+
+/// The scene in all forms; the last two are set for the plain loop only, `opaque` where a mask that takes it may run.
 template <class Real>
 struct DeviceScene {
     SceneView<Real> view;  // in device memory
     SmallScene<Real> small;
+    OpaqueScene<Real> opaque;
 };
 
 /// Bytes of a queued branch.

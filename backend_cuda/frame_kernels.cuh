@@ -238,10 +238,12 @@ void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, con
         if constexpr (trees_fork(mask))
             if (pass == Pass::branches) fill(render_branches<Real, E, here>, ~0u);
     };
-    if (path == DevicePath::plain_loop)
-        launch.template operator()<DevicePath::plain_loop>(scene.small);
-    else
+    if (path == DevicePath::tree)
         launch.template operator()<DevicePath::tree>(scene.view);
+    else if constexpr (takes_opaque_scene(E::mask))
+        launch.template operator()<DevicePath::plain_loop>(scene.opaque);
+    else
+        launch.template operator()<DevicePath::plain_loop>(scene.small);
     check_cuda(cudaGetLastError(), pass == Pass::branches ? "launch of render_branches"
                                    : pass == Pass::pixels ? "launch of render_pixels"
                                                           : "launch of render_adaptive");

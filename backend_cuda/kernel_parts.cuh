@@ -44,7 +44,7 @@ template <class Real, class E, DevicePath path>
 struct PathTraits;
 template <class Real, class E>
 struct PathTraits<Real, E, DevicePath::plain_loop> {
-    using Scene = std::conditional_t<(E::mask & ~opaque_solids) == 0, SolidScene<Real>, SmallScene<Real>>;
+    using Scene = std::conditional_t<takes_opaque_scene(E::mask), OpaqueScene<Real>, SmallScene<Real>>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t in_view, uint64_t lit_mirrors) {
         return {scene, in_view, lit_mirrors};

@@ -115,10 +115,12 @@ struct BruteIntersector {
             for (const uint32_t index : scene.convex) closest_convex(scene, index, ray, best);
         } else {
             const uint32_t around = E::has(effect_insides) ? ray.media.only() : no_solid;
-            if (around != no_solid) closest_exit(scene, around, ray, best);
-            if (around != no_solid && scene.solids[around].alone) return true;
+            if constexpr (E::has(effect_insides)) {
+                if (around != no_solid) closest_exit(scene, around, ray, best);
+                if (around != no_solid && scene.solids[around].alone) return true;
+            }
             for (uint32_t left = ahead_of(ray) & scene.plan.all_convex; left != 0; left &= left - 1) {
-                const NumberedSolid<Real>& next = scene.convex[lowest_bit(left)];
+                const auto& next = scene.convex[lowest_bit(left)];
                 // All conditions in one, so that their values are waited for but once.
                 if ((next.index != around) & (next.index != ray.from_solid) &
                     !passes_by(next.ball, ray.origin, ray.direction, best.t))
@@ -150,7 +152,7 @@ struct BruteIntersector {
                     shadow_exit<Real, E>(scene, around, shadow, sum);
             }
         for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.dark(); left &= left - 1) {
-            const NumberedSolid<Real>& next = scene.convex[lowest_bit(left)];
+            const auto& next = scene.convex[lowest_bit(left)];
             if ((next.index != around) & (next.index != from) &
                 !passes_by(next.ball, shadow.ray.origin, shadow.ray.direction, shadow.distance))
                 shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);

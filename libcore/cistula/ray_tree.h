@@ -255,12 +255,15 @@ class RayTree {
 
     /// A crossing with nothing to shade: inside a medium of higher priority, or of a clear face between equal media.
     CISTULA_INLINE bool invisible(const Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting) {
-        if constexpr (!E::has(effect_transmission | effect_insides)) return false;
-        const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
-        if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
-        if (!scene_.materials[scene_.solids[solid].material].clear) return false;
-        if constexpr (E::has(effect_refraction)) return index_of(scene_, ray.media) == index_of(scene_, meeting.beyond);
-        return true;
+        if constexpr (!E::has(effect_transmission | effect_insides)) {
+            return false;
+        } else {
+            const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
+            if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
+            if (!scene_.materials[scene_.solids[solid].material].clear) return false;
+            if constexpr (E::has(effect_refraction)) return index_of(scene_, ray.media) == index_of(scene_, meeting.beyond);
+            return true;
+        }
     }
 
     /// Goes on to the next face that has anything to shade. Otherwise adds the light or background that the ray ends on.

@@ -75,12 +75,18 @@ struct alignas(16) SheetPlane {
     }
 };
 
+/// What rays ask of an opaque convex solid that passes_by lets them come near.
+struct OpaqueSolid {
+    uint32_t material;
+    uint32_t first_slab, slab_count;
+};
+
 /// A solid, and what is asked of it first: its sphere with the number beside it, as most rays ask for no more.
-template <class Real>
+template <class Real, class Body = Solid>
 struct NumberedSolid {
     Ball<Real> ball;
     uint32_t index;
-    Solid solid;
+    Body solid;
 };
 
 /// So much that rounding never turns a ray that the slabs accept into one that passes the sphere by: the terms of the
@@ -110,9 +116,9 @@ struct alignas(16) Facet {
     uint32_t solid, triangle, slot;
 };
 
-/// What a face is made of. Shares: local 1 - kr - kt, reflected kr, transmitted kt * tint.
+/// What of a face's material its own light depends on.
 template <class Real>
-struct Material {
+struct LocalMaterial {
     Vec3<Real> color;
     Vec3<Real> ambient;         // ka * A, the scene's ambient colour taken in
     Vec3<Real> specular;        // ks * S
@@ -120,6 +126,11 @@ struct Material {
     Real exponent;              // n; used where integer_exponent < 0
     int32_t integer_exponent;   // n if it is an integer in [0, 1024], else -1
     Real local;                 // max(0, 1 - kr - kt), rounded down
+};
+
+/// What a face is made of. Shares: local 1 - kr - kt, reflected kr, transmitted kt * tint.
+template <class Real>
+struct Material : LocalMaterial<Real> {
     Real reflection;            // kr
     Real transmission;          // kt
     Vec3<Real> filter;          // kt * tint
@@ -221,5 +232,18 @@ struct SceneView {
     Real largest_bound;                 // of these
     Real extent;                        // M: the largest coordinate, in [1, 2)
 };
+
+/// Whether any body absorbs: what arrives of a light then changes gradually. Asked of the scene, not of the effects
+/// that are compiled in, so that these leave the image alone.
+template <class Scene>
+CISTULA_INLINE bool shades_gradually(const Scene& scene) {
+    if constexpr (requires { scene.gradual; }) {
+        return scene.gradual;
+    } else {
+        bool any = false;
+        for (uint32_t i = 0; i < scene.materials.size; ++i) any |= largest_component(scene.materials[i].absorption) > 0;
+        return any;
+    }
+}
 
 }  // namespace cistula

@@ -21,15 +21,6 @@ struct Signature {
     }
 };
 
-/// Whether any body absorbs: what arrives of a light then changes gradually. Asked of the scene, not of the effects
-/// that are compiled in, so that these leave the image alone.
-template <class Scene>
-CISTULA_INLINE bool shades_gradually(const Scene& scene) {
-    bool any = false;
-    for (uint32_t i = 0; i < scene.materials.size; ++i) any |= largest_component(scene.materials[i].absorption) > 0;
-    return any;
-}
-
 /// The faces that are hit and what arrives from lights: of what changes gradually only whether any does.
 template <class Inner>
 struct SigningIntersector {

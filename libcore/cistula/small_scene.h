@@ -70,34 +70,21 @@ struct MirrorNumbers {
     }
 };
 
-/// The part of a SmallScene that kernels of opaque convex solids need: launches take longer the larger their parameters are,
-/// 0.08 us a KiB (H200).
 template <class Real>
-struct SolidScene {
+struct SmallScene {
     using Scalar = Real;
+    static constexpr uint32_t most_slabs = 96, most_materials = 16;
 
     InlineSpan<Solid, ShadowPlan::solids> solids;
-    InlineSpan<Slab<Real>, 96> slabs;
+    InlineSpan<Slab<Real>, most_slabs> slabs;
     InlineSpan<NumberedSolid<Real>, ShadowPlan::convex> convex;  // copies: a look at one needs no other first
-    InlineSpan<Material<Real>, 16> materials;
-    InlineSpan<Light<Real>, ShadowPlan::lights> lights;
-    ShadowPlan plan;
-    Vec3<Real> background;
-    Vec3<Real> bound;
-    Real largest_bound;
-    Real extent;
-};
-
-template <class Real>
-struct SmallScene : SolidScene<Real> {
-    using SolidScene<Real>::solids, SolidScene<Real>::slabs, SolidScene<Real>::convex, SolidScene<Real>::materials,
-        SolidScene<Real>::lights, SolidScene<Real>::plan, SolidScene<Real>::background, SolidScene<Real>::bound,
-        SolidScene<Real>::largest_bound, SolidScene<Real>::extent;
-
-    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;  // of the clusters: copies, as of the solids
+    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;   // of the clusters: such copies too
     InlineSpan<Cluster<Real>, ShadowPlan::clusters> clusters;
     InlineSpan<TriangleSides<Real>, ShadowPlan::clusters * cluster_lanes> sides;  // by slot
+    InlineSpan<Material<Real>, most_materials> materials;
+    InlineSpan<Light<Real>, ShadowPlan::lights> lights;
     KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
+    ShadowPlan plan;
     MirrorNumbers mirrors;
     InlineSpan<Texture, 8> textures;
     // Elsewhere, as in the view that it was made of:
@@ -110,6 +97,10 @@ struct SmallScene : SolidScene<Real> {
     Span<TreeNode> tree;
     Span<uint32_t> tree_items;
     Span<LightNode> seen_tree;
+    Vec3<Real> background;
+    Vec3<Real> bound;
+    Real largest_bound;
+    Real extent;
 
     /// False if `here`, a view that can be read, is too large, or if a ray in it may be inside more than one solid or a mesh:
     /// OneMedium asks for that. `there`: the same scene where kernels read it.
@@ -182,6 +173,49 @@ struct SmallScene : SolidScene<Real> {
                     if (found == 4 || once > largest_loss / 4 || is_known(crossings * once)) continue;
                     known_shares[found++] = {crossings * once, share_of<Real>(crossings * once)};
                 }
+    }
+};
+
+/// The part of a SmallScene of convex solids alone that the kernels of opaque ones read: launches take longer the larger their
+/// parameters are, 0.08 us a KiB (H200). Its solids are numbered as they are listed.
+template <class Real>
+struct OpaqueScene {
+    using Scalar = Real;
+    struct Plan {
+        uint32_t all_convex;
+        uint16_t near[ShadowPlan::convex][ShadowPlan::lights];
+    };
+    static_assert(ShadowPlan::convex <= 16);
+
+    InlineSpan<NumberedSolid<Real, OpaqueSolid>, ShadowPlan::convex> convex;
+    InlineSpan<Slab<Real>, SmallScene<Real>::most_slabs> slabs;
+    InlineSpan<LocalMaterial<Real>, SmallScene<Real>::most_materials> materials;
+    InlineSpan<Light<Real>, ShadowPlan::lights> lights;
+    Plan plan;     // as in a ShadowPlan
+    bool gradual;  // shades_gradually
+    Vec3<Real> background;
+    Vec3<Real> bound;
+    Real largest_bound;
+    Real extent;
+
+    /// `scene` has no solids but opaque convex ones.
+    void assign(const SmallScene<Real>& scene) {
+        convex.assign(scene.convex.size, [&](uint32_t i) {
+            const NumberedSolid<Real>& from = scene.convex[i];
+            return NumberedSolid<Real, OpaqueSolid>{
+                from.ball, from.index, {from.solid.material, from.solid.first_slab, from.solid.slab_count}};
+        });
+        slabs = scene.slabs;
+        materials.assign(scene.materials.size, [&](uint32_t i) { return scene.materials[i]; });
+        lights = scene.lights;
+        plan.all_convex = scene.plan.all_convex;
+        for (uint32_t i = 0; i < convex.size; ++i)
+            for (uint32_t l = 0; l < ShadowPlan::lights; ++l) plan.near[i][l] = uint16_t(scene.plan.near[i][l]);
+        gradual = shades_gradually(scene);
+        background = scene.background;
+        bound = scene.bound;
+        largest_bound = scene.largest_bound;
+        extent = scene.extent;
     }
 };
 
