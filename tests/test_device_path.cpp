@@ -2,6 +2,7 @@
 // loop, and trees split over a queue as backend_cuda splits them. The integers are those of the CPU backend.
 #include <gtest/gtest.h>
 
+#include <type_traits>
 #include <utility>
 
 #include "cistula/bvh.h"
@@ -213,7 +214,8 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
     ASSERT_FALSE(sends_rays_on(compile_scene<TypeParam>(scene)->effects));
     check<TypeParam>("benchmark, opaque and dull", scene, settings, done);
     EXPECT_EQ(done.opaque_loops, 0);
-    std::erase_if(scene.objects, [](const ObjectDescription& object) { return !std::holds_alternative<SolidObject>(object.shape); });
+    std::erase_if(scene.objects,
+                  [](const ObjectDescription& object) { return !std::holds_alternative<SolidObject>(object.shape); });
     check<TypeParam>("its solids", scene, settings, done);
     EXPECT_GT(done.opaque_loops, 0);
 }

@@ -120,23 +120,30 @@ CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
     return least(least(half[0], half[2]), least(half[1], half[3]));
 }
 
-#if CISTULA_ON_DEVICE
-/// Where some slab is parallel to the line.
+/// One slab after the other, parallel to the line or not.
 template <class Real, class Scene>
 CISTULA_INLINE ConvexInterval<Real> careful_interval(const Scene& scene, uint32_t first, uint32_t end,
                                                      const Vec3<Real>& origin, const Vec3<Real>& direction) {
     ConvexInterval<Real> interval;
+#if CISTULA_ON_DEVICE
 #pragma unroll 1
+#endif
     for (uint32_t i = first; i < end; ++i) {
         Real enter, leave;
         const Slab<Real>& slab = scene.slabs.data[i];
         cross_slab(slab.normal, slab.low, slab.high, origin, direction, enter, leave);
-        if (enter > interval.enter) interval.enter = enter, interval.enter_slab = i;
+        if (enter > interval.enter) {
+            interval.enter = enter;
+#if CISTULA_ON_DEVICE
+            interval.enter_slab = i;
+#endif
+        }
         interval.leave = lesser(leave, interval.leave);
     }
     return interval;
 }
 
+#if CISTULA_ON_DEVICE
 /// The same out of the way. By value, as it is called.
 template <class Real, class Scene>
 CISTULA_SELDOM ConvexInterval<Real> called_interval(const Scene& scene, uint32_t first, uint32_t end, Vec3<Real> origin,
@@ -181,14 +188,8 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Bo
             interval.enter = greatest(greatest_lane(enter), interval.enter);
             interval.leave = least(least_lane(leave), interval.leave);
         }
-    } else {  // an OpaqueScene, which no host renders but in tests
-        for (uint32_t i = 0; i < solid.slab_count; ++i) {
-            const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
-            Real enter, leave;
-            cross_slab(slab.normal, slab.low, slab.high, origin, direction, enter, leave);
-            interval.enter = greatest(enter, interval.enter);
-            interval.leave = least(leave, interval.leave);
-        }
+    } else {  // an OpaqueScene, from which hosts render in tests only
+        return careful_interval(scene, solid.first_slab, solid.first_slab + solid.slab_count, origin, direction);
     }
 #endif
     return interval;

@@ -29,8 +29,8 @@ CISTULA_INLINE Real mirror_cosine(const Vec3<Real>& normal, const Vec3<Real>& to
 /// What a light of unit transmittance adds, before the local share: I a(r) (C kd N.L + ks S (R.V)^n). n_l = N.L > 0;
 /// `shine`: (R.V)^n.
 template <class Real, class E>
-CISTULA_INLINE Vec3<Real> phong(const LocalMaterial<Real>& material, const Vec3<Real>& color, const Light<Real>& light, Real n_l,
-                                Real shine, Real distance) {
+CISTULA_INLINE Vec3<Real> phong(const LocalMaterial<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
+                                Real n_l, Real shine, Real distance) {
     Vec3<Real> result(Real(0));
     if constexpr (E::has(effect_diffuse)) result += color * (material.diffuse * n_l);
     if constexpr (E::has(effect_specular)) result += material.specular * shine;
