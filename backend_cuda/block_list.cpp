@@ -38,7 +38,7 @@ BlockList::BlockList(const FrameCover& cover, const LitCells& lights, const std:
             for (const FrameCover::Outline& outline : cover.outlines()) {
                 const int band = row / FrameCover::band_rows - outline.first_band;
                 if (band < 0 || band >= int(outline.runs.size())) continue;
-                const uint32_t shown = outline.hull < primitives.size() ? primitives[outline.hull] : ~light_in_view;
+                const uint32_t shown = outline.hull < primitives.size() ? primitives[outline.hull] : ~0u;
                 const PixelRun& run = outline.runs[size_t(band)];
                 for (int x = run.begin; x < run.end; x += shape.width - x % shape.width) {
                     const size_t block = size_t(i) * size_t(columns_) + size_t(x / shape.width);
@@ -50,7 +50,9 @@ BlockList::BlockList(const FrameCover& cover, const LitCells& lights, const std:
     listed_.resize(size_t(rows) * size_t(columns_));
     const size_t count = size_t(std::count(listed_.begin(), listed_.end(), 1));
     places_.reserve(count);
-    if (lights.knows_mirrors()) lit_mirrors_.reserve(count * size_t(shape.tiles()));
+    const size_t tiles = count * size_t(shape.tiles());
+    cells_.push_back(lights.cells().front());
+    if (lights.varies()) tiles_.reserve(tiles);
     const int groups = (columns_ + most_side_by_side - 1) / most_side_by_side, width = (columns_ + groups - 1) / groups;
     std::array<std::vector<size_t>, heaviest + 1> by_weight;
     for (int left = 0; left < columns_; left += width)
@@ -60,21 +62,27 @@ BlockList::BlockList(const FrameCover& cover, const LitCells& lights, const std:
                 if (listed_[block]) by_weight[size_t(weight_of(in_view[block]))].push_back(block);
             }
     for (int weight = heaviest; weight >= 0; --weight)
-        for (const size_t block : by_weight[size_t(weight)])
-            list(int(block % size_t(columns_)), row_of(int(block / size_t(columns_))), in_view[block], lights);
+        for (const size_t block : by_weight[size_t(weight)]) {
+            places_.push_back({uint16_t(block % size_t(columns_)), uint16_t(row_of(int(block / size_t(columns_)))), in_view[block]});
+            if (lights.varies()) add_tiles(places_.back(), lights, listed_per_tile * tiles);
+        }
 }
 
-void BlockList::list(int column, int row, uint32_t in_view, const LitCells& lights) {
-    const BlockShape shape = this->shape();
-    const int tile_columns = shape.width / tile_width, tile_rows = shape.height / tile_height;
-    for (int y = row * tile_rows; y < (row + 1) * tile_rows; ++y)
-        for (int x = column * tile_columns; x < (column + 1) * tile_columns; ++x) {
-            const bool beyond = x * tile_width >= rect_.width || y * tile_height >= rect_.height;
-            const LitCells::Lit lit = beyond ? LitCells::Lit() : lights.at(x, y);
-            if (lit.straight) in_view |= light_in_view;
-            if (lights.knows_mirrors()) lit_mirrors_.push_back(lit.mirrors);
+void BlockList::add_tiles(const BlockPlace& place, const LitCells& lights, size_t most_listed) {
+    const int across = shape().width / tile_width, down = shape().height / tile_height;
+    for (int y = place.row * down; y < (place.row + 1) * down; ++y)
+        for (int x = place.column * across; x < (place.column + 1) * across; ++x) {
+            const bool is_beyond = x * tile_width >= rect_.width || y * tile_height >= rect_.height;
+            const uint32_t index = is_beyond ? 0 : lights.index_at(x, y);
+            tiles_.push_back(index == 0 ? 0 : uint32_t(cells_.size()));
+            if (index == 0) continue;
+            LitCell cell = lights.cells()[index];
+            const auto list = lights.lights().begin() + cell.first;
+            if (shown_.size() + cell.count > most_listed) cell.count = 0;
+            cell.first = uint32_t(shown_.size());
+            shown_.insert(shown_.end(), list, list + cell.count);
+            cells_.push_back(cell);
         }
-    places_.push_back({uint16_t(column), uint16_t(row), in_view});
 }
 
 }  // namespace cistula

@@ -27,9 +27,13 @@ class BlockList {
 
     /// In the order in which they are rendered.
     const std::vector<BlockPlace>& places() const { return places_; }
-    /// By places, shape().tiles() for each: the mirrors that may show a light there, as BruteIntersector::lit_mirrors. Empty:
-    /// nothing is known about them.
-    const std::vector<uint64_t>& lit_mirrors() const { return lit_mirrors_; }
+    /// By places, shape().tiles() for each: which of cells() that part is. Empty: the first is all of them.
+    const std::vector<uint32_t>& tiles() const { return tiles_; }
+    /// No more than there are tiles, and one.
+    const std::vector<LitCell>& cells() const { return cells_; }
+    /// Their lists: listed_per_tile a tile at the most, others are left out.
+    static constexpr size_t listed_per_tile = 4;
+    const std::vector<ShownLight>& shown() const { return shown_; }
     Deal deal() const { return deal_; }
     BlockShape shape() const { return BlockShape::of(deal_); }
 
@@ -48,7 +52,7 @@ class BlockList {
     }
 
   private:
-    void list(int column, int row, uint32_t in_view, const LitCells& lights);
+    void add_tiles(const BlockPlace& place, const LitCells& lights, size_t most_listed);
 
     /// In the rectangle, of the i-th row of blocks of the part.
     int row_of(int i) const {
@@ -68,7 +72,9 @@ class BlockList {
     int columns_ = 0;
     std::vector<uint8_t> listed_;  // by rows of blocks
     std::vector<BlockPlace> places_;
-    std::vector<uint64_t> lit_mirrors_;
+    std::vector<uint32_t> tiles_;
+    std::vector<LitCell> cells_;
+    std::vector<ShownLight> shown_;
 };
 
 }  // namespace cistula

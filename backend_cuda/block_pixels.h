@@ -35,7 +35,7 @@ struct BlockShape {
 /// Where a block lies in the frame's rectangle, in blocks. Its records come one after the other, in the order of threads.
 struct BlockPlace {
     uint16_t column, row;
-    uint32_t in_view;  // the primitives that may show there, and whether a seen light may (BruteIntersector::in_view)
+    uint32_t in_view;  // the primitives that may show there (BruteIntersector::in_view)
 };
 
 struct PixelPlace {

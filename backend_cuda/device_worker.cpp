@@ -145,10 +145,13 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, P
     const size_t branch = queued_branch_bytes<Real>(path_), wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
     if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
     bool room = true;
-    const size_t tiles = pixels / (tile_width * tile_height), list_bytes = tiles * (sizeof(BlockPlace) + sizeof(uint64_t));
+    // A block a tile at the most, and a cell more than tiles.
+    const size_t tiles = pixels / (tile_width * tile_height);
+    const size_t list_bytes = sizeof(LitCell) + tiles * (sizeof(LitCell) + sizeof(BlockPlace) + sizeof(uint32_t) +
+                                                         BlockList::listed_per_tile * sizeof(ShownLight));
     for (PartSlot& slot : slots_) {
-        room = room && slot.records.try_reserve(bytes) && slot.blocks.try_reserve(list_bytes);
-        slot.blocks_copy.reserve(list_bytes);
+        room = room && slot.records.try_reserve(bytes) && slot.lists.try_reserve(list_bytes);
+        slot.lists_copy.reserve(list_bytes);
     }
     for (DeviceMemory& queue : queue_) room = room && queue.try_reserve(wanted * branch);
     queue_capacity_ = wanted;
@@ -166,11 +169,14 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     slot.part = part;
     slot.list = BlockList(part.contents->cover, *part.lights, primitives_, part.strips, part.deal);
     const std::vector<BlockPlace>& places = slot.list.places();
-    const std::vector<uint64_t>& lit_mirrors = slot.list.lit_mirrors();
-    std::copy(places.begin(), places.end(), slot.blocks_copy.as<BlockPlace>());
-    static_assert(sizeof(BlockPlace) % alignof(uint64_t) == 0);  // they come one after the other
-    std::copy(lit_mirrors.begin(), lit_mirrors.end(),
-              reinterpret_cast<uint64_t*>(slot.blocks_copy.as<BlockPlace>() + places.size()));
+    size_t listed = 0;  // bytes
+    const auto list = [&]<class T>(const std::vector<T>& items) {
+        const size_t begin = listed;
+        static_assert(sizeof(T) % alignof(T) == 0);
+        std::copy(items.begin(), items.end(), reinterpret_cast<T*>(slot.lists_copy.as<std::byte>() + begin));
+        listed += items.size() * sizeof(T);
+        return items.empty() ? nullptr : reinterpret_cast<const T*>(slot.lists.as<std::byte>() + begin);
+    };
     const PixelRect& rect = part.contents->cover.rect();
     FrameJob job;
     job.frame = part.frame;
@@ -179,17 +185,18 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.y = rect.y;
     job.width = rect.width;
     job.height = rect.height;
-    job.blocks = slot.blocks.as<BlockPlace>();
-    if (!lit_mirrors.empty()) job.lit_mirrors = reinterpret_cast<const uint64_t*>(job.blocks + places.size());
+    job.first_cell = slot.list.cells().front();
+    job.cells = list(slot.list.cells());  // the strictest alignment first
+    job.blocks = list(places);
+    job.tiles = list(slot.list.tiles());
+    job.shown = list(slot.list.shown());
     job.block_count = static_cast<unsigned int>(places.size());
     job.deal = slot.list.deal();
     job.stop = stop_.as<unsigned int>();
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
-    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.as<void>(), slot.blocks_copy.as<void>(),
-                                       places.size() * sizeof(BlockPlace) + lit_mirrors.size() * sizeof(uint64_t),
-                                       cudaMemcpyHostToDevice, compute_));
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.lists.as<void>(), slot.lists_copy.as<void>(), listed, cudaMemcpyHostToDevice, compute_));
     const StreamGate::Hold held = gate_.hold(compute_);
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
     const auto queue = [&](int pass) {

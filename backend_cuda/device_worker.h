@@ -36,8 +36,8 @@ struct FramePart {
 
 /// A part on its way.
 struct PartSlot {
-    DeviceMemory records, blocks, tally;
-    PinnedMemory blocks_copy, tally_copy;
+    DeviceMemory records, lists, tally;
+    PinnedMemory lists_copy, tally_copy;
     CudaEvent begin, end, done;  // of the kernels; of all, the tally's copy too
     FramePart part;
     BlockList list;

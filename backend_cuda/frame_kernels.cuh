@@ -108,11 +108,16 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
     Record& record = room.records[threadIdx.x];
     typename Stack::Room branches;
     Stack stack(branches, job, first + (shares ? unsigned(lane) : threadIdx.x));
-    const uint64_t lit_mirrors =
-        job.lit_mirrors == nullptr
-            ? ~uint64_t{0}
-            : job.lit_mirrors[blockIdx.x * unsigned(shape.tiles()) + unsigned(shape.tile_of(place.column, place.row))];
-    const Intersector intersector = PathTraits<Real, E, path>::intersector(scene, block.in_view, lit_mirrors);
+    ShownLights shown;
+    if constexpr (E::has(effect_visible_lights)) {
+        __shared__ Unset<BlockLights> lights;
+        LitCell& cell = lights.get().cells[threadIdx.x] = job.first_cell;
+        if (job.tiles != nullptr)
+            cell = job.cells[job.tiles[blockIdx.x * unsigned(shape.tiles()) + unsigned(shape.tile_of(place.column, place.row))]];
+        shown = {&cell, job.shown};
+        __builtin_assume(shown.cell != nullptr);  // or every search asks, by the address of shared memory
+    }
+    const Intersector intersector = PathTraits<Real, E, path>::intersector(scene, block.in_view, shown);
     const bool is_inside = column < job.width && row < job.height;
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);

@@ -15,6 +15,11 @@ struct alignas(16) BlockRoom {
     PixelWork work[block_threads];
 };
 
+/// What its threads know of the lights where they render.
+struct BlockLights {
+    LitCell cells[block_threads];
+};
+
 /// Shared memory, unset: what it holds would be set by its constructors, of which the language allows none there.
 template <class T>
 struct alignas(T) Unset {
@@ -46,15 +51,15 @@ template <class Real, class E>
 struct PathTraits<Real, E, DevicePath::plain_loop> {
     using Scene = std::conditional_t<takes_opaque_scene(E::mask), OpaqueScene<Real>, SmallScene<Real>>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
-    __device__ static Intersector intersector(const Scene& scene, uint32_t in_view, uint64_t lit_mirrors) {
-        return {scene, in_view, lit_mirrors};
+    __device__ static Intersector intersector(const Scene& scene, uint32_t in_view, const ShownLights& shown) {
+        return {scene, in_view, shown};
     }
 };
 template <class Real, class E>
 struct PathTraits<Real, E, DevicePath::tree> {
     using Scene = SceneView<Real>;
     using Intersector = BvhIntersector<Real, MediaList, Scene>;
-    __device__ static Intersector intersector(const Scene& scene, uint32_t, uint64_t) { return {scene}; }
+    __device__ static Intersector intersector(const Scene& scene, uint32_t, const ShownLights&) { return {scene}; }
 };
 
 /// Whether the host wants the kernel to end. Past the caches, which would keep what was there first.

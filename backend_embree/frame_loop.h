@@ -51,14 +51,11 @@ class StoppableStack {
 /// Pixels along the side of a cell of LitCells.
 inline constexpr int lit_cell = 8;
 
-/// Looks for no light where none shows.
+/// Looks for lights where they show.
 template <class Intersector>
-Intersector among_lights(const Intersector& intersector, [[maybe_unused]] const LitCells::Lit& lit) {
+Intersector among_lights(const Intersector& intersector, [[maybe_unused]] const ShownLights& shown) {
     Intersector here = intersector;
-    if constexpr (requires { here.in_view; }) {
-        if (!lit.straight) here.in_view &= ~light_in_view;
-        here.lit_mirrors = lit.mirrors;
-    }
+    if constexpr (requires { here.shown; }) here.shown = shown;
     return here;
 }
 
@@ -96,7 +93,7 @@ bool for_each_run(const FrameSettings& settings, const FrameContents& contents, 
     return !progress.stop.load();
 }
 
-/// Calls render(x, y, lit, record, work) for each pixel of such runs.
+/// Calls render(x, y, shown, record, work) for each pixel of such runs.
 template <class Render>
 bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
                     const Render& render) {
@@ -132,9 +129,9 @@ bool render_tiles(const typename Intersector::Scene& scene, const FrameView& fra
     if constexpr (fits_packets<E> && std::is_same_v<typename Intersector::Scene, SmallScene<Real>>) {
         return render_packets<Real, E>(scene, frame, intersector.in_view, settings, contents, film, progress);
     } else {
-        return for_each_pixel(settings, contents, film, progress, [&](int x, int y, const LitCells::Lit& lit, PixelRecord& pixel, PixelWork& own) {
+        return for_each_pixel(settings, contents, film, progress, [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
             StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-            render_pixel<Real, E>(scene, frame, among_lights(intersector, lit), x, y, SampleRange(), pixel, own, stack);
+            render_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y, SampleRange(), pixel, own, stack);
         });
     }
 }
@@ -144,9 +141,9 @@ template <class Real, class E, class Intersector>
 bool render_adaptive_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                            const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
     const bool gradual = shades_gradually(scene);
-    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, const LitCells::Lit& lit, PixelRecord& pixel, PixelWork& own) {
+    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
         StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-        render_adaptive_pixel<Real, E>(scene, frame, among_lights(intersector, lit), x, y, gradual, pixel, own, stack);
+        render_adaptive_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y, gradual, pixel, own, stack);
     });
 }
 

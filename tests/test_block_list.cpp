@@ -7,6 +7,7 @@
 
 #include "backend_cuda/block_list.h"
 #include "support_camera.h"
+#include "support_scene.h"
 
 using namespace cistula;
 
@@ -91,7 +92,7 @@ TEST(BlockList, BlocksThatAreRenderedTogetherLieCloseTogether) {
     EXPECT_EQ(list.places()[15].column, 15);
     EXPECT_EQ(list.places()[16].column, 0);
     EXPECT_EQ(list.places()[16].row, 1);
-    for (const BlockPlace& block : list.places()) EXPECT_EQ(block.in_view, ~light_in_view);
+    for (const BlockPlace& block : list.places()) EXPECT_EQ(block.in_view, ~0u);
 }
 
 /// Solids before sheets, several things before one.
@@ -122,7 +123,7 @@ TEST(BlockList, BlocksKnowWhatMayShow) {
         const BlockList list(cover, by_tiles(LightImages(rect)), {4u}, {0, 1, rect.height / strip_rows}, deal);
         size_t known = 0;
         for (const BlockPlace& block : list.places()) {
-            EXPECT_TRUE(block.in_view == 4u || block.in_view == ~light_in_view) << block.in_view;  // hull 1 has no number
+            EXPECT_TRUE(block.in_view == 4u || block.in_view == ~0u) << block.in_view;  // hull 1 has no number
             known += block.in_view == 4u;
         }
         EXPECT_GT(known, list.places().size() / 2);
@@ -130,15 +131,22 @@ TEST(BlockList, BlocksKnowWhatMayShow) {
     }
 }
 
-/// Images of lights, two of them in mirrors.
+/// Images of lights, three of them in mirrors, one of which shows any.
 LightImages lights_in(const PixelRect& rect) {
     LightImages lights(rect);
     lights.know_mirrors();
-    lights.add({{160, 80, 9, 7}, LightImage::straight});
-    lights.add({{100, 100, 40, 30}, LightImage::straight});
-    lights.add({{130, 90, 60, 9}, 3});
-    lights.add({{170, 70, 3, 40}, MirrorNumbers::most - 1});
+    lights.add({{160, 80, 9, 7}, MirrorNumbers::straight, 5});
+    lights.add({{100, 100, 40, 30}, MirrorNumbers::straight, 700});
+    lights.add({{130, 90, 60, 9}, 3, 5});
+    lights.add({{170, 70, 3, 40}, MirrorNumbers::most - 1, 0});
+    lights.add({{150, 60, 30, 30}, 2});
     return lights;
+}
+
+/// What is known of part `tile` of a block.
+ShownLights shown_in(const BlockList& list, size_t block, int tile) {
+    const uint32_t cell = list.tiles().at(block * size_t(list.shape().tiles()) + size_t(tile));
+    return {&list.cells().at(cell), list.shown().data()};
 }
 
 TEST(BlockList, BlocksKnowWhereLightsMayShow) {
@@ -148,47 +156,72 @@ TEST(BlockList, BlocksKnowWhereLightsMayShow) {
     const int strips = (rect.height + strip_rows - 1) / strip_rows;
     for (const Deal deal : deals)
         for (const int step : {1, 3}) {
-            size_t lit = 0, dark = 0, mirrored = 0, unmirrored = 0;
+            size_t lit = 0, dark = 0, listed = 0;
             for (int first = 0; first < step; ++first) {
                 const BlockList list(cover, by_tiles(lights), {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
                 const BlockShape shape = list.shape();
-                ASSERT_EQ(list.lit_mirrors().size(), list.places().size() * size_t(shape.tiles()));
+                ASSERT_EQ(list.tiles().size(), list.places().size() * size_t(shape.tiles()));
+                EXPECT_LE(list.cells().size(), list.tiles().size() + 1);
                 for (size_t b = 0; b < list.places().size(); ++b) {
                     const BlockPlace& block = list.places()[b];
-                    const auto meets = [&](int x, int y, int width, int height, uint32_t mirror) {
-                        const int left = block.column * shape.width + x, top = block.row * shape.height + y;
-                        return std::ranges::any_of(lights.images(), [&](const LightImage& image) {
-                            return image.mirror == mirror && left < image.rect.x + image.rect.width && left + width > image.rect.x &&
-                                   top < image.rect.y + image.rect.height && top + height > image.rect.y;
-                        });
-                    };
-                    const bool is_lit = (block.in_view & light_in_view) != 0;
-                    EXPECT_EQ(is_lit, meets(0, 0, shape.width, shape.height, LightImage::straight));
-                    ++(is_lit ? lit : dark);
                     for (int i = 0; i < shape.pixels(); ++i) {
                         const PixelPlace place = place_in_block(deal, i);
                         const int tile = shape.tile_of(place.column, place.row);
                         ASSERT_LT(tile, shape.tiles());
-                        uint64_t expected = 0;
-                        for (uint32_t mirror = 0; mirror < MirrorNumbers::most; ++mirror)
-                            expected |= uint64_t{meets(place.column / tile_width * tile_width, place.row / tile_height * tile_height,
-                                                       tile_width, tile_height, mirror)}
-                                        << mirror;
-                        EXPECT_EQ(list.lit_mirrors()[b * size_t(shape.tiles()) + size_t(tile)], expected);
-                        ++(expected != 0 ? mirrored : unmirrored);
+                        const int left = block.column * shape.width + place.column / tile_width * tile_width;
+                        const int top = block.row * shape.height + place.row / tile_height * tile_height;
+                        const auto meets = [&](const LightImage& image) {
+                            return left < image.rect.x + image.rect.width && left + tile_width > image.rect.x &&
+                                   top < image.rect.y + image.rect.height && top + tile_height > image.rect.y;
+                        };
+                        const ShownLights shown = shown_in(list, b, tile);
+                        for (uint32_t mirror = 0; mirror <= MirrorNumbers::straight; ++mirror) {
+                            std::vector<uint32_t> expected;
+                            bool is_lit = false;
+                            for (const LightImage& image : lights.images())
+                                if (image.mirror == mirror && meets(image)) {
+                                    is_lit = true;
+                                    if (image.light != LightImage::any) expected.push_back(image.light);
+                                }
+                            EXPECT_EQ(shown.cell->is_dark(mirror), !is_lit);
+                            EXPECT_EQ(test::lights_in(shown, mirror), expected);
+                            listed += expected.size();
+                            ++(is_lit ? lit : dark);
+                        }
                     }
                 }
             }
-            EXPECT_GT(lit, 2u);
+            EXPECT_GT(lit, 200u);
             EXPECT_GT(dark, lit);
-            EXPECT_GT(mirrored, 100u);
-            EXPECT_GT(unmirrored, mirrored);
+            EXPECT_GT(listed, lit / 2);
         }
+}
+
+TEST(BlockList, TilesHaveRoomForSoManyLights) {
+    const PixelRect rect{0, 0, 640, 368};
+    LightImages lights(rect);
+    for (uint32_t light = 0; light < 3 * BlockList::listed_per_tile; ++light) lights.add({rect, MirrorNumbers::straight, light});
+    const BlockList list(cover_of(rect), by_tiles(lights), {1u, 8u}, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    EXPECT_LE(list.shown().size(), BlockList::listed_per_tile * list.tiles().size());
+    size_t listed = 0, others = 0;
+    for (size_t b = 0; b < list.places().size(); ++b) {
+        const ShownLights shown = shown_in(list, b, 0);
+        EXPECT_FALSE(shown.cell->is_dark(MirrorNumbers::straight));
+        ++(shown.cell->count != 0 ? listed : others);  // lights are looked for everywhere
+    }
+    EXPECT_GT(listed, others / 3);
+    EXPECT_GT(others, listed);
 }
 
 TEST(BlockList, NothingIsKnownOfMirrorsThatNobodyAsks) {
     const PixelRect rect{0, 0, 64, 32};
-    EXPECT_TRUE(BlockList(cover_of(rect), by_tiles(LightImages(rect)), {1u, 8u}, {0, 1, 4}, Deal::tiles).lit_mirrors().empty());
+    const BlockList list(cover_of(rect), by_tiles(LightImages(rect)), {1u, 8u}, {0, 1, 4}, Deal::tiles);
+    EXPECT_TRUE(list.tiles().empty());
+    ASSERT_EQ(list.cells().size(), 1u);
+    const ShownLights shown{list.cells().data(), nullptr};
+    EXPECT_TRUE(shown.cell->is_dark(MirrorNumbers::straight));
+    for (uint32_t mirror = 0; mirror < MirrorNumbers::most; ++mirror) EXPECT_FALSE(shown.cell->is_dark(mirror));
+    EXPECT_FALSE(shown.cell->is_dark(MirrorNumbers::none));
 }
 
 }  // namespace

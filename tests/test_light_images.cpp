@@ -64,10 +64,13 @@ class LightsIn : public ::testing::Test {};
 using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(LightsIn, Reals);
 
+constexpr uint64_t straight_bit = uint64_t{1} << MirrorNumbers::straight;
+
 /// Looks for lights nowhere on the lines from the camera.
 template <class Real>
 struct Unlit : BvhIntersector<Real> {
-    bool passes_lights(const Ray<Real>& ray) const { return ray.from_solid == no_solid; }
+    static constexpr LitCell dark{~straight_bit};
+    ShownLights shown{&dark};
 };
 
 TYPED_TEST(LightsIn, ThePictureShowWhereTheirImagesAre) {
@@ -92,7 +95,7 @@ TYPED_TEST(LightsIn, ThePictureShowWhereTheirImagesAre) {
                     const bool differs = !test::same_bytes(rendered<TypeParam, E>(view, frame, whole, px, py),
                                                            rendered<TypeParam, E>(view, frame, unlit, px, py));
                     const bool told = std::ranges::any_of(lights.images(), [&](const LightImage& image) {
-                        return image.mirror == LightImage::straight && holds(image.rect, x, y);
+                        return image.mirror == MirrorNumbers::straight && holds(image.rect, x, y);
                     });
                     ++all;
                     apart += differs;
@@ -119,7 +122,8 @@ TYPED_TEST(LightsIn, MirrorsShowWhereTheirImagesAre) {
     using E = Effects<clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces>;
     using Loop = BruteIntersector<TypeParam, OneMedium, SmallScene<TypeParam>>;
     test::Random random(21);
-    size_t apart = 0, told = 0, asked = 0, wrong = 0, all = 0, scenes = 0;
+    const LitCell unmirrored{straight_bit};
+    size_t apart = 0, told = 0, listed = 0, asked = 0, wrong = 0, all = 0, scenes = 0;
     const auto check = [&](const SceneDescription& description, const std::string& what) {
         const auto scene = compile_scene<TypeParam>(description);
         const auto small = small_scene(scene->view());
@@ -134,19 +138,19 @@ TYPED_TEST(LightsIn, MirrorsShowWhereTheirImagesAre) {
             const LightImages lights = frame_contents(*scene, frame, settings).lights;
             if (!lights.knows_mirrors()) continue;
             scenes += i == 0;
-            none.lit_mirrors = 0;
+            none.shown.cell = &unmirrored;
+            const LitCells cells(lights, 1, 1);
             for (int y = 0; y < settings.crop.height; ++y)
                 for (int x = 0; x < settings.crop.width; ++x) {
-                    some.lit_mirrors = 0;
-                    for (const auto& [rect, mirror] : lights.images())
-                        if (mirror != LightImage::straight && holds(rect, x, y)) some.lit_mirrors |= uint64_t{1} << mirror;
+                    some.shown = cells.at(x, y);
                     const int px = settings.crop.x + x, py = settings.crop.y + y;
                     const PixelRecord right = rendered<TypeParam, E>(*small, frame, whole, px, py);
                     const bool is_wrong = !test::same_bytes(right, rendered<TypeParam, E>(*small, frame, some, px, py));
                     EXPECT_TRUE(!is_wrong || wrong != 0) << what << ", camera " << i << ", pixel " << px << ", " << py;  // the first
                     wrong += is_wrong;
                     apart += !test::same_bytes(right, rendered<TypeParam, E>(*small, frame, none, px, py));
-                    told += size_t(std::popcount(some.lit_mirrors));
+                    told += size_t(std::popcount(some.shown.cell->mirrors & ~unmirrored.mirrors));
+                    listed += some.shown.cell->count;
                     asked += faces;
                     ++all;
                 }
@@ -167,6 +171,7 @@ TYPED_TEST(LightsIn, MirrorsShowWhereTheirImagesAre) {
     EXPECT_GT(scenes, 20u);
     EXPECT_GT(apart, all / 200);
     EXPECT_LT(told, asked / 8);
+    EXPECT_GT(listed, told / 2);
 }
 
 /// Lines leave a triangle toward a point above its middle: in float an eighth of the way to it where that lies some u M high.
@@ -199,16 +204,17 @@ TEST(LightsInSlivers, ShowWhereTheLinesThatTheySendBackStart) {
     ASSERT_TRUE(lights.knows_mirrors());
     using E = Effects<clear_bodies | effect_visible_lights>;
     BruteIntersector<float, OneMedium, SmallScene<float>> loop{*small};
+    const LitCell dark{0};
     size_t met = 0;
     for (int y = settings.crop.y; y < settings.crop.y + settings.crop.height; ++y) {
         const int x = settings.crop.x + 20;
-        loop.lit_mirrors = ~uint64_t{0};
+        loop.shown.cell = nullptr;
         const PixelRecord whole = rendered<float, E>(*small, frame, loop, x, y);
-        loop.lit_mirrors = 0;
+        loop.shown.cell = &dark;
         if (test::same_bytes(whole, rendered<float, E>(*small, frame, loop, x, y))) continue;
         ++met;
         EXPECT_TRUE(std::ranges::any_of(lights.images(), [&](const LightImage& image) {
-            return image.mirror != LightImage::straight && holds(image.rect, x - settings.crop.x, y - settings.crop.y);
+            return image.mirror != MirrorNumbers::straight && holds(image.rect, x - settings.crop.x, y - settings.crop.y);
         })) << y;
     }
     EXPECT_GT(met, 5u);
@@ -218,9 +224,81 @@ TYPED_TEST(LightsIn, AThousandAndMoreMayShowAnywhere) {
     SceneDescription description = read_scene(source + "/scenes/benchmark.json");
     test::add_seen_lights(description, 1100);
     const LightImages lights = images_of<TypeParam>(description);
-    const std::vector<LightImage> anywhere = {{{0, 0, 40, 30}, LightImage::straight}};
+    const std::vector<LightImage> anywhere = {{{0, 0, 40, 30}, MirrorNumbers::straight}};
     EXPECT_EQ(lights.images(), anywhere);
     EXPECT_FALSE(lights.knows_mirrors());
+}
+
+/// As many as fill the picture more than so often.
+TYPED_TEST(LightsIn, ImagesOverImagesAreOneOfAnyLight) {
+    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    description.camera = CameraDescription();
+    description.camera.position = {4, 4, 3};
+    description.camera.target = {0, 0, 2};
+    LightDescription around;  // the camera
+    around.position = description.camera.position;
+    around.color = glm::dvec3{0};
+    around.glow = glm::dvec3{1};
+    around.radius = 0.5;
+    const auto images_of_so_many = [&](size_t count) {
+        description.lights.assign(count, around);
+        std::vector<LightImage> straight;
+        const LightImages lights = images_of<TypeParam>(description);
+        for (const LightImage& image : lights.images())
+            if (image.mirror == MirrorNumbers::straight) straight.push_back(image);
+        return straight;
+    };
+    EXPECT_EQ(images_of_so_many(16).size(), 16u);
+    EXPECT_EQ(images_of_so_many(16).back().light, 15u);
+    const std::vector<LightImage> any = {{{0, 0, 40, 30}, MirrorNumbers::straight, LightImage::any}};
+    EXPECT_EQ(images_of_so_many(17), any);
+}
+
+/// Few images and many, of any size.
+TEST(LitCells, ListWhatTheirImagesShow) {
+    test::Random random(23);
+    const PixelRect rect{9, 4, 150, 71};
+    size_t listed = 0, unlisted = 0, dark = 0;
+    for (const int count : {1, 30, 300})
+        for (const auto& [width, height] : {std::pair{8, 4}, {8, 8}, {1, 1}}) {
+            LightImages images(rect);
+            images.know_mirrors();
+            const auto whole = [&](int most) { return std::min(int(random.unit() * most), most - 1); };
+            for (int i = 0; i < count; ++i) {
+                const int x = whole(rect.width), y = whole(rect.height);
+                const uint32_t mirror = uint32_t(whole(MirrorNumbers::most + 1));
+                images.add({{x, y, 1 + whole(std::min(20, rect.width - x)), 1 + whole(std::min(20, rect.height - y))}, mirror,
+                            mirror % 5 == 0 && i % 3 == 0 ? LightImage::any : uint32_t(whole(ShownLight::most))});
+            }
+            const LitCells cells(images, width, height);
+            for (int row = 0; row * height < rect.height; ++row)
+                for (int column = 0; column * width < rect.width; ++column) {
+                    const ShownLights shown = cells.at(column, row);
+                    for (uint32_t mirror = 0; mirror <= MirrorNumbers::straight; ++mirror) {
+                        std::vector<uint32_t> expected;
+                        bool is_any = false, is_lit = false;
+                        for (const LightImage& image : images.images()) {
+                            if (image.mirror != mirror) continue;
+                            is_any |= image.light == LightImage::any;
+                            const bool meets = image.rect.x < (column + 1) * width && image.rect.x + image.rect.width > column * width &&
+                                               image.rect.y < (row + 1) * height && image.rect.y + image.rect.height > row * height;
+                            if (!meets) continue;
+                            is_lit = true;
+                            expected.push_back(image.light);
+                        }
+                        EXPECT_EQ(shown.cell->is_dark(mirror), !is_lit);
+                        const std::vector<uint32_t> known = test::lights_in(shown, mirror);
+                        if (is_any || shown.cell->count == 0)
+                            EXPECT_TRUE(known.empty());
+                        else
+                            EXPECT_EQ(known, expected);
+                        ++(!is_lit ? dark : known.empty() ? unlisted : listed);
+                    }
+                }
+        }
+    EXPECT_GT(listed, 10000u);
+    EXPECT_GT(unlisted, 1000u);
+    EXPECT_GT(dark, listed);
 }
 
 TYPED_TEST(LightsIn, MirrorsAreKnownWhereTheyAreAskedFor) {
@@ -242,7 +320,7 @@ TYPED_TEST(LightsIn, MirrorsWhoseSideIsInDoubtShowAnywhere) {
     const LightImages lights = images_of<TypeParam>(description);
     EXPECT_EQ(std::ranges::count_if(lights.images(),
                                     [](const LightImage& image) {
-                                        return image.mirror != LightImage::straight && image.rect == PixelRect{0, 0, 40, 30};
+                                        return image.mirror != MirrorNumbers::straight && image.rect == PixelRect{0, 0, 40, 30};
                                     }),
               2);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cistula/shadow.h"
+#include "cistula/shown_lights.h"
 
 namespace cistula {
 
@@ -30,19 +31,16 @@ CISTULA_INLINE void shadow_primitive(const Scene& scene, uint32_t primitive, con
         shadow_cluster<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, sum);
 }
 
-/// Beside primitives, in BruteIntersector::in_view: a seen light.
-inline constexpr uint32_t light_in_view = 1u << 31;
-
 template <class Real, class MediaKind = MediaList, class SceneKind = SceneView<Real>>
 struct BruteIntersector {
     using Media = MediaKind;
     using Scene = SceneKind;
     const Scene& scene;
     /// The primitives of a SmallScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of the picture, as
-    /// long as they go straight on; and light_in_view if they can meet any.
+    /// long as they go straight on.
     uint32_t in_view = ~0u;
-    /// Of a SmallScene: the mirrors, bits by MirrorNumbers, from which such rays may go on to a seen light there.
-    uint64_t lit_mirrors = ~uint64_t{0};
+    /// The seen lights that they can meet, or where a first mirror sends them.
+    ShownLights shown;
 
     /// The least (t, key) after ray.after that the primitive tests accept.
     template <class E = Effects<all_effects>>
@@ -53,16 +51,6 @@ struct BruteIntersector {
         find_closest<E>(ray, best);
         if (!best.found()) best.t = RealTraits<Real>::infinity;
         return best;
-    }
-
-    /// Whether the ray surely meets no seen light.
-    CISTULA_INLINE bool passes_lights(const Ray<Real, Media>& ray) const { return (ahead_of(ray) & light_in_view) == 0; }
-    /// Whether the line on which a face sends such a ray back surely meets none, however far it goes on straight.
-    CISTULA_INLINE bool mirrors_no_light([[maybe_unused]] uint32_t solid, [[maybe_unused]] uint32_t face) const {
-        if constexpr (requires { scene.mirrors; })
-            return scene.mirrors.misses(lit_mirrors, solid, face);
-        else
-            return false;
     }
 
     /// The share of the light's intensity that reaches the ray's origin.

@@ -35,37 +35,52 @@ CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, boo
 #endif
 }
 
-/// Calls visit(light) for the candidates of box_ray; visit returns the new far limit.
+/// What a walk has yet to look at, the latest first: nodes, or ~light.
+class LightStack {
+  public:
+    static constexpr int32_t none = INT32_MIN, root = 0;
+    static constexpr int capacity = (LightNode::width - 1) * (max_tree_depth + 1) + 1;
+    using Room = int32_t[capacity];
+
+    /// The room apart, so that the rest stays in registers.
+    CISTULA_INLINE explicit LightStack(Room& room) : waiting_(room) {}
+
+    CISTULA_INLINE bool empty() const { return next_ == none; }
+    CISTULA_INLINE void push(int32_t item) {
+        if (next_ != none) waiting_[size_++] = next_;
+        next_ = item;
+    }
+    /// The latest; none where there is nothing.
+    CISTULA_INLINE int32_t pop() {
+        if (next_ == none && size_ != 0) next_ = waiting_[--size_];
+        const int32_t item = next_;
+        next_ = none;
+        return item;
+    }
+
+  private:
+    Room& waiting_;
+    int size_ = 0;
+    int32_t next_ = none;  // what was pushed last, if it was not popped
+};
+
+/// Calls visit(light) for the candidates of box_ray among what `stack` holds; visit returns the new far limit.
 template <class Visit>
-CISTULA_INLINE void walk_lights(const Span<LightNode>& nodes, BoxRay box_ray, const Visit& visit) {
-    constexpr int width = LightNode::width;
-    constexpr int32_t none = INT32_MIN;
+CISTULA_INLINE void walk_lights(const Span<LightNode>& nodes, BoxRay box_ray, LightStack& stack, const Visit& visit) {
     // Finite, as least and greatest of boxes beside which a line runs are not.
     const auto limited = [](float far_limit) { return least(far_limit, RealTraits<float>::largest); };
     box_ray.far_limit = limited(box_ray.far_limit);
-    int32_t pending[(width - 1) * (max_tree_depth + 1) + 1];
-    int depth = 0;
-    int32_t next = 0;
-    for (;;) {
-        int32_t found = none;
+    for (int32_t next = stack.pop(); next != LightStack::none; next = stack.pop()) {
         if (next < 0) {
             box_ray.far_limit = limited(visit(uint32_t(~next)));
-        } else {
-            const LightNode& node = nodes[uint32_t(next)];
-            bool meets[width];
-            meet_boxes(node, box_ray, meets);
-            const LightNode::Children children = node.children;
-            for (int i = 0; i < width; ++i) {
-                if (!meets[i]) continue;
-                if (found != none) pending[depth++] = found;
-                found = children.of[i];
-            }
+            continue;
         }
-        if (found == none) {
-            if (depth == 0) return;
-            found = pending[--depth];
-        }
-        next = found;
+        const LightNode& node = nodes[uint32_t(next)];
+        bool meets[LightNode::width];
+        meet_boxes(node, box_ray, meets);
+        const LightNode::Children children = node.children;
+        for (int i = 0; i < LightNode::width; ++i)
+            if (meets[i]) stack.push(children.of[i]);
     }
 }
 

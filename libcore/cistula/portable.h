@@ -43,6 +43,13 @@
 #define CISTULA_VECTORS
 #endif
 
+// Before a loop whose code devices are to have once, as their caches hold little of it.
+#if CISTULA_ON_DEVICE
+#define CISTULA_NOT_UNROLLED _Pragma("unroll 1")
+#else
+#define CISTULA_NOT_UNROLLED
+#endif
+
 // Called rarely: out of the way of the instruction caches.
 #define CISTULA_SELDOM CISTULA_HD __attribute__((noinline))
 

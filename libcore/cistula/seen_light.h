@@ -3,6 +3,7 @@
 
 #include "cistula/edge_lights.h"
 #include "cistula/light_tree.h"
+#include "cistula/shown_lights.h"
 
 namespace cistula {
 
@@ -28,25 +29,41 @@ CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real
     if (t >= ray.after.t && (t < best.t || (t == best.t && index < best.light))) best = {t, index};
 }
 
-/// The nearest seen light at or after ray.after and before t_limit.
+/// The nearest seen light at or after ray.after and before t_limit, on a line that `mirror` shows in a part of the picture:
+/// `cell` with the lists of `shown`.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit) {
+CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit,
+                                                const ShownLight* shown = nullptr, const LitCell& cell = {},
+                                                uint32_t mirror = MirrorNumbers::none) {
     SeenHit<Real> best;
     best.t = t_limit;
     if (!is_finite(ray)) return best;
     if (scene.seen_tree.empty()) {
+        CISTULA_NOT_UNROLLED
         for (uint32_t i = 0; i < scene.seen_lights.size; ++i) see_light(scene, i, ray, best);
         return best;
     }
+    // What is listed is looked at by the code that walks the tree.
+    static_assert(LitCell::most <= LightStack::capacity);
+    LightStack::Room room;
+    LightStack stack(room);
+    CISTULA_NOT_UNROLLED
+    for (uint32_t i = cell.first; i != cell.first + cell.count; ++i) {
+        const ShownLight next = shown[i];
+        if (next.mirror() == mirror) stack.push(~int32_t(next.light()));
+    }
     Real from = ray.after.t;
+    if (stack.empty()) {
 #if !CISTULA_ON_DEVICE
-    from = greatest(from, Real(0));
-    if (!may_see_lights(scene, ray, from, t_limit)) return best;
+        from = greatest(from, Real(0));
+        if (!may_see_lights(scene, ray, from, t_limit)) return best;
 #endif
+        stack.push(LightStack::root);
+    }
     BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
     box_ray.near_limit = tree_near(from);
     box_ray.far_limit = tree_far(t_limit);
-    walk_lights(scene.seen_tree, box_ray, [&](uint32_t light) {
+    walk_lights(scene.seen_tree, box_ray, stack, [&](uint32_t light) {
         see_light(scene, light, ray, best);
         return tree_far(best.t);
     });

@@ -2,6 +2,7 @@
 // warp read at once. The same names as in SceneView, so that the same code reads either.
 #pragma once
 
+#include "cistula/shown_lights.h"
 #include "cistula/surface.h"
 #include "cistula/transmittance.h"
 #include "cistula/triangle.h"
@@ -37,9 +38,9 @@ struct InlineSpan {
 
 /// What is known of shadow rays before they are shot (plan_shadows, scene/shadow_plan.h).
 struct ShadowPlan {
-    static constexpr uint32_t solids = 24, lights = 8, convex = 16, clusters = 4;
+    static constexpr uint32_t solids = MirrorNumbers::solids, lights = 8, convex = 16, clusters = 4;
     static constexpr uint32_t first_cluster = convex;
-    static_assert(solids <= 32 && first_cluster + clusters <= 31);  // the last bit is light_in_view
+    static_assert(solids <= 32 && first_cluster + clusters <= 32);
 
     uint32_t all_convex, all_clusters;  // bit p: convex[p]; bit first_cluster + p: clusters[p]
     uint32_t beyond[lights];            // bit i: the light is well outside of convex solid i
@@ -52,21 +53,6 @@ struct ShadowPlan {
         for (uint32_t& of_light : beyond) of_light = 0;
         for (auto& of_solid : near)
             for (uint32_t& primitives : of_solid) primitives = ~0u;
-    }
-};
-
-/// Numbers of flat faces that mirror: bits of a word (scene/light_images.h).
-struct MirrorNumbers {
-    static constexpr uint32_t most = 64, none = 1u << 31;
-
-    uint32_t first[ShadowPlan::solids];  // the face's number less its number in keys; none: that solid's have no numbers
-
-    /// `most` or more: it has no number.
-    CISTULA_INLINE uint32_t of(uint32_t solid, uint32_t face) const { return first[solid] + face; }
-    /// Whether the face has a bit, and it is 0.
-    CISTULA_INLINE bool misses(uint64_t bits, uint32_t solid, uint32_t face) const {
-        const uint32_t number = of(solid, face);
-        return number < most && (bits >> number & 1u) == 0;
     }
 };
 
@@ -128,7 +114,7 @@ struct SmallScene {
         });
         find_shares();
         plan.clear(convex.size, clusters.size);
-        for (uint32_t& first : mirrors.first) first = MirrorNumbers::none;
+        mirrors.clear();
         background = here.background;
         bound = here.bound;
         largest_bound = here.largest_bound;

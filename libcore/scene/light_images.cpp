@@ -11,10 +11,8 @@
 namespace cistula {
 namespace {
 
-/// More lights are looked for everywhere.
-constexpr size_t most_lights = 1024;
-/// Mirrors whose images hold more pixels, in windows, show lights all over theirs.
-constexpr int64_t overlap = 4;
+/// Images that together hold more pixels, in windows of a mirror or in pictures, are one: any light may show all over it.
+constexpr int64_t overlap = 4, straight_overlap = 16;
 /// By so much of M a line that was mirrored once may be off, and more: its direction by a few u, its start by some u M.
 constexpr double mirrored_share = 0x1p-14;
 
@@ -77,21 +75,45 @@ bool asks_mirrors(uint32_t effects, const FrameSettings& settings, const FrameVi
 
 }  // namespace
 
-LitCells::LitCells(const LightImages& lights, int width, int height)
-    : columns_((lights.rect().width + width - 1) / width) {
-    if (lights.images().empty() && !lights.knows_mirrors()) return;
-    straight_.resize(size_t(columns_) * size_t((lights.rect().height + height - 1) / height));
-    if (lights.knows_mirrors()) mirrors_.resize(straight_.size());
-    for (const auto& [rect, mirror] : lights.images()) {
+LitCells::LitCells(const LightImages& images, int width, int height)
+    : columns_((images.rect().width + width - 1) / width) {
+    constexpr uint64_t straight = uint64_t{1} << MirrorNumbers::straight;
+    cells_.push_back({images.knows_mirrors() ? 0 : ~straight});
+    if (images.images().empty()) return;
+    const auto for_each_cell = [&](const PixelRect& rect, const auto& visit) {
         const int first = rect.x / width, end = (rect.x + rect.width + width - 1) / width;
-        const uint64_t bit = uint64_t{1} << mirror % MirrorNumbers::most;
-        for (int row = rect.y / height; row * height < rect.y + rect.height; ++row) {
-            const size_t begin = size_t(row) * size_t(columns_);
-            if (mirror == LightImage::straight)
-                for (int column = first; column < end; ++column) straight_[begin + size_t(column)] = 1;
-            else
-                for (int column = first; column < end; ++column) mirrors_[begin + size_t(column)] |= bit;
-        }
+        for (int row = rect.y / height; row * height < rect.y + rect.height; ++row)
+            for (int column = first; column < end; ++column) visit(indices_[size_t(row) * size_t(columns_) + size_t(column)]);
+    };
+    uint64_t unlisted = 0;  // mirrors
+    for (const LightImage& image : images.images())
+        if (image.light == LightImage::any) unlisted |= uint64_t{1} << image.mirror;
+    const auto is_listed = [&](const LightImage& image) { return (unlisted >> image.mirror & 1u) == 0; };
+
+    // How many there are in each cell, and one more where there is any image at all.
+    indices_.assign(size_t(columns_) * size_t((images.rect().height + height - 1) / height), 0);
+    for (const LightImage& image : images.images()) {
+        const uint32_t listed = is_listed(image);
+        for_each_cell(image.rect, [&](uint32_t& count) { count = (count == 0 ? 1 : count) + listed; });
+    }
+    std::vector<uint8_t> has_list = {0};
+    uint32_t size = 0;
+    for (uint32_t& index : indices_) {
+        if (index == 0) continue;
+        const uint32_t count = index - 1;
+        index = uint32_t(cells_.size());
+        cells_.push_back({cells_[0].mirrors, size});
+        has_list.push_back(count <= LitCell::most);
+        if (has_list.back()) size += count;
+    }
+    lights_.resize(size);
+    for (const LightImage& image : images.images()) {
+        const bool listed = is_listed(image);
+        for_each_cell(image.rect, [&](uint32_t index) {
+            LitCell& cell = cells_[index];
+            cell.mirrors |= uint64_t{1} << image.mirror;
+            if (listed && has_list[index]) lights_[cell.first + cell.count++] = ShownLight::of(image.light, image.mirror);
+        });
     }
 }
 
@@ -132,16 +154,32 @@ LightImages light_images(const CompiledScene<Real>& scene, const FrameView& fram
     LightImages images(cover.rect());
     const double extent = double(scene.extent);
     if (scene.seen_lights.empty()) return images;
-    if (scene.seen_lights.size() > most_lights || !margins_suffice(frame, extent)) {
-        images.add_everywhere(LightImage::straight);
+    if (scene.seen_lights.size() > ShownLight::most || !margins_suffice(frame, extent)) {
+        images.add_everywhere(MirrorNumbers::straight);
         return images;
     }
+    // shows(center, reach): whether a ball is in sight at all.
+    const auto add = [&](const LightView& view, const PixelRect& window, int64_t most, uint32_t mirror, double growth,
+                         const auto& shows) {
+        std::vector<LightImage> shown;
+        int64_t pixels = 0;
+        for (uint32_t i = 0; i < scene.seen_lights.size(); ++i) {
+            const Vec3<double> center(scene.seen_lights[i].center);
+            const double reach = double(scene.seen_lights[i].radius) + growth;
+            if (!shows(center, reach)) continue;
+            const PixelRect image = view.image_of(center, reach);
+            if (image.width > 0) shown.push_back({image, mirror, i});
+            if ((pixels += area(image)) > most) {
+                shown = {{window, mirror}};
+                break;
+            }
+        }
+        for (const LightImage& image : shown) images.add(image);
+    };
     const double growth = picture_growth(frame, extent);
     const PixelRect all = {0, 0, cover.rect().width, cover.rect().height};
-    const LightView straight(frame, frame.camera, cover.rect(), all);
-    for (const SeenLight<Real>& light : scene.seen_lights)
-        if (const PixelRect image = straight.image_of(Vec3<double>(light.center), double(light.radius) + growth); image.width > 0)
-            images.add({image, LightImage::straight});
+    add(LightView(frame, frame.camera, cover.rect(), all), all, straight_overlap * area(all), MirrorNumbers::straight, growth,
+        [](const Vec3<double>&, double) { return true; });
     if (!asks_mirrors(scene.effects, settings, frame)) return images;
     const std::vector<MirrorPlane> planes = mirror_planes(scene.view());
     if (!planes.empty()) images.know_mirrors();
@@ -153,22 +191,12 @@ LightImages light_images(const CompiledScene<Real>& scene, const FrameView& fram
             continue;
         }
         const PixelRect window = window_of(cover, mirror.solid);
-        const int64_t most = overlap * area(window);
-        if (most == 0) continue;
+        if (area(window) == 0) continue;
         const double toward = side > 0 ? 1 : -1;  // the camera's side, from which lines come and to which they return
-        const LightView view(frame, mirrored(frame.camera, mirror), cover.rect(), window);
-        std::vector<LightImage> shown;
-        int64_t pixels = 0;
-        for (const SeenLight<Real>& light : scene.seen_lights) {
-            const Vec3<double> center(light.center);
-            const double reach = double(light.radius) + off;
-            if (toward * (dot(mirror.normal, center) - mirror.offset) < -reach) continue;
-            const PixelRect image = view.image_of(center, reach);
-            if (image.width > 0) shown.push_back({image, mirror.number});
-            if ((pixels += area(image)) > most) break;
-        }
-        if (pixels > most) shown = {{window, mirror.number}};
-        for (const LightImage& image : shown) images.add(image);
+        add(LightView(frame, mirrored(frame.camera, mirror), cover.rect(), window), window, overlap * area(window), mirror.number,
+            off, [&](const Vec3<double>& center, double reach) {
+                return !(toward * (dot(mirror.normal, center) - mirror.offset) < -reach);
+            });
     }
     return images;
 }

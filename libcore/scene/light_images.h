@@ -14,12 +14,13 @@ namespace cistula {
 class FrameCover;
 struct FrameView;
 
-/// Pixels of a frame's rectangle around the image of a light.
+/// Pixels of a frame's rectangle around the image of a light, or of all that its mirror may show.
 struct LightImage {
-    static constexpr uint32_t straight = MirrorNumbers::most;
+    static constexpr uint32_t any = 0xffffffffu;
 
     PixelRect rect;
-    uint32_t mirror = straight;  // its number, or straight
+    uint32_t mirror = MirrorNumbers::straight;
+    uint32_t light = any;
 
     bool operator==(const LightImage&) const = default;
 };
@@ -37,7 +38,7 @@ class LightImages {
     const PixelRect& rect() const { return rect_; }
 
     void add(const LightImage& image) { images_.push_back(image); }
-    /// The rectangle itself.
+    /// Of any light, the rectangle itself.
     void add_everywhere(uint32_t mirror) { add({{0, 0, rect_.width, rect_.height}, mirror}); }
     /// From now on mirrors without images are known to show no light.
     void know_mirrors() { knows_mirrors_ = true; }
@@ -51,24 +52,25 @@ class LightImages {
 /// What the images meet, by cells of so many pixels from the rectangle's top left corner.
 class LitCells {
   public:
-    struct Lit {
-        bool straight;     // lines from the camera may meet a light
-        uint64_t mirrors;  // bits by MirrorNumbers: or where they are mirrored first
-    };
+    LitCells(const LightImages& images, int width, int height);
 
-    LitCells(const LightImages& lights, int width, int height);
+    /// False: all are the first.
+    bool varies() const { return !indices_.empty(); }
+    /// Those that differ, and their lists; the first is of all that no image meets.
+    const std::vector<LitCell>& cells() const { return cells_; }
+    const std::vector<ShownLight>& lights() const { return lights_; }
 
-    bool knows_mirrors() const { return !mirrors_.empty(); }
-    Lit at(int column, int row) const {
-        if (straight_.empty()) return {false, ~uint64_t{0}};
-        const size_t i = size_t(row) * size_t(columns_) + size_t(column);
-        return {straight_[i] != 0, mirrors_.empty() ? ~uint64_t{0} : mirrors_[i]};
+    /// In cells().
+    uint32_t index_at(int column, int row) const {
+        return indices_.empty() ? 0 : indices_[size_t(row) * size_t(columns_) + size_t(column)];
     }
+    ShownLights at(int column, int row) const { return {&cells_[index_at(column, row)], lights_.data()}; }
 
   private:
     int columns_;
-    std::vector<uint8_t> straight_;  // empty: there are no images, and nothing is known about mirrors
-    std::vector<uint64_t> mirrors_;  // empty: nothing is known about them
+    std::vector<uint32_t> indices_;  // empty: all are 0
+    std::vector<LitCell> cells_;
+    std::vector<ShownLight> lights_;
 };
 
 /// A camera, or its image behind a mirror, that looks through a window of the picture: pixels from the top left corner of

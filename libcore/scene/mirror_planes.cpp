@@ -57,7 +57,7 @@ bool is_small(const SceneView<Real>& scene) {
 template <class Real>
 MirrorNumbers number_mirrors(const SceneView<Real>& scene) {
     MirrorNumbers numbers;
-    std::fill(std::begin(numbers.first), std::end(numbers.first), MirrorNumbers::none);
+    numbers.clear();
     if (!is_small(scene)) return numbers;
     for (uint32_t i = 0, next = 0; i < scene.solids.size; ++i) {
         const Solid& solid = scene.solids[i];
