@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "cistula/small_scene.h"
+
 namespace cistula {
 namespace {
 

@@ -172,7 +172,6 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     size_t listed = 0;  // bytes
     const auto list = [&]<class T>(const std::vector<T>& items) {
         const size_t begin = listed;
-        static_assert(sizeof(T) % alignof(T) == 0);
         std::copy(items.begin(), items.end(), reinterpret_cast<T*>(slot.lists_copy.as<std::byte>() + begin));
         listed += items.size() * sizeof(T);
         return items.empty() ? nullptr : reinterpret_cast<const T*>(slot.lists.as<std::byte>() + begin);
@@ -186,7 +185,10 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.width = rect.width;
     job.height = rect.height;
     job.first_cell = slot.list.cells().front();
-    job.cells = list(slot.list.cells());  // the strictest alignment first
+    // The strictest alignment first: each list then begins where its items may.
+    static_assert(alignof(LitCell) >= alignof(BlockPlace) && alignof(BlockPlace) >= alignof(uint32_t) &&
+                  alignof(uint32_t) >= alignof(ShownLight));
+    job.cells = list(slot.list.cells());
     job.blocks = list(places);
     job.tiles = list(slot.list.tiles());
     job.shown = list(slot.list.shown());

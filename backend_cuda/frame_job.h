@@ -54,7 +54,7 @@ struct FrameJob {
     const uint32_t* tiles = nullptr;  // as in BlockList; null: all are the first cell
     const LitCell* cells = nullptr;
     const ShownLight* shown = nullptr;
-    LitCell first_cell;
+    LitCell first_cell;               // cells[0], here so that frames without images load none
     unsigned int block_count = 0;
     Deal deal = Deal::tiles;
     DeviceTally* tally = nullptr;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "backend_cuda/block_list.h"
+#include "cistula/small_scene.h"
 #include "support_camera.h"
 #include "support_scene.h"
 
@@ -184,7 +185,7 @@ TEST(BlockList, BlocksKnowWhereLightsMayShow) {
                                     if (image.light != LightImage::any) expected.push_back(image.light);
                                 }
                             EXPECT_EQ(shown.cell->is_dark(mirror), !is_lit);
-                            EXPECT_EQ(test::lights_in(shown, mirror), expected);
+                            EXPECT_EQ(test::listed_in(shown, mirror), expected);
                             listed += expected.size();
                             ++(is_lit ? lit : dark);
                         }

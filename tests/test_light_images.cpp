@@ -287,7 +287,7 @@ TEST(LitCells, ListWhatTheirImagesShow) {
                             expected.push_back(image.light);
                         }
                         EXPECT_EQ(shown.cell->is_dark(mirror), !is_lit);
-                        const std::vector<uint32_t> known = test::lights_in(shown, mirror);
+                        const std::vector<uint32_t> known = test::listed_in(shown, mirror);
                         if (is_any || shown.cell->count == 0)
                             EXPECT_TRUE(known.empty());
                         else

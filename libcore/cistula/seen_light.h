@@ -53,7 +53,7 @@ CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Re
         if (next.mirror() == mirror) stack.push(~int32_t(next.light()));
     }
     Real from = ray.after.t;
-    if (stack.empty()) {
+    if (stack.is_new()) {
 #if !CISTULA_ON_DEVICE
         from = greatest(from, Real(0));
         if (!may_see_lights(scene, ray, from, t_limit)) return best;

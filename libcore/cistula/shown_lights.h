@@ -43,9 +43,10 @@ struct alignas(16) LitCell {
     }
 };
 
+/// A cell, and where its list counts from.
 struct ShownLights {
     const LitCell* cell = nullptr;  // null: nothing is known
-    const ShownLight* lights = nullptr;  // where its list counts from
+    const ShownLight* lights = nullptr;
 
     /// What is known of lines that `mirror` shows.
     CISTULA_INLINE LitCell seen_in(uint32_t mirror) const {

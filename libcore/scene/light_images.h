@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "cistula/small_scene.h"
+#include "cistula/shown_lights.h"
 #include "scene/compiled_scene.h"
 #include "scene/film.h"
 #include "scene/renderer.h"
