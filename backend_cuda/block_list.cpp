@@ -26,8 +26,8 @@ int weight_of(uint32_t in_view) {
 }  // namespace
 
 BlockList::BlockList(const FrameCover& cover, const LitCells& lights, const std::vector<uint32_t>& primitives,
-                     const Strips& strips, Deal deal)
-    : rect_(cover.rect()), strips_(strips), deal_(deal) {
+                     const Strips& strips, const BlockPlan& plan)
+    : rect_(cover.rect()), strips_(strips), plan_(plan) {
     const BlockShape shape = this->shape();
     columns_ = (rect_.width + shape.width - 1) / shape.width;
     const int all = strips.count * (strip_rows / shape.height);

@@ -9,8 +9,8 @@
 namespace cistula {
 
 /// Rows of a frame come in strips of this many, so that several devices can take turns.
-inline constexpr int strip_rows = 8;
-static_assert(strip_rows % (2 * tile_height) == 0 && tile_height % FrameCover::band_rows == 0);
+inline constexpr int strip_rows = 16;
+static_assert(strip_rows % (large_block_warps / 2 * tile_height) == 0 && tile_height % FrameCover::band_rows == 0);
 
 /// Strips first, first + step, ... of a frame's rectangle: `count` of them.
 struct Strips {
@@ -23,7 +23,7 @@ class BlockList {
     /// `lights`: of the cover's rectangle, by cells of tile_width x tile_height. primitives[h]: what the cover's hull h shows, as
     /// in BlockPlace::in_view; all primitives where it has no such number.
     BlockList(const FrameCover& cover, const LitCells& lights, const std::vector<uint32_t>& primitives, const Strips& strips,
-              Deal deal);
+              const BlockPlan& plan);
 
     /// In the order in which they are rendered.
     const std::vector<BlockPlace>& places() const { return places_; }
@@ -34,8 +34,8 @@ class BlockList {
     /// Their lists: listed_per_tile a tile at the most, others are left out.
     static constexpr size_t listed_per_tile = 4;
     const std::vector<ShownLight>& shown() const { return shown_; }
-    Deal deal() const { return deal_; }
-    BlockShape shape() const { return BlockShape::of(deal_); }
+    const BlockPlan& plan() const { return plan_; }
+    BlockShape shape() const { return plan_.shape(); }
 
     /// Rows of blocks; visit(row, begin, end) for the pixels in the i-th that no block renders, row by row of the rectangle.
     int rows() const { return int(listed_.size()) / std::max(columns_, 1); }
@@ -68,7 +68,7 @@ class BlockList {
 
     PixelRect rect_;
     Strips strips_;
-    Deal deal_ = Deal::tiles;
+    BlockPlan plan_;
     int columns_ = 0;
     std::vector<uint8_t> listed_;  // by rows of blocks
     std::vector<BlockPlace> places_;

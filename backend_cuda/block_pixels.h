@@ -6,6 +6,8 @@
 namespace cistula {
 
 inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_threads * block_warps;
+/// Of a large block: twice as many begin together and share the instructions that are fetched (warps_of_blocks).
+inline constexpr int large_block_warps = 2 * block_warps;
 /// A warp renders 8 x 4 pixels, next to each other or every other two: neighbors see the same things.
 inline constexpr int tile_width = 8, tile_height = 4;
 
@@ -14,16 +16,13 @@ inline constexpr int tile_width = 8, tile_height = 4;
 enum class Deal {
     shared,       // one tile, for every warp: where pixels have several samples, so that no thread is long at work
     tiles,        // a tile a warp
-    interleaved,  // to a warp every other two of a row, and every other row
+    interleaved,  // to a warp every other two of a row, or every fourth of a large block, and every other row
 };
 
 /// Pixels of a block.
 struct BlockShape {
     int width, height;
 
-    CISTULA_INLINE static constexpr BlockShape of(Deal deal) {
-        return deal == Deal::shared ? BlockShape{tile_width, tile_height} : BlockShape{2 * tile_width, 2 * tile_height};
-    }
     CISTULA_INLINE constexpr int pixels() const { return width * height; }
     /// Parts of tile_width x tile_height pixels, row by row.
     CISTULA_INLINE constexpr int tiles() const { return pixels() / (tile_width * tile_height); }
@@ -32,21 +31,38 @@ struct BlockShape {
     }
 };
 
+struct PixelPlace {
+    int column, row;
+};
+
+/// The warps of a block, and which of its pixels are whose.
+struct BlockPlan {
+    Deal deal = Deal::tiles;
+    int warps = block_warps;  // or large_block_warps
+
+    static constexpr int width = 2 * tile_width;  // of blocks that do not share a tile
+    static constexpr BlockShape shared_shape = {tile_width, tile_height};
+
+    CISTULA_INLINE constexpr int threads() const { return warps * warp_threads; }
+    CISTULA_INLINE constexpr BlockShape shape() const {
+        return deal == Deal::shared ? shared_shape : BlockShape{width, warps / 2 * tile_height};
+    }
+    /// The pixel, in its block, of record i.
+    CISTULA_INLINE PixelPlace place_of(int i) const {
+        const int warp = i / warp_threads, lane = i % warp_threads;
+        if (deal == Deal::interleaved) {
+            const int in_row = warps / 2, own = width / in_row;  // warps that share a row, and what each has of it
+            const int x = lane % own, y = lane / own;
+            return {(x / 2 * in_row + warp % in_row) * 2 + x % 2, 2 * y + warp / in_row};
+        }
+        return {lane % tile_width + warp % 2 * tile_width, lane / tile_width + warp / 2 * tile_height};
+    }
+};
+
 /// Where a block lies in the frame's rectangle, in blocks. Its records come one after the other, in the order of threads.
 struct BlockPlace {
     uint16_t column, row;
     uint32_t in_view;  // the primitives that may show there (BruteIntersector::in_view)
 };
-
-struct PixelPlace {
-    int column, row;
-};
-
-/// The pixel, in its block, of record i.
-CISTULA_INLINE PixelPlace place_in_block(Deal deal, int i) {
-    const int warp = i / warp_threads, lane = i % warp_threads, x = lane % tile_width, y = lane / tile_width;
-    if (deal == Deal::interleaved) return {x / 2 * 4 + warp % 2 * 2 + x % 2, 2 * y + warp / 2};
-    return {x + warp % 2 * tile_width, y + warp / 2 * tile_height};
-}
 
 }  // namespace cistula

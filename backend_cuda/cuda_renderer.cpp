@@ -135,7 +135,7 @@ class CudaRenderer : public Renderer {
         FrameView view;
         std::shared_ptr<const FrameContents> contents;
         std::shared_ptr<const LitCells> lights;  // by tiles
-        Deal deal = Deal::tiles;
+        BlockPlan plan;
         bool fits = true;      // the camera's list of media
         int mask = 0;
         int split_depth = 0;
@@ -188,8 +188,8 @@ class CudaRenderer : public Renderer {
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
         frame.contents = std::make_shared<const FrameContents>(frame_contents(*scene_, frame.view, settings));
         frame.lights = std::make_shared<const LitCells>(frame.contents->lights, tile_width, tile_height);
-        frame.deal = deal_for(frame);
-        constexpr int block = BlockShape::of(Deal::tiles).width;
+        frame.plan = {deal_for(frame), warps_of_blocks(effect_masks[frame.mask], std::is_same_v<Real, float>)};
+        constexpr int block = BlockPlan::width;
         const size_t strip_pixels = size_t((rect.width + block - 1) / block * block) * strip_rows;
         const size_t samples = samples_of(settings);
         const int per_device = (frame.strips + devices() - 1) / devices();
@@ -261,7 +261,7 @@ class CudaRenderer : public Renderer {
             job.frame = frame.view;
             job.contents = frame.contents;
             job.lights = frame.lights;
-            job.deal = frame.deal;
+            job.plan = frame.plan;
             job.first = first_pass(frame.settings);
             job.mask = frame.mask;
             job.split_depth = frame.split_depth;

@@ -42,12 +42,15 @@ bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
     return true;
 }
 
+constexpr size_t most_records = large_block_warps * warp_threads;  // of a block
+using RecordOrder = std::array<uint8_t, most_records>;
+
 /// The records of a block, row by row of its pixels.
-std::array<uint8_t, block_threads> rows_of_records(Deal deal) {
-    const BlockShape shape = BlockShape::of(deal);
-    std::array<uint8_t, block_threads> records{};
+RecordOrder rows_of_records(const BlockPlan& plan) {
+    const BlockShape shape = plan.shape();
+    RecordOrder records{};
     for (int i = 0; i < shape.pixels(); ++i) {
-        const PixelPlace place = place_in_block(deal, i);
+        const PixelPlace place = plan.place_of(i);
         records[size_t(place.row * shape.width + place.column)] = uint8_t(i);
     }
     return records;
@@ -55,7 +58,7 @@ std::array<uint8_t, block_threads> rows_of_records(Deal deal) {
 
 /// A block's records into the film.
 template <class Record>
-void unpack(const Record* from, const std::array<uint8_t, block_threads>& records, BlockShape shape, const BlockPlace& block,
+void unpack(const Record* from, const RecordOrder& records, BlockShape shape, const BlockPlace& block,
             Film& film, const PixelWriter& writer) {
     const int left = block.column * shape.width, top = block.row * shape.height;
     const int width = std::min(shape.width, film.rect.width - left), height = std::min(shape.height, film.rect.height - top);
@@ -117,7 +120,7 @@ void DeviceWorker<Real>::prime(int mask, Pass pass) {
     const int kernel = 3 * mask + int(pass);
     if (primed_ >> kernel & 1u) return;
     PartSlot& slot = slots_[0];
-    slot.records.reserve(block_threads * sizeof(PixelRecord));
+    slot.records.reserve(most_records * sizeof(PixelRecord));
     FrameJob job;  // of a rectangle without height: no pixel of its block is rendered
     job.records = slot.records.as<void>();
     job.tally = slot.tally.as<DeviceTally>();
@@ -167,7 +170,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
-    slot.list = BlockList(part.contents->cover, *part.lights, primitives_, part.strips, part.deal);
+    slot.list = BlockList(part.contents->cover, *part.lights, primitives_, part.strips, part.plan);
     const std::vector<BlockPlace>& places = slot.list.places();
     size_t listed = 0;  // bytes
     const auto list = [&]<class T>(const std::vector<T>& items) {
@@ -193,7 +196,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.tiles = list(slot.list.tiles());
     job.shown = list(slot.list.shown());
     job.block_count = static_cast<unsigned int>(places.size());
-    job.deal = slot.list.deal();
+    job.deal = slot.list.plan().deal;
     job.stop = stop_.as<unsigned int>();
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
@@ -293,7 +296,7 @@ template <class Real>
 void DeviceWorker<Real>::copy_blocks(const PartSlot& slot, Film& film) {
     const std::vector<BlockPlace>& places = slot.list.places();
     const BlockShape shape = slot.list.shape();
-    const auto order = rows_of_records(slot.list.deal());
+    const auto order = rows_of_records(slot.list.plan());
     const int mask = slot.part.mask, count = int(places.size());
     const size_t block_bytes = size_t(shape.pixels()) * record_bytes(mask);
     // No more than there is: to lock pages takes longer than to render a small frame.

@@ -28,7 +28,7 @@ struct FramePart {
     std::shared_ptr<const FrameContents> contents;
     std::shared_ptr<const LitCells> lights;  // by tiles
     Strips strips;
-    Deal deal = Deal::tiles;
+    BlockPlan plan;
     Pass first = Pass::pixels;  // or adaptive_pixels
     int mask = 0;         // index of effect_masks
     int split_depth = 0;  // from which other threads follow a tree's branches; 0: never

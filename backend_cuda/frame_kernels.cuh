@@ -78,30 +78,32 @@ using DeviceStack = std::conditional_t<E::has(effect_transmission), GivingBranch
                                        KeepingBranch<BranchOf<Real, E, Media>>>;
 
 /// A block's threads copy its first records from shared memory to where they belong.
-template <int count, class Record>
+template <int count, int threads, class Record>
 __device__ void write_records(const Record* staged, Record* to) {
     constexpr int words = count * int(sizeof(Record)) / int(sizeof(uint4));
     static_assert(count * sizeof(Record) % sizeof(uint4) == 0);
 #pragma unroll
-    for (int i = 0; i < words; i += block_threads)
-        if (i + block_threads <= words || i + int(threadIdx.x) < words)
+    for (int i = 0; i < words; i += threads)
+        if (i + threads <= words || i + int(threadIdx.x) < words)
             reinterpret_cast<uint4*>(to)[i + int(threadIdx.x)] = reinterpret_cast<const uint4*>(staged)[i + int(threadIdx.x)];
 }
 
 template <class Real, class E, DevicePath path>
-__global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
+__global__ void __launch_bounds__(pixel_threads<Real, E>, least_blocks<Real, E, path> * block_threads / pixel_threads<Real, E>)
     render_pixels(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, E, path>::Intersector;
     using Media = typename Intersector::Media;
     using Stack = DeviceStack<Real, E, Media>;
     using Record = RecordOf<E>;
-    __shared__ Unset<BlockRoom<Record>> memory;
-    BlockRoom<Record>& room = memory.get();
+    constexpr int threads = pixel_threads<Real, E>, warps = threads / warp_threads;
+    __shared__ Unset<BlockRoom<Record, threads>> memory;
+    BlockRoom<Record, threads>& room = memory.get();
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
     const bool shares = job.deal == Deal::shared;
     const BlockPlace block = job.blocks[blockIdx.x];
-    const BlockShape shape = BlockShape::of(job.deal);
-    const PixelPlace place = place_in_block(job.deal, shares ? lane : int(threadIdx.x));
+    const BlockPlan plan{job.deal, warps};
+    const BlockShape shape = plan.shape();
+    const PixelPlace place = plan.place_of(shares ? lane : int(threadIdx.x));
     const int column = block.column * shape.width + place.column, row = block.row * shape.height + place.row;
     const unsigned int first = blockIdx.x * unsigned(shape.pixels());  // of the block's records
     PixelWork& own = room.work[threadIdx.x] = PixelWork();
@@ -110,7 +112,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
     Stack stack(branches, job, first + (shares ? unsigned(lane) : threadIdx.x));
     ShownLights shown;
     if constexpr (E::has(effect_visible_lights)) {
-        __shared__ Unset<BlockLights> lights;
+        __shared__ Unset<BlockLights<threads>> lights;
         LitCell& cell = lights.get().cells[threadIdx.x] = job.first_cell;
         if (job.tiles != nullptr)
             cell = job.cells[job.tiles[blockIdx.x * unsigned(shape.tiles()) + unsigned(shape.tile_of(place.column, place.row))]];
@@ -121,7 +123,7 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
     const bool is_inside = column < job.width && row < job.height;
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);
-    for (int round = 0; round < samples; round += block_warps) {
+    for (int round = 0; round < samples; round += warps) {
         // Samples begin together: the warps of a block then do much the same at a time and share the instructions and constants
         // that are fetched.
         if (round != 0) __syncthreads();
@@ -133,15 +135,15 @@ __global__ void __launch_bounds__(block_threads, least_blocks<Real, E, path>)
     __syncthreads();
     if (shares) {
         if (warp == 0)
-            for (int other = 1; other < block_warps; ++other) record.add(room.records[other * warp_threads + lane]);
+            for (int other = 1; other < warps; ++other) record.add(room.records[other * warp_threads + lane]);
         __syncthreads();
     }
     if (warp == 0) add_block_to_tally(*job.tally, room.work);
     Record* to = static_cast<Record*>(job.records) + first;
     if (shares)
-        write_records<BlockShape::of(Deal::shared).pixels()>(room.records, to);
+        write_records<BlockPlan::shared_shape.pixels(), threads>(room.records, to);
     else
-        write_records<block_threads>(room.records, to);
+        write_records<threads, threads>(room.records, to);
 }
 
 template <class Real, class E, DevicePath path>
@@ -183,28 +185,28 @@ inline int device_attribute(cudaDeviceAttr attribute) {
 
 /// Blocks of a kernel that share a multiprocessor.
 template <class Kernel>
-int sharing_blocks(const Kernel& kernel) {
+int sharing_blocks(const Kernel& kernel, int threads) {
     int blocks = 0;
-    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, block_threads, 0));
+    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, 0));
     return blocks;
 }
 
 /// Blocks of a grid that keeps the device full: passes over queues find out there how much there is to do.
 template <class Kernel>
 unsigned int filling_blocks(const Kernel& kernel) {
-    return unsigned(device_attribute(cudaDevAttrMultiProcessorCount)) * unsigned(greatest(sharing_blocks(kernel), 1));
+    return unsigned(device_attribute(cudaDevAttrMultiProcessorCount)) * unsigned(greatest(sharing_blocks(kernel, block_threads), 1));
 }
 
 template <class Kernel>
-KernelResources resources_of(const char* name, const Kernel& kernel) {
+KernelResources resources_of(const char* name, const Kernel& kernel, int threads = block_threads) {
     cudaFuncAttributes attributes;
     CISTULA_CUDA_CHECK(cudaFuncGetAttributes(&attributes, kernel));
     KernelResources r{};
     r.name = name;
     r.registers = attributes.numRegs;
     r.local_bytes = attributes.localSizeBytes;
-    r.blocks = sharing_blocks(kernel);
-    r.occupancy = double(r.blocks) * block_threads / device_attribute(cudaDevAttrMaxThreadsPerMultiProcessor);
+    r.blocks = sharing_blocks(kernel, threads);
+    r.occupancy = double(r.blocks) * threads / device_attribute(cudaDevAttrMaxThreadsPerMultiProcessor);
     return r;
 }
 
@@ -217,7 +219,7 @@ void list_resources(std::vector<KernelResources>& list) {
         r.mask = E::mask;
         list.push_back(r);
     };
-    add(resources_of("render_pixels", render_pixels<Real, E, path>));
+    add(resources_of("render_pixels", render_pixels<Real, E, path>, pixel_threads<Real, E>));
     if constexpr (mask != unshadowed_mask) add(resources_of("render_adaptive", render_adaptive<Real, E, path>));
     if constexpr (trees_fork(mask)) add(resources_of("render_branches", render_branches<Real, E, path>));
 }
@@ -234,7 +236,8 @@ template <class Real, int mask>
 void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
     using E = Effects<effect_masks[mask]>;
     const auto launch = [&]<DevicePath here>(const auto& own) {
-        if (pass == Pass::pixels) render_pixels<Real, E, here><<<job.block_count, block_threads, 0, stream>>>(job, own);
+        if (pass == Pass::pixels)
+            render_pixels<Real, E, here><<<job.block_count, pixel_threads<Real, E>, 0, stream>>>(job, own);
         const auto fill = [&](auto kernel, unsigned int most) {
             kernel<<<least(filling_blocks(kernel), most), block_threads, 0, stream>>>(job, own);
         };

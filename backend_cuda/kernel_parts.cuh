@@ -9,15 +9,16 @@
 namespace cistula {
 
 /// What a block keeps of its pixels while it renders them: registers are dearer.
-template <class Record>
+template <class Record, int threads = block_threads>
 struct alignas(16) BlockRoom {
-    Record records[block_threads];
-    PixelWork work[block_threads];
+    Record records[threads];
+    PixelWork work[threads];
 };
 
 /// What its threads know of the lights where they render.
+template <int threads>
 struct BlockLights {
-    LitCell cells[block_threads];
+    LitCell cells[threads];
 };
 
 /// Shared memory, unset: what it holds would be set by its constructors, of which the language allows none there.
@@ -42,8 +43,13 @@ inline constexpr int most_blocks_at_work = 1024 / block_threads;
 #else
 inline constexpr int most_blocks_at_work = 1536 / block_threads;
 #endif
+/// Of block_threads.
 template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
 inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)), most_blocks_at_work);
+
+/// Threads of a block of render_pixels.
+template <class Real, class E>
+inline constexpr int pixel_threads = warp_threads * warps_of_blocks(E::mask, sizeof(Real) == sizeof(float));
 
 template <class Real, class E, DevicePath path>
 struct PathTraits;
@@ -94,11 +100,12 @@ __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, u
 }
 
 /// What a block noted down, by one warp of it, after all are done.
-__device__ inline void add_block_to_tally(DeviceTally& tally, const PixelWork (&work)[block_threads]) {
+template <int threads>
+__device__ void add_block_to_tally(DeviceTally& tally, const PixelWork (&work)[threads]) {
     PixelRays rays;
     unsigned int flags = 0;
 #pragma unroll
-    for (int i = 0; i < block_warps; ++i) {
+    for (int i = 0; i < threads / warp_threads; ++i) {
         const PixelWork& own = work[i * warp_threads + int(threadIdx.x) % warp_threads];
         rays.add(own.rays);
         flags |= own.flags;

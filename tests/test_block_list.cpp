@@ -14,7 +14,9 @@ using namespace cistula;
 
 namespace {
 
-constexpr Deal deals[] = {Deal::shared, Deal::tiles, Deal::interleaved};
+constexpr BlockPlan plans[] = {{Deal::shared},      {Deal::shared, large_block_warps},
+                               {Deal::tiles},       {Deal::tiles, large_block_warps},
+                               {Deal::interleaved}, {Deal::interleaved, large_block_warps}};
 
 FrameView frame_of(const PixelRect& rect) {
     return test::frame_from({0, 0, 0}, 1, rect.x + rect.width, rect.y + rect.height);
@@ -33,11 +35,11 @@ FrameCover cover_of(const PixelRect& rect) {
 }
 
 TEST(BlockList, EveryRecordOfABlockIsAnotherPixels) {
-    for (const Deal deal : deals) {
-        const BlockShape shape = BlockShape::of(deal);
+    for (const BlockPlan& plan : plans) {
+        const BlockShape shape = plan.shape();
         std::set<std::pair<int, int>> places;
         for (int i = 0; i < shape.pixels(); ++i) {
-            const PixelPlace place = place_in_block(deal, i);
+            const PixelPlace place = plan.place_of(i);
             EXPECT_TRUE(place.column >= 0 && place.column < shape.width && place.row >= 0 && place.row < shape.height) << i;
             places.insert({place.row, place.column});
         }
@@ -48,20 +50,20 @@ TEST(BlockList, EveryRecordOfABlockIsAnotherPixels) {
 TEST(BlockList, EveryPixelIsABlocksOrInAGap) {
     for (const PixelRect& rect : {PixelRect{0, 0, 640, 368}, PixelRect{7, 5, 333, 171}, PixelRect{0, 0, 1, 1}}) {
         const FrameCover cover = cover_of(rect);
-        for (const Deal deal : deals)
+        for (const BlockPlan& plan : plans)
             for (const int step : {1, 3}) {
                 std::vector<int> met(size_t(rect.width) * size_t(rect.height)), covered = met;
                 const int strips = (rect.height + strip_rows - 1) / strip_rows;
                 size_t blocks = 0;
                 for (int first = 0; first < step; ++first) {
                     // As many for each, though the last may lie beyond the rectangle.
-                    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
+                    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 8u}, {first, step, (strips + step - 1) / step}, plan);
                     const BlockShape shape = list.shape();
                     blocks += list.places().size();
                     for (const BlockPlace& block : list.places()) {
                         EXPECT_TRUE(rect.width == 1 || block.in_view == 1 || block.in_view == 8) << block.in_view;  // they are far apart
                         for (int i = 0; i < shape.pixels(); ++i) {
-                            const PixelPlace place = place_in_block(deal, i);
+                            const PixelPlace place = plan.place_of(i);
                             const int x = block.column * shape.width + place.column, y = block.row * shape.height + place.row;
                             if (x >= rect.width || y >= rect.height) continue;
                             ++met[size_t(y) * size_t(rect.width) + size_t(x)];
@@ -79,7 +81,7 @@ TEST(BlockList, EveryPixelIsABlocksOrInAGap) {
                         for (int x = begin; x < end && is_covered; ++x)
                             EXPECT_TRUE(covered[size_t(y) * size_t(rect.width) + size_t(x)]) << x << ", " << y;
                     });
-                EXPECT_TRUE(rect.width == 1 || blocks * size_t(BlockShape::of(deal).pixels()) < met.size() / 2);
+                EXPECT_TRUE(rect.width == 1 || blocks * size_t(plan.shape().pixels()) < met.size() / 2);
             }
     }
 }
@@ -88,7 +90,7 @@ TEST(BlockList, BlocksThatAreRenderedTogetherLieCloseTogether) {
     const PixelRect rect{0, 0, 3840, 2160};
     FrameCover cover(rect);
     cover.add_all(FrameCover::Outline::all);
-    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 2u}, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 2u}, {0, 1, rect.height / strip_rows}, BlockPlan());
     ASSERT_EQ(list.places().size(), size_t(3840 / 16 * (2160 / 8)));
     EXPECT_EQ(list.places()[15].column, 15);
     EXPECT_EQ(list.places()[16].column, 0);
@@ -106,7 +108,7 @@ TEST(BlockList, BlocksThatTakeLongestComeFirst) {
         cover.add(hull, {{{x - 0.5, -0.3, -1}, {x, -0.3, -1}, {x - 0.2, 0.2, -1}}, 0}, 1, frame);
     }
     constexpr uint32_t sheet = 1u << ShadowPlan::first_cluster;
-    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 2u, sheet}, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    const BlockList list(cover, by_tiles(LightImages(rect)), {1u, 2u, sheet}, {0, 1, rect.height / strip_rows}, BlockPlan());
     std::vector<uint32_t> seen;
     for (const BlockPlace& block : list.places())
         if (seen.empty() || seen.back() != block.in_view) seen.push_back(block.in_view);
@@ -120,8 +122,8 @@ TEST(BlockList, BlocksThatTakeLongestComeFirst) {
 TEST(BlockList, BlocksKnowWhatMayShow) {
     const PixelRect rect{0, 0, 640, 368};
     const FrameCover cover = cover_of(rect);
-    for (const Deal deal : deals) {
-        const BlockList list(cover, by_tiles(LightImages(rect)), {4u}, {0, 1, rect.height / strip_rows}, deal);
+    for (const BlockPlan& plan : plans) {
+        const BlockList list(cover, by_tiles(LightImages(rect)), {4u}, {0, 1, rect.height / strip_rows}, plan);
         size_t known = 0;
         for (const BlockPlace& block : list.places()) {
             EXPECT_TRUE(block.in_view == 4u || block.in_view == ~0u) << block.in_view;  // hull 1 has no number
@@ -155,18 +157,18 @@ TEST(BlockList, BlocksKnowWhereLightsMayShow) {
     const FrameCover cover = cover_of(rect);
     const LightImages lights = lights_in(rect);
     const int strips = (rect.height + strip_rows - 1) / strip_rows;
-    for (const Deal deal : deals)
+    for (const BlockPlan& plan : plans)
         for (const int step : {1, 3}) {
             size_t lit = 0, dark = 0, listed = 0;
             for (int first = 0; first < step; ++first) {
-                const BlockList list(cover, by_tiles(lights), {1u, 8u}, {first, step, (strips + step - 1) / step}, deal);
+                const BlockList list(cover, by_tiles(lights), {1u, 8u}, {first, step, (strips + step - 1) / step}, plan);
                 const BlockShape shape = list.shape();
                 ASSERT_EQ(list.tiles().size(), list.places().size() * size_t(shape.tiles()));
                 EXPECT_LE(list.cells().size(), list.tiles().size() + 1);
                 for (size_t b = 0; b < list.places().size(); ++b) {
                     const BlockPlace& block = list.places()[b];
                     for (int i = 0; i < shape.pixels(); ++i) {
-                        const PixelPlace place = place_in_block(deal, i);
+                        const PixelPlace place = plan.place_of(i);
                         const int tile = shape.tile_of(place.column, place.row);
                         ASSERT_LT(tile, shape.tiles());
                         const int left = block.column * shape.width + place.column / tile_width * tile_width;
@@ -202,7 +204,7 @@ TEST(BlockList, TilesHaveRoomForSoManyLights) {
     const PixelRect rect{0, 0, 640, 368};
     LightImages lights(rect);
     for (uint32_t light = 0; light < 3 * BlockList::listed_per_tile; ++light) lights.add({rect, MirrorNumbers::straight, light});
-    const BlockList list(cover_of(rect), by_tiles(lights), {1u, 8u}, {0, 1, rect.height / strip_rows}, Deal::tiles);
+    const BlockList list(cover_of(rect), by_tiles(lights), {1u, 8u}, {0, 1, rect.height / strip_rows}, BlockPlan());
     EXPECT_LE(list.shown().size(), BlockList::listed_per_tile * list.tiles().size());
     size_t listed = 0, others = 0;
     for (size_t b = 0; b < list.places().size(); ++b) {
@@ -216,7 +218,7 @@ TEST(BlockList, TilesHaveRoomForSoManyLights) {
 
 TEST(BlockList, NothingIsKnownOfMirrorsThatNobodyAsks) {
     const PixelRect rect{0, 0, 64, 32};
-    const BlockList list(cover_of(rect), by_tiles(LightImages(rect)), {1u, 8u}, {0, 1, 4}, Deal::tiles);
+    const BlockList list(cover_of(rect), by_tiles(LightImages(rect)), {1u, 8u}, {0, 1, 4}, BlockPlan());
     EXPECT_TRUE(list.tiles().empty());
     ASSERT_EQ(list.cells().size(), 1u);
     const ShownLights shown{list.cells().data(), nullptr};
