@@ -43,7 +43,7 @@ inline constexpr int most_blocks_at_work = 1024 / block_threads;
 #else
 inline constexpr int most_blocks_at_work = 1536 / block_threads;
 #endif
-/// Of block_threads.
+/// In blocks of block_threads.
 template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
 inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)), most_blocks_at_work);
 
