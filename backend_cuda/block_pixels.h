@@ -43,7 +43,7 @@ struct BlockPlan {
     static constexpr int width = 2 * tile_width;  // of blocks that do not share a tile
     static constexpr BlockShape shared_shape = {tile_width, tile_height};
 
-    CISTULA_INLINE constexpr int threads() const { return warps * warp_threads; }
+    /// Of a shared tile, or of a tile for each warp.
     CISTULA_INLINE constexpr BlockShape shape() const {
         return deal == Deal::shared ? shared_shape : BlockShape{width, warps / 2 * tile_height};
     }

@@ -189,8 +189,8 @@ class CudaRenderer : public Renderer {
         frame.contents = std::make_shared<const FrameContents>(frame_contents(*scene_, frame.view, settings));
         frame.lights = std::make_shared<const LitCells>(frame.contents->lights, tile_width, tile_height);
         frame.plan = {deal_for(frame), warps_of_blocks(effect_masks[frame.mask], std::is_same_v<Real, float>)};
-        constexpr int block = BlockPlan::width;
-        const size_t strip_pixels = size_t((rect.width + block - 1) / block * block) * strip_rows;
+        constexpr int width = BlockPlan::width;
+        const size_t strip_pixels = size_t((rect.width + width - 1) / width * width) * strip_rows;
         const size_t samples = samples_of(settings);
         const int per_device = (frame.strips + devices() - 1) / devices();
         int wanted = int(std::clamp<size_t>(part_samples / (strip_pixels * samples), 1, size_t(per_device)));

@@ -44,6 +44,7 @@ bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
 
 constexpr size_t most_records = large_block_warps * warp_threads;  // of a block
 using RecordOrder = std::array<uint8_t, most_records>;
+static_assert(most_records - 1 <= UINT8_MAX);
 
 /// The records of a block, row by row of its pixels.
 RecordOrder rows_of_records(const BlockPlan& plan) {

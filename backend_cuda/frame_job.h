@@ -79,8 +79,8 @@ constexpr bool takes_opaque_scene(uint32_t effects) {
 }
 
 /// Warps of the blocks in which a mask's pixels are rendered. Large blocks pay where the code is much more than the instruction
-/// caches hold: on an H100 seed.json takes 13 to 30 % less time, and clear bodies among seen lights 3 to 5 % in float. With other
-/// masks, and in double of the latter, most frames take longer.
+/// caches hold: on an H200 seed.json takes 12 to 31 % less time, and clear bodies among seen lights 3 to 4 % in float. With other
+/// masks, and in double of the latter, most frames take longer (docs/architecture.md).
 constexpr int warps_of_blocks(uint32_t effects, bool in_float) {
     const bool is_large = (effects & effect_refraction) != 0 || (in_float && effects == (clear_bodies | effect_visible_lights));
     return is_large ? large_block_warps : block_warps;
