@@ -16,7 +16,7 @@ inline constexpr int tile_width = 8, tile_height = 4;
 enum class Deal {
     shared,       // one tile, for every warp: where pixels have several samples, so that no thread is long at work
     tiles,        // a tile a warp
-    interleaved,  // to a warp every other two of a row, or every fourth of a large block, and every other row
+    interleaved,  // of a large block: to a warp every fourth two of a row, and every other row
 };
 
 /// Pixels of a block.
@@ -51,7 +51,7 @@ struct BlockPlan {
     CISTULA_INLINE PixelPlace place_of(int i) const {
         const int warp = i / warp_threads, lane = i % warp_threads;
         if (deal == Deal::interleaved) {
-            const int in_row = warps / 2, own = width / in_row;  // warps that share a row, and what each has of it
+            constexpr int in_row = large_block_warps / 2, own = width / in_row;  // warps that share a row, and what each has of it
             const int x = lane % own, y = lane / own;
             return {(x / 2 * in_row + warp % in_row) * 2 + x % 2, 2 * y + warp / in_row};
         }

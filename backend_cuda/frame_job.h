@@ -79,11 +79,16 @@ constexpr bool takes_opaque_scene(uint32_t effects) {
 }
 
 /// Warps of the blocks in which a mask's pixels are rendered. Large blocks pay where the code is much more than the instruction
-/// caches hold: on an H200 seed.json takes 12 to 31 % less time, and clear bodies among seen lights 3 to 4 % in float. With other
-/// masks, and in double of the latter, most frames take longer (docs/architecture.md).
-constexpr int warps_of_blocks(uint32_t effects, bool in_float) {
-    const bool is_large = (effects & effect_refraction) != 0 || (in_float && effects == (clear_bodies | effect_visible_lights));
+/// caches hold; with other masks most frames take longer (docs/architecture.md).
+constexpr int warps_of_blocks(uint32_t effects) {
+    const bool is_large = (effects & effect_refraction) != 0 || effects == (clear_bodies | effect_visible_lights);
     return is_large ? large_block_warps : block_warps;
+}
+
+/// Whether frames of a mask may be dealt out as Deal::interleaved, as those of the largest code and few bounces are: seed.json
+/// takes 2 to 7 % less time so. With all others that costs more than it saves.
+constexpr bool may_interleave(uint32_t effects) {
+    return (effects & effect_refraction) != 0;
 }
 
 /// The scene in all forms; the last two are set for the plain loop only, `opaque` where a mask that takes it may run.

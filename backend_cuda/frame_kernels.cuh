@@ -89,19 +89,20 @@ __device__ void write_records(const Record* staged, Record* to) {
 }
 
 template <class Real, class E, DevicePath path>
-__global__ void __launch_bounds__(pixel_threads<Real, E>, least_blocks<Real, E, path> * block_threads / pixel_threads<Real, E>)
+__global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path> * block_threads / pixel_threads<E>)
     render_pixels(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, E, path>::Intersector;
     using Media = typename Intersector::Media;
     using Stack = DeviceStack<Real, E, Media>;
     using Record = RecordOf<E>;
-    constexpr int threads = pixel_threads<Real, E>, warps = threads / warp_threads;
+    constexpr int threads = pixel_threads<E>, warps = threads / warp_threads;
     __shared__ Unset<BlockRoom<Record, threads>> memory;
     BlockRoom<Record, threads>& room = memory.get();
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
     const bool shares = job.deal == Deal::shared;
     const BlockPlace block = job.blocks[blockIdx.x];
     const BlockPlan plan{job.deal, warps};
+    if constexpr (!pixels_interleave<E>) __builtin_assume(job.deal != Deal::interleaved);
     const BlockShape shape = plan.shape();
     const PixelPlace place = plan.place_of(shares ? lane : int(threadIdx.x));
     const int column = block.column * shape.width + place.column, row = block.row * shape.height + place.row;
@@ -219,7 +220,7 @@ void list_resources(std::vector<KernelResources>& list) {
         r.mask = E::mask;
         list.push_back(r);
     };
-    add(resources_of("render_pixels", render_pixels<Real, E, path>, pixel_threads<Real, E>));
+    add(resources_of("render_pixels", render_pixels<Real, E, path>, pixel_threads<E>));
     if constexpr (mask != unshadowed_mask) add(resources_of("render_adaptive", render_adaptive<Real, E, path>));
     if constexpr (trees_fork(mask)) add(resources_of("render_branches", render_branches<Real, E, path>));
 }
@@ -237,7 +238,7 @@ void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, con
     using E = Effects<effect_masks[mask]>;
     const auto launch = [&]<DevicePath here>(const auto& own) {
         if (pass == Pass::pixels)
-            render_pixels<Real, E, here><<<job.block_count, pixel_threads<Real, E>, 0, stream>>>(job, own);
+            render_pixels<Real, E, here><<<job.block_count, pixel_threads<E>, 0, stream>>>(job, own);
         const auto fill = [&](auto kernel, unsigned int most) {
             kernel<<<least(filling_blocks(kernel), most), block_threads, 0, stream>>>(job, own);
         };

@@ -48,8 +48,12 @@ template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePa
 inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)), most_blocks_at_work);
 
 /// Threads of a block of render_pixels.
-template <class Real, class E>
-inline constexpr int pixel_threads = warp_threads * warps_of_blocks(E::mask, sizeof(Real) == sizeof(float));
+template <class E>
+inline constexpr int pixel_threads = warp_threads * warps_of_blocks(E::mask);
+
+/// Whether frames are dealt out as Deal::interleaved.
+template <class E>
+inline constexpr bool pixels_interleave = may_interleave(E::mask);
 
 template <class Real, class E, DevicePath path>
 struct PathTraits;

@@ -14,9 +14,11 @@ using namespace cistula;
 
 namespace {
 
-constexpr BlockPlan plans[] = {{Deal::shared},      {Deal::shared, large_block_warps},
-                               {Deal::tiles},       {Deal::tiles, large_block_warps},
-                               {Deal::interleaved}, {Deal::interleaved, large_block_warps}};
+constexpr BlockPlan plans[] = {{Deal::shared},
+                               {Deal::shared, large_block_warps},
+                               {Deal::tiles},
+                               {Deal::tiles, large_block_warps},
+                               {Deal::interleaved, large_block_warps}};
 
 FrameView frame_of(const PixelRect& rect) {
     return test::frame_from({0, 0, 0}, 1, rect.x + rect.width, rect.y + rect.height);

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 #include "cistula/seen_light.h"
 #include "scene/compiled_scene.h"
 #include "scene/read_scene.h"
+#include "scene/shadow_plan.h"
 
 namespace cistula {
 namespace {
@@ -26,6 +28,15 @@ SceneDescription edge_lit(int count, double radius, double size = 1) {
     return scene;
 }
 
+/// What closest_seen_light is to find.
+template <class Real>
+SeenHit<Real> found_by_loop(const SceneView<Real>& scene, const Ray<Real>& ray, Real limit) {
+    SeenHit<Real> best;
+    best.t = limit;
+    for (uint32_t i = 0; i < scene.seen_lights.size; ++i) see_light(scene, i, ray, best);
+    return best;
+}
+
 struct Seen {
     int rays = 0, lights = 0, looked = 0, inside = 0;
 };
@@ -37,17 +48,21 @@ class EdgeLights : public ::testing::Test {
     Seen compare(const SceneDescription& description, int count) {
         const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(description);
         const SceneView<Real> scene = compiled->view();
-        SceneView<Real> plain = scene;
-        plain.seen_tree = {};
+        const auto small = small_scene(scene);  // null where solids touch
         Seen seen;
         for (int i = 0; i < count; ++i) {
             Real limit = RealTraits<Real>::infinity;
             Ray<Real> ray = i % 2 == 0 ? any_ray(scene) : grazing_ray(scene);
             if (i % 3 == 0) limit = scene.extent * Real(uniform(0, 2));
-            seen.inside += enter_solids(scene, ray, limit);
-            const SeenHit<Real> expected = closest_seen_light(plain, ray, limit), found = closest_seen_light(scene, ray, limit);
+            seen.inside += enter_solids(scene, ray, limit, i % 5 == 0);
+            const SeenHit<Real> expected = found_by_loop(scene, ray, limit), found = closest_seen_light(scene, ray, limit);
             EXPECT_EQ(found.light, expected.light) << "ray " << i;
             EXPECT_EQ(found.t, expected.t) << "ray " << i;
+            if (small) {
+                const SeenHit<Real> in_small = closest_seen_light(*small, ray, limit);
+                EXPECT_EQ(in_small.light, expected.light) << "ray " << i;
+                EXPECT_EQ(in_small.t, expected.t) << "ray " << i;
+            }
             ++seen.rays;
             seen.lights += expected.light != no_light;
             Real from = greatest(ray.after.t, Real(0));
@@ -75,14 +90,15 @@ class EdgeLights : public ::testing::Test {
         }
         return ray_through(from, in_cube() * double(scene.extent));
     }
-    /// A ray that starts in solids knows them, and no light counts for it beyond its way out. Whether it starts in any.
-    bool enter_solids(const SceneView<Real>& scene, Ray<Real>& ray, Real& limit) {
+    /// A ray that starts in solids knows them, and no light counts for it beyond its way out, if it does not go on there. Whether
+    /// it starts in any.
+    bool enter_solids(const SceneView<Real>& scene, Ray<Real>& ray, Real& limit, bool goes_on) {
         ray.after.t = greatest(ray.after.t, Real(0));
         const Vec3<Real> start = ray.origin + ray.after.t * ray.direction;
         for (const uint32_t index : scene.convex)
             if (inside_convex(scene, scene.solids[index], start)) ray.media.add(index, 1);
         if (ray.media.empty()) return false;
-        limit = least(limit, BruteIntersector<Real>{scene}.closest(ray).t);
+        limit = goes_on ? RealTraits<Real>::infinity : least(limit, BruteIntersector<Real>{scene}.closest(ray).t);
         return true;
     }
     /// Through the rim of a light, from near or far: within rounding of it, or a little off.
@@ -126,6 +142,47 @@ TYPED_TEST(EdgeLights, LeaveOtherLightsToTheTree) {
     scene.lights[0].radius = 0.2;
     const Seen seen = this->compare(scene, 100000);
     EXPECT_EQ(seen.looked, seen.rays / 2);
+}
+
+TYPED_TEST(EdgeLights, AFewAreInNoTree) {
+    SceneDescription scene = read_scene(source + "/scenes/benchmark.json");
+    for (LightDescription& light : scene.lights) light.radius = 0.5;
+    ASSERT_TRUE(compile_scene<TypeParam>(scene)->seen_tree.empty());
+    const Seen seen = this->compare(scene, 100000);
+    EXPECT_GT(seen.lights, seen.rays / 10);
+}
+
+/// Calls visit(light) for all at or below a child of a node.
+template <class Visit>
+void for_each_light(const Span<LightNode>& tree, int32_t child, const Visit& visit) {
+    if (child < 0) return visit(uint32_t(~child));
+    const LightNode& node = tree[uint32_t(child)];
+    for (int i = 0; i < LightNode::width; ++i)
+        if (node.half[0].of[i] >= 0) for_each_light(tree, node.children.of[i], visit);
+}
+
+/// What ends within a solid begins there where all lights are that touch the solid, and few others.
+TYPED_TEST(EdgeLights, AreLookedForFromTheNodeOfASolid) {
+    const std::shared_ptr<const CompiledScene<TypeParam>> compiled = compile_scene<TypeParam>(edge_lit(6, 0.03));
+    const auto small = small_scene(compiled->view());
+    ASSERT_TRUE(small);
+    int below_the_root = 0;
+    for (const auto& listed : small->convex) {
+        std::set<uint32_t> below;
+        for_each_light(small->seen_tree, small->light_roots[listed.index], [&](uint32_t light) { below.insert(light); });
+        size_t near = 0;
+        for (uint32_t i = 0; i < small->seen_lights.size; ++i) {
+            // Lights on edges lie within the sphere around their solid, others far off here.
+            const auto off = Vec3<double>(small->seen_lights[i].center) - Vec3<double>(listed.solid.center);
+            if (dot(off, off) > 1.1 * double(listed.solid.padded_square)) continue;
+            ++near;
+            EXPECT_TRUE(below.contains(i)) << "light " << i << " of solid " << listed.index;
+        }
+        EXPECT_GT(near, 50u);
+        below_the_root += below.size() == near;
+    }
+    EXPECT_GE(below_the_root, 2);
+    EXPECT_EQ(small->light_roots[small->solids.size - 1], LightStack::root);  // the floor's
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 
 namespace cistula {
 
+/// Fewer lights than these have no tree: a walk looks at all of them.
+inline constexpr uint32_t fewest_in_light_tree = 9;
+
 /// Which boxes a line meets between its limits, which are finite and not negative. Devices ask from 0 on: some more, perhaps.
 CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, bool (&meets)[LightNode::width]) {
     constexpr int width = LightNode::width;

@@ -51,28 +51,28 @@ class PixelSums {
           left_(settings.budget) {}
 
     CISTULA_INLINE void add(const Vec3<Real>& radiance) {
-        const Vec3<Real> units = in_units(radiance);
+        const Vec3<Real> units = in_units(radiance, Real(settings_.fixed_scale), flags_);
         for (int c = 0; c < 3; ++c) record_.radiance[c] += whole_of(units[c]);
     }
 
     /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of the
-    /// budget that is left, and what could add one unit of the sums at most.
-    template <class Share>
+    /// budget that is left, and what could add one unit of the sums at most. `calls`: what is seldom to be looked at closely is
+    /// called.
+    template <bool calls = false, class Share>
     CISTULA_INLINE bool afford(const Share& weight) {
         if (left_ == 0 && clearly_counts(weight)) return true;
-        int64_t most[3];
-        const int64_t worst = most_of(weight, most);
-        if (worst > 1 && worst > left_ / 10) return true;
-        left_ = worst < left_ ? left_ - worst : 0;
-        for (int c = 0; c < 3; ++c) record_.pruned[c] += most[c];
-        return false;
+        const Real scale = Real(settings_.fixed_scale);
+        const Verdict verdict = calls ? called_weigh(bounded(weight), scale, left_, record_.pruned, flags_)
+                                      : weigh(bounded(weight), scale, left_, record_.pruned, flags_);
+        left_ = verdict.left;
+        return verdict.follows;
     }
 
     /// A branch beyond the depth.
     template <class Share>
     CISTULA_INLINE void cut(const Share& weight) {
         int64_t most[3];
-        most_of(weight, most);
+        most_of(bounded(weight), Real(settings_.fixed_scale), flags_, most);
         for (int c = 0; c < 3; ++c) record_.cut[c] += most[c];
     }
 
@@ -89,11 +89,15 @@ class PixelSums {
         return most <= word_of(Real(1)) && most > word_of(Real(settings_.fixed_unit));
     }
 
-    /// The most a branch can add, rounded up; B's slack of 2^-10 covers the rounding of all weights below it.
+    /// The most a branch can add; B's slack of 2^-10 covers the rounding of all weights below it.
     template <class Share>
-    CISTULA_INLINE int64_t most_of(const Share& weight, int64_t most[3]) {
-        const Vec3<Real> units =
-            in_units({channel(weight, 0) * bound_[0], channel(weight, 1) * bound_[1], channel(weight, 2) * bound_[2]});
+    CISTULA_INLINE Vec3<Real> bounded(const Share& weight) const {
+        return {channel(weight, 0) * bound_[0], channel(weight, 1) * bound_[1], channel(weight, 2) * bound_[2]};
+    }
+
+    /// Of what is bounded, in units of the sums, rounded up. The greatest.
+    CISTULA_INLINE static int64_t most_of(const Vec3<Real>& bounded, Real scale, uint32_t& flags, int64_t (&most)[3]) {
+        const Vec3<Real> units = in_units(bounded, scale, flags);
         int64_t worst = 0;
         for (int c = 0; c < 3; ++c) {
             most[c] = whole_above(units[c]);
@@ -102,13 +106,33 @@ class PixelSums {
         return worst;
     }
 
+    struct Verdict {
+        int64_t left;
+        bool follows;
+    };
+    /// Of a branch that perhaps counts for nothing.
+    CISTULA_INLINE static Verdict weigh(const Vec3<Real>& bounded, Real scale, int64_t left, int64_t (&pruned)[3],
+                                        uint32_t& flags) {
+        int64_t most[3];
+        const int64_t worst = most_of(bounded, scale, flags, most);
+        if (worst > 1 && worst > left / 10) return {left, true};
+        for (int c = 0; c < 3; ++c) pruned[c] += most[c];
+        return {worst < left ? left - worst : 0, false};
+    }
+
+    /// The same out of the way. By value, as it is called.
+    CISTULA_SELDOM static Verdict called_weigh(Vec3<Real> bounded, Real scale, int64_t left, int64_t (&pruned)[3],
+                                               uint32_t& flags) {
+        return weigh(bounded, scale, left, pruned, flags);
+    }
+
     /// Exact.
-    CISTULA_INLINE Vec3<Real> in_units(const Vec3<Real>& a) {
-        const Real scale = Real(settings_.fixed_scale), zero = Real(0);
+    CISTULA_INLINE static Vec3<Real> in_units(const Vec3<Real>& a, Real scale, uint32_t& flags) {
+        const Real zero = Real(0);
         Vec3<Real> units(fused(a.x, scale, zero), fused(a.y, scale, zero), fused(a.z, scale, zero));  // makes 0 of -0
         bool has_fault = false;
         for (int c = 0; c < 3; ++c) has_fault |= clear_fault(units[c], scale);
-        if (has_fault) flags_ |= flag_not_finite;
+        if (has_fault) flags |= flag_not_finite;
         return units;
     }
 

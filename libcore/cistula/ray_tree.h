@@ -221,7 +221,7 @@ class RayTree {
     }
 
     CISTULA_INLINE bool follow(const Entry& branch) {
-        if (!sums_.afford(branch.weight)) return false;
+        if (!sums_.template afford<weighs_by_call>(branch.weight)) return false;
         rays_.reflected += branch.mirrored;
         rays_.transmitted += 1 - branch.mirrored;
         return true;
@@ -263,7 +263,7 @@ class RayTree {
         } else {
             const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
             if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
-            if (!scene_.materials[scene_.solids[solid].material].clear) return false;
+            if (!is_clear(scene_, solid)) return false;
             if constexpr (E::has(effect_refraction)) return index_of(scene_, ray.media) == index_of(scene_, meeting.beyond);
             return true;
         }
@@ -275,18 +275,14 @@ class RayTree {
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray);
+            SeenHit<Real> seen;
             if constexpr (E::has(effect_visible_lights)) {
-                const SeenHit<Real> seen = light_before(hit, branch);
-                if (seen.light != no_light) {
-                    light = true;
-                    absorption.dim(scene_, branch.ray.media, seen.t, branch.weight);
-                    sums_.add(branch.weight * scene_.seen_lights[seen.light].radiance);
-                    return false;
-                }
+                seen = light_before(hit, branch);
+                light = seen.light != no_light;
             }
-            if (!hit.found()) {
-                absorption.dim(scene_, branch.ray.media, hit.t, branch.weight);
-                sums_.add(branch.weight * scene_.background);
+            if (light || !hit.found()) {
+                absorption.dim(scene_, branch.ray.media, light ? seen.t : hit.t, branch.weight);
+                sums_.add(branch.weight * light_or_background(seen));
                 return false;
             }
             meet(scene_, intersector_, branch.ray, hit, meeting);
@@ -304,6 +300,13 @@ class RayTree {
         }
     }
 
+    /// What a ray sees that meets no face before `seen`.
+    CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const SeenHit<Real>& seen) const {
+        if constexpr (E::has(effect_visible_lights))
+            if (seen.light != no_light) return scene_.seen_lights[seen.light].radiance;
+        return scene_.background;
+    }
+
     /// The seen light that the ray meets before `hit`. A line that may go straight on from there is searched to its end.
     CISTULA_INLINE SeenHit<Real> light_before(const Hit<Real>& hit, Entry& branch) {
         if constexpr (lines_go_on<E>)
@@ -317,7 +320,7 @@ class RayTree {
             return SeenHit<Real>();
         }
         const bool goes_on = lines_go_on<E> && hit.found() && int(branch.depth) + 1 < depth_ &&
-                             scene_.materials[scene_.solids[key_solid(hit.key)].material].transmission > Real(0);
+                             transmits(scene_, key_solid(hit.key));
         const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t,
                                                       shown.lights, cell, mirror);
         if (seen.light == no_light) branch.dark = goes_on;
@@ -351,8 +354,9 @@ class RayTree {
         // Sums over colors, so that a child that is not the heavier is at most half its parent.
         const Real mirrored_size = total(mirrored), through_size = E::has(effect_transmission) ? total(through) : Real(0);
         if (int(branch.depth) + 1 >= depth_) {
-            if (mirrored_size > Real(0)) sums_.cut(mirrored);
-            if (through_size > Real(0)) sums_.cut(through);
+            CISTULA_NOT_UNROLLED
+            for (int i = 0; i < (E::has(effect_transmission) ? 2 : 1); ++i)
+                if ((i == 0 ? mirrored_size : through_size) > Real(0)) sums_.cut(i == 0 ? mirrored : through);
             return;
         }
         if constexpr (!E::has(effect_transmission)) {
@@ -389,6 +393,9 @@ class RayTree {
         }
         return child;
     }
+
+    /// Kernels of trees of primitives only spill more by calls.
+    static constexpr bool weighs_by_call = requires(const Scene& scene) { scene.plan; };
 
     const Scene& scene_;
     const Intersector& intersector_;

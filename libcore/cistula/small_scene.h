@@ -71,6 +71,8 @@ struct SmallScene {
     InlineSpan<Light<Real>, ShadowPlan::lights> lights;
     KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
     ShadowPlan plan;
+    uint32_t clear_solids, transmitting_solids;  // bit i: solid i is of a clear material, or of one that transmits
+    int32_t light_roots[ShadowPlan::solids];     // of seen_tree, by convex solids: the node with all lights that touch it
     MirrorNumbers mirrors;
     InlineSpan<Texture, 8> textures;
     // Elsewhere, as in the view that it was made of:
@@ -113,6 +115,12 @@ struct SmallScene {
             return is_used ? TriangleSides<Real>::of(here, slot) : TriangleSides<Real>();
         });
         find_shares();
+        clear_solids = transmitting_solids = 0;
+        for (uint32_t i = 0; i < solids.size; ++i) {
+            clear_solids |= uint32_t(is_clear(here, i)) << i;
+            transmitting_solids |= uint32_t(transmits(here, i)) << i;
+        }
+        for (int32_t& root : light_roots) root = 0;
         plan.clear(convex.size, clusters.size);
         mirrors.clear();
         background = here.background;

@@ -35,6 +35,22 @@ CISTULA_INLINE const auto& solid_at(const Scene& scene, uint32_t index) {
         return scene.convex[index].solid;
 }
 
+/// Whether a solid's material is `clear`, or transmits. Scenes of few solids have bits for that: no number has to be waited for.
+template <class Scene>
+CISTULA_INLINE bool is_clear(const Scene& scene, uint32_t solid) {
+    if constexpr (requires { scene.clear_solids; })
+        return (scene.clear_solids >> solid & 1u) != 0;
+    else
+        return scene.materials[scene.solids[solid].material].clear != 0;
+}
+template <class Scene>
+CISTULA_INLINE bool transmits(const Scene& scene, uint32_t solid) {
+    if constexpr (requires { scene.transmitting_solids; })
+        return (scene.transmitting_solids >> solid & 1u) != 0;
+    else
+        return scene.materials[scene.solids[solid].material].transmission > 0;
+}
+
 /// The point over a triangle's centroid toward which lines leave it.
 template <class Real>
 struct Apex {

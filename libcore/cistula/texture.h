@@ -12,17 +12,18 @@ CISTULA_INLINE uint32_t remainder(Real i, uint32_t n) {
     const Real r = i - floor_of(i / Real(n)) * Real(n);
     return uint32_t(clamped(r, Real(0), Real(n - 1)));
 }
-CISTULA_SELDOM inline uint32_t far_remainder(double i, uint32_t n) {
+CISTULA_SELDOM inline uint32_t called_remainder(float i, uint32_t n) {
+    return magnitude(i) < 0x1p23f ? remainder(i, n) : remainder(double(i), n);
+}
+CISTULA_SELDOM inline uint32_t called_remainder(double i, uint32_t n) {
     return remainder(i, n);
 }
 
-/// i modulo n, for an integer i. Without a quotient where n is a power of two.
-CISTULA_INLINE uint32_t repeated(float i, uint32_t n) {
-    if (!(magnitude(i) < 0x1p23f)) return far_remainder(double(i), n);
-    return (n & (n - 1)) == 0 ? uint32_t(int32_t(i)) & (n - 1) : remainder(i, n);
-}
-CISTULA_INLINE uint32_t repeated(double i, uint32_t n) {
-    return (n & (n - 1)) == 0 && magnitude(i) < 0x1p31 ? uint32_t(int32_t(i)) & (n - 1) : remainder(i, n);
+/// i modulo n, for an integer i. Without a quotient, and a call, where n is a power of two.
+template <class Real>
+CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
+    constexpr Real few = sizeof(Real) == sizeof(float) ? Real(0x1p23) : Real(0x1p31);
+    return ((n & (n - 1)) == 0) & (magnitude(i) < few) ? uint32_t(int32_t(i)) & (n - 1) : called_remainder(i, n);
 }
 
 /// Between the four texels around (x, y); texel(i, j) are their colors.

@@ -275,11 +275,13 @@ CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_
     const bool own = ray.from_solid == solid;
     if (!(c.t >= Real(0)) || (own && ray.from_face == triangle)) return;
     CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
-    if (scene.solids[solid].kind == SolidKind::sheet)
+    if constexpr (!Media::meshes) {
         kind = CrossingKind::sheet;
-    else if ((Media::meshes ? ray.by_side() : own && ray.fresh()) && c.enters() == ray.media.contains(solid)) {
+    } else if (scene.solids[solid].kind == SolidKind::sheet) {
+        kind = CrossingKind::sheet;
+    } else if (ray.by_side() && c.enters() == ray.media.contains(solid)) {
         // A line first crosses a mesh from the side on which it starts.
-        if constexpr (Media::meshes) best.passed_over = lesser(c.t, best.passed_over);
+        best.passed_over = lesser(c.t, best.passed_over);
         return;
     }
     const uint64_t key = make_key(kind, solid, triangle);

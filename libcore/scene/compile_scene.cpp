@@ -5,6 +5,7 @@
 #include <malloc.h>
 #endif
 
+#include "cistula/light_tree.h"
 #include "cistula/ray.h"
 #include "scene/clusters.h"
 #include "scene/compile_lights.h"
@@ -35,7 +36,6 @@ void return_free_memory() {
 #endif
 }
 
-constexpr uint32_t fewest_in_seen_tree = 9;
 constexpr size_t most_pairs = 10'000'000;
 constexpr uint32_t most_outlined = 16;  // triangles: of larger meshes the box is outlined
 constexpr double touching = 0x1p-17;  // far above the reach of a meeting
@@ -309,7 +309,7 @@ class Compiler {
                                      static_cast<uint32_t>(faces.size())});
             scene_.incidents.insert(scene_.incidents.end(), faces.begin(), faces.end());
         }
-        if (scene_.seen_lights.size() < fewest_in_seen_tree) return;
+        if (scene_.seen_lights.size() < fewest_in_light_tree) return;
         std::vector<RTCBuildPrimitive> primitives;
         for (const auto& light : scene_.seen_lights) {
             const dvec3 center(light.center), radius{light.radius};

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "scene/light_roots.h"
 #include "scene/mirror_planes.h"
 #include "scene/solid_planes.h"
 
@@ -119,6 +120,7 @@ std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& here, const
     if (!small->assign(here, there)) return nullptr;
     plan_shadows(here, small->plan);
     small->mirrors = number_mirrors(here);
+    find_light_roots(here, small->light_roots);
     return small;
 }
 

@@ -13,7 +13,7 @@ namespace cistula {
 template <class Real>
 void plan_shadows(const SceneView<Real>& scene, ShadowPlan& plan);
 
-/// The form of a scene that a plain loop reads, its shadows planned; null where it fits into none. `here` and `there` as of
+/// The form of a scene that a plain loop reads, with all that is found out for it beforehand; null where it fits into none. `here` and `there` as of
 /// SmallScene::assign.
 template <class Real>
 std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& here, const SceneView<Real>& there);
