@@ -102,6 +102,7 @@ __global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path> 
     const bool shares = job.deal == Deal::shared;
     const BlockPlace block = job.blocks[blockIdx.x];
     const BlockPlan plan{job.deal, warps};
+    static_assert(!pixels_interleave<E> || warps == large_block_warps);
     if constexpr (!pixels_interleave<E>) __builtin_assume(job.deal != Deal::interleaved);
     const BlockShape shape = plan.shape();
     const PixelPlace place = plan.place_of(shares ? lane : int(threadIdx.x));

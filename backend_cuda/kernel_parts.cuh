@@ -51,7 +51,7 @@ inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeo
 template <class E>
 inline constexpr int pixel_threads = warp_threads * warps_of_blocks(E::mask);
 
-/// Whether frames are dealt out as Deal::interleaved.
+/// Whether frames may be dealt out as Deal::interleaved.
 template <class E>
 inline constexpr bool pixels_interleave = may_interleave(E::mask);
 

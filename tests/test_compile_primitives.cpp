@@ -125,8 +125,8 @@ template <class Real>
 void expect_each_once(const CompiledScene<Real>& compiled) {
     std::multiset<int32_t> children;
     for (const LightNode& node : compiled.seen_tree)
-        for (size_t i = 0; i < LightNode::width; ++i)
-            if (node.half[0].of[i] >= 0) children.insert(node.children.of[i]);
+        for (int i = 0; i < LightNode::width; ++i)
+            if (node.has_child(i)) children.insert(node.children.of[i]);
     const auto lights = static_cast<int32_t>(compiled.seen_lights.size()), nodes = static_cast<int32_t>(compiled.seen_tree.size());
     for (int32_t light = 0; light < lights; ++light) EXPECT_EQ(children.count(~light), 1u) << light;
     for (int32_t node = 1; node < nodes; ++node) EXPECT_EQ(children.count(node), 1u) << node;

@@ -158,7 +158,7 @@ void for_each_light(const Span<LightNode>& tree, int32_t child, const Visit& vis
     if (child < 0) return visit(uint32_t(~child));
     const LightNode& node = tree[uint32_t(child)];
     for (int i = 0; i < LightNode::width; ++i)
-        if (node.half[0].of[i] >= 0) for_each_light(tree, node.children.of[i], visit);
+        if (node.has_child(i)) for_each_light(tree, node.children.of[i], visit);
 }
 
 /// What ends within a solid begins there where all lights are that touch the solid, and few others.

@@ -151,10 +151,12 @@ CISTULA_SELDOM ConvexInterval<Real> called_interval(const Scene& scene, uint32_t
     return careful_interval(scene, first, end, origin, direction);
 }
 
-/// Whether seldom code is called by the kernels that read this kind of scene: those of trees only spill more by that.
-template <class Scene>
-inline constexpr bool calls_seldom_code = requires(const Scene& scene) { scene.plan; };
 #endif
+
+/// Whether seldom code is called by the kernels that read this kind of scene: those of trees only spill more by that. Hosts have
+/// nothing to gain.
+template <class Scene>
+inline constexpr bool calls_seldom_code = CISTULA_ON_DEVICE && requires(const Scene& scene) { scene.plan; };
 
 /// `may_stop`: where it is sure not to be met, that is all that is known.
 template <class Real, class Body, class Scene>

@@ -221,7 +221,7 @@ class RayTree {
     }
 
     CISTULA_INLINE bool follow(const Entry& branch) {
-        if (!sums_.template afford<weighs_by_call>(branch.weight)) return false;
+        if (!sums_.template afford<calls_seldom_code<Scene>>(branch.weight)) return false;
         rays_.reflected += branch.mirrored;
         rays_.transmitted += 1 - branch.mirrored;
         return true;
@@ -393,9 +393,6 @@ class RayTree {
         }
         return child;
     }
-
-    /// Kernels of trees of primitives only spill more by calls.
-    static constexpr bool weighs_by_call = requires(const Scene& scene) { scene.plan; };
 
     const Scene& scene_;
     const Intersector& intersector_;

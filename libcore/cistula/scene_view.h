@@ -206,6 +206,9 @@ struct alignas(16) LightNode {
     };
     Lanes center[3], half[3];  // by axis
     Children children;
+
+    /// The boxes of others are empty.
+    CISTULA_HD bool has_child(int i) const { return half[0].of[i] >= 0.0f; }
 };
 
 template <class Real>

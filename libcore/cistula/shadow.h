@@ -133,7 +133,7 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     Real leave = shadow.distance;
     if (light_side<E>(scene, index, shadow) == LightSide::none) {
         const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
-        if constexpr (!E::has(effect_absorption) && requires { scene.plan; })
+        if constexpr (!E::has(effect_absorption) && calls_seldom_code<Scene>)
             leave = called_shadow_exit(scene, index, ray.origin, ray.direction, skipped);
         else
             leave = convex_exit(scene, solid, ray.origin, ray.direction, skipped).t;

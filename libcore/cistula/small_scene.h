@@ -120,7 +120,7 @@ struct SmallScene {
             clear_solids |= uint32_t(is_clear(here, i)) << i;
             transmitting_solids |= uint32_t(transmits(here, i)) << i;
         }
-        for (int32_t& root : light_roots) root = 0;
+        for (int32_t& root : light_roots) root = 0;  // nothing is known
         plan.clear(convex.size, clusters.size);
         mirrors.clear();
         background = here.background;

@@ -8,9 +8,6 @@
 namespace cistula {
 namespace {
 
-/// What rounding adds to all that is asked of a light or a line, in units of M.
-constexpr double slack = 0x1p-14;
-
 template <class Real>
 SlabGroup<Real>& first_group(CompiledScene<Real>& scene, uint32_t solid) {
     return scene.slab_groups[scene.solids[solid].first_group];
@@ -45,7 +42,7 @@ void reach_edge_lights(CompiledScene<Real>& scene, const std::vector<uint32_t>& 
         const SeenLight<Real>& light = scene.seen_lights[i];
         const Vec3<double> out = Vec3<double>(light.center) - Vec3<double>(scene.solids[owners[i]].center);
         const double radius = double(light.radius), far = std::sqrt(dot(out, out)) + radius;
-        group.light_reach = greatest(Real(radius + slack * double(scene.extent)), group.light_reach);
+        group.light_reach = greatest(Real(radius + light_slack * double(scene.extent)), group.light_reach);
         group.light_square = greatest(Real(far * far) + Real(sphere_padding), group.light_square);
     }
     for (const uint32_t solid : scene.convex) {

@@ -1,21 +1,21 @@
 #include "scene/light_roots.h"
 
 #include "cistula/light_tree.h"
+#include "scene/edge_light_reach.h"
 
 namespace cistula {
 namespace {
 
-/// Children of a node that are there: the boxes of others are empty.
 template <class Visit>
 void for_each_child(const LightNode& node, const Visit& visit) {
     for (int i = 0; i < LightNode::width; ++i)
-        if (node.half[0].of[i] >= 0) visit(node.children.of[i]);
+        if (node.has_child(i)) visit(node.children.of[i]);
 }
 
 /// Whether a light may reach into a convex solid.
 template <class Real>
 bool touches(const SceneView<Real>& scene, const Solid& solid, const SeenLight<Real>& light) {
-    const Real reach = light.radius + scene.extent * Real(0x1p-14);
+    const Real reach = light.radius + Real(light_slack) * scene.extent;
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
         const Real at = dot(slab.normal, light.center);
