@@ -20,10 +20,11 @@ struct Strips {
 class BlockList {
   public:
     BlockList() = default;
-    /// `lights`: of the cover's rectangle, by cells of tile_width x tile_height. primitives[h]: what the cover's hull h shows, as
-    /// in BlockPlace::in_view; all primitives where it has no such number.
-    BlockList(const FrameCover& cover, const LitCells& lights, const std::vector<uint32_t>& primitives, const Strips& strips,
-              const BlockPlan& plan);
+    /// `mirrored`: where mirrors may show solids (mirrored_cover), and `lights`, by cells of tile_width x tile_height, are of the
+    /// cover's rectangle. primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all primitives where it has no
+    /// such number.
+    BlockList(const FrameCover& cover, const FrameCover& mirrored, const LitCells& lights,
+              const std::vector<uint32_t>& primitives, const Strips& strips, const BlockPlan& plan);
 
     /// In the order in which they are rendered.
     const std::vector<BlockPlace>& places() const { return places_; }
@@ -52,6 +53,9 @@ class BlockList {
     }
 
   private:
+    /// visit(block, hull) for each block of the i-th row of blocks and each hull whose outline meets it, perhaps several times.
+    template <class Visit>
+    void for_each_met(const FrameCover& cover, int i, const Visit& visit) const;
     void add_tiles(const BlockPlace& place, const LitCells& lights, size_t most_listed);
 
     /// In the rectangle, of the i-th row of blocks of the part.

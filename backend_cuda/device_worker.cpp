@@ -171,7 +171,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
-    slot.list = BlockList(part.contents->cover, *part.lights, primitives_, part.strips, part.plan);
+    slot.list = BlockList(part.contents->cover, *part.mirrored, *part.lights, primitives_, part.strips, part.plan);
     const std::vector<BlockPlace>& places = slot.list.places();
     size_t listed = 0;  // bytes
     const auto list = [&]<class T>(const std::vector<T>& items) {

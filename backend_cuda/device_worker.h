@@ -27,6 +27,7 @@ struct FramePart {
     FrameView frame;
     std::shared_ptr<const FrameContents> contents;
     std::shared_ptr<const LitCells> lights;  // by tiles
+    std::shared_ptr<const FrameCover> mirrored;  // mirrored_cover
     Strips strips;
     BlockPlan plan;
     Pass first = Pass::pixels;  // or adaptive_pixels

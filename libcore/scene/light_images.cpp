@@ -41,12 +41,6 @@ int64_t area(const PixelRect& rect) {
     return int64_t{rect.width} * rect.height;
 }
 
-Camera mirrored(const Camera& camera, const MirrorPlane& mirror) {
-    const auto turned = [&](const Vec3<double>& v) { return v - 2 * dot(mirror.normal, v) * mirror.normal; };
-    return {turned(camera.position) + 2 * mirror.offset * mirror.normal, turned(camera.forward), turned(camera.right),
-            turned(camera.up), camera.tan_half_width};
-}
-
 /// The pixels around a hull's outline.
 PixelRect window_of(const FrameCover& cover, size_t hull) {
     const PixelRect& rect = cover.rect();

@@ -93,6 +93,12 @@ std::vector<MirrorPlane> mirror_planes(const SceneView<Real>& scene) {
     return planes;
 }
 
+Camera mirrored(const Camera& camera, const MirrorPlane& mirror) {
+    const auto turned = [&](const Vec3<double>& v) { return v - 2 * dot(mirror.normal, v) * mirror.normal; };
+    return {turned(camera.position) + 2 * mirror.offset * mirror.normal, turned(camera.forward), turned(camera.right),
+            turned(camera.up), camera.tan_half_width};
+}
+
 template MirrorNumbers number_mirrors(const SceneView<float>&);
 template MirrorNumbers number_mirrors(const SceneView<double>&);
 template std::vector<MirrorPlane> mirror_planes(const SceneView<float>&);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cistula/camera.h"
 #include "cistula/small_scene.h"
 
 namespace cistula {
@@ -23,5 +24,8 @@ struct MirrorPlane {
 /// None of a scene of more solids or triangles than a SmallScene holds.
 template <class Real>
 std::vector<MirrorPlane> mirror_planes(const SceneView<Real>& scene);
+
+/// The camera that sees straight on what a mirror shows.
+Camera mirrored(const Camera& camera, const MirrorPlane& mirror);
 
 }  // namespace cistula
