@@ -150,7 +150,6 @@ CISTULA_SELDOM ConvexInterval<Real> called_interval(const Scene& scene, uint32_t
                                                     Vec3<Real> direction) {
     return careful_interval(scene, first, end, origin, direction);
 }
-
 #endif
 
 /// Whether seldom code is called by the kernels that read this kind of scene: those of trees only spill more by that. Hosts have
