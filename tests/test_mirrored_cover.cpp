@@ -31,10 +31,8 @@ FrameCover cover_of(const SceneDescription& description) {
 
 bool holds(const FrameCover& cover, size_t hull, int x, int y) {
     return std::ranges::any_of(cover.outlines(), [&](const FrameCover::Outline& outline) {
-        const int band = y / FrameCover::band_rows - outline.first_band;
-        if (outline.hull != hull || band < 0 || band >= int(outline.runs.size())) return false;
-        const PixelRun& run = outline.runs[size_t(band)];
-        return x >= run.begin && x < run.end;
+        const PixelRun run = outline.run(y);
+        return outline.hull == hull && x >= run.begin && x < run.end;
     });
 }
 

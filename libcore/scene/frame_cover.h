@@ -43,6 +43,12 @@ class FrameCover {
         size_t hull;  // its number, or all: it holds whatever the scene has
         int first_band;
         std::vector<PixelRun> runs;
+
+        /// Of a row of the rectangle; empty beyond the bands.
+        PixelRun run(int row) const {
+            const int band = row / band_rows - first_band;
+            return band < 0 || band >= int(runs.size()) ? PixelRun() : runs[size_t(band)];
+        }
     };
     const std::vector<Outline>& outlines() const { return outlines_; }
 
