@@ -125,9 +125,8 @@ class WarpPixels {
             if (j >= standing.total) continue;
             // In one sum: to read the next sample after adding where others add would be to wait for it.
             Record cell = Record();
-            rooms_[pixel].pixel.settle(settings, i, [&](int slot, int weight) {
-                rooms_[pixel].samples[slot].give(cell, weight, Plus());
-            });
+            rooms_[pixel].pixel.settle(
+                settings, i, [&](int slot, int weight) { rooms_[pixel].samples[slot].give(cell, weight, Plus()); });
             cell.give(to, AtomicAdd());
         }
         if (!done) return;

@@ -9,15 +9,15 @@
 namespace cistula {
 namespace {
 
-/// Blocks side by side. A picture of more is rendered in columns of so many or fewer, one after the other among blocks of one
-/// weight: what is at work at a time then lies close together and shares the instructions that are fetched. 16 took 1 to 4 %
-/// less time than whole rows on an H200, 8 and 32 up to 1 % more than that.
+/// Blocks side by side. A picture of more is rendered in columns of so many or fewer, one after the other among blocks
+/// of one weight: what is at work at a time then lies close together and shares the instructions that are fetched. 16
+/// took 1 to 4 % less time than whole rows on an H200, 8 and 32 up to 1 % more than that.
 constexpr int most_side_by_side = 16;
 
-/// Blocks of more weight come first: what takes longest, so that no block is long at work alone in the end. Where solids may
-/// show trees fork, and the more that may show the longer rays take. With one sample at 1280x720 benchmark.json took 14 % less
-/// time so in float, and 4 % with 4x4. Blocks where mirrors alone may show solids come next: that spared it 1 %
-/// more (5 in double), and a frame of mirrors 7.
+/// Blocks of more weight come first: what takes longest, so that no block is long at work alone in the end. Where
+/// solids may show trees fork, and the more that may show the longer rays take. With one sample at 1280x720
+/// benchmark.json took 14 % less time so in float, and 4 % with 4x4. Blocks where mirrors alone may show solids come
+/// next: that spared it 1 % more (5 in double), and a frame of mirrors 7.
 constexpr int heaviest = 33;
 int weight_of(uint32_t in_view, bool is_mirrored) {
     constexpr uint32_t solids = (1u << ShadowPlan::first_cluster) - 1;
@@ -59,7 +59,8 @@ BlockList::BlockList(const FrameCover& cover, const FrameCover& mirrored, const 
             }
     for (int weight = heaviest; weight >= 0; --weight)
         for (const size_t block : by_weight[size_t(weight)]) {
-            places_.push_back({uint16_t(block % size_t(columns_)), uint16_t(row_of(int(block / size_t(columns_)))), in_view[block]});
+            places_.push_back(
+                {uint16_t(block % size_t(columns_)), uint16_t(row_of(int(block / size_t(columns_)))), in_view[block]});
             if (lights.varies()) add_tiles(places_.back(), lights, listed_per_tile * tiles);
         }
 }

@@ -10,7 +10,8 @@ namespace cistula {
 
 /// Rows of a frame come in strips of this many, so that several devices can take turns.
 inline constexpr int strip_rows = 16;
-static_assert(strip_rows % BlockPlan{Deal::tiles, large_block_warps}.shape().height == 0 && tile_height % FrameCover::band_rows == 0);
+static_assert(strip_rows % BlockPlan{Deal::tiles, large_block_warps}.shape().height == 0 &&
+              tile_height % FrameCover::band_rows == 0);
 
 /// Strips first, first + step, ... of a frame's rectangle: `count` of them.
 struct Strips {
@@ -20,9 +21,9 @@ struct Strips {
 class BlockList {
   public:
     BlockList() = default;
-    /// `mirrored`: where mirrors may show solids (mirrored_cover), and `lights`, by cells of tile_width x tile_height, are of the
-    /// cover's rectangle. primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all primitives where it has no
-    /// such number.
+    /// `mirrored`: where mirrors may show solids (mirrored_cover), and `lights`, by cells of tile_width x tile_height,
+    /// are of the cover's rectangle. primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all
+    /// primitives where it has no such number.
     BlockList(const FrameCover& cover, const FrameCover& mirrored, const LitCells& lights,
               const std::vector<uint32_t>& primitives, const Strips& strips, const BlockPlan& plan);
 
@@ -38,7 +39,8 @@ class BlockList {
     const BlockPlan& plan() const { return plan_; }
     BlockShape shape() const { return plan_.shape(); }
 
-    /// Rows of blocks; visit(row, begin, end) for the pixels in the i-th that no block renders, row by row of the rectangle.
+    /// Rows of blocks; visit(row, begin, end) for the pixels in the i-th that no block renders, row by row of the
+    /// rectangle.
     int rows() const { return int(listed_.size()) / std::max(columns_, 1); }
     template <class Visit>
     void for_each_gap(int i, const Visit& visit) const {
@@ -48,12 +50,14 @@ class BlockList {
         for (int begin = 0, end; begin < columns_; begin = end) {
             for (end = begin + 1; end < columns_ && listed[end] == listed[begin];) ++end;
             if (listed[begin]) continue;
-            for (int row = top; row < bottom; ++row) visit(row, begin * shape.width, std::min(end * shape.width, rect_.width));
+            for (int row = top; row < bottom; ++row)
+                visit(row, begin * shape.width, std::min(end * shape.width, rect_.width));
         }
     }
 
   private:
-    /// visit(block, hull) for each block of the i-th row of blocks and each hull whose outline meets it, perhaps several times.
+    /// visit(block, hull) for each block of the i-th row of blocks and each hull whose outline meets it, perhaps
+    /// several times.
     template <class Visit>
     void for_each_met(const FrameCover& cover, int i, const Visit& visit) const;
     void add_tiles(const BlockPlace& place, const LitCells& lights, size_t most_listed);

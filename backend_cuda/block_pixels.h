@@ -11,8 +11,8 @@ inline constexpr int large_block_warps = 2 * block_warps;
 /// A warp renders 8 x 4 pixels, next to each other or every other two: neighbors see the same things.
 inline constexpr int tile_width = 8, tile_height = 4;
 
-/// How the pixels of a block are dealt out: by twos at the least, as two threads' records side by side are whole words of 16
-/// bytes and cause few conflicts between the banks of shared memory.
+/// How the pixels of a block are dealt out: by twos at the least, as two threads' records side by side are whole words
+/// of 16 bytes and cause few conflicts between the banks of shared memory.
 enum class Deal {
     shared,       // one tile, for every warp: where pixels have several samples, so that no thread is long at work
     tiles,        // a tile a warp
@@ -51,7 +51,8 @@ struct BlockPlan {
     CISTULA_INLINE PixelPlace place_of(int i) const {
         const int warp = i / warp_threads, lane = i % warp_threads;
         if (deal == Deal::interleaved) {
-            constexpr int in_row = large_block_warps / 2, own = width / in_row;  // warps that share a row, and what each has of it
+            constexpr int in_row = large_block_warps / 2,
+                          own = width / in_row;  // warps that share a row, and what each has of it
             const int x = lane % own, y = lane / own;
             return {(x / 2 * in_row + warp % in_row) * 2 + x % 2, 2 * y + warp / in_row};
         }
@@ -59,7 +60,8 @@ struct BlockPlan {
     }
 };
 
-/// Where a block lies in the frame's rectangle, in blocks. Its records come one after the other, in the order of threads.
+/// Where a block lies in the frame's rectangle, in blocks. Its records come one after the other, in the order of
+/// threads.
 struct BlockPlace {
     uint16_t column, row;
     uint32_t in_view;  // the primitives that may show there (BruteIntersector::in_view)

@@ -24,9 +24,9 @@ constexpr int deep = 5;
 /// Frames of up to so many samples split deep trees after so many levels.
 constexpr size_t few_samples = size_t{1} << 19;
 constexpr int split_levels = 4;
-/// From so many pixels of a device on the warps of a block interleave, of kernels that may: all eight then do much the same at a
-/// time and share the instructions that are fetched. Of fewer, the few that take longest are better kept apart, and of deep trees
-/// neighbors in a warp, which takes up to 17 % less time.
+/// From so many pixels of a device on the warps of a block interleave, of kernels that may: all eight then do much the
+/// same at a time and share the instructions that are fetched. Of fewer, the few that take longest are better kept
+/// apart, and of deep trees neighbors in a warp, which takes up to 17 % less time.
 constexpr size_t many_pixels = size_t{1} << 18;
 
 template <class Real>
@@ -135,22 +135,22 @@ class CudaRenderer : public Renderer {
     struct Frame : Request {
         FrameView view;
         std::shared_ptr<const FrameContents> contents;
-        std::shared_ptr<const LitCells> lights;  // by tiles
+        std::shared_ptr<const LitCells> lights;      // by tiles
         std::shared_ptr<const FrameCover> mirrored;  // mirrored_cover
         BlockPlan plan;
-        bool fits = true;      // the camera's list of media
+        bool fits = true;  // the camera's list of media
         int mask = 0;
         int split_depth = 0;
-        int strips = 0;        // of the whole rectangle
-        int part_strips = 0;   // of a part, per device
+        int strips = 0;       // of the whole rectangle
+        int part_strips = 0;  // of a part, per device
         int parts = 0;
         int first_slot = 0;
     };
 
     static void require(const std::vector<CudaDevice>& known, int index) {
         if (index < 0 || size_t(index) >= known.size())
-            throw Error(ExitCode::device, fmt::format("--device {}: there is no such GPU; this machine has 0 to {}", index,
-                                                      known.size() - 1));
+            throw Error(ExitCode::device, fmt::format("--device {}: there is no such GPU; this machine has 0 to {}",
+                                                      index, known.size() - 1));
         if (!known[size_t(index)].obstacle.empty())
             throw Error(ExitCode::device, fmt::format("--device {}: {}: {}", index, known[size_t(index)].name,
                                                       known[size_t(index)].obstacle));
@@ -207,8 +207,9 @@ class CudaRenderer : public Renderer {
         return frame;
     }
 
-    /// Of a frame of few samples the last threads would be long alone with the deepest trees; others keep the device busy
-    /// meanwhile. Trees without forks cannot be split. A budget of truncation is spent in the order of one thread's stack.
+    /// Of a frame of few samples the last threads would be long alone with the deepest trees; others keep the device
+    /// busy meanwhile. Trees without forks cannot be split. A budget of truncation is spent in the order of one
+    /// thread's stack.
     int split_depth(const FrameSettings& settings, const Frame& frame, size_t samples_per_device) const {
         if (settings.adaptive() || !trees_fork(frame.mask)) return 0;
         const int chosen = samples_per_device <= few_samples && settings.depth > deep ? split_levels : 0;
@@ -233,9 +234,10 @@ class CudaRenderer : public Renderer {
                 if (has_room()) break;
             }
             if (strips == 1)
-                throw Error(ExitCode::device, fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or "
-                                                          "--crop needs less, or free memory that other programs hold",
-                                                          strip_pixels));
+                throw Error(ExitCode::device,
+                            fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or "
+                                        "--crop needs less, or free memory that other programs hold",
+                                        strip_pixels));
         }
         if (strips < wanted) {
             largest_part_ = size_t(strips) * strip_pixels;

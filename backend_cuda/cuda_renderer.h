@@ -30,7 +30,7 @@ std::string cuda_driver_version();
 struct CudaOptions {
     std::vector<int> devices = {0};  // CudaDevice::index; all share every frame, by interleaved tiles
     // None of these changes the image:
-    size_t memory_limit = 0;   // bytes of a device that pixels may take; 0: what is free
+    size_t memory_limit = 0;  // bytes of a device that pixels may take; 0: what is free
     static constexpr int automatic = -1;
     int split = automatic;     // depth from which other threads follow a tree's branches; 0: never
     bool always_tree = false;  // a tree even where a plain loop would do; for tests
@@ -38,13 +38,13 @@ struct CudaOptions {
 
 /// What a kernel takes of this thread's current device.
 struct KernelResources {
-    const char* name;                  // "render_pixels", ...
-    const char *precision, *path;      // "float", "double"; "loop", "tree"
-    uint32_t mask;                     // of effects
-    int registers;                     // of a thread
-    size_t local_bytes;                // of a thread: its stack of branches, and what found no register
-    int blocks;                        // that share a multiprocessor
-    double occupancy;                  // their threads, as a share of those that a multiprocessor has room for
+    const char* name;              // "render_pixels", ...
+    const char *precision, *path;  // "float", "double"; "loop", "tree"
+    uint32_t mask;                 // of effects
+    int registers;                 // of a thread
+    size_t local_bytes;            // of a thread: its stack of branches, and what found no register
+    int blocks;                    // that share a multiprocessor
+    double occupancy;              // their threads, as a share of those that a multiprocessor has room for
 };
 
 /// Of all kernels in this program. Throws Error (device).

@@ -22,7 +22,8 @@ class CudaMemory {
 
     /// At least `bytes`, contents undefined. Throws Error (device); the memory is then empty.
     void reserve(size_t bytes) {
-        if (!try_reserve(bytes)) fail_cuda(cudaErrorMemoryAllocation, "no room for " + std::to_string(bytes) + " bytes");
+        if (!try_reserve(bytes))
+            fail_cuda(cudaErrorMemoryAllocation, "no room for " + std::to_string(bytes) + " bytes");
     }
 
     /// The same, but false where there is no room for it. Other errors throw.

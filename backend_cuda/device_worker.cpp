@@ -17,7 +17,8 @@ namespace {
 
 constexpr size_t staging_bytes = size_t{32} << 20;
 constexpr int blocks_together = 16;  // that a thread of the host unpacks
-/// Branches that may wait per pixel of a part, and in all; trees that find no room are walked to their end where they are.
+/// Branches that may wait per pixel of a part, and in all; trees that find no room are walked to their end where they
+/// are.
 constexpr size_t queued_per_pixel = 2, most_queued = size_t{1} << 21;
 /// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
 constexpr int most_blocks = 6;
@@ -59,10 +60,11 @@ RecordOrder rows_of_records(const BlockPlan& plan) {
 
 /// A block's records into the film.
 template <class Record>
-void unpack(const Record* from, const RecordOrder& records, BlockShape shape, const BlockPlace& block,
-            Film& film, const PixelWriter& writer) {
+void unpack(const Record* from, const RecordOrder& records, BlockShape shape, const BlockPlace& block, Film& film,
+            const PixelWriter& writer) {
     const int left = block.column * shape.width, top = block.row * shape.height;
-    const int width = std::min(shape.width, film.rect.width - left), height = std::min(shape.height, film.rect.height - top);
+    const int width = std::min(shape.width, film.rect.width - left),
+              height = std::min(shape.height, film.rect.height - top);
     for (int row = 0; row < height; ++row) {
         PixelRecord* to = &film.pixels[size_t(top + row) * size_t(film.rect.width) + size_t(left)];
         for (int column = 0; column < width; ++column)
@@ -77,7 +79,8 @@ void use_device(int device) {
 }
 
 template <class Real>
-DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path)
+DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here,
+                                 DevicePath path)
     : device_(device), path_(path) {
     arena_.reserve(std::max<size_t>(scene.bytes().size(), 1));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(),
@@ -98,7 +101,8 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     if (here.convex.size == here.solids.size) scene_.opaque.assign(scene_.small);
     primitives_.assign(here.solids.size, 0);
     for (uint32_t i = 0; i < here.convex.size; ++i) primitives_[here.convex[i]] |= 1u << i;
-    for (uint32_t i = 0; i < here.clusters.size; ++i) primitives_[here.clusters[i].solid] |= 1u << (ShadowPlan::first_cluster + i);
+    for (uint32_t i = 0; i < here.clusters.size; ++i)
+        primitives_[here.clusters[i].solid] |= 1u << (ShadowPlan::first_cluster + i);
 }
 
 /// For as many blocks as the device can have at work, or half as many until there is memory.
@@ -114,8 +118,8 @@ void DeviceWorker<Real>::reserve_rooms() {
     room_blocks_ = blocks;
 }
 
-/// A kernel's first launch takes memory for its threads' stacks: over a gigabyte on a large device. It must come before the
-/// pixels', which can do with less. It may also wait for other kernels, which must not be endless then.
+/// A kernel's first launch takes memory for its threads' stacks: over a gigabyte on a large device. It must come before
+/// the pixels', which can do with less. It may also wait for other kernels, which must not be endless then.
 template <class Real>
 void DeviceWorker<Real>::prime(int mask, Pass pass) {
     const int kernel = 3 * mask + int(pass);
@@ -146,7 +150,8 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, P
     const size_t bytes = pixels * record_bytes(mask);
     if (!splits)
         for (DeviceMemory& queue : queue_) queue.free();
-    const size_t branch = queued_branch_bytes<Real>(path_), wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
+    const size_t branch = queued_branch_bytes<Real>(path_),
+                 wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
     if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
     bool room = true;
     // A block a tile at the most, and a cell more than tiles.
@@ -202,7 +207,8 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
-    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.lists.as<void>(), slot.lists_copy.as<void>(), listed, cudaMemcpyHostToDevice, compute_));
+    CISTULA_CUDA_CHECK(
+        cudaMemcpyAsync(slot.lists.as<void>(), slot.lists_copy.as<void>(), listed, cudaMemcpyHostToDevice, compute_));
     const StreamGate::Hold held = gate_.hold(compute_);
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
     const auto queue = [&](int pass) {
@@ -231,8 +237,8 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
         launch(Pass::branches, part.mask, path_, scene_, job, compute_);
     }
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.end, compute_));
-    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.tally_copy.as<void>(), job.tally, sizeof(DeviceTally),
-                                       cudaMemcpyDeviceToHost, compute_));
+    CISTULA_CUDA_CHECK(
+        cudaMemcpyAsync(slot.tally_copy.as<void>(), job.tally, sizeof(DeviceTally), cudaMemcpyDeviceToHost, compute_));
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.done, compute_));
 }
 
@@ -261,7 +267,8 @@ bool DeviceWorker<Real>::fetch(int index, Film& film, const std::atomic<bool>& s
 template <class Real>
 void DeviceWorker<Real>::stop() {
     use_device(device_);
-    CISTULA_CUDA_CHECK(cudaMemcpyAsync(stop_.as<void>(), one_.as<void>(), sizeof(unsigned int), cudaMemcpyHostToDevice, copy_));
+    CISTULA_CUDA_CHECK(
+        cudaMemcpyAsync(stop_.as<void>(), one_.as<void>(), sizeof(unsigned int), cudaMemcpyHostToDevice, copy_));
     stopped_ = true;
 }
 
@@ -284,7 +291,8 @@ void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
         const PixelWriter writer;
         uint64_t count = 0;
         slot.list.for_each_gap(i, [&](int row, int begin, int end) {
-            writer.fill(&film.pixels[size_t(row) * size_t(film.rect.width) + size_t(begin)], size_t(end - begin), background.record);
+            writer.fill(&film.pixels[size_t(row) * size_t(film.rect.width) + size_t(begin)], size_t(end - begin),
+                        background.record);
             count += uint64_t(end - begin);
         });
         pixels += count;
@@ -304,9 +312,9 @@ void DeviceWorker<Real>::copy_blocks(const PartSlot& slot, Film& film) {
     const int batch = std::min(int(staging_bytes / block_bytes), count);
     for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * block_bytes);
     const auto fill = [&](int first, int buffer) {
-        CISTULA_CUDA_CHECK(cudaMemcpyAsync(staging_[buffer].as<void>(),
-                                           slot.records.as<std::byte>() + size_t(first) * block_bytes,
-                                           size_t(std::min(batch, count - first)) * block_bytes, cudaMemcpyDeviceToHost, copy_));
+        CISTULA_CUDA_CHECK(
+            cudaMemcpyAsync(staging_[buffer].as<void>(), slot.records.as<std::byte>() + size_t(first) * block_bytes,
+                            size_t(std::min(batch, count - first)) * block_bytes, cudaMemcpyDeviceToHost, copy_));
         CISTULA_CUDA_CHECK(cudaEventRecord(staged_[buffer], copy_));
     };
     fill(0, 0);

@@ -26,13 +26,13 @@ void use_device(int device);
 struct FramePart {
     FrameView frame;
     std::shared_ptr<const FrameContents> contents;
-    std::shared_ptr<const LitCells> lights;  // by tiles
+    std::shared_ptr<const LitCells> lights;      // by tiles
     std::shared_ptr<const FrameCover> mirrored;  // mirrored_cover
     Strips strips;
     BlockPlan plan;
     Pass first = Pass::pixels;  // or adaptive_pixels
-    int mask = 0;         // index of effect_masks
-    int split_depth = 0;  // from which other threads follow a tree's branches; 0: never
+    int mask = 0;               // index of effect_masks
+    int split_depth = 0;        // from which other threads follow a tree's branches; 0: never
 };
 
 /// A part on its way.
@@ -52,18 +52,20 @@ class DeviceWorker {
     /// `here`: the scene of the arena, where this program can read it.
     DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path);
 
-    /// Room for parts of that many pixels, those of whole blocks, in both slots, beside what the kernels of `mask` take for
-    /// themselves, of which `first` goes over the pixels. False where there is none. `splits`: with queues for branches.
+    /// Room for parts of that many pixels, those of whole blocks, in both slots, beside what the kernels of `mask` take
+    /// for themselves, of which `first` goes over the pixels. False where there is none. `splits`: with queues for
+    /// branches.
     bool reserve(size_t pixels, size_t memory_limit, int mask, Pass first, bool splits);
 
     /// Enqueues a part; nothing is waited for. Its slot must be free.
     void start(const FramePart& part, int slot);
 
-    /// Waits for the part in a slot and puts its pixels where they belong in the film. False, the part still under way, once
-    /// `stop` is set.
+    /// Waits for the part in a slot and puts its pixels where they belong in the film. False, the part still under way,
+    /// once `stop` is set.
     bool fetch(int slot, Film& film, const std::atomic<bool>& stop);
 
-    /// Makes all that was started end soon, whatever is left to do; nothing is waited for. Until wait() nothing may start.
+    /// Makes all that was started end soon, whatever is left to do; nothing is waited for. Until wait() nothing may
+    /// start.
     void stop();
 
     /// Waits for all that was started.
@@ -75,7 +77,7 @@ class DeviceWorker {
     uint32_t flags = 0;
 
   private:
-    static constexpr int passes = 6;  // over pixels, then over queues
+    static constexpr int passes = 6;             // over pixels, then over queues
     static constexpr int counters = passes + 1;  // sizes of queues, and the next pixel
 
     void prime(int mask, Pass pass);
@@ -95,7 +97,7 @@ class DeviceWorker {
     size_t queue_capacity_ = 0;
     uint32_t primed_ = 0;  // bit 3 m + p: that mask m's kernel of pass p has run
     DeviceMemory stop_;    // what kernels look at; 0 unless stopped_
-    PinnedMemory one_;     // from where it is set: by a copy, as a kernel that does so might have to wait for the others
+    PinnedMemory one_;  // from where it is set: by a copy, as a kernel that does so might have to wait for the others
     bool stopped_ = false;
     DeviceScene<Real> scene_;
     std::vector<uint32_t> primitives_;  // of each solid, as in BlockPlace

@@ -9,9 +9,11 @@ namespace cistula {
 namespace {
 
 [[noreturn]] void fail_no_device(cudaError_t error) {
-    const char* advice = "check that an NVIDIA GPU and its driver are installed (nvidia-smi); --backend embree renders on the CPU";
+    const char* advice =
+        "check that an NVIDIA GPU and its driver are installed (nvidia-smi); --backend embree renders on the CPU";
     if (error == cudaErrorInsufficientDriver || error == cudaErrorSystemDriverMismatch)
-        advice = "install an NVIDIA driver, or a newer one, for this version of CUDA; --backend embree renders on the CPU";
+        advice =
+            "install an NVIDIA driver, or a newer one, for this version of CUDA; --backend embree renders on the CPU";
     throw Error(ExitCode::device, fmt::format("no usable GPU: {}; {}", cudaGetErrorString(error), advice));
 }
 

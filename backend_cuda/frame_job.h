@@ -40,29 +40,31 @@ struct LatticeRoom {
     LatticePixel pixel;
     LatticeSample samples[lattice_samples];
 };
-/// Such pixels that a block has at work at a time. At first they want a sample for most of its threads, later for all. With
-/// twice as many platonic.json takes 15 % longer at 320x180 (H200), as the last warps are longer alone with theirs.
+/// Such pixels that a block has at work at a time. At first they want a sample for most of its threads, later for all.
+/// With twice as many platonic.json takes 15 % longer at 320x180 (H200), as the last warps are longer alone with
+/// theirs.
 inline constexpr int pixels_at_work = 16;
 
 /// Blocks of the frame's rectangle.
 struct FrameJob {
     FrameView frame;
-    void* records = nullptr;    // by blocks: PixelRecords, or SeenRecords without a ledger; those beyond the rectangle are unset
-    int x = 0, y = 0;           // of the rectangle in the frame
+    void* records =
+        nullptr;       // by blocks: PixelRecords, or SeenRecords without a ledger; those beyond the rectangle are unset
+    int x = 0, y = 0;  // of the rectangle in the frame
     int width = 0, height = 0;  // of the rectangle
     const BlockPlace* blocks = nullptr;
     const uint32_t* tiles = nullptr;  // as in BlockList; null: all are the first cell
     const LitCell* cells = nullptr;
     const ShownLight* shown = nullptr;
-    LitCell first_cell;               // cells[0], here so that frames without images load none
+    LitCell first_cell;  // cells[0], here so that frames without images load none
     unsigned int block_count = 0;
     Deal deal = Deal::tiles;
     DeviceTally* tally = nullptr;
-    BranchQueue from, to;  // passes after the first read `from`
+    BranchQueue from, to;                // passes after the first read `from`
     int split_depth = whole_trees;       // branches of this depth and more go `to` the queue
     const unsigned int* stop = nullptr;  // to a 1: the kernel ends, and what it has written means nothing
-    unsigned int* next = nullptr;   // of adaptive sampling: the pixel that the next free warp takes,
-    LatticeRoom* rooms = nullptr;   // ... pixels_at_work for each of room_blocks
+    unsigned int* next = nullptr;        // of adaptive sampling: the pixel that the next free warp takes,
+    LatticeRoom* rooms = nullptr;        // ... pixels_at_work for each of room_blocks
     unsigned int room_blocks = 0;
 };
 
@@ -78,15 +80,15 @@ constexpr bool takes_opaque_scene(uint32_t effects) {
     return (effects & ~opaque_solids) == 0;
 }
 
-/// Warps of the blocks in which a mask's pixels are rendered. Large blocks pay where the code is much more than the instruction
-/// caches hold; with other masks most frames take longer (docs/architecture.md).
+/// Warps of the blocks in which a mask's pixels are rendered. Large blocks pay where the code is much more than the
+/// instruction caches hold; with other masks most frames take longer (docs/architecture.md).
 constexpr int warps_of_blocks(uint32_t effects) {
     const bool is_large = (effects & effect_refraction) != 0 || effects == (clear_bodies | effect_visible_lights);
     return is_large ? large_block_warps : block_warps;
 }
 
-/// Whether frames of a mask may be dealt out as Deal::interleaved, as those of the largest code and few bounces are: seed.json
-/// takes 2 to 7 % less time so. With all others that costs more than it saves.
+/// Whether frames of a mask may be dealt out as Deal::interleaved, as those of the largest code and few bounces are:
+/// seed.json takes 2 to 7 % less time so. With all others that costs more than it saves.
 constexpr bool may_interleave(uint32_t effects) {
     return (effects & effect_refraction) != 0;
 }
@@ -106,9 +108,10 @@ size_t queued_branch_bytes(DevicePath path);
 /// What a kernel goes over: all pixels of the job, those of a frame with a target error, or the branches of job.from.
 enum class Pass { pixels, adaptive_pixels, branches };
 
-/// Enqueues a pass; Pass::branches is for masks whose trees_fork, Pass::adaptive_pixels for all but the unshadowed one. `mask`
-/// is an index of effect_masks. Throws Error (device).
+/// Enqueues a pass; Pass::branches is for masks whose trees_fork, Pass::adaptive_pixels for all but the unshadowed one.
+/// `mask` is an index of effect_masks. Throws Error (device).
 template <class Real>
-void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream);
+void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
+            cudaStream_t stream);
 
 }  // namespace cistula

@@ -21,8 +21,8 @@ __device__ inline unsigned int next_place(unsigned int* size) {
     return __shfl_sync(here, first, leader) + unsigned(__popc(here & ((1u << lane) - 1u)));
 }
 
-/// The branches that wait, in the thread's own memory; from a depth on they go to the queue while that has room, so that
-/// deep trees are split over many threads. The sums being integers, the order of work never shows.
+/// The branches that wait, in the thread's own memory; from a depth on they go to the queue while that has room, so
+/// that deep trees are split over many threads. The sums being integers, the order of work never shows.
 template <class Entry>
 class GivingBranchStack {
   public:
@@ -47,8 +47,10 @@ class GivingBranchStack {
     __device__ bool stopped() const { return cistula::stopped(job_); }
 
   private:
-    /// Whether the queue has room for entry i, which it then has. Called, so that this seldom thing is nowhere in the way.
-    __device__ __noinline__ static bool give_away(const Room* room, int i, const BranchQueue* queue, unsigned int record) {
+    /// Whether the queue has room for entry i, which it then has. Called, so that this seldom thing is nowhere in the
+    /// way.
+    __device__ __noinline__ static bool give_away(const Room* room, int i, const BranchQueue* queue,
+                                                  unsigned int record) {
         const unsigned int place = next_place(queue->size);
         if (place >= queue->capacity) {
             atomicSub(queue->size, 1u);  // it stays full, and never wraps
@@ -85,12 +87,14 @@ __device__ void write_records(const Record* staged, Record* to) {
 #pragma unroll
     for (int i = 0; i < words; i += threads)
         if (i + threads <= words || i + int(threadIdx.x) < words)
-            reinterpret_cast<uint4*>(to)[i + int(threadIdx.x)] = reinterpret_cast<const uint4*>(staged)[i + int(threadIdx.x)];
+            reinterpret_cast<uint4*>(to)[i + int(threadIdx.x)] =
+                reinterpret_cast<const uint4*>(staged)[i + int(threadIdx.x)];
 }
 
 template <class Real, class E, DevicePath path>
-__global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path> * block_threads / pixel_threads<E>)
-    render_pixels(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
+__global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path>* block_threads / pixel_threads<E>)
+    render_pixels(const __grid_constant__ FrameJob job,
+                  const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, E, path>::Intersector;
     using Media = typename Intersector::Media;
     using Stack = DeviceStack<Real, E, Media>;
@@ -117,7 +121,8 @@ __global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path> 
         __shared__ Unset<BlockLights<threads>> lights;
         LitCell& cell = lights.get().cells[threadIdx.x] = job.first_cell;
         if (job.tiles != nullptr)
-            cell = job.cells[job.tiles[blockIdx.x * unsigned(shape.tiles()) + unsigned(shape.tile_of(place.column, place.row))]];
+            cell = job.cells[job.tiles[blockIdx.x * unsigned(shape.tiles()) +
+                                       unsigned(shape.tile_of(place.column, place.row))]];
         shown = {&cell, job.shown};
         __builtin_assume(shown.cell != nullptr);  // or every search asks, by the address of shared memory
     }
@@ -126,8 +131,8 @@ __global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path> 
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);
     for (int round = 0; round < samples; round += warps) {
-        // Samples begin together: the warps of a block then do much the same at a time and share the instructions and constants
-        // that are fetched.
+        // Samples begin together: the warps of a block then do much the same at a time and share the instructions and
+        // constants that are fetched.
         if (round != 0) __syncthreads();
         const int i = round + (shares ? warp : 0);
         if (is_inside && i < samples)
@@ -150,7 +155,8 @@ __global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path> 
 
 template <class Real, class E, DevicePath path>
 __global__ void __launch_bounds__(block_threads, least_blocks<Real>)
-    render_branches(const __grid_constant__ FrameJob job, const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
+    render_branches(const __grid_constant__ FrameJob job,
+                    const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
     using Intersector = typename PathTraits<Real, E, path>::Intersector;
     using Media = typename Intersector::Media;
     using Item = QueuedBranch<BranchOf<Real, E, Media>>;
@@ -196,7 +202,8 @@ int sharing_blocks(const Kernel& kernel, int threads) {
 /// Blocks of a grid that keeps the device full: passes over queues find out there how much there is to do.
 template <class Kernel>
 unsigned int filling_blocks(const Kernel& kernel) {
-    return unsigned(device_attribute(cudaDevAttrMultiProcessorCount)) * unsigned(greatest(sharing_blocks(kernel, block_threads), 1));
+    return unsigned(device_attribute(cudaDevAttrMultiProcessorCount)) *
+           unsigned(greatest(sharing_blocks(kernel, block_threads), 1));
 }
 
 template <class Kernel>

@@ -28,8 +28,8 @@ struct alignas(T) Unset {
     __device__ T& get() { return reinterpret_cast<T&>(bytes); }
 };
 
-/// Blocks that share a multiprocessor: what bounds the registers of a thread. As measured on an H200: trees that fork are
-/// slower with more blocks of fewer registers, and plain loops over what sends nothing on are quicker.
+/// Blocks that share a multiprocessor: what bounds the registers of a thread. As measured on an H200: trees that fork
+/// are slower with more blocks of fewer registers, and plain loops over what sends nothing on are quicker.
 constexpr int blocks_at_work(uint32_t mask, DevicePath path, bool in_float) {
     const auto within = [&](uint32_t effects) { return path == DevicePath::plain_loop && (mask & ~effects) == 0; };
     if (within(opaque_solids)) return in_float ? 9 : 6;
@@ -45,11 +45,12 @@ inline constexpr int most_blocks_at_work = 1536 / block_threads;
 #endif
 /// In blocks of block_threads.
 template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
-inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)), most_blocks_at_work);
+inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)),
+                                             most_blocks_at_work);
 
 /// Threads of a block of render_pixels.
 template <class E>
-inline constexpr int pixel_threads = warp_threads * warps_of_blocks(E::mask);
+inline constexpr int pixel_threads = warp_threads* warps_of_blocks(E::mask);
 
 /// Whether frames may be dealt out as Deal::interleaved.
 template <class E>
@@ -96,7 +97,8 @@ __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, u
         for (int i = 0; i < 4; ++i) atomicAdd(to + i, (unsigned long long)counts[i]);
     } else {
         const unsigned int lane = threadIdx.x % warp_threads;
-        const unsigned int first = warp_sum(counts[0] | counts[1] << half), last = warp_sum(counts[2] | counts[3] << half);
+        const unsigned int first = warp_sum(counts[0] | counts[1] << half),
+                           last = warp_sum(counts[2] | counts[3] << half);
         const unsigned int sum = (lane < 2 ? first : last) >> (lane % 2 * half) & ((1u << half) - 1);
         if (lane < 4 && sum != 0) atomicAdd(to + lane, (unsigned long long)sum);
     }

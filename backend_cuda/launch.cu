@@ -6,9 +6,10 @@
 
 namespace cistula {
 
-#define CISTULA_ELSEWHERE_IN(real, mask)                                                                              \
-    extern template void list_resources_of_mask<real, mask>(std::vector<KernelResources>&);                           \
-    extern template void launch_mask<real, mask>(DevicePath, Pass, const DeviceScene<real>&, const FrameJob&, cudaStream_t);
+#define CISTULA_ELSEWHERE_IN(real, mask)                                                                      \
+    extern template void list_resources_of_mask<real, mask>(std::vector<KernelResources>&);                   \
+    extern template void launch_mask<real, mask>(DevicePath, Pass, const DeviceScene<real>&, const FrameJob&, \
+                                                 cudaStream_t);
 #define CISTULA_ELSEWHERE(mask)       \
     CISTULA_ELSEWHERE_IN(float, mask) \
     CISTULA_ELSEWHERE_IN(double, mask)
@@ -34,11 +35,13 @@ size_t queued_branch_bytes(DevicePath path) {
 }
 
 template <class Real>
-void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job, cudaStream_t stream) {
+void launch(Pass pass, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
+            cudaStream_t stream) {
     using Launch = void (*)(DevicePath, Pass, const DeviceScene<Real>&, const FrameJob&, cudaStream_t);
     static constexpr auto table = []<int... m>(std::integer_sequence<int, m...>) {
         return std::array<Launch, sizeof...(m)>{&launch_mask<Real, m>...};
-    }(std::make_integer_sequence<int, compiled_mask_count>());
+    }
+    (std::make_integer_sequence<int, compiled_mask_count>());
     table[size_t(mask)](path, pass, scene, job, stream);
 }
 
@@ -47,7 +50,8 @@ std::vector<KernelResources> kernel_resources() {
     [&]<int... m>(std::integer_sequence<int, m...>) {
         (list_resources_of_mask<float, m>(list), ...);
         (list_resources_of_mask<double, m>(list), ...);
-    }(std::make_integer_sequence<int, compiled_mask_count>());
+    }
+    (std::make_integer_sequence<int, compiled_mask_count>());
     return list;
 }
 

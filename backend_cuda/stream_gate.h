@@ -7,9 +7,9 @@
 
 namespace cistula {
 
-/// Between an event and the kernel behind it a device may wait for the host, which takes some microseconds to launch a kernel of
-/// many parameters: time of the host's that the events would count as the kernel's. Belongs to the device that is current
-/// when it is made.
+/// Between an event and the kernel behind it a device may wait for the host, which takes some microseconds to launch a
+/// kernel of many parameters: time of the host's that the events would count as the kernel's. Belongs to the device
+/// that is current when it is made.
 class StreamGate {
   public:
     StreamGate();
@@ -26,8 +26,9 @@ class StreamGate {
         StreamGate& gate_;
     };
 
-    /// What is enqueued from here on starts once the hold has ended, or a tenth of a millisecond later: tools that let every
-    /// launch wait for its kernel (compute-sanitizer, CUDA_LAUNCH_BLOCKING) would wait for ever else. Throws Error (device).
+    /// What is enqueued from here on starts once the hold has ended, or a tenth of a millisecond later: tools that let
+    /// every launch wait for its kernel (compute-sanitizer, CUDA_LAUNCH_BLOCKING) would wait for ever else. Throws
+    /// Error (device).
     [[nodiscard]] Hold hold(cudaStream_t stream);
 
   private:

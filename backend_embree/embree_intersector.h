@@ -119,7 +119,8 @@ struct EmbreeIntersector {
     static void on_occluded(const RTCOccludedFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<ShadowQuery<Real>*>(arguments->context);
-        if (query.visit(query, arguments->primID)) reinterpret_cast<RTCRay*>(arguments->ray)->tfar = -RealTraits<float>::infinity;
+        if (query.visit(query, arguments->primID))
+            reinterpret_cast<RTCRay*>(arguments->ray)->tfar = -RealTraits<float>::infinity;
     }
 };
 

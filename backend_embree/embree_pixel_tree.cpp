@@ -21,8 +21,9 @@ bool same_pixel(const PixelTree& tree) {
         sum.rays.add(sample.rays);
     }
     const RayCounts &rays = sum.rays, &counted = tree.film.rays;
-    return film_hash(sum) == film_hash(tree.film) && rays.primary == counted.primary && rays.reflected == counted.reflected &&
-           rays.transmitted == counted.transmitted && rays.shadow == counted.shadow;
+    return film_hash(sum) == film_hash(tree.film) && rays.primary == counted.primary &&
+           rays.reflected == counted.reflected && rays.transmitted == counted.transmitted &&
+           rays.shadow == counted.shadow;
 }
 
 /// Whether the branches of each sample add up to its sums.

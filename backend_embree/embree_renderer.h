@@ -10,9 +10,9 @@
 namespace cistula {
 
 struct EmbreeOptions {
-    std::string device_config;    // for rtcNewDevice, e.g. "isa=avx2"; never changes the image
-    int tree_quality = 1;         // 0 quick, 1 high; never changes the image
-    bool always_tree = false;     // a tree even where a plain loop over up to 16 primitives would do; for tests
+    std::string device_config;  // for rtcNewDevice, e.g. "isa=avx2"; never changes the image
+    int tree_quality = 1;       // 0 quick, 1 high; never changes the image
+    bool always_tree = false;   // a tree even where a plain loop over up to 16 primitives would do; for tests
 };
 
 /// Threads: those of the TBB arena or global_control that the caller set up. Throws Error (device) where Embree fails.
@@ -20,8 +20,8 @@ template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options = {});
 
-/// The same loop over a SmallScene, as kernels run it: masks reach the primitives' tests, and the shadow plan spares most of
-/// them. Null where the scene fits into none.
+/// The same loop over a SmallScene, as kernels run it: masks reach the primitives' tests, and the shadow plan spares
+/// most of them. Null where the scene fits into none.
 template <class Real>
 std::unique_ptr<Renderer> make_small_renderer(std::shared_ptr<const CompiledScene<Real>> scene);
 

@@ -59,7 +59,8 @@ Intersector among_lights(const Intersector& intersector, [[maybe_unused]] const 
     return here;
 }
 
-/// Calls render(x, y, count, writer, records, rays, flags) for runs of pixels of the film that may show something, in tiles.
+/// Calls render(x, y, count, writer, records, rays, flags) for runs of pixels of the film that may show something, in
+/// tiles.
 template <class Render>
 bool for_each_run(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
                   const Render& render) {
@@ -77,8 +78,7 @@ bool for_each_run(const FrameSettings& settings, const FrameContents& contents, 
             for (int y = y0; y < y1; ++y)
                 contents.cover.for_each_part(y, x0, x1, [&](int begin, int end, bool covered) {
                     PixelRecord* pixels = &film.pixels[size_t(y) * size_t(rect.width) + size_t(begin)];
-                    if (covered)
-                        return render(rect.x + begin, rect.y + y, end - begin, writer, pixels, rays, flags);
+                    if (covered) return render(rect.x + begin, rect.y + y, end - begin, writer, pixels, rays, flags);
                     writer.fill(pixels, size_t(end - begin), contents.background.record);
                     contents.background.count(uint64_t(end - begin), rays, flags);
                 });
@@ -98,22 +98,24 @@ template <class Render>
 bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
                     const Render& render) {
     const LitCells lights(contents.lights, lit_cell, lit_cell);
-    return for_each_run(settings, contents, film, progress,
-                        [&](int x, int y, int count, const PixelWriter&, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
-                            for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); ++i) {
-                                PixelWork own;
-                                const int column = (x + i - film.rect.x) / lit_cell, row = (y - film.rect.y) / lit_cell;
-                                render(x + i, y, lights.at(column, row), pixels[i], own);
-                                rays.add(own.rays);
-                                flags |= own.flags;
-                            }
-                        });
+    return for_each_run(
+        settings, contents, film, progress,
+        [&](int x, int y, int count, const PixelWriter&, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
+            for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); ++i) {
+                PixelWork own;
+                const int column = (x + i - film.rect.x) / lit_cell, row = (y - film.rect.y) / lit_cell;
+                render(x + i, y, lights.at(column, row), pixels[i], own);
+                rays.add(own.rays);
+                flags |= own.flags;
+            }
+        });
 }
 
 /// As render_tiles does, eight pixels at a time.
 template <class Real, class E>
-bool render_packets(const SmallScene<Real>& scene, const FrameView& frame, uint32_t in_view, const FrameSettings& settings,
-                    const FrameContents& contents, Film& film, RenderProgress& progress) {
+bool render_packets(const SmallScene<Real>& scene, const FrameView& frame, uint32_t in_view,
+                    const FrameSettings& settings, const FrameContents& contents, Film& film,
+                    RenderProgress& progress) {
     return for_each_run(
         settings, contents, film, progress,
         [&](int x, int y, int count, const PixelWriter& writer, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
@@ -129,34 +131,40 @@ bool render_tiles(const typename Intersector::Scene& scene, const FrameView& fra
     if constexpr (fits_packets<E> && std::is_same_v<typename Intersector::Scene, SmallScene<Real>>) {
         return render_packets<Real, E>(scene, frame, intersector.in_view, settings, contents, film, progress);
     } else {
-        return for_each_pixel(settings, contents, film, progress, [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
-            StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-            render_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y, SampleRange(), pixel, own, stack);
-        });
+        return for_each_pixel(settings, contents, film, progress,
+                              [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
+                                  StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
+                                  render_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y,
+                                                        SampleRange(), pixel, own, stack);
+                              });
     }
 }
 
 /// Of a frame with a target error.
 template <class Real, class E, class Intersector>
-bool render_adaptive_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
-                           const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
+bool render_adaptive_tiles(const typename Intersector::Scene& scene, const FrameView& frame,
+                           const Intersector& intersector, const FrameSettings& settings, const FrameContents& contents,
+                           Film& film, RenderProgress& progress) {
     const bool gradual = shades_gradually(scene);
-    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
-        StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-        render_adaptive_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y, gradual, pixel, own, stack);
-    });
+    return for_each_pixel(settings, contents, film, progress,
+                          [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
+                              StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
+                              render_adaptive_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y,
+                                                             gradual, pixel, own, stack);
+                          });
 }
 
 template <class Real, class Intersector>
 bool render_mask(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
-                 const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress, int mask,
-                 uint32_t& ran) {
+                 const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
+                 int mask, uint32_t& ran) {
     ran = effect_masks[mask];
-    using Render = bool (*)(const typename Intersector::Scene&, const FrameView&, const Intersector&, const FrameSettings&,
-                            const FrameContents&, Film&, RenderProgress&);
+    using Render = bool (*)(const typename Intersector::Scene&, const FrameView&, const Intersector&,
+                            const FrameSettings&, const FrameContents&, Film&, RenderProgress&);
     static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
         return std::array<Render, sizeof...(I)>{&render_tiles<Real, Effects<effect_masks[I]>, Intersector>...};
-    }(std::make_index_sequence<compiled_mask_count>());
+    }
+    (std::make_index_sequence<compiled_mask_count>());
     return table[size_t(mask)](scene, frame, intersector, settings, contents, film, progress);
 }
 
@@ -179,7 +187,8 @@ bool render_frame(const CompiledScene<Real>& compiled, const typename Intersecto
     const FrameContents contents = frame_contents(compiled, frame, settings);
     if (settings.adaptive()) {  // one mask for all: what it would save is less than what compiling more takes
         ran = all_effects;
-        return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, contents, film, progress);
+        return render_adaptive_tiles<Real, Effects<all_effects>>(scene, frame, intersector, settings, contents, film,
+                                                                 progress);
     }
     if constexpr (!runs_every_mask<Intersector>) {
         ran = all_effects;

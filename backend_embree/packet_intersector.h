@@ -82,7 +82,8 @@ class PacketIntersector {
             }
         if constexpr (E::triangles)
             for (uint32_t left = near & scene_.plan.all_clusters; left != 0 && dark != lanes; left &= left - 1)
-                dark |= behind_triangle(packet, light, lowest_bit(left) - scene_.plan.first_cluster, distance, lanes & ~dark);
+                dark |= behind_triangle(packet, light, lowest_bit(left) - scene_.plan.first_cluster, distance,
+                                        lanes & ~dark);
         return dark;
     }
 
@@ -98,7 +99,8 @@ class PacketIntersector {
     };
 
     template <class Origin>
-    CISTULA_INLINE void cross(const Solid& solid, const Origin& origin, const VecLanes<Real>& direction, Intervals& at) const {
+    CISTULA_INLINE void cross(const Solid& solid, const Origin& origin, const VecLanes<Real>& direction,
+                              Intervals& at) const {
         for_lanes([&](int i) {
             at.enter.of[i] = -RealTraits<Real>::infinity;
             at.leave.of[i] = RealTraits<Real>::infinity;
@@ -119,8 +121,8 @@ class PacketIntersector {
     }
 
     template <class Origin>
-    CISTULA_INLINE void closest_solid(const RayPacket<Real>& packet, const Origin& origin, const NumberedSolid<Real>& next,
-                                      uint32_t lanes, PacketHits<Real>& hits) const {
+    CISTULA_INLINE void closest_solid(const RayPacket<Real>& packet, const Origin& origin,
+                                      const NumberedSolid<Real>& next, uint32_t lanes, PacketHits<Real>& hits) const {
         const Ball<Real> ball = next.ball;
         const Index index = Index(next.index);
         const uint32_t near = lanes & lanes_where([&](int i) {

@@ -1,6 +1,6 @@
-// Eight pixels at once (Wald, Slusallek, Benthin, Wagner 2001, Interactive Rendering with Coherent Ray Tracing), where no
-// ray passes a face: a tree is one path then, and eight of them go from face to face side by side. Every lane takes the
-// operations that render_pixel takes, so that its pixel is the same bit for bit.
+// Eight pixels at once (Wald, Slusallek, Benthin, Wagner 2001, Interactive Rendering with Coherent Ray Tracing), where
+// no ray passes a face: a tree is one path then, and eight of them go from face to face side by side. Every lane takes
+// the operations that render_pixel takes, so that its pixel is the same bit for bit.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace cistula {
 
-/// Masks that packets can be traced with: bodies, lamps, shadows that let nothing through, perhaps mirrors, and nothing else.
+/// Masks that packets can be traced with: bodies, lamps, shadows that let nothing through, perhaps mirrors, and nothing
+/// else.
 template <class E>
 inline constexpr bool fits_packets = E::has(effect_opaque_shadows) && (E::mask & ~mirrors) == 0;
 
@@ -23,9 +24,15 @@ class PacketTracer {
     using Scene = SmallScene<Real>;
 
     /// `in_view`: as BruteIntersector's. The camera is in no solid. Adds to `rays` and `flags` what is counted.
-    PacketTracer(const Scene& scene, const FrameView& frame, uint32_t in_view, const std::atomic<bool>& stop, RayCounts& rays,
-                 uint32_t& flags)
-        : scene_(scene), frame_(frame), in_view_(in_view), stop_(stop), rays_(rays), flags_(flags), intersector_(scene) {}
+    PacketTracer(const Scene& scene, const FrameView& frame, uint32_t in_view, const std::atomic<bool>& stop,
+                 RayCounts& rays, uint32_t& flags)
+        : scene_(scene),
+          frame_(frame),
+          in_view_(in_view),
+          stop_(stop),
+          rays_(rays),
+          flags_(flags),
+          intersector_(scene) {}
 
     /// Pixels (x, y) to (x + count - 1, y), of which there are lane_count at most.
     void render(int x, int y, int count, const PixelWriter& writer, PixelRecord* pixels) {
@@ -86,7 +93,8 @@ class PacketTracer {
 
     /// Samples `across`, `across` + k, ... of row `down`, of all samples of the picture.
     void render_sample(int across, int down, uint32_t lanes, bool middle) {
-        const int k = frame_.supersample, right = 2 * across + 1 - frame_.width * k, below = 2 * down + 1 - frame_.height * k;
+        const int k = frame_.supersample, right = 2 * across + 1 - frame_.width * k,
+                  below = 2 * down + 1 - frame_.height * k;
         const Camera camera = frame_.camera;
         const double half_sample = frame_.half_sample;
         Path path{};  // lanes without a ray hold numbers too, of which nothing is kept
@@ -152,7 +160,8 @@ class PacketTracer {
     CISTULA_INLINE uint32_t on_the_same_face(const Hits& hits, uint32_t lanes) const {
         const uint32_t one = lowest_bit(lanes);
         const Index solid = hits.solid.of[one], face = hits.face.of[one];
-        uint32_t alike = lanes & lanes_where([&](int i) { return (hits.solid.of[i] == solid) & (hits.face.of[i] == face); });
+        uint32_t alike =
+            lanes & lanes_where([&](int i) { return (hits.solid.of[i] == solid) & (hits.face.of[i] == face); });
         if (!is_convex<E>(scene_.solids[uint32_t(solid)])) {
             const bool enters = hits.on_triangle[one].enters;
             for_each_lane(alike, [&](int i) { alike &= ~(uint32_t(hits.on_triangle[i].enters != enters) << i); });
@@ -165,7 +174,8 @@ class PacketTracer {
                                   Ledgers& of_lanes, Path& next) {
         const Hit<Real> one = intersector_.hit(hits, int(lowest_bit(lanes)));
         const Solid& solid = scene_.solids[key_solid(one.key)];
-        Face face{scene_.materials[solid.material], key_solid(one.key), key_face(one.key), normal_at<E>(scene_, one), {}, {}};
+        Face face{
+            scene_.materials[solid.material], key_solid(one.key), key_face(one.key), normal_at<E>(scene_, one), {}, {}};
         if (is_convex<E>(solid)) {
             const Vec3<Real> color = face.material.color;
             for_lanes([&](int i) {
@@ -298,7 +308,7 @@ class PacketTracer {
     const PacketIntersector<Real, E> intersector_;
     // Of the pixels under way:
     Record records_[lane_count];  // their radiance only once they are done
-    uint32_t samples_;  // of each
+    uint32_t samples_;            // of each
     Lanes<uint32_t> reflected_, shadow_;
     Lanes<int64_t> radiance_[3];
 };

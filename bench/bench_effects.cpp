@@ -28,7 +28,8 @@ void add(const EffectScene& scene) {
 }
 
 void register_all(const std::vector<std::string>&) {
-    const std::set<std::string> chosen = {"opaque", "opaque_floor", "mirrors", "benchmark", "edge_lights", "away", "mesh"};
+    const std::set<std::string> chosen = {"opaque",      "opaque_floor", "mirrors", "benchmark",
+                                          "edge_lights", "away",         "mesh"};
     for (const EffectScene& scene : effect_scenes(CISTULA_SOURCE_DIR)) {
         if (chosen.count(scene.name) == 0) continue;
         add<float>(scene);

@@ -18,8 +18,8 @@ void add(const SceneDescription& scene) {
     settings.set_size(width, height);
     for (const int depth : {4, 16}) {
         settings.depth = depth;
-        register_frames(std::string("benchmark.json/") + RealTraits<Real>::name + "/depth:" + std::to_string(depth), renderer,
-                        camera_at(scene.camera, 0), settings);
+        register_frames(std::string("benchmark.json/") + RealTraits<Real>::name + "/depth:" + std::to_string(depth),
+                        renderer, camera_at(scene.camera, 0), settings);
     }
 }
 

@@ -6,8 +6,8 @@
 
 namespace cistula::bench {
 
-/// 1.3 million triangles, seen from near by under a horizontal angle in degrees: at 30 every ray hits, at 40 those of the
-/// picture's corners do not.
+/// 1.3 million triangles, seen from near by under a horizontal angle in degrees: at 30 every ray hits, at 40 those of
+/// the picture's corners do not.
 inline SceneDescription bumpy_scene(double field_of_view) {
     SceneDescription scene;
     scene.source = "bumpy sphere";

@@ -27,12 +27,9 @@ std::vector<EffectScene> effect_scenes(const std::string& folder) {
     away.camera.position = {30, 0, 0};
     away.camera.target = {60, 0, 0};
 
-    std::vector<EffectScene> scenes = {{"opaque", opaque, true},
-                                       {"opaque_floor", floor},
-                                       {"mirrors", mirrors, true},
-                                       {"edge_lights", edge_lights, true},
-                                       {"away", away},
-                                       {"benchmark", benchmark, true}};
+    std::vector<EffectScene> scenes = {
+        {"opaque", opaque, true},           {"opaque_floor", floor}, {"mirrors", mirrors, true},
+        {"edge_lights", edge_lights, true}, {"away", away},          {"benchmark", benchmark, true}};
     for (const char* name : {"glass", "infinity", "mesh", "platonic", "seed"})
         scenes.push_back({name, read_scene(folder + "/scenes/" + name + ".json")});
     return scenes;

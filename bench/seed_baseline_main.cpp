@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "apps/common/build_info.h"
-#include "apps/common/machine.h"
 #include "apps/common/command_line.h"
+#include "apps/common/machine.h"
 #include "bench/seed_baseline_run.h"
 #include "bench/seed_baseline_scene.h"
 #include "scene/atomic_file.h"

@@ -1,4 +1,5 @@
-// Tests that need a GPU: where there is none they are skipped and say so, or fail where CISTULA_REQUIRE_GPU=1 demands one.
+// Tests that need a GPU: where there is none they are skipped and say so, or fail where CISTULA_REQUIRE_GPU=1 demands
+// one.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,10 +30,10 @@ inline bool gpu_required() {
 }  // namespace cistula::test
 
 /// At the head of a test. tests/CMakeLists.txt looks for the words "skipped for want of a GPU".
-#define CISTULA_NEEDS_GPU()                                                                         \
-    do {                                                                                            \
-        const std::string missing = cistula::test::missing_gpu();                                   \
-        if (missing.empty()) break;                                                                 \
+#define CISTULA_NEEDS_GPU()                                                                          \
+    do {                                                                                             \
+        const std::string missing = cistula::test::missing_gpu();                                    \
+        if (missing.empty()) break;                                                                  \
         if (cistula::test::gpu_required()) FAIL() << "CISTULA_REQUIRE_GPU is set, but: " << missing; \
-        GTEST_SKIP() << "skipped for want of a GPU: " << missing;                                   \
+        GTEST_SKIP() << "skipped for want of a GPU: " << missing;                                    \
     } while (false)

@@ -22,7 +22,8 @@ inline CameraDescription random_camera(Random& random, const CameraDescription& 
     const double distance = size * std::exp(random.between(std::log(0.01), std::log(300.0)));
     camera.position = random.in_cube(distance);
     camera.target = random.below(3) != 0 ? random.in_cube(0.5 * size) : camera.position + random.in_cube(1.0);
-    camera.field_of_view = random.below(2) != 0 ? random.between(5, 175) : std::exp(random.between(std::log(0.5), std::log(90.0)));
+    camera.field_of_view =
+        random.below(2) != 0 ? random.between(5, 175) : std::exp(random.between(std::log(0.5), std::log(90.0)));
     return camera;
 }
 

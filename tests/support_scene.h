@@ -213,8 +213,8 @@ Count cross_all(const Intersector& intersector, Ray<Real> ray) {
     return count;
 }
 
-/// On a spiral, around what scenes/benchmark.json shows: lights that are seen and light nothing, after those that are there.
-/// On every edge of every solid: they glow, and light nothing.
+/// On a spiral, around what scenes/benchmark.json shows: lights that are seen and light nothing, after those that are
+/// there. On every edge of every solid: they glow, and light nothing.
 inline void add_edge_lights(SceneDescription& scene, int count) {
     for (ObjectDescription& object : scene.objects)
         if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
@@ -240,7 +240,8 @@ inline void add_seen_lights(SceneDescription& scene, int count) {
 /// The lights that are listed for lines that a mirror shows.
 inline std::vector<uint32_t> listed_in(const ShownLights& shown, uint32_t mirror) {
     std::vector<uint32_t> lights;
-    for (const ShownLight* next = shown.lights + shown.cell->first; next != shown.lights + shown.cell->first + shown.cell->count; ++next)
+    for (const ShownLight* next = shown.lights + shown.cell->first;
+         next != shown.lights + shown.cell->first + shown.cell->count; ++next)
         if (next->mirror() == mirror) lights.push_back(next->light());
     return lights;
 }

@@ -1,5 +1,5 @@
-// Frames with a target error: decisions are those of the pixel alone and the same on every path, and what was asked for is
-// reached.
+// Frames with a target error: decisions are those of the pixel alone and the same on every path, and what was asked for
+// is reached.
 #include <gtest/gtest.h>
 
 #include "cistula/adaptive_pixel.h"
@@ -90,8 +90,8 @@ void expect_same_with_mask(const SceneDescription& scene, const std::string& wha
         StackOf<Real, E, MediaList> stack;
         PixelWork work;
         RecordOf<E> record;
-        render_adaptive_pixel<Real, E>(view, frame, intersector, i % film.rect.width, i / film.rect.width, shades_gradually(view),
-                                       record, work, stack);
+        render_adaptive_pixel<Real, E>(view, frame, intersector, i % film.rect.width, i / film.rect.width,
+                                       shades_gradually(view), record, work, stack);
         film.pixels[size_t(i)] = whole_record(record);
         film.rays.add(work.rays);
         samples += record.samples;

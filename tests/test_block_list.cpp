@@ -42,7 +42,8 @@ TEST(BlockList, EveryRecordOfABlockIsAnotherPixels) {
         std::set<std::pair<int, int>> places;
         for (int i = 0; i < shape.pixels(); ++i) {
             const PixelPlace place = plan.place_of(i);
-            EXPECT_TRUE(place.column >= 0 && place.column < shape.width && place.row >= 0 && place.row < shape.height) << i;
+            EXPECT_TRUE(place.column >= 0 && place.column < shape.width && place.row >= 0 && place.row < shape.height)
+                << i;
             places.insert({place.row, place.column});
         }
         EXPECT_EQ(places.size(), size_t(shape.pixels()));
@@ -59,14 +60,17 @@ TEST(BlockList, EveryPixelIsABlocksOrInAGap) {
                 size_t blocks = 0;
                 for (int first = 0; first < step; ++first) {
                     // As many for each, though the last may lie beyond the rectangle.
-                    const BlockList list(cover, FrameCover(rect), by_tiles(LightImages(rect)), {1u, 8u}, {first, step, (strips + step - 1) / step}, plan);
+                    const BlockList list(cover, FrameCover(rect), by_tiles(LightImages(rect)), {1u, 8u},
+                                         {first, step, (strips + step - 1) / step}, plan);
                     const BlockShape shape = list.shape();
                     blocks += list.places().size();
                     for (const BlockPlace& block : list.places()) {
-                        EXPECT_TRUE(rect.width == 1 || block.in_view == 1 || block.in_view == 8) << block.in_view;  // they are far apart
+                        EXPECT_TRUE(rect.width == 1 || block.in_view == 1 || block.in_view == 8)
+                            << block.in_view;  // they are far apart
                         for (int i = 0; i < shape.pixels(); ++i) {
                             const PixelPlace place = plan.place_of(i);
-                            const int x = block.column * shape.width + place.column, y = block.row * shape.height + place.row;
+                            const int x = block.column * shape.width + place.column,
+                                      y = block.row * shape.height + place.row;
                             if (x >= rect.width || y >= rect.height) continue;
                             ++met[size_t(y) * size_t(rect.width) + size_t(x)];
                             covered[size_t(y) * size_t(rect.width) + size_t(x)] = 1;
@@ -92,7 +96,8 @@ TEST(BlockList, BlocksThatAreRenderedTogetherLieCloseTogether) {
     const PixelRect rect{0, 0, 3840, 2160};
     FrameCover cover(rect);
     cover.add_all(FrameCover::Outline::all);
-    const BlockList list(cover, FrameCover(rect), by_tiles(LightImages(rect)), {1u, 2u}, {0, 1, rect.height / strip_rows}, BlockPlan());
+    const BlockList list(cover, FrameCover(rect), by_tiles(LightImages(rect)), {1u, 2u},
+                         {0, 1, rect.height / strip_rows}, BlockPlan());
     ASSERT_EQ(list.places().size(), size_t(3840 / 16 * (2160 / 8)));
     EXPECT_EQ(list.places()[15].column, 15);
     EXPECT_EQ(list.places()[16].column, 0);
@@ -110,7 +115,8 @@ TEST(BlockList, BlocksThatTakeLongestComeFirst) {
         cover.add(hull, {{{x - 0.5, -0.3, -1}, {x, -0.3, -1}, {x - 0.2, 0.2, -1}}, 0}, 1, frame);
     }
     constexpr uint32_t sheet = 1u << ShadowPlan::first_cluster;
-    const BlockList list(cover, FrameCover(rect), by_tiles(LightImages(rect)), {1u, 2u, sheet}, {0, 1, rect.height / strip_rows}, BlockPlan());
+    const BlockList list(cover, FrameCover(rect), by_tiles(LightImages(rect)), {1u, 2u, sheet},
+                         {0, 1, rect.height / strip_rows}, BlockPlan());
     std::vector<uint32_t> seen;
     for (const BlockPlace& block : list.places())
         if (seen.empty() || seen.back() != block.in_view) seen.push_back(block.in_view);
@@ -130,11 +136,13 @@ TEST(BlockList, BlocksThatMirrorSolidsComeBeforeOthers) {
     constexpr uint32_t sheet = 1u << ShadowPlan::first_cluster;
     for (const BlockPlan& plan : plans) {
         const BlockShape shape = plan.shape();
-        const BlockList list(cover, mirrored, by_tiles(LightImages(rect)), {1u, 2u, sheet}, {0, 1, rect.height / strip_rows}, plan);
+        const BlockList list(cover, mirrored, by_tiles(LightImages(rect)), {1u, 2u, sheet},
+                             {0, 1, rect.height / strip_rows}, plan);
         const auto is_mirror = [&](const BlockPlace& block) {
             for (int y = block.row * shape.height; y < (block.row + 1) * shape.height && y < rect.height; ++y)
                 for (const PixelRun& run : mirrored.runs(y))
-                    if (run.begin < (block.column + 1) * shape.width && run.end > block.column * shape.width) return true;
+                    if (run.begin < (block.column + 1) * shape.width && run.end > block.column * shape.width)
+                        return true;
             return false;
         };
         size_t last = 0, count[3] = {};
@@ -152,7 +160,8 @@ TEST(BlockList, BlocksKnowWhatMayShow) {
     const PixelRect rect{0, 0, 640, 368};
     const FrameCover cover = cover_of(rect);
     for (const BlockPlan& plan : plans) {
-        const BlockList list(cover, FrameCover(rect), by_tiles(LightImages(rect)), {4u}, {0, 1, rect.height / strip_rows}, plan);
+        const BlockList list(cover, FrameCover(rect), by_tiles(LightImages(rect)), {4u},
+                             {0, 1, rect.height / strip_rows}, plan);
         size_t known = 0;
         for (const BlockPlace& block : list.places()) {
             EXPECT_TRUE(block.in_view == 4u || block.in_view == ~0u) << block.in_view;  // hull 1 has no number
@@ -190,7 +199,8 @@ TEST(BlockList, BlocksKnowWhereLightsMayShow) {
         for (const int step : {1, 3}) {
             size_t lit = 0, dark = 0, listed = 0;
             for (int first = 0; first < step; ++first) {
-                const BlockList list(cover, FrameCover(rect), by_tiles(lights), {1u, 8u}, {first, step, (strips + step - 1) / step}, plan);
+                const BlockList list(cover, FrameCover(rect), by_tiles(lights), {1u, 8u},
+                                     {first, step, (strips + step - 1) / step}, plan);
                 const BlockShape shape = list.shape();
                 ASSERT_EQ(list.tiles().size(), list.places().size() * size_t(shape.tiles()));
                 EXPECT_LE(list.cells().size(), list.tiles().size() + 1);
@@ -232,8 +242,10 @@ TEST(BlockList, BlocksKnowWhereLightsMayShow) {
 TEST(BlockList, TilesHaveRoomForSoManyLights) {
     const PixelRect rect{0, 0, 640, 368};
     LightImages lights(rect);
-    for (uint32_t light = 0; light < 3 * BlockList::listed_per_tile; ++light) lights.add({rect, MirrorNumbers::straight, light});
-    const BlockList list(cover_of(rect), FrameCover(rect), by_tiles(lights), {1u, 8u}, {0, 1, rect.height / strip_rows}, BlockPlan());
+    for (uint32_t light = 0; light < 3 * BlockList::listed_per_tile; ++light)
+        lights.add({rect, MirrorNumbers::straight, light});
+    const BlockList list(cover_of(rect), FrameCover(rect), by_tiles(lights), {1u, 8u}, {0, 1, rect.height / strip_rows},
+                         BlockPlan());
     EXPECT_LE(list.shown().size(), BlockList::listed_per_tile * list.tiles().size());
     size_t listed = 0, others = 0;
     for (size_t b = 0; b < list.places().size(); ++b) {
@@ -247,7 +259,8 @@ TEST(BlockList, TilesHaveRoomForSoManyLights) {
 
 TEST(BlockList, NothingIsKnownOfMirrorsThatNobodyAsks) {
     const PixelRect rect{0, 0, 64, 32};
-    const BlockList list(cover_of(rect), FrameCover(rect), by_tiles(LightImages(rect)), {1u, 8u}, {0, 1, 4}, BlockPlan());
+    const BlockList list(cover_of(rect), FrameCover(rect), by_tiles(LightImages(rect)), {1u, 8u}, {0, 1, 4},
+                         BlockPlan());
     EXPECT_TRUE(list.tiles().empty());
     ASSERT_EQ(list.cells().size(), 1u);
     const ShownLights shown{list.cells().data(), nullptr};

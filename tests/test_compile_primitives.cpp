@@ -127,7 +127,8 @@ void expect_each_once(const CompiledScene<Real>& compiled) {
     for (const LightNode& node : compiled.seen_tree)
         for (int i = 0; i < LightNode::width; ++i)
             if (node.has_child(i)) children.insert(node.children.of[i]);
-    const auto lights = static_cast<int32_t>(compiled.seen_lights.size()), nodes = static_cast<int32_t>(compiled.seen_tree.size());
+    const auto lights = static_cast<int32_t>(compiled.seen_lights.size()),
+               nodes = static_cast<int32_t>(compiled.seen_tree.size());
     for (int32_t light = 0; light < lights; ++light) EXPECT_EQ(children.count(~light), 1u) << light;
     for (int32_t node = 1; node < nodes; ++node) EXPECT_EQ(children.count(node), 1u) << node;
     EXPECT_EQ(children.size(), static_cast<size_t>(lights + nodes - 1));

@@ -85,8 +85,8 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 template <class Real>
 bool same_slabs(const std::vector<Slab<Real>>& a, const std::vector<Slab<Real>>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Slab<Real>& x, const Slab<Real>& y) {
-        return std::memcmp(&x.normal, &y.normal, sizeof x.normal) == 0 && std::memcmp(&x.low, &y.low, sizeof x.low) == 0 &&
-               std::memcmp(&x.high, &y.high, sizeof x.high) == 0;
+        return std::memcmp(&x.normal, &y.normal, sizeof x.normal) == 0 &&
+               std::memcmp(&x.low, &y.low, sizeof x.low) == 0 && std::memcmp(&x.high, &y.high, sizeof x.high) == 0;
     });
 }
 

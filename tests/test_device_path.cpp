@@ -66,8 +66,8 @@ struct Split {
     int depth(int pass) const { return levels > 0 ? (pass + 1) * levels : largest_depth; }
 };
 
-/// A frame as a device renders it: a pass over pixels, then passes over what waits, here until nothing does and from the
-/// last to the first. `given` counts the branches that went through a queue.
+/// A frame as a device renders it: a pass over pixels, then passes over what waits, here until nothing does and from
+/// the last to the first. `given` counts the branches that went through a queue.
 template <class Real, class E, class Scene, class Intersector>
 void render_split(const Scene& scene, const FrameView& frame, const Intersector& intersector, Split split, Film& film,
                   uint64_t& given) {
@@ -162,7 +162,8 @@ void check(const std::string& name, const SceneDescription& description, const F
     tree.put_into(view);
     const auto small = small_scene(view);
     for (const Split& split : splits) {
-        expect_same(render_as_device<Real, Tree>(*compiled, view, description, settings, split, done.given), "tree", split);
+        expect_same(render_as_device<Real, Tree>(*compiled, view, description, settings, split, done.given), "tree",
+                    split);
         if (!small) continue;
         ++done.plain_loops;
         expect_same(render_as_device<Real, PlainLoop>(*compiled, *small, description, settings, split, done.given),

@@ -55,7 +55,8 @@ class EdgeLights : public ::testing::Test {
             Ray<Real> ray = i % 2 == 0 ? any_ray(scene) : grazing_ray(scene);
             if (i % 3 == 0) limit = scene.extent * Real(uniform(0, 2));
             seen.inside += enter_solids(scene, ray, limit, i % 5 == 0);
-            const SeenHit<Real> expected = found_by_loop(scene, ray, limit), found = closest_seen_light(scene, ray, limit);
+            const SeenHit<Real> expected = found_by_loop(scene, ray, limit),
+                                found = closest_seen_light(scene, ray, limit);
             EXPECT_EQ(found.light, expected.light) << "ray " << i;
             EXPECT_EQ(found.t, expected.t) << "ray " << i;
             if (small) {
@@ -90,8 +91,8 @@ class EdgeLights : public ::testing::Test {
         }
         return ray_through(from, in_cube() * double(scene.extent));
     }
-    /// A ray that starts in solids knows them, and no light counts for it beyond its way out, if it does not go on there. Whether
-    /// it starts in any.
+    /// A ray that starts in solids knows them, and no light counts for it beyond its way out, if it does not go on
+    /// there. Whether it starts in any.
     bool enter_solids(const SceneView<Real>& scene, Ray<Real>& ray, Real& limit, bool goes_on) {
         ray.after.t = greatest(ray.after.t, Real(0));
         const Vec3<Real> start = ray.origin + ray.after.t * ray.direction;
@@ -169,7 +170,8 @@ TYPED_TEST(EdgeLights, AreLookedForFromTheNodeOfASolid) {
     int below_the_root = 0;
     for (const auto& listed : small->convex) {
         std::set<uint32_t> below;
-        for_each_light(small->seen_tree, small->light_roots[listed.index], [&](uint32_t light) { below.insert(light); });
+        for_each_light(small->seen_tree, small->light_roots[listed.index],
+                       [&](uint32_t light) { below.insert(light); });
         size_t near = 0;
         for (uint32_t i = 0; i < small->seen_lights.size; ++i) {
             // Lights on edges lie within the sphere around their solid, others far off here.

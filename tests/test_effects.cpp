@@ -77,7 +77,8 @@ TYPED_TEST(EffectTest, NorDoGeneratedScenesOfFewerEffects) {
             if ((mask >> bit & 1u) != 0) continue;
             if (const auto less = without_effect(scene, 1u << bit)) scene = *less;
         }
-        ++ran[this->compare(scene, generated_settings(scene), "generated scene " + std::to_string(seed) + " with less")];
+        ++ran[this->compare(scene, generated_settings(scene),
+                            "generated scene " + std::to_string(seed) + " with less")];
     }
     for (int mask = 0; mask + 1 < effect_mask_count; ++mask) EXPECT_GE(ran[effect_masks[mask]], 10) << "mask " << mask;
 }
@@ -90,7 +91,8 @@ TYPED_TEST(EffectTest, EveryMaskRuns) {
     const SceneDescription solids = without_effect(lit, effect_triangles).value();
     SceneDescription seen = benchmark;
     seen.lights[0].radius = 0.1;
-    const std::vector<SceneDescription> scenes = {solids, lit, reflecting, benchmark, seen, load("platonic"), load("glass")};
+    const std::vector<SceneDescription> scenes = {solids,           lit,          reflecting, benchmark, seen,
+                                                  load("platonic"), load("glass")};
     ASSERT_EQ(scenes.size(), size_t(effect_mask_count));
     for (size_t i = 0; i < scenes.size(); ++i)
         EXPECT_EQ(this->compare(scenes[i], small_frame(scenes[i]), "scene " + std::to_string(i)), effect_masks[i]) << i;

@@ -68,7 +68,8 @@ TEST(FilmPicture, ChannelsAndWindows) {
 
 TEST(FilmPicture, Values) {
     const int64_t one = int64_t(1) << 60;  // four samples
-    PixelRecord lit = {{{4 * one, 2 * one, one}, 3, 77, 5, 2.5f, {0, 0.6f, -0.8f}, 4, 0}, {one, 0, 0}, {one, 3 * one, 0}};
+    PixelRecord lit = {
+        {{4 * one, 2 * one, one}, 3, 77, 5, 2.5f, {0, 0.6f, -0.8f}, 4, 0}, {one, 0, 0}, {one, 3 * one, 0}};
     PixelRecord empty = {{{0, 0, 0}, 0, 4, 0, infinity, {0, 0, 0}, 9, 0}, {0, 0, 0}, {0, 0, 0}};
     const Film film = film_of(4, 3, {lit, empty});
     const LayeredPicture picture = to_layers(film, everything);

@@ -41,9 +41,11 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
                 using E = Effects<all_effects>;
                 StackOf<Real, E, MediaList> stack;
                 if (settings.adaptive())
-                    render_adaptive_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, gradual, record, work, stack);
+                    render_adaptive_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, gradual, record,
+                                                   work, stack);
                 else
-                    render_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, SampleRange(), record, work, stack);
+                    render_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, SampleRange(), record, work,
+                                          stack);
                 const bool is_background = test::same_bytes(record, contents.background.record);
                 share.all += 1;
                 share.background += is_background;

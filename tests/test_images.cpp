@@ -1,6 +1,6 @@
 // What may never change an image: threads, tiles, instruction sets, control registers, trees, the order of lights,
-// effects that a scene does not use, and solids that cannot be seen. And what truncation may take away: at most what the
-// ledger says.
+// effects that a scene does not use, and solids that cannot be seen. And what truncation may take away: at most what
+// the ledger says.
 #include <gtest/gtest.h>
 #include <immintrin.h>
 #include <tbb/global_control.h>
@@ -287,8 +287,8 @@ TYPED_TEST(Images, ControlRegistersChangeNothing) {
     });
 }
 
-/// Solids as planes and as closed meshes go different ways through the code: to one picture, but for the rays that rounding
-/// sends past an edge on the other side.
+/// Solids as planes and as closed meshes go different ways through the code: to one picture, but for the rays that
+/// rounding sends past an edge on the other side.
 TYPED_TEST(Images, PlanesAndTrianglesShowTheSame) {
     for (const char* name : {"benchmark", "glass"}) {
         SceneDescription scene = load(name);

@@ -285,7 +285,9 @@ TEST(Lattice, ShadingThatComesInSteeplyBendsBetweenCornersThatAgree) {
     // A texture's border between two quarters is no slope, nor is one of things.
     const auto border = [](double by) { return [by](int x, int) { return fixed(x < 8 ? 0.5 : 0.5 + by); }; };
     const auto side = [](int x, int) { return uint32_t(x < 8); };
-    const auto taken = [&](double by, const auto& sign) { return sampled(lattice(0.004, true), border(by), sign).samples; };
+    const auto taken = [&](double by, const auto& sign) {
+        return sampled(lattice(0.004, true), border(by), sign).samples;
+    };
     EXPECT_GT(taken(0.0155, one_kind), 16u);
     EXPECT_EQ(taken(0.0165, one_kind), 16u);
     EXPECT_EQ(taken(0.0155, side), 16u);

@@ -34,7 +34,8 @@ FrameSettings small_frame() {
 }
 
 template <class Real, class E, class Intersector>
-PixelRecord rendered(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector, int x, int y) {
+PixelRecord rendered(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
+                     int x, int y) {
     PixelRecord record;
     PixelWork work;
     StackOf<Real, E, typename Intersector::Media> stack;
@@ -84,7 +85,8 @@ TYPED_TEST(LightsIn, ThePictureShowWhereTheirImagesAre) {
         const Unlit<TypeParam> unlit{{view}};
         const FrameSettings settings = small_frame();
         for (int i = 0; i < 6; ++i) {
-            const CameraDescription camera = i == 0 ? description.camera : test::random_camera(random, description.camera);
+            const CameraDescription camera =
+                i == 0 ? description.camera : test::random_camera(random, description.camera);
             FrameView frame = frame_view(*scene, camera_at(camera, 0), settings);
             camera_solids(view, whole, frame.camera.position, frame.camera_media);
             const LightImages lights = frame_contents(*scene, frame, settings).lights;
@@ -131,7 +133,8 @@ TYPED_TEST(LightsIn, MirrorsShowWhereTheirImagesAre) {
         const FrameSettings settings = small_frame();
         const size_t faces = mirror_planes(scene->view()).size();
         for (int i = 0; i < 8; ++i) {
-            const CameraDescription camera = i == 0 ? description.camera : test::random_camera(random, description.camera);
+            const CameraDescription camera =
+                i == 0 ? description.camera : test::random_camera(random, description.camera);
             FrameView frame = frame_view(*scene, camera_at(camera, 0), settings);
             Loop whole{*small}, none{*small}, some{*small};
             camera_solids(*small, whole, frame.camera.position, frame.camera_media);
@@ -146,7 +149,8 @@ TYPED_TEST(LightsIn, MirrorsShowWhereTheirImagesAre) {
                     const int px = settings.crop.x + x, py = settings.crop.y + y;
                     const PixelRecord right = rendered<TypeParam, E>(*small, frame, whole, px, py);
                     const bool is_wrong = !test::same_bytes(right, rendered<TypeParam, E>(*small, frame, some, px, py));
-                    EXPECT_TRUE(!is_wrong || wrong != 0) << what << ", camera " << i << ", pixel " << px << ", " << py;  // the first
+                    EXPECT_TRUE(!is_wrong || wrong != 0)
+                        << what << ", camera " << i << ", pixel " << px << ", " << py;  // the first
                     wrong += is_wrong;
                     apart += !test::same_bytes(right, rendered<TypeParam, E>(*small, frame, none, px, py));
                     told += size_t(std::popcount(some.shown.cell->mirrors & ~unmirrored.mirrors));
@@ -174,7 +178,8 @@ TYPED_TEST(LightsIn, MirrorsShowWhereTheirImagesAre) {
     EXPECT_GT(listed, told / 2);
 }
 
-/// Lines leave a triangle toward a point above its middle: in float an eighth of the way to it where that lies some u M high.
+/// Lines leave a triangle toward a point above its middle: in float an eighth of the way to it where that lies some u M
+/// high.
 TEST(LightsInSlivers, ShowWhereTheLinesThatTheySendBackStart) {
     SceneDescription description = read_scene(source + "/scenes/benchmark.json");
     constexpr double width = 1e-5;
@@ -214,7 +219,8 @@ TEST(LightsInSlivers, ShowWhereTheLinesThatTheySendBackStart) {
         if (test::same_bytes(whole, rendered<float, E>(*small, frame, loop, x, y))) continue;
         ++met;
         EXPECT_TRUE(std::ranges::any_of(lights.images(), [&](const LightImage& image) {
-            return image.mirror != MirrorNumbers::straight && holds(image.rect, x - settings.crop.x, y - settings.crop.y);
+            return image.mirror != MirrorNumbers::straight &&
+                   holds(image.rect, x - settings.crop.x, y - settings.crop.y);
         })) << y;
     }
     EXPECT_GT(met, 5u);
@@ -267,7 +273,8 @@ TEST(LitCells, ListWhatTheirImagesShow) {
             for (int i = 0; i < count; ++i) {
                 const int x = whole(rect.width), y = whole(rect.height);
                 const uint32_t mirror = uint32_t(whole(MirrorNumbers::most + 1));
-                images.add({{x, y, 1 + whole(std::min(20, rect.width - x)), 1 + whole(std::min(20, rect.height - y))}, mirror,
+                images.add({{x, y, 1 + whole(std::min(20, rect.width - x)), 1 + whole(std::min(20, rect.height - y))},
+                            mirror,
                             mirror % 5 == 0 && i % 3 == 0 ? LightImage::any : uint32_t(whole(ShownLight::most))});
             }
             const LitCells cells(images, width, height);
@@ -280,8 +287,10 @@ TEST(LitCells, ListWhatTheirImagesShow) {
                         for (const LightImage& image : images.images()) {
                             if (image.mirror != mirror) continue;
                             is_any |= image.light == LightImage::any;
-                            const bool meets = image.rect.x < (column + 1) * width && image.rect.x + image.rect.width > column * width &&
-                                               image.rect.y < (row + 1) * height && image.rect.y + image.rect.height > row * height;
+                            const bool meets = image.rect.x < (column + 1) * width &&
+                                               image.rect.x + image.rect.width > column * width &&
+                                               image.rect.y < (row + 1) * height &&
+                                               image.rect.y + image.rect.height > row * height;
                             if (!meets) continue;
                             is_lit = true;
                             expected.push_back(image.light);
@@ -318,10 +327,11 @@ TYPED_TEST(LightsIn, MirrorsWhoseSideIsInDoubtShowAnywhere) {
     description.camera.position = {4, 4, 0};  // on the floor, which is two triangles
     description.camera.target = {0, 0, 2};
     const LightImages lights = images_of<TypeParam>(description);
-    EXPECT_EQ(std::ranges::count_if(lights.images(),
-                                    [](const LightImage& image) {
-                                        return image.mirror != MirrorNumbers::straight && image.rect == PixelRect{0, 0, 40, 30};
-                                    }),
+    EXPECT_EQ(std::ranges::count_if(
+                  lights.images(),
+                  [](const LightImage& image) {
+                      return image.mirror != MirrorNumbers::straight && image.rect == PixelRect{0, 0, 40, 30};
+                  }),
               2);
 }
 
@@ -332,7 +342,7 @@ TEST(LightView, HasNoImageFarBesideThePicture) {
         EXPECT_EQ(view.image_of({side, 0, -1e-4}, 1e-6), PixelRect());
         EXPECT_EQ(view.image_of({0, side, -1e-4}, 1e-6), PixelRect());
     }
-    EXPECT_EQ(view.image_of({0, 0, 1}, 1e-3), PixelRect());  // behind
+    EXPECT_EQ(view.image_of({0, 0, 1}, 1e-3), PixelRect());                   // behind
     EXPECT_EQ(view.image_of({0, 0, -1}, 1e-3), (PixelRect{0, 0, 400, 300}));  // larger than the picture
 }
 
@@ -350,7 +360,8 @@ TEST(LightView, ImagesAreTightAroundBalls) {
         images += size_t(image.width) * size_t(image.height);
         for (int y = window.y; y < window.y + window.height; ++y)
             for (int x = window.x; x < window.x + window.width; ++x) {
-                const Vec3<double> direction = camera_direction(frame.camera, x + 0.5, y + 0.5, frame.width, frame.height);
+                const Vec3<double> direction =
+                    camera_direction(frame.camera, x + 0.5, y + 0.5, frame.width, frame.height);
                 const double ahead = dot(center, direction);
                 const bool meets = dot(center, center) < radius * radius ||
                                    (ahead > 0 && dot(center, center) - ahead * ahead < radius * radius);

@@ -61,7 +61,8 @@ void expect_held(const SceneDescription& description, const CameraFrame& camera,
             Ray<Real, MediaList> ray;
             Vec3<double> direction;
             double start;
-            if (!primary_ray(view, frame, settings.crop.x + x + 0.5, settings.crop.y + y + 0.5, ray, direction, start)) continue;
+            if (!primary_ray(view, frame, settings.crop.x + x + 0.5, settings.crop.y + y + 0.5, ray, direction, start))
+                continue;
             const Hit<Real> hit = intersector.closest(ray);
             if (!hit.found() || kind_of(hit) != SolidKind::sheet) continue;
             const Surface<Real> surface = surface_at<Real, Effects<all_effects>>(view, ray, hit);

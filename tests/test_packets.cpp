@@ -18,7 +18,8 @@
 namespace cistula {
 namespace {
 
-static_assert(fits_packets<Effects<opaque_solids>> && fits_packets<Effects<opaque_bodies>> && fits_packets<Effects<mirrors>>);
+static_assert(fits_packets<Effects<opaque_solids>> && fits_packets<Effects<opaque_bodies>> &&
+              fits_packets<Effects<mirrors>>);
 static_assert(!fits_packets<Effects<clear_bodies>> && !fits_packets<Effects<all_effects>>);
 
 SceneDescription mirrors_on_a_floor() {
@@ -79,7 +80,8 @@ TYPED_TEST(Packets, OfManySamples) {
             FrameSettings settings = this->frame(61, 35, 6);
             settings.supersample = supersample;
             settings.cutoff = cutoff;
-            const std::string what = std::to_string(supersample) + " samples along a side, cutoff " + std::to_string(cutoff);
+            const std::string what =
+                std::to_string(supersample) + " samples along a side, cutoff " + std::to_string(cutoff);
             this->compare(mirrors_on_a_floor(), settings, mirrors, what);
             this->compare(bodies_on_a_floor(), settings, opaque_bodies, what);
         }
@@ -156,7 +158,8 @@ TYPED_TEST(Packets, AmongSheets) {
     }
     test::add_object(scene, leaves, test::add_material(scene, 0.5));
     this->compare(scene, this->frame(192, 108, 12), mirrors, "among leaves");
-    this->compare(without_effect(scene, effect_solids).value(), this->frame(192, 108, 12), mirrors, "among leaves alone");
+    this->compare(without_effect(scene, effect_solids).value(), this->frame(192, 108, 12), mirrors,
+                  "among leaves alone");
 }
 
 TYPED_TEST(Packets, StopAmongSamples) {
@@ -171,8 +174,8 @@ TYPED_TEST(Packets, StopAmongSamples) {
     EXPECT_LT(stopped.seconds, 2);
 }
 
-/// What no scene file can bring about, so that the compiled scene is changed: a channel of the lights that is out of range
-/// adds nothing and is flagged, and the others are as ever.
+/// What no scene file can bring about, so that the compiled scene is changed: a channel of the lights that is out of
+/// range adds nothing and is flagged, and the others are as ever.
 TYPED_TEST(Packets, OutOfRange) {
     using Real = TypeParam;
     const Real infinity = RealTraits<Real>::infinity, faults[] = {infinity, infinity - infinity, -1};
@@ -199,7 +202,8 @@ TYPED_TEST(Packets, OutOfRange) {
                 EXPECT_EQ(packets.flags, uint32_t(flag_not_finite)) << what;
                 for (size_t i = 0; i < without.pixels.size(); ++i)
                     for (int c = 0; c < 3; ++c)
-                        ASSERT_EQ(packets.pixels[i].radiance[c], without.pixels[i].radiance[c]) << what << ", pixel " << i;
+                        ASSERT_EQ(packets.pixels[i].radiance[c], without.pixels[i].radiance[c])
+                            << what << ", pixel " << i;
             }
         }
 }

@@ -55,8 +55,8 @@ TYPED_TEST(PixelSumsTest, NegativeZeroIsZero) {
 TYPED_TEST(PixelSumsTest, WhatIsNotInTheUnitIntervalIsFlaggedAndCountsAsNothing) {
     using Real = TypeParam;
     using Limits = std::numeric_limits<Real>;
-    for (const Real fault : {Limits::quiet_NaN(), -Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), Limits::max(),
-                             Real(1) + Limits::epsilon(), -Limits::denorm_min(), Real(-1)})
+    for (const Real fault : {Limits::quiet_NaN(), -Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
+                             Limits::max(), Real(1) + Limits::epsilon(), -Limits::denorm_min(), Real(-1)})
         for (int c = 0; c < 3; ++c) {
             Vec3<Real> radiance(Real(0.5));
             radiance[c] = fault;
@@ -66,7 +66,8 @@ TYPED_TEST(PixelSumsTest, WhatIsNotInTheUnitIntervalIsFlaggedAndCountsAsNothing)
             sums.add(radiance);
             EXPECT_EQ(this->flags_, uint32_t(flag_not_finite)) << fault << " in channel " << c;
             for (int other = 0; other < 3; ++other)
-                EXPECT_EQ(this->record_.radiance[other], other == c ? 0 : this->one / 2) << fault << " in channel " << c;
+                EXPECT_EQ(this->record_.radiance[other], other == c ? 0 : this->one / 2)
+                    << fault << " in channel " << c;
             this->flags_ = 0;
             sums.cut(radiance);
             // A bound under 1 in that channel may bring it back.

@@ -358,7 +358,9 @@ TEST_F(RenderCompareGolden, CudaHolds) {
 TEST_F(RenderCompareGolden, CudaIsRefusedAndNeverReplaced) {
     const bool missing = !test::missing_gpu().empty();
     expect_refused({"--golden", "--backend", "cuda", "--device", missing ? "0" : "4096"}, ExitCode::device,
-                   !has_cuda_backend() ? "no CUDA backend" : missing ? "" : "there is no such GPU");
+                   !has_cuda_backend() ? "no CUDA backend"
+                   : missing           ? ""
+                                       : "there is no such GPU");
 }
 
 }  // namespace

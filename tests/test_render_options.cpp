@@ -109,9 +109,11 @@ TEST(RenderOptions, Actions) {
     EXPECT_EQ(parse({"--list-devices"}).action, Action::list_devices);
     EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
     EXPECT_EQ(parse({"s.json", "--explain=measure"}).action, Action::measure);
-    expect_refused({"s.json", "--explain=mesure"}, "--explain mesure: must be needs or measure; did you mean 'measure'?");
+    expect_refused({"s.json", "--explain=mesure"},
+                   "--explain mesure: must be needs or measure; did you mean 'measure'?");
     expect_refused({"s.json", "--explain=measure", "--target-error", "0.01"},
-                   "--explain measure: --target-error has no place here: it times the samples of a grid; --supersample chooses one; "
+                   "--explain measure: --target-error has no place here: it times the samples of a grid; --supersample "
+                   "chooses one; "
                    "leave it out");
     EXPECT_FALSE(parse({"s.json"}).all_effects || parse({"s.json", "--effects", "auto"}).all_effects);
     EXPECT_TRUE(parse({"s.json", "--effects", "all"}).all_effects);
@@ -126,13 +128,35 @@ TEST(RenderOptions, Actions) {
 
 TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
     const std::string help = help_text();
-    for (const char* part : {"--output",       "--frames",         "--backend",  "--res",
-                             "--crop",         "--supersample",    "--depth",    "--cutoff",
-                             "--precision",    "--threads",        "--bits",     "--preview",
-                             "--aov",          "--explain",        "--pixel",    "--json",     "--effects",
-                             "--stats",        "--resume",         "--progress", "--quiet",
-                             "--verbose",      "--help",           "--device ",  "--list-devices",
-                             "--version",      "--print-template", "Examples:",  "Exit codes: 0 done",
+    for (const char* part : {"--output",
+                             "--frames",
+                             "--backend",
+                             "--res",
+                             "--crop",
+                             "--supersample",
+                             "--depth",
+                             "--cutoff",
+                             "--precision",
+                             "--threads",
+                             "--bits",
+                             "--preview",
+                             "--aov",
+                             "--explain",
+                             "--pixel",
+                             "--json",
+                             "--effects",
+                             "--stats",
+                             "--resume",
+                             "--progress",
+                             "--quiet",
+                             "--verbose",
+                             "--help",
+                             "--device ",
+                             "--list-devices",
+                             "--version",
+                             "--print-template",
+                             "Examples:",
+                             "Exit codes: 0 done",
                              "130 interrupted"})
         EXPECT_NE(help.find(part), std::string::npos) << part;
 }
@@ -470,8 +494,10 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     EXPECT_EQ(table.find("cost"), std::string::npos) << table;
     const EffectCosts costs{12.5, 7, {{effect_diffuse, 0.25}}};
     const std::string measured = explain_table("s.json", reasons, &costs);
-    EXPECT_NE(measured.find("diffuse              yes     in        25.0 %   material clay\n"), std::string::npos) << measured;
-    EXPECT_NE(measured.find("fresnel              no      left out  -        no reason\n"), std::string::npos) << measured;
+    EXPECT_NE(measured.find("diffuse              yes     in        25.0 %   material clay\n"), std::string::npos)
+        << measured;
+    EXPECT_NE(measured.find("fresnel              no      left out  -        no reason\n"), std::string::npos)
+        << measured;
     EXPECT_NE(measured.find("7 frames of 12.5 ms"), std::string::npos) << measured;
 }
 

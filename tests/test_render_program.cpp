@@ -59,7 +59,8 @@ TEST_F(RenderProgram, ExplainsAndRendersNothing) {
 TEST_F(RenderProgram, MeasuresWhatEffectsCost) {
     const ProgramResult result = run({"s.json", "--explain=measure"});
     EXPECT_EQ(result.code, 0) << result.error;
-    for (const char* part : {"cost", " %", "medians of 7 frames"}) EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+    for (const char* part : {"cost", " %", "medians of 7 frames"})
+        EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
 }
 
 TEST_F(RenderProgram, AllEffectsWriteTheSameFile) {

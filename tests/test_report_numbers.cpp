@@ -253,7 +253,8 @@ TEST(TargetTable, FindsTheQuickestFixedSettingThatIsAsClose) {
 }
 
 TEST(TargetTable, KeepsTargetsInDoubleApart) {
-    std::vector<Entry> entries = {grid_entry(4, 0.02, 16), target_entry(0.01, 0.02, 8, 8), target_entry(0.01, 0.01, 9, 7)};
+    std::vector<Entry> entries = {grid_entry(4, 0.02, 16), target_entry(0.01, 0.02, 8, 8),
+                                  target_entry(0.01, 0.01, 9, 7)};
     entries[2].setting.precision = Precision::double_;
     const TargetTable table = table_of(entries);
     ASSERT_EQ(table.rows.size(), 1u);

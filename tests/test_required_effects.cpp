@@ -150,7 +150,8 @@ TEST(RequiredEffects, LightsOnEdgesAndFalloff) {
     object.edge_lights.count = 2;
     object.edge_lights.radius = 0.05;
     add_object(scene, object);
-    const uint32_t seen = effect_solids | effect_diffuse | effect_opaque_shadows | effect_visible_lights | effect_lights_on_faces;
+    const uint32_t seen =
+        effect_solids | effect_diffuse | effect_opaque_shadows | effect_visible_lights | effect_lights_on_faces;
     EXPECT_EQ(effects_of(scene), seen);
     EXPECT_EQ(because(scene, effect_visible_lights), "the lights on the edges of /objects/0 are seen");
     std::get<SolidObject>(scene.objects[0].shape).edge_lights.falloff = true;

@@ -34,7 +34,9 @@ class ShadowPlans : public ::testing::Test {
     /// Shadow rays from whatever rays of all directions meet, from both sides of it. How many were compared.
     int compare_rays(std::mt19937_64& random, int count) {
         std::uniform_real_distribution<double> in_cube(-1, 1);
-        const auto vector = [&] { return Vec3<Real>(Real(in_cube(random)), Real(in_cube(random)), Real(in_cube(random))); };
+        const auto vector = [&] {
+            return Vec3<Real>(Real(in_cube(random)), Real(in_cube(random)), Real(in_cube(random)));
+        };
         const Intersector blind{*blind_}, planned{*planned_};
         int compared = 0;
         for (int i = 0; i < count; ++i) {
@@ -42,7 +44,8 @@ class ShadowPlans : public ::testing::Test {
             ray.origin = vector() * blind_->extent;
             ray.direction = normalized(vector());
             for (uint32_t s = 0; s < blind_->solids.size; ++s)
-                if (blind_->solids[s].kind == SolidKind::convex && inside_convex(*blind_, blind_->solids[s], ray.origin))
+                if (blind_->solids[s].kind == SolidKind::convex &&
+                    inside_convex(*blind_, blind_->solids[s], ray.origin))
                     ray.media.add(s, 1);
             const Hit<Real> hit = first_hit(blind, ray);
             if (!hit.found()) continue;
@@ -70,18 +73,20 @@ class ShadowPlans : public ::testing::Test {
         return intersector.closest(ray);
     }
 
-    static int compare(const Intersector& blind, const Intersector& planned, const Surface<Real>& s, const Hit<Real>& hit,
-                       const OneMedium& media) {
+    static int compare(const Intersector& blind, const Intersector& planned, const Surface<Real>& s,
+                       const Hit<Real>& hit, const OneMedium& media) {
         int compared = 0;
         for (uint32_t l = 0; l < blind.scene.lights.size; ++l) {
             const auto share = [&](const Intersector& intersector) {
                 const Light<Real>& light = intersector.scene.lights[l];
                 const Vec3<Real> to_light = light.position - s.viewer_side;
                 const Real distance = length(to_light);
-                const ShadowRay<Real, OneMedium> shadow{spawned(s.viewer_side, to_light / distance, hit, media), distance, &light};
+                const ShadowRay<Real, OneMedium> shadow{spawned(s.viewer_side, to_light / distance, hit, media),
+                                                        distance, &light};
                 return intersector.template transmittance<E>(shadow);
             };
-            if (!(dot(s.normal, blind.scene.lights[l].position - s.viewer_side) > incidence<Real> * blind.scene.extent)) continue;
+            if (!(dot(s.normal, blind.scene.lights[l].position - s.viewer_side) > incidence<Real> * blind.scene.extent))
+                continue;
             EXPECT_EQ(share(planned), share(blind)) << "light " << l << ", solid " << key_solid(hit.key);
             ++compared;
         }
@@ -98,7 +103,8 @@ TYPED_TEST_SUITE(ShadowPlans, Reals);
 TYPED_TEST(ShadowPlans, ChangeNoShareInTheScenes) {
     std::mt19937_64 random(1);
     int loaded = 0;
-    for (const char* name : {"benchmark", "platonic", "infinity", "seed", "hard/lights-on-edges", "hard/tiny-beside-unit"}) {
+    for (const char* name :
+         {"benchmark", "platonic", "infinity", "seed", "hard/lights-on-edges", "hard/tiny-beside-unit"}) {
         if (!this->load(read_scene(source + "/scenes/" + name + ".json"))) continue;
         ++loaded;
         EXPECT_GT(this->compare_rays(random, 100000), 5000) << name;
@@ -131,7 +137,8 @@ TYPED_TEST(ShadowPlans, ChangeNoShareInCrowds) {
             scene.objects.push_back({"", material, sheet, ""});
         }
         scene.lights.resize(4, scene.lights[0]);
-        for (LightDescription& light : scene.lights) light.position = {1.2 * at(random), 1.2 * at(random), 1.2 * at(random)};
+        for (LightDescription& light : scene.lights)
+            light.position = {1.2 * at(random), 1.2 * at(random), 1.2 * at(random)};
         if (!this->load(scene)) continue;
         ++loaded;
         compared += this->compare_rays(random, 20000);

@@ -1,5 +1,5 @@
-// Bodies that share a face pass light from one index straight to the other: no gap of air, no face shaded twice, whichever
-// comes first in the file, as planes and as meshes whose shared faces are cut along different diagonals.
+// Bodies that share a face pass light from one index straight to the other: no gap of air, no face shaded twice,
+// whichever comes first in the file, as planes and as meshes whose shared faces are cut along different diagonals.
 #include <gtest/gtest.h>
 
 #include "golden.h"
@@ -60,7 +60,8 @@ SceneDescription floor_and_light() {
 void add_box(SceneDescription& scene, Shape shape, bool right, int material) {
     const double middle = right ? 0.5 : -0.5;
     if (shape == Shape::planes)
-        test::add_solid(scene, PlatonicSolid::cube, Rotation(turn)(dvec3(middle, 0, 0)), square_root(0.75), turn, material);
+        test::add_solid(scene, PlatonicSolid::cube, Rotation(turn)(dvec3(middle, 0, 0)), square_root(0.75), turn,
+                        material);
     else
         test::add_object(scene, box_mesh(middle - 0.5, middle + 0.5, right), material);
 }
@@ -108,7 +109,8 @@ TYPED_TEST(Touching, ClearHalvesAreOneBody) {
             add_box(scene, shape, right_first, glass);
             add_box(scene, shape, !right_first, glass);
             EXPECT_LE(apart(film_of<TypeParam>(scene), expected), past_edges<TypeParam>)
-                << (shape == Shape::mesh ? "meshes" : "planes") << ", the " << (right_first ? "right" : "left") << " one first";
+                << (shape == Shape::mesh ? "meshes" : "planes") << ", the " << (right_first ? "right" : "left")
+                << " one first";
         }
     SceneDescription mixed = halves;
     add_box(mixed, Shape::mesh, false, glass);
@@ -133,8 +135,8 @@ TYPED_TEST(Touching, ASharedFaceIsShadedOnce) {
     }
 }
 
-/// An opaque box and its twin in the same place, as planes and as a mesh, in either order: the later one is shaded, and the
-/// other must not shadow it.
+/// An opaque box and its twin in the same place, as planes and as a mesh, in either order: the later one is shaded, and
+/// the other must not shadow it.
 TYPED_TEST(Touching, ATwinCastsNoShadowOnItsTwin) {
     SceneDescription empty = floor_and_light();
     const int opaque = test::add_material(empty);
@@ -147,7 +149,8 @@ TYPED_TEST(Touching, ATwinCastsNoShadowOnItsTwin) {
             add_box(twins, earlier, true, opaque);
             add_box(twins, later, true, opaque);
             EXPECT_LE(apart(film_of<TypeParam>(twins), expected), past_edges<TypeParam>)
-                << (earlier == Shape::mesh ? "a mesh" : "planes") << " under " << (later == Shape::mesh ? "a mesh" : "planes");
+                << (earlier == Shape::mesh ? "a mesh" : "planes") << " under "
+                << (later == Shape::mesh ? "a mesh" : "planes");
         }
     }
 }

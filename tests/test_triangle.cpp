@@ -338,7 +338,8 @@ TYPED_TEST(TriangleTest, ClusterPathEqualsTheOneLanePath) {
         CandidateLanes<Real> lanes;
         ASSERT_EQ(cluster_candidates(cluster, ray, lanes), one_by_one);
         candidates += one_by_one != 0;
-        // Alone in a cluster or among others, a triangle is crossed at the same bits, which are those of the scalar test.
+        // Alone in a cluster or among others, a triangle is crossed at the same bits, which are those of the scalar
+        // test.
         for (uint32_t lane = 0; lane < cluster.count; ++lane) {
             if (!(one_by_one >> lane & 1u)) continue;
             const auto sheared = ShearedTriangle<Real>::of(cluster, int(lane), ray);

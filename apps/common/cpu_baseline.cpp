@@ -1,5 +1,5 @@
-// Compiled for any x86-64. No templates and no inline functions of the library in here: the linker keeps one copy of those, and
-// it may be one that was compiled for the baseline.
+// Compiled for any x86-64. No templates and no inline functions of the library in here: the linker keeps one copy of
+// those, and it may be one that was compiled for the baseline.
 #include "apps/common/cpu_baseline.h"
 
 #include <cpuid.h>
@@ -34,14 +34,10 @@ void require_cpu_baseline() {
         bool there;
     } parts[] = {
         // The builtin also asks whether the kernel saves the wide registers.
-        {" AVX", __builtin_cpu_supports("avx") != 0},
-        {" AVX2", __builtin_cpu_supports("avx2") != 0},
-        {" FMA", __builtin_cpu_supports("fma") != 0},
-        {" BMI1", __builtin_cpu_supports("bmi") != 0},
-        {" BMI2", __builtin_cpu_supports("bmi2") != 0},
-        {" F16C", has_leaf1_ecx(bit_F16C)},
-        {" MOVBE", has_leaf1_ecx(bit_MOVBE)},
-        {" LZCNT", has_lzcnt()},
+        {" AVX", __builtin_cpu_supports("avx") != 0},   {" AVX2", __builtin_cpu_supports("avx2") != 0},
+        {" FMA", __builtin_cpu_supports("fma") != 0},   {" BMI1", __builtin_cpu_supports("bmi") != 0},
+        {" BMI2", __builtin_cpu_supports("bmi2") != 0}, {" F16C", has_leaf1_ecx(bit_F16C)},
+        {" MOVBE", has_leaf1_ecx(bit_MOVBE)},           {" LZCNT", has_lzcnt()},
     };
     char line[256] = "cistula: this processor lacks";
     bool lacks = false;

@@ -13,7 +13,8 @@
 
 namespace cistula {
 
-/// Of one needed effect. `share` of the frame's time goes where it is taken out; none where it cannot be taken out alone.
+/// Of one needed effect. `share` of the frame's time goes where it is taken out; none where it cannot be taken out
+/// alone.
 struct EffectCost {
     uint32_t effect = 0;
     std::optional<double> share;
@@ -27,8 +28,9 @@ struct EffectCosts {
 
 using MakeRenderer = std::function<std::unique_ptr<Renderer>(const SceneDescription&)>;
 
-/// Renders frame `frame` with and without each needed effect in turns, `runs` times after a warm-up, and compares medians:
-/// of kernels where the renderer has devices, else of whole frames. Both kinds of shadow are taken out together.
+/// Renders frame `frame` with and without each needed effect in turns, `runs` times after a warm-up, and compares
+/// medians: of kernels where the renderer has devices, else of whole frames. Both kinds of shadow are taken out
+/// together.
 EffectCosts measure_effects(const SceneDescription& scene, const std::vector<EffectReason>& reasons, int frame,
                             const FrameSettings& settings, const MakeRenderer& make, RenderProgress& progress,
                             int runs = 7);

@@ -20,7 +20,8 @@ std::string text_of(const EffectCosts& costs, uint32_t effect) {
 
 }  // namespace
 
-std::string explain_table(const std::string& scene, const std::vector<EffectReason>& reasons, const EffectCosts* costs) {
+std::string explain_table(const std::string& scene, const std::vector<EffectReason>& reasons,
+                          const EffectCosts* costs) {
     const uint32_t required = required_effects(reasons);
     const int chosen = least_mask(required);
     const uint32_t mask = effect_masks[chosen];
@@ -35,9 +36,10 @@ std::string explain_table(const std::string& scene, const std::vector<EffectReas
     table += fmt::format("\nMask {} of {} runs. Left out: {}. In without need: {}; never a bit of the image.\n",
                          chosen + 1, effect_mask_count, list_of(all_effects & ~mask), list_of(mask & ~required));
     if (costs)
-        table += fmt::format("Cost: the share of the time that goes without the effect, medians of {} frames of {:.3g} ms; a few "
-                             "percent are noise. Both kinds of shadow are taken out together.\n",
-                             costs->runs, costs->frame_ms);
+        table += fmt::format(
+            "Cost: the share of the time that goes without the effect, medians of {} frames of {:.3g} ms; a few "
+            "percent are noise. Both kinds of shadow are taken out together.\n",
+            costs->runs, costs->frame_ms);
     return table;
 }
 

@@ -168,9 +168,10 @@ void render_scene(const RenderOptions& options) {
 }
 
 template <class Real>
-std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const RenderOptions& options, const CudaOptions& cuda) {
-    return make_renderer<Real>(options.backend, std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene)), cuda,
-                               options.intersection);
+std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const RenderOptions& options,
+                                      const CudaOptions& cuda) {
+    return make_renderer<Real>(options.backend, std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene)),
+                               cuda, options.intersection);
 }
 
 void measure_scene(const RenderOptions& options) {

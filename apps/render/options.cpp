@@ -23,8 +23,7 @@ struct Texts {
                                                            intersector = "exact", effects = "auto", bits = "float",
                                                            progress = "auto";
     std::string explain;
-    bool resume = false, quiet = false, verbose = false, version = false, print_template = false,
-         list_devices = false;
+    bool resume = false, quiet = false, verbose = false, version = false, print_template = false, list_devices = false;
 };
 
 void declare(CLI::App& app, Texts& texts) {
@@ -50,7 +49,8 @@ void declare(CLI::App& app, Texts& texts) {
         ->type_name("E");
     app.add_option("--max-samples", texts.max_samples, "with --target-error: samples of a pixel, 5 to 256; 256")
         ->type_name("N");
-    app.add_option("--effects", texts.effects, "auto: compiled are those the scene calls for; all: every one, to compare")
+    app.add_option("--effects", texts.effects,
+                   "auto: compiled are those the scene calls for; all: every one, to compare")
         ->type_name("NAME");
     app.add_option("--precision", texts.precision, "float or double")->type_name("NAME");
     app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
@@ -58,8 +58,9 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
     app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
-    app.add_flag("--explain{needs}", texts.explain,
-                 "print the effects the scene calls for and why; renders nothing. --explain=measure: and what each costs");
+    app.add_flag(
+        "--explain{needs}", texts.explain,
+        "print the effects the scene calls for and why; renders nothing. --explain=measure: and what each costs");
     app.add_option("--pixel", texts.pixel, "print how this pixel comes about, ray by ray; renders nothing")
         ->type_name("X,Y");
     app.add_option("--json", texts.json, "with --pixel: the same as JSON; - is standard output")->type_name("FILE");
@@ -105,7 +106,8 @@ RenderOptions checked(const Texts& texts) {
     if (texts.list_devices) options.action = Action::list_devices;
     if (options.action != Action::render) return options;
     if (!texts.explain.empty())
-        options.action = chosen<Action>("--explain", texts.explain, {{"needs", Action::explain}, {"measure", Action::measure}});
+        options.action =
+            chosen<Action>("--explain", texts.explain, {{"needs", Action::explain}, {"measure", Action::measure}});
 
     options.scene = texts.scene;
     options.output = texts.output;

@@ -39,7 +39,7 @@ struct RenderOptions {
     std::optional<int> supersample, depth;
     std::optional<double> cutoff, target_error;
     std::optional<int> max_samples;  // with a target error
-    bool all_effects = false;  // --effects all
+    bool all_effects = false;        // --effects all
     Precision precision = Precision::single_;
     int threads = 0;          // 0: all
     OutputChannels channels;  // of --bits and --aov

@@ -24,8 +24,8 @@ void TargetReport::add(const TargetReport& other) {
 TargetReport target_report(const Film& film, const FrameSettings& settings) {
     TargetReport report;
     const double unit = film.unit();
-    // A border that is moved by a share of the pixel's width changes it by that share of what lies on its brighter side:
-    // twice the pixel's radiance, if the border halves it and the other side is dark.
+    // A border that is moved by a share of the pixel's width changes it by that share of what lies on its brighter
+    // side: twice the pixel's radiance, if the border halves it and the other side is dark.
     const double worth = 2 * film.rounding * unit / settings.target_error;
     for (const PixelRecord& pixel : film.pixels) {
         double truncation = 0, pruned = 0;
@@ -48,8 +48,7 @@ TargetReport target_report(const Film& film, const FrameSettings& settings) {
     return report;
 }
 
-std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings,
-                            Precision precision) {
+std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings, Precision precision) {
     TargetReport all;
     uint64_t pixels = 0;
     for (const FrameStats& frame : frames) {

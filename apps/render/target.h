@@ -29,7 +29,6 @@ TargetReport target_report(const Film& film, const FrameSettings& settings);
 struct FrameStats;
 
 /// One line for all frames; says what would reach the target where it was missed.
-std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings,
-                            Precision precision);
+std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings, Precision precision);
 
 }  // namespace cistula

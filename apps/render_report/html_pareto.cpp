@@ -162,9 +162,8 @@ std::string pareto_section(const std::vector<Shown>& scenes) {
         text += front_table(shown, front);
         text += "<p class=\"note\">" + reference_text(shown) + "</p>\n";
         if (!shown.scene->left_out.empty()) {
-            text += fmt::format(
-                "<details><summary>Left out, as a frame takes too long: {}</summary><p class=\"note\">",
-                shown.scene->left_out.size());
+            text += fmt::format("<details><summary>Left out, as a frame takes too long: {}</summary><p class=\"note\">",
+                                shown.scene->left_out.size());
             for (const std::string& name : shown.scene->left_out) text += escaped(name) + "<br>";
             text += "</p></details>\n";
         }

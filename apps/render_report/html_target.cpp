@@ -87,8 +87,8 @@ std::string errors_html(const Shown& shown, const TargetTable& table) {
                "What targets come to: pixels over the target, pixels that said so themselves, samples per pixel");
     for (const TargetRow& row : all_rows(table)) {
         const Entry& entry = *row.entry;
-        rows.row({number_text(entry.setting.target_error), precision_name(entry.setting.precision), number_text(shown.rmse(entry)),
-                  number_text(shown.p999(entry)), number_text(shown.max(entry)),
+        rows.row({number_text(entry.setting.target_error), precision_name(entry.setting.precision),
+                  number_text(shown.rmse(entry)), number_text(shown.p999(entry)), number_text(shown.max(entry)),
                   fmt::format("{}, {}", entry.error.worst_x, entry.error.worst_y), percent_text(entry.target->over),
                   count_text(entry.target->missed), samples_text(entry.samples), time_html(entry.wall)});
     }
@@ -96,8 +96,8 @@ std::string errors_html(const Shown& shown, const TargetTable& table) {
 }
 
 std::string fixed_html(const Shown& shown, const TargetTable& table) {
-    Table rows({">target", "precision", ">99.9 % within", ">time", "quickest fixed setting as close", ">99.9 % within", ">time",
-                ">target / fixed"},
+    Table rows({">target", "precision", ">99.9 % within", ">time", "quickest fixed setting as close", ">99.9 % within",
+                ">time", ">target / fixed"},
                "Beside the quickest fixed setting of the sweep that keeps 99.9 % of the pixels as close");
     for (const TargetRow& row : all_rows(table)) {
         std::vector<std::string> cells = {number_text(row.entry->setting.target_error),

@@ -137,11 +137,12 @@ ReportOptions parse_report_options(int argc, const char* const* argv) {
     }
     options.quick = texts.quick;
     if (!texts.scaling.empty())
-        options.scaling = chosen<ScalingChoice>(
-            "--scaling", texts.scaling, {{"also", ScalingChoice::also}, {"only", ScalingChoice::only}});
+        options.scaling = chosen<ScalingChoice>("--scaling", texts.scaling,
+                                                {{"also", ScalingChoice::also}, {"only", ScalingChoice::only}});
     if (options.scaling == ScalingChoice::only) {
         refuse(texts.scenes.size() > 1, "--scaling=only", "looks at one scene; give one");
-        refuse(!texts.seed_baseline.empty(), "--seed-baseline", "is measured beside scenes; --scaling=only measures none");
+        refuse(!texts.seed_baseline.empty(), "--seed-baseline",
+               "is measured beside scenes; --scaling=only measures none");
     }
     options.quiet = texts.quiet;
     options.repetitions = texts.repetitions.empty() ? (options.quick ? quick_repetitions : options.repetitions)

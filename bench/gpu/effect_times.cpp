@@ -21,7 +21,8 @@ struct Size {
     const char* name;
     int width, height, supersample;
 };
-constexpr Size one_sample = {"1x1", 1280, 720, 1}, sixteen_samples = {"4x4", 1280, 720, 4}, large = {"3840x2160", 3840, 2160, 1};
+constexpr Size one_sample = {"1x1", 1280, 720, 1}, sixteen_samples = {"4x4", 1280, 720, 4},
+               large = {"3840x2160", 3840, 2160, 1};
 
 struct Choice {
     const char* name;
@@ -58,7 +59,8 @@ void time_scene(GpuRecord& record, const EffectScene& scene, const Size& size, i
 }  // namespace
 
 void time_effects(GpuRecord& record, const std::string& folder, int runs) {
-    // With one sample a small frame of a simple scene takes some ten microseconds, three of which are a kernel's begin and end.
+    // With one sample a small frame of a simple scene takes some ten microseconds, three of which are a kernel's begin
+    // and end.
     const auto time_both = [&](const EffectScene& scene, const Size& size) {
         time_scene<float>(record, scene, size, runs);
         time_scene<double>(record, scene, size, runs);

@@ -7,8 +7,9 @@
 
 namespace cistula::bench {
 
-/// Every scene of effect_scenes at 1280x720 with one sample a pixel, those of depth 4 with 4 x 4 too, with the mask it calls for
-/// and with the largest, in turns: medians of `runs`, and that the integers are the same. Then the resources of all kernels.
+/// Every scene of effect_scenes at 1280x720 with one sample a pixel, those of depth 4 with 4 x 4 too, with the mask it
+/// calls for and with the largest, in turns: medians of `runs`, and that the integers are the same. Then the resources
+/// of all kernels.
 void time_effects(GpuRecord& record, const std::string& folder, int runs);
 
 }  // namespace cistula::bench

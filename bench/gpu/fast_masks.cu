@@ -4,12 +4,12 @@
 namespace cistula {
 
 // Their resources are of no interest either.
-#define CISTULA_LEFT_OUT_IN(real, mask)                                                                                \
-    template <>                                                                                                        \
-    void launch_mask<real, mask>(DevicePath, Pass, const DeviceScene<real>&, const FrameJob&, cudaStream_t) {          \
-        throw Error(ExitCode::failed, "mask " #mask " of effects is not in this program: only the benchmark's, 3");    \
-    }                                                                                                                  \
-    template <>                                                                                                        \
+#define CISTULA_LEFT_OUT_IN(real, mask)                                                                             \
+    template <>                                                                                                     \
+    void launch_mask<real, mask>(DevicePath, Pass, const DeviceScene<real>&, const FrameJob&, cudaStream_t) {       \
+        throw Error(ExitCode::failed, "mask " #mask " of effects is not in this program: only the benchmark's, 3"); \
+    }                                                                                                               \
+    template <>                                                                                                     \
     void list_resources_of_mask<real, mask>(std::vector<KernelResources>&) {}
 #define CISTULA_LEFT_OUT(mask)       \
     CISTULA_LEFT_OUT_IN(float, mask) \

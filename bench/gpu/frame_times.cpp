@@ -26,7 +26,8 @@ struct FrameRuns {
     Film film;  // the last
 };
 
-FrameRuns timed(Renderer& renderer, const SceneDescription& scene, const FrameSettings& settings, int warm_up, int runs) {
+FrameRuns timed(Renderer& renderer, const SceneDescription& scene, const FrameSettings& settings, int warm_up,
+                int runs) {
     FrameRuns result;
     for (int run = -warm_up; run < runs; ++run) {
         RenderProgress progress;
@@ -70,12 +71,13 @@ void time_devices(GpuRecord& record, const std::string& folder, int runs) {
         for (size_t d = 0; d < count; ++d) options.devices.push_back(int(d));
         const auto renderer = make_cuda_renderer<float>(compiled, options);
         const FrameRuns r = timed(*renderer, scene, settings_of(3840, 2160, 8, samples), 1, runs);
-        record.add_times(fmt::format("benchmark.json/3840x2160/{0}x{0}/depth:8/float/devices:{1}", samples, count), r.kernel,
-                         {{"rays", r.film.rays.total()}, {"frame_ms", median_of(r.frame)}});
+        record.add_times(fmt::format("benchmark.json/3840x2160/{0}x{0}/depth:8/float/devices:{1}", samples, count),
+                         r.kernel, {{"rays", r.film.rays.total()}, {"frame_ms", median_of(r.frame)}});
         if (count == 1)
             hash = film_hash(r.film);
         else
-            record.add_parity(fmt::format("devices:{}", count), r.film.pixels.size(), film_hash(r.film) == hash ? 0 : 1);
+            record.add_parity(fmt::format("devices:{}", count), r.film.pixels.size(),
+                              film_hash(r.film) == hash ? 0 : 1);
     }
 }
 

@@ -1,6 +1,6 @@
 // gpu_check: whether the GPU computes the same bits as the CPU, and how fast. `make gpu-check` runs it.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 
@@ -60,7 +60,8 @@ int main(int argc, char** argv) {
     app.add_flag("--rays", options.rays, "time rays on a mesh, and compare their hits");
     app.add_option("--film", options.film, "frames of a film to time, rendered and written");
     app.add_option("--runs", options.runs, "runs of each, after warm-up")->check(CLI::Range(1, 10000));
-    app.add_option("--split", options.split, "depth from which other threads follow a tree's branches; 0: never; -1: by the size of the frame")
+    app.add_option("--split", options.split,
+                   "depth from which other threads follow a tree's branches; 0: never; -1: by the size of the frame")
         ->check(CLI::Range(-1, largest_depth));
     app.add_option("--json", options.json, "where the record goes");
     try {

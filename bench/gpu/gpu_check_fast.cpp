@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
     app.add_option("--folder", folder, "where scenes/ lies");
     app.add_flag("--times", times, "time frames")->required();
     app.add_option("--runs", runs, "runs of each, after warm-up")->check(CLI::Range(1, 10000));
-    app.add_option("--split", split, "depth from which other threads follow a tree's branches; 0: never; -1: by the size of the frame")
+    app.add_option("--split", split,
+                   "depth from which other threads follow a tree's branches; 0: never; -1: by the size of the frame")
         ->check(CLI::Range(-1, largest_depth));
     app.add_option("--json", json, "where the record goes");
     try {

@@ -41,8 +41,8 @@ void check(GpuRecord& record, const std::string& name, const SceneDescription& s
             ++d.compared;
             d.differing += film_hash(gpu) != hash;
         }
-        record.add_parity(fmt::format("{}/{}/{}/{}", name, precision, options.always_tree ? "tree" : "chosen", what), d.compared,
-                          d.differing, first_pixel(d, cpu, gpu));
+        record.add_parity(fmt::format("{}/{}/{}/{}", name, precision, options.always_tree ? "tree" : "chosen", what),
+                          d.compared, d.differing, first_pixel(d, cpu, gpu));
     };
     for (const bool always_tree : {false, true}) {
         for (const int split : splits) {

@@ -14,8 +14,8 @@ namespace cistula::bench {
 
 /// Of one kind of ray.
 struct RayTally {
-    uint64_t rays = 0, hits = 0;            // the host's; hits of shadow rays: those that are stopped
-    uint64_t differing = 0;                 // rays or findings
+    uint64_t rays = 0, hits = 0;  // the host's; hits of shadow rays: those that are stopped
+    uint64_t differing = 0;       // rays or findings
     uint32_t first_differing = ~uint32_t{0};
 
     void add(uint32_t index, bool exists, bool hit, bool same) {

@@ -21,8 +21,8 @@ template <class Real>
 void launch_rays(RayStep step, const RayJob<Real>& job, cudaStream_t stream);
 
 struct KernelFacts {
-    int registers = 0;              // of a thread
-    size_t local_bytes = 0;         // ... in memory
+    int registers = 0;               // of a thread
+    size_t local_bytes = 0;          // ... in memory
     int blocks = 0, block_rays = 0;  // that share a multiprocessor, and their threads
 };
 template <class Real>

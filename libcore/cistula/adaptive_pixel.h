@@ -54,17 +54,14 @@ CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, Record& r
         pixel.divide(settings);
     }
     for (int i = 0; i < pixel.cells(); ++i)
-        pixel.settle(settings, i, [&](int slot, int weight) {
-            samples[slot].give(record, weight, Plus());
-        });
+        pixel.settle(settings, i, [&](int slot, int weight) { samples[slot].give(record, weight, Plus()); });
     record.samples = uint32_t(pixel.taken());
     record.unmet = pixel.unmet();
 }
 
 template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
 CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
-                                          int px, int py, bool gradual, Record& record, PixelWork& work,
-                                          Stack& stack) {
+                                          int px, int py, bool gradual, Record& record, PixelWork& work, Stack& stack) {
     sample_adaptively(frame.lattice, record, [&](int slot, Record& taken) {
         return take_sample<Real, E>(scene, frame, intersector, px, py, slot, gradual, taken, work, stack);
     });

@@ -36,8 +36,8 @@ struct BruteIntersector {
     using Media = MediaKind;
     using Scene = SceneKind;
     const Scene& scene;
-    /// The primitives of a SmallScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of the picture, as
-    /// long as they go straight on.
+    /// The primitives of a SmallScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of the
+    /// picture, as long as they go straight on.
     uint32_t in_view = ~0u;
     /// The seen lights that they can meet, or where a first mirror sends them.
     ShownLights shown;
@@ -46,7 +46,8 @@ struct BruteIntersector {
     template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
-        // Nothing is nearer than that to a ray that is not finite: no question of its own, which would part a warp's lanes.
+        // Nothing is nearer than that to a ray that is not finite: no question of its own, which would part a warp's
+        // lanes.
         best.t = is_finite(ray) ? RealTraits<Real>::infinity : Real(-1);
         find_closest<E>(ray, best);
         if (!best.found()) best.t = RealTraits<Real>::infinity;
@@ -93,7 +94,9 @@ struct BruteIntersector {
             closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
     }
 
-    CISTULA_INLINE uint32_t ahead_of(const Ray<Real, Media>& ray) const { return ray.from_solid == no_solid ? in_view : ~0u; }
+    CISTULA_INLINE uint32_t ahead_of(const Ray<Real, Media>& ray) const {
+        return ray.from_solid == no_solid ? in_view : ~0u;
+    }
 
     /// True if the ray's own way out comes first, since that solid stands alone.
     template <class E>
@@ -119,7 +122,8 @@ struct BruteIntersector {
     }
 
     template <class E>
-    CISTULA_INLINE void add_planned_clusters(uint32_t near, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) const {
+    CISTULA_INLINE void add_planned_clusters(uint32_t near, const ShadowRay<Real, Media>& shadow,
+                                             ShadowSum<E>& sum) const {
         for (uint32_t left = near & scene.plan.all_clusters; left != 0 && !sum.dark(); left &= left - 1) {
             const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
             if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
@@ -130,7 +134,8 @@ struct BruteIntersector {
     template <class E>
     CISTULA_INLINE void add_planned_solids(uint32_t near, uint32_t light, const ShadowRay<Real, Media>& shadow,
                                            ShadowSum<E>& sum) const {
-        const uint32_t around = E::has(effect_insides) ? shadow.ray.media.only() : no_solid, from = shadow.ray.from_solid;
+        const uint32_t around = E::has(effect_insides) ? shadow.ray.media.only() : no_solid,
+                       from = shadow.ray.from_solid;
         if constexpr (E::has(effect_insides))
             if (around != no_solid) {
                 // From its own face, as lines from other faces may start a little off theirs.
@@ -153,7 +158,8 @@ struct BruteIntersector {
         if constexpr (sizeof(Real) == sizeof(float) && !E::has(effect_absorption) && calls_seldom_code<Scene>)
             sum = called_shadow_triangles<Real, E>(scene, i, shadow, sum);
         else
-            shadow_triangles<Real, E>(scene, i, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
+            shadow_triangles<Real, E>(scene, i, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction),
+                                      sum);
     }
 };
 

@@ -6,8 +6,8 @@
 
 namespace cistula {
 
-/// The candidate ray: rounded to float, which the padding of the boxes covers. Times are fused products, not quotients of
-/// differences: what that adds is a few u of the places' own size.
+/// The candidate ray: rounded to float, which the padding of the boxes covers. Times are fused products, not quotients
+/// of differences: what that adds is a few u of the places' own size.
 struct BoxRay {
     float inverse[3], shift[3];  // see meets()
     float near_limit, far_limit;
@@ -72,8 +72,10 @@ CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>&
             if (!(t <= box_ray.far_limit) || t == RealTraits<float>::infinity) continue;
             const int32_t child = second ? n.child[1] : n.child[0];
             if (child >= 0) {
-                if (next < 0) next = child;
-                else later = child;
+                if (next < 0)
+                    next = child;
+                else
+                    later = child;
                 continue;
             }
             const uint32_t count = second ? n.count[1] : n.count[0];

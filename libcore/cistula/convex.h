@@ -17,7 +17,9 @@ struct ConvexInterval {
 
     /// For an origin outside. A solid that ends where the line starts, give or take the rounding of a point on a shared
     /// face, is behind it.
-    CISTULA_INLINE bool met(Real extent) const { return enter <= leave && leave > incidence<Real> * extent; }
+    CISTULA_INLINE bool met(Real extent) const {
+        return enter <= leave && leave > incidence<Real> * extent;
+    }
 };
 
 /// The least t at which a line leaves a slab.
@@ -152,16 +154,17 @@ CISTULA_SELDOM ConvexInterval<Real> called_interval(const Scene& scene, uint32_t
 }
 #endif
 
-/// Whether seldom code is called by the kernels that read this kind of scene: those of trees only spill more by that. Hosts have
-/// nothing to gain.
+/// Whether seldom code is called by the kernels that read this kind of scene: those of trees only spill more by that.
+/// Hosts have nothing to gain.
 template <class Scene>
-inline constexpr bool calls_seldom_code = CISTULA_ON_DEVICE && requires(const Scene& scene) { scene.plan; };
+inline constexpr bool calls_seldom_code = CISTULA_ON_DEVICE&& requires(const Scene& scene) {
+    scene.plan;
+};
 
 /// `may_stop`: where it is sure not to be met, that is all that is known.
 template <class Real, class Body, class Scene>
-CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Body& solid,
-                                                    const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                                    [[maybe_unused]] bool may_stop) {
+CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Body& solid, const Vec3<Real>& origin,
+                                                    const Vec3<Real>& direction, [[maybe_unused]] bool may_stop) {
     ConvexInterval<Real> interval;
 #if CISTULA_ON_DEVICE
     // As if no slab were parallel to the line; with more care where one was, in code that is out of the way.
@@ -205,8 +208,8 @@ CISTULA_INLINE uint32_t leaving_face(uint32_t slab, Real slope) {
 #if CISTULA_ON_DEVICE
 /// Where a slab is parallel to the line, or a face was skipped.
 template <class Real, class Scene>
-CISTULA_INLINE ConvexExit<Real> careful_exit(const Scene& scene, uint32_t first, uint32_t count, const Vec3<Real>& origin,
-                                             const Vec3<Real>& direction, uint32_t skipped) {
+CISTULA_INLINE ConvexExit<Real> careful_exit(const Scene& scene, uint32_t first, uint32_t count,
+                                             const Vec3<Real>& origin, const Vec3<Real>& direction, uint32_t skipped) {
     ConvexExit<Real> exit;
 #pragma unroll 1
     for (uint32_t i = 0; i < count; ++i) {
@@ -290,8 +293,9 @@ CISTULA_INLINE uint32_t convex_face(const Scene& scene, const Body& solid, [[may
 /// The first face by which the line leaves, as convex_exit found it.
 template <class Real, class Scene>
 CISTULA_INLINE uint32_t convex_face([[maybe_unused]] const Scene& scene, [[maybe_unused]] const Solid& solid,
-                                    [[maybe_unused]] const Vec3<Real>& origin, [[maybe_unused]] const Vec3<Real>& direction,
-                                    const ConvexExit<Real>& exit, [[maybe_unused]] uint32_t skipped) {
+                                    [[maybe_unused]] const Vec3<Real>& origin,
+                                    [[maybe_unused]] const Vec3<Real>& direction, const ConvexExit<Real>& exit,
+                                    [[maybe_unused]] uint32_t skipped) {
 #if CISTULA_ON_DEVICE
     return exit.face;
 #else
@@ -309,15 +313,16 @@ CISTULA_INLINE uint32_t convex_face([[maybe_unused]] const Scene& scene, [[maybe
 /// Whether a ray that starts outside surely misses, or meets the solid only beyond `limit`: spares most rays the slabs,
 /// decides no hit.
 template <class Real>
-CISTULA_INLINE bool passes_by(const Ball<Real>& ball, const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
+CISTULA_INLINE bool passes_by(const Ball<Real>& ball, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                              Real limit) {
     const Vec3<Real> to_center = ball.center - origin;
     const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - ball.padded_square;
     const Real beyond = limit * (Real(2) * ahead - limit), beside = ahead < Real(0) ? Real(0) : ahead * ahead;
     return rest > (ahead > limit ? beyond : beside);
 }
 
-/// The way out of a convex solid that the ray is inside, if that is less than `best`: before the face is looked up, what
-/// the time alone decides.
+/// The way out of a convex solid that the ray is inside, if that is less than `best`: before the face is looked up,
+/// what the time alone decides.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
     const Solid& solid = scene.solids[index];
@@ -362,11 +367,11 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Body
 
 /// The ray's next crossing of a convex solid, if it is less than `best`.
 template <class Real, class Media, class Scene>
-CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
-                                   Hit<Real>& best) {
+CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
     if (ray.media.contains(index))
         closest_exit(scene, index, ray, best);
-    else if (ray.from_solid != index && !passes_by(Ball<Real>::of(scene.solids[index]), ray.origin, ray.direction, best.t))
+    else if (ray.from_solid != index &&
+             !passes_by(Ball<Real>::of(scene.solids[index]), ray.origin, ray.direction, best.t))
         closest_entry(scene, index, scene.solids[index], ray, best);
 }
 

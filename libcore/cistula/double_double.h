@@ -1,5 +1,5 @@
-// Double-double arithmetic: the precision above double. Sums of two doubles, about 104 bits (Dekker 1971; Joldes, Muller,
-// Popescu 2017, algorithms 4, 6 (accurate sum), 12 and 18).
+// Double-double arithmetic: the precision above double. Sums of two doubles, about 104 bits (Dekker 1971; Joldes,
+// Muller, Popescu 2017, algorithms 4, 6 (accurate sum), 12 and 18).
 #pragma once
 
 #include "cistula/real.h"

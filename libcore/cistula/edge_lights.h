@@ -1,6 +1,6 @@
-// Seen lights along the edges of convex solids, of which there may be hundreds: a line that is near two faces of no solid
-// at a time meets none of them, and looks for none. For the host, which tests eight slabs at once; a thread of a device
-// takes as long for that as for the tree over the lights.
+// Seen lights along the edges of convex solids, of which there may be hundreds: a line that is near two faces of no
+// solid at a time meets none of them, and looks for none. For the host, which tests eight slabs at once; a thread of a
+// device takes as long for that as for the tree over the lights.
 #pragma once
 
 #include "cistula/convex.h"
@@ -12,8 +12,8 @@ inline constexpr uint32_t most_solids_of_edge_lights = 16, most_slabs_of_edge_li
 
 /// Whether the line between `from` and `to` passes the sphere around a solid's lights by.
 template <class Real>
-CISTULA_INLINE bool passes_edge_lights(const Solid& solid, Real square, const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                       Real from, Real to) {
+CISTULA_INLINE bool passes_edge_lights(const Solid& solid, Real square, const Vec3<Real>& origin,
+                                       const Vec3<Real>& direction, Real from, Real to) {
     const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
     const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - square;
     const Real nearest = clamped(ahead, from, to);
@@ -34,9 +34,9 @@ CISTULA_INLINE uint32_t lanes_to(const float (&a)[slab_lanes], float limit) {
     return sign_bits(is);
 }
 
-/// Whether a line is within `reach` of two faces of a solid at once, somewhere between `from` and `to`, which come closer to
-/// where. Of an entering plane a line is near up to some time, of a leaving one from some time on. In single precision for
-/// either: `reach` is 2^-14 M beyond the lights, and what is rounded here is under 2^-19 M.
+/// Whether a line is within `reach` of two faces of a solid at once, somewhere between `from` and `to`, which come
+/// closer to where. Of an entering plane a line is near up to some time, of a leaving one from some time on. In single
+/// precision for either: `reach` is 2^-14 M beyond the lights, and what is rounded here is under 2^-19 M.
 template <class Real>
 CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, float reach, const Vec3<float>& origin,
                                const Vec3<float>& direction, float& from, float& to) {
@@ -95,7 +95,8 @@ CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& r
     const Vec3<float> origin(ray.origin), direction(ray.direction);
     const auto near = [&](const Solid& solid, const SlabGroup<Real>& first, Real& near_from, Real& near_to) {
         float first_near = float(near_from), last_near = float(near_to);
-        const bool nears = nears_edge(&first, solid.slab_count, float(first.light_reach), origin, direction, first_near, last_near);
+        const bool nears =
+            nears_edge(&first, solid.slab_count, float(first.light_reach), origin, direction, first_near, last_near);
         near_from = first_near;
         near_to = last_near;
         return nears;

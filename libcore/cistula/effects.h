@@ -20,10 +20,10 @@ enum Effect : uint32_t {
     effect_absorption = 1u << 9,
     effect_visible_lights = 1u << 10,
     effect_light_falloff = 1u << 11,
-    effect_tint = 1u << 12,       // what passes a face keeps a share that differs between colors
-    effect_solids = 1u << 13,     // convex ones, which are planes
-    effect_triangles = 1u << 14,  // of meshes and sheets
-    effect_insides = 1u << 15,    // rays inside of closed solids
+    effect_tint = 1u << 12,             // what passes a face keeps a share that differs between colors
+    effect_solids = 1u << 13,           // convex ones, which are planes
+    effect_triangles = 1u << 14,        // of meshes and sheets
+    effect_insides = 1u << 15,          // rays inside of closed solids
     effect_lights_on_faces = 1u << 16,  // a lamp lies on a face, an edge perhaps: half-spaces tell its shadows
 };
 inline constexpr int effect_count = 17;
@@ -31,9 +31,9 @@ inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// The names that --explain, --stats and the documentation use, in the order of the bits.
 inline constexpr const char* effect_names[effect_count] = {
-    "texture",      "diffuse",    "specular", "opaque-shadows", "transparent-shadows", "reflection",
-    "transmission", "refraction", "fresnel",  "absorption",     "visible-lights",      "light-falloff",
-    "tint",         "solids",     "triangles", "insides",       "lights-on-faces"};
+    "texture",      "diffuse",    "specular",  "opaque-shadows", "transparent-shadows", "reflection",
+    "transmission", "refraction", "fresnel",   "absorption",     "visible-lights",      "light-falloff",
+    "tint",         "solids",     "triangles", "insides",        "lights-on-faces"};
 
 /// The effects that are compiled in; `if constexpr (E::has(...))` removes the others.
 template <uint32_t Mask>
@@ -67,7 +67,8 @@ inline constexpr uint32_t effect_masks[] = {
     clear_bodies | effect_visible_lights,
     clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
     all_effects,
-    all_effects & ~(effect_opaque_shadows | effect_transparent_shadows),  // never the least: to measure what shadows cost
+    all_effects &
+        ~(effect_opaque_shadows | effect_transparent_shadows),  // never the least: to measure what shadows cost
 };
 inline constexpr int compiled_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
 inline constexpr int unshadowed_mask = compiled_mask_count - 1;
@@ -79,7 +80,8 @@ constexpr bool sends_rays_on(uint32_t effects) {
     return (effects & (effect_reflection | effect_transmission)) != 0;
 }
 
-/// Only what passes a face makes trees fork. Of such masks devices have a kernel for branches that other threads follow.
+/// Only what passes a face makes trees fork. Of such masks devices have a kernel for branches that other threads
+/// follow.
 constexpr bool trees_fork(int mask) {
     return mask < effect_mask_count && (effect_masks[mask] & effect_transmission) != 0;
 }

@@ -88,8 +88,8 @@ CISTULA_HD inline DoubleDouble log2_pair(double x) {
     const double s_lo = (fused(-s, d.high, f) - s * d.low) * reciprocal;
     DoubleDouble square = two_product(s, s);
     square.low = fused(2 * s, s_lo, square.low);
-    const DoubleDouble series =
-        multiply_add(c0, square, multiply_add(c1, square, multiply_add(c2, square, {polynomial(square.high, rest), 0})));
+    const DoubleDouble series = multiply_add(
+        c0, square, multiply_add(c1, square, multiply_add(c2, square, {polynomial(square.high, rest), 0})));
     const DoubleDouble y = two_product(s, series.high);
     const DoubleDouble sum = fast_two_sum(exponent, y.high);
     return fast_two_sum(sum.high, sum.low + (y.low + fused(s, series.low, s_lo * series.high)));

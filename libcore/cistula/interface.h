@@ -10,9 +10,9 @@ namespace cistula {
 
 template <class Real, class Filter = Vec3<Real>>
 struct Shares {
-    Real reflection;         // of the mirrored ray
-    Filter filter;           // of the ray that goes through
-    bool bends;              // whether that one takes `through`; otherwise it goes straight on
+    Real reflection;  // of the mirrored ray
+    Filter filter;    // of the ray that goes through
+    bool bends;       // whether that one takes `through`; otherwise it goes straight on
     Vec3<Real> through;
 };
 
@@ -24,8 +24,8 @@ CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
 }
 
 /// Total internal reflection sends the transmitted share into the mirrored ray; `fresnel` splits kr + kt by the exact
-/// dielectric terms, of which nothing is reflected between equal indices. A sheet has no other side to bend into: kr and
-/// kt stand as they are.
+/// dielectric terms, of which nothing is reflected between equal indices. A sheet has no other side to bend into: kr
+/// and kt stand as they are.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE Shares<Real, Share<Real, E>> split_at(const Scene& scene, const Material<Real>& m,
                                                      const Vec3<Real>& direction, const Vec3<Real>& normal,

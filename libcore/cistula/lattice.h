@@ -22,21 +22,22 @@ inline constexpr int bushy_area = lattice_samples / 8;
 /// 1,500 is then beyond targets of 0.001 to 0.01.
 inline constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
 /// Eighths of a cell that something unseen in it is taken to fill. If its corners met different things, that may differ
-/// as corners of any of the pixel's cells do; if they met the same, it is as much brighter or darker as samples that met
-/// the same are at corners of a small cell: on both sides of a texture's border, say, but not where shading is gradual.
-/// Of critical-angle.json at 97x73 and 0.004, unseen_alike = 3 leaves 0.06 % of the pixels beyond, 2 leaves 0.10 % and 0
-/// leaves 0.20 %. Of mesh.json at 320x180, 0.14 % are by these alone; 6 would leave 0.09 % for 5 % more samples, but what
-/// is seen beside cells (is_crossed) leaves 0.06 % for 2 % more.
+/// as corners of any of the pixel's cells do; if they met the same, it is as much brighter or darker as samples that
+/// met the same are at corners of a small cell: on both sides of a texture's border, say, but not where shading is
+/// gradual. Of critical-angle.json at 97x73 and 0.004, unseen_alike = 3 leaves 0.06 % of the pixels beyond, 2 leaves
+/// 0.10 % and 0 leaves 0.20 %. Of mesh.json at 320x180, 0.14 % are by these alone; 6 would leave 0.09 % for 5 % more
+/// samples, but what is seen beside cells (is_crossed) leaves 0.06 % for 2 % more.
 inline constexpr int unseen_unlike = 4, unseen_alike = 3, jump_area = 8;
-/// For small targets: where one of a pixel's first five trees has many_rays, no cell stands for all of the pixel; where one
-/// has some_rays and a cell's colors span wide_range targets, no cell larger than wide_area stands, as a highlight may lie
-/// between. Of platonic.json at 320x180 and 0.004 that leaves 0.11 % of the pixels beyond instead of 0.19 %, for 5 % more
-/// samples; closed-box.json takes 10 % more, other golden scenes at most 4 %.
+/// For small targets: where one of a pixel's first five trees has many_rays, no cell stands for all of the pixel; where
+/// one has some_rays and a cell's colors span wide_range targets, no cell larger than wide_area stands, as a highlight
+/// may lie between. Of platonic.json at 320x180 and 0.004 that leaves 0.11 % of the pixels beyond instead of 0.19 %,
+/// for 5 % more samples; closed-box.json takes 10 % more, other golden scenes at most 4 %.
 inline constexpr uint32_t many_rays = 24, some_rays = 5;
 inline constexpr int wide_range = 16, wide_area = lattice_samples / 16;
-/// For small targets: by how many of them colors right beside each other may differ to tell of a slope (bends_between), not
-/// of a texture's border. Of platonic.json at 320x180 and 0.004 that leaves 0.08 % of the pixels beyond instead of 0.11 %,
-/// of mesh.json 0.03 % instead of 0.05 %, for 0.4 % and 0.2 % more samples; without a limit slivers.json takes 16 % more.
+/// For small targets: by how many of them colors right beside each other may differ to tell of a slope (bends_between),
+/// not of a texture's border. Of platonic.json at 320x180 and 0.004 that leaves 0.08 % of the pixels beyond instead of
+/// 0.11 %, of mesh.json 0.03 % instead of 0.05 %, for 0.4 % and 0.2 % more samples; without a limit slivers.json takes
+/// 16 % more.
 inline constexpr int steepest = 4;
 
 /// What a frame asks of adaptive sampling.
@@ -67,8 +68,8 @@ struct LatticeSample {
         }
     }
 
-    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice; for a ledger
-    /// only if what was kept had one.
+    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice; for a
+    /// ledger only if what was kept had one.
     template <class Add>
     CISTULA_INLINE void give(SeenRecord& record, int weight, const Add& add) const {
         for (int c = 0; c < 3; ++c) add(record.radiance[c], weight * radiance[c]);
@@ -141,7 +142,8 @@ class LatticePixel {
         for (int y = 0; y < lattice_side; ++y) fresh_[y] = 0;
         for (int i = 0; i < count; ++i) {
             const Cell cell = cells_[i];
-            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, now, cell.differs, area_of(cell)))) continue;
+            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, now, cell.differs, area_of(cell))))
+                continue;
             const bool first = settings.fine && is_whole(cell);
             const int in_four = first ? 11 : 12, in_two = 4;  // of the first the middle is there
             if ((first || wants_four(settings, now, cell)) && now.due + in_four <= settings.most) {
@@ -191,7 +193,8 @@ class LatticePixel {
         int64_t range, jump;  // of colors: of all corners; in a small cell, of those that met the same
     };
 
-    /// Of the pixel. Worked on in a copy, which stays in registers: stores of slots, being bytes, could be to any member.
+    /// Of the pixel. Worked on in a copy, which stays in registers: stores of slots, being bytes, could be to any
+    /// member.
     struct Tally {
         int cells, due, wanted;  // samples due: taken and wanted
         bool unmet, bushy;       // bushy: whether a cell had a bushy corner
@@ -286,11 +289,11 @@ class LatticePixel {
                     cell.jump = greatest(cell.jump, magnitude_of(color(*at[i], c) - color(*at[j], c)));
     }
 
-    /// Whether a sample right beside a cell tells of what its corners do not: between the corners of a side of something
-    /// that comes in there (comes_in), beside a corner, for small targets, of a bend (bends_between). `rows`: the samples to
-    /// look at.
-    CISTULA_INLINE static bool is_crossed(const LatticeSettings& settings, const LatticeSample* samples, const Cell& cell,
-                                          const uint16_t* rows) {
+    /// Whether a sample right beside a cell tells of what its corners do not: between the corners of a side of
+    /// something that comes in there (comes_in), beside a corner, for small targets, of a bend (bends_between). `rows`:
+    /// the samples to look at.
+    CISTULA_INLINE static bool is_crossed(const LatticeSettings& settings, const LatticeSample* samples,
+                                          const Cell& cell, const uint16_t* rows) {
         const int64_t area = area_of(cell);
         for (int side = 0; side < 4; ++side) {  // left, right, upper, lower
             const bool upright = side < 2, far = side % 2 != 0;
@@ -317,8 +320,8 @@ class LatticePixel {
         return false;
     }
 
-    /// Whether a sample beside the side between two corners is brighter or darker than both by so much that two thirds of
-    /// the cell would be worth the target: what comes in through that side may end before it meets a corner.
+    /// Whether a sample beside the side between two corners is brighter or darker than both by so much that two thirds
+    /// of the cell would be worth the target: what comes in through that side may end before it meets a corner.
     CISTULA_INLINE static bool comes_in(const LatticeSettings& settings, const LatticeSample& a, const LatticeSample& b,
                                         const LatticeSample& beside, int64_t area) {
         for (int c = 0; c < 3; ++c) {
@@ -329,37 +332,43 @@ class LatticePixel {
         return false;
     }
 
-    /// Whether shading has to bend between two corners of a cell, `steps` samples apart, by what it does right before the
-    /// first: if going on as it came from `before` would lead so far from the last that this, all over the cell, would be
-    /// worth the target. A groove may lie between, though the corners agree.
+    /// Whether shading has to bend between two corners of a cell, `steps` samples apart, by what it does right before
+    /// the first: if going on as it came from `before` would lead so far from the last that this, all over the cell,
+    /// would be worth the target. A groove may lie between, though the corners agree.
     CISTULA_INLINE static bool bends_between(const LatticeSettings& settings, const LatticeSample& before,
-                                             const LatticeSample& first, const LatticeSample& last, int steps, int64_t area) {
+                                             const LatticeSample& first, const LatticeSample& last, int steps,
+                                             int64_t area) {
         if (before.signature != first.signature || first.signature != last.signature) return false;
         for (int c = 0; c < 3; ++c) {
             const int64_t from = color(first, c), slope = from - color(before, c);
             if (magnitude_of(slope) > steepest * settings.target) continue;
-            if (magnitude_of(from + steps * slope - color(last, c)) * area > settings.target * lattice_samples) return true;
+            if (magnitude_of(from + steps * slope - color(last, c)) * area > settings.target * lattice_samples)
+                return true;
         }
         return false;
     }
 
-    /// Whether a cell that is split is so in four at once, which spares a round: where its halves would be too, whatever
-    /// they show, and where trees are bushy and the target coarse, as all that wait in a round wait for its largest tree.
+    /// Whether a cell that is split is so in four at once, which spares a round: where its halves would be too,
+    /// whatever they show, and where trees are bushy and the target coarse, as all that wait in a round wait for its
+    /// largest tree.
     CISTULA_INLINE static bool wants_four(const LatticeSettings& settings, const Tally& now, const Cell& cell) {
         static_assert(unseen_alike <= unseen_unlike, "cells overlook more if they differ");
         return cell.width >= 4 && cell.height >= 4 &&
                (overlooks(settings, now, false, area_of(cell) / 2) || (now.bushy && !settings.fine));
     }
 
-    /// Whether a cell whose corners agree (or differ) may well hide what is worth the target, by what the pixel shows so
-    /// far.
-    CISTULA_INLINE static bool overlooks(const LatticeSettings& settings, const Tally& now, bool differs, int64_t area) {
+    /// Whether a cell whose corners agree (or differ) may well hide what is worth the target, by what the pixel shows
+    /// so far.
+    CISTULA_INLINE static bool overlooks(const LatticeSettings& settings, const Tally& now, bool differs,
+                                         int64_t area) {
         const int64_t allowed = settings.target * lattice_samples;
         // Bushy trees see so much that some of it may well lie between a few samples that agree, be these bushy or not:
         // a light's image ends a tree early, and hides between others as others do between lights.
         if (settings.fine && now.bushy && (area > bushy_area || unseen_range * area > allowed)) return true;
         if (settings.fine && now.first_rays >= many_rays && area == lattice_samples) return true;
-        if (settings.fine && now.first_rays >= some_rays && area > wide_area && now.range >= wide_range * settings.target) return true;
+        if (settings.fine && now.first_rays >= some_rays && area > wide_area &&
+            now.range >= wide_range * settings.target)
+            return true;
         return (differs ? unseen_unlike * now.range : unseen_alike * now.jump) * area > 8 * allowed;
     }
 

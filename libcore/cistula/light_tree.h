@@ -8,7 +8,8 @@ namespace cistula {
 /// Fewer lights than these have no tree: a walk looks at all of them.
 inline constexpr uint32_t fewest_in_light_tree = 9;
 
-/// Which boxes a line meets between its limits, which are finite and not negative. Devices ask from 0 on: some more, perhaps.
+/// Which boxes a line meets between its limits, which are finite and not negative. Devices ask from 0 on: some more,
+/// perhaps.
 CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, bool (&meets)[LightNode::width]) {
     constexpr int width = LightNode::width;
     float near_t[3][width], far_t[3][width];
@@ -23,11 +24,13 @@ CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, boo
         }
     }
 #if CISTULA_ON_DEVICE
-    // None is NaN: as integers they compare alike but for two that are negative, and the limits are not. Of integers one
-    // instruction tells the greatest of three.
+    // None is NaN: as integers they compare alike but for two that are negative, and the limits are not. Of integers
+    // one instruction tells the greatest of three.
     for (int i = 0; i < width; ++i) {
-        const int near_bits = __vimax3_s32_relu(__float_as_int(near_t[0][i]), __float_as_int(near_t[1][i]), __float_as_int(near_t[2][i]));
-        const int far_bits = __vimin3_s32(__float_as_int(far_t[0][i]), __float_as_int(far_t[1][i]), __float_as_int(far_t[2][i]));
+        const int near_bits =
+            __vimax3_s32_relu(__float_as_int(near_t[0][i]), __float_as_int(near_t[1][i]), __float_as_int(near_t[2][i]));
+        const int far_bits =
+            __vimin3_s32(__float_as_int(far_t[0][i]), __float_as_int(far_t[1][i]), __float_as_int(far_t[2][i]));
         meets[i] = near_bits <= min(far_bits, __float_as_int(box_ray.far_limit));
     }
 #else

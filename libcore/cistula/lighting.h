@@ -10,8 +10,8 @@ namespace cistula {
 
 /// Starts a new line from a face. `ray`: as constructed.
 template <class Real, class Media>
-CISTULA_INLINE void spawn(Ray<Real, Media>& ray, const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
-                          const Media& media) {
+CISTULA_INLINE void spawn(Ray<Real, Media>& ray, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                          const Hit<Real>& hit, const Media& media) {
     ray.origin = origin;
     ray.direction = direction;
     ray.from_solid = key_solid(hit.key);
@@ -28,9 +28,9 @@ CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Rea
 
 /// Adds `weight` times the local term (DESIGN, Light), seen along `ray`.
 template <class Real, class E, class Intersector, class Media, class Scene, class Sums>
-CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector,
-                                    const Ray<Real, Media>& ray, const Hit<Real>& hit, const Surface<Real>& s,
-                                    const Share<Real, E>& weight, Sums& sums, PixelRays& rays) {
+CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
+                                    const Hit<Real>& hit, const Surface<Real>& s, const Share<Real, E>& weight,
+                                    Sums& sums, PixelRays& rays) {
     const LocalMaterial<Real>& m = scene.materials[s.material];
     sums.add(weight * (s.color * m.ambient));
     if constexpr (E::has(effect_diffuse | effect_specular)) {

@@ -1,6 +1,6 @@
 // A ray meets a face: which of the crossings that rounding cannot tell apart is shaded, and what is beyond them all.
-// Touching bodies then pass light from one index straight to the other (NUMERICS, 4), and what stays on the viewer's side
-// is in the viewer's medium.
+// Touching bodies then pass light from one index straight to the other (NUMERICS, 4), and what stays on the viewer's
+// side is in the viewer's medium.
 #pragma once
 
 #include "cistula/ray.h"
@@ -15,9 +15,9 @@ struct Meeting {
     Hit<Real> hit;                   // the crossing to shade: of the solid with the highest priority
     Crossing<Real> taken[capacity];  // crossings that change the media, in their order; sheets change none
     int count;
-    Media beyond;                    // after all of them
-    bool fits;                       // whether the lists had room
-    bool passed_over;                // whether crossings from the wrong side come before the first
+    Media beyond;      // after all of them
+    bool fits;         // whether the lists had room
+    bool passed_over;  // whether crossings from the wrong side come before the first
 
     CISTULA_INLINE void begin(const Ray<Real, Media>& ray, const Hit<Real>& first) {
         hit = first;
@@ -43,8 +43,8 @@ struct Meeting {
     }
 };
 
-/// A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so crossings of other solids within twice
-/// that of the face belong to the same meeting.
+/// A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so crossings of other solids within
+/// twice that of the face belong to the same meeting.
 template <class Real, class Intersector, class Media, class Scene>
 CISTULA_INLINE void meet_touching(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                   const Hit<Real>& hit, Meeting<Real, Media>& meeting) {

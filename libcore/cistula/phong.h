@@ -22,7 +22,8 @@ CISTULA_INLINE Real highlight(const LocalMaterial<Real>& material, Real cosine) 
 
 /// R.V, of the light's direction mirrored at the face and of the viewer's.
 template <class Real>
-CISTULA_INLINE Real mirror_cosine(const Vec3<Real>& normal, const Vec3<Real>& to_light, const Vec3<Real>& to_viewer, Real n_l) {
+CISTULA_INLINE Real mirror_cosine(const Vec3<Real>& normal, const Vec3<Real>& to_light, const Vec3<Real>& to_viewer,
+                                  Real n_l) {
     return Real(2) * n_l * dot(normal, to_viewer) - dot(to_light, to_viewer);
 }
 

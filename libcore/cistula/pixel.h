@@ -28,8 +28,8 @@ CISTULA_HD inline bool is_far(const Camera& camera, double extent) {
 /// The ray from the camera, from where it enters the sphere of radius 2 M (NUMERICS, 1), in double for either Real.
 /// `start` is how far from the camera that is. False: it passes the scene by.
 template <class Real, class Media, class Scene>
-CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame,
-                                   const Vec3<double>& direction, Ray<Real, Media>& ray, double& start) {
+CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, const Vec3<double>& direction,
+                                   Ray<Real, Media>& ray, double& start) {
     Vec3<double> origin = frame.camera.position;
     start = 0;
     if (frame.is_far) {
@@ -87,8 +87,8 @@ CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& inte
 
 /// The solids that contain a point.
 template <class Scene, class Intersector>
-CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& intersector,
-                                     const Vec3<double>& point, MediaList& media) {
+CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
+                                     MediaList& media) {
     using Real = typename Scene::Scalar;
     media = MediaList();
     if (dot(point, point) > 4 * double(scene.extent) * double(scene.extent)) return true;
@@ -172,18 +172,18 @@ CISTULA_INLINE void end_pixel(Record& record, const PixelWork& work) {
 
 /// Sample i of pixel (px, py), row by row of its k x k grid.
 template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
-CISTULA_INLINE void add_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py, int i,
-                               Record& record, PixelWork& work, Stack& stack) {
+CISTULA_INLINE void add_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
+                               int py, int i, Record& record, PixelWork& work, Stack& stack) {
     const int k = frame.supersample, row = k == 1 ? 0 : i / k, column = i - row * k;
-    render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row, column == k / 2 && row == k / 2, record,
-                           work, stack);
+    render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row, column == k / 2 && row == k / 2,
+                           record, work, stack);
 }
 
-/// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own. Branches that `stack` gives away are
-/// missing from the record: resume_branch adds them. `record`: a PixelRecord or RecordOf<E>.
+/// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own. Branches that `stack` gives away
+/// are missing from the record: resume_branch adds them. `record`: a PixelRecord or RecordOf<E>.
 template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
-CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px, int py,
-                                 SampleRange samples, Record& record, PixelWork& work, Stack& stack) {
+CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
+                                 int py, SampleRange samples, Record& record, PixelWork& work, Stack& stack) {
     begin_pixel(record);
     for (int i = samples.first; i < frame.supersample * frame.supersample; i += samples.step)
         add_sample<Real, E>(scene, frame, intersector, px, py, i, record, work, stack);
@@ -192,10 +192,9 @@ CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, con
 
 /// The rest of a tree from a branch that another stack gave away; `record` and `work` get what is its own.
 template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void resume_branch(const Scene& scene, const FrameView& frame,
-                                         const Intersector& intersector,
-                                         BranchOf<Real, E, typename Intersector::Media>& branch, PixelRecord& record,
-                                         PixelWork& work, Stack& stack) {
+CISTULA_INLINE void resume_branch(const Scene& scene, const FrameView& frame, const Intersector& intersector,
+                                  BranchOf<Real, E, typename Intersector::Media>& branch, PixelRecord& record,
+                                  PixelWork& work, Stack& stack) {
     record = PixelRecord();
     PixelSums<Real> sums(frame.tree, scene, record, work.flags);
     RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, work.rays, stack);

@@ -7,9 +7,9 @@ namespace cistula {
 
 /// Reasons to distrust a render; any bit set in a film fails it with a message.
 enum RenderFlag : uint32_t {
-    flag_not_finite = 1u << 0,      // a radiance was infinite or NaN
-    flag_media_overflow = 1u << 1,  // more solids inside one another than a ray can list
-    flag_stack_overflow = 1u << 2,  // a ray tree needed more pending branches than there is room for
+    flag_not_finite = 1u << 0,          // a radiance was infinite or NaN
+    flag_media_overflow = 1u << 1,      // more solids inside one another than a ray can list
+    flag_stack_overflow = 1u << 2,      // a ray tree needed more pending branches than there is room for
     flag_too_many_crossings = 1u << 3,  // a straight ray crossed more faces than the limit
 };
 
@@ -29,8 +29,9 @@ struct PixelRays {
 /// What is noted down while a pixel is rendered; a device keeps it where it costs no registers.
 struct PixelWork {
     PixelRays rays;
-    uint32_t flags = 0;            // RenderFlag bits
-    double start = 0, facing = 0;  // of the sample under way: from the camera to its ray's origin; cosine to the view axis
+    uint32_t flags = 0;  // RenderFlag bits
+    double start = 0,
+           facing = 0;  // of the sample under way: from the camera to its ray's origin; cosine to the view axis
 };
 
 struct RayCounts {
@@ -61,11 +62,11 @@ struct Plus {
 /// Sums over the pixel's samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
 struct SeenRecord {
     int64_t radiance[3];
-    uint32_t hits;      // samples whose primary ray hit anything (a seen light too)
-    uint32_t rays;      // rays of all kinds
-    int32_t id;         // 1 + solid under the sample nearest the pixel's center; 0: none
-    float z;            // that sample's distance along the view axis in scene units; infinity: none
-    float normal[3];    // that sample's unit normal, toward the viewer, in world axes; 0: none
+    uint32_t hits;          // samples whose primary ray hit anything (a seen light too)
+    uint32_t rays;          // rays of all kinds
+    int32_t id;             // 1 + solid under the sample nearest the pixel's center; 0: none
+    float z;                // that sample's distance along the view axis in scene units; infinity: none
+    float normal[3];        // that sample's unit normal, toward the viewer, in world axes; 0: none
     uint32_t samples : 31;  // that were rendered
     uint32_t unmet : 1;     // adaptive sampling wanted more than it may have
 

@@ -9,10 +9,10 @@ namespace cistula {
 
 /// What a frame asks of every ray tree.
 struct TreeSettings {
-    int depth = 4;           // surfaces shaded along a path, the first included
+    int depth = 4;          // surfaces shaded along a path, the first included
     float fixed_scale = 1;  // 2^s of the sums, a power of two that every Real has
     float fixed_unit = 1;   // 2^-s
-    int64_t budget = 0;      // truncation allowed per sample, in units of the sums
+    int64_t budget = 0;     // truncation allowed per sample, in units of the sums
 };
 
 /// The bits of a number as an integer. Numbers in [0, 1] are in its order, and all others (-0, NaN) are above them.
@@ -27,8 +27,8 @@ CISTULA_INLINE auto greatest_word(const Vec3<Real>& a) {
     return greatest(word_of(a.x), greatest(word_of(a.y), word_of(a.z)));
 }
 
-/// A radiance in units of the sums that is not in [0, 1] is a fault, and counts as 0, without a jump: no other channel is
-/// touched by it. `scale` is settings.fixed_scale.
+/// A radiance in units of the sums that is not in [0, 1] is a fault, and counts as 0, without a jump: no other channel
+/// is touched by it. `scale` is settings.fixed_scale.
 template <class Real>
 CISTULA_INLINE bool clear_fault(Real& units, Real scale) {
     const bool is_fault = word_of(units) > word_of(scale);
@@ -55,9 +55,9 @@ class PixelSums {
         for (int c = 0; c < 3; ++c) record_.radiance[c] += whole_of(units[c]);
     }
 
-    /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of the
-    /// budget that is left, and what could add one unit of the sums at most. `calls`: what is seldom to be looked at closely is
-    /// called.
+    /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of
+    /// the budget that is left, and what could add one unit of the sums at most. `calls`: what is seldom to be looked
+    /// at closely is called.
     template <bool calls = false, class Share>
     CISTULA_INLINE bool afford(const Share& weight) {
         if (left_ == 0 && clearly_counts(weight)) return true;
@@ -81,7 +81,9 @@ class PixelSums {
   private:
     /// Whether the branch could add more than one unit of the sums; what is not finite or beyond the bound is left to
     /// most_of.
-    CISTULA_INLINE bool clearly_counts(const Vec3<Real>& weight) const { return counts(greatest_word(weight * bound_)); }
+    CISTULA_INLINE bool clearly_counts(const Vec3<Real>& weight) const {
+        return counts(greatest_word(weight * bound_));
+    }
     CISTULA_INLINE bool clearly_counts(Real weight) const { return counts(word_of(weight * largest_bound_)); }
 
     template <class Word>

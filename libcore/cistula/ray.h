@@ -7,12 +7,13 @@ namespace cistula {
 
 inline constexpr uint32_t no_solid = 0xffffffu;
 
-/// The solids that contain a point, each with a signed count of entries less exits. Straight rays take every crossing of
-/// a mesh in the order of their t, which rounding may turn round at a grazed edge, so that -1 is legal.
+/// The solids that contain a point, each with a signed count of entries less exits. Straight rays take every crossing
+/// of a mesh in the order of their t, which rounding may turn round at a grazed edge, so that -1 is legal.
 struct MediaList {
     static constexpr bool contacts = true;  // a point may be in several solids at once
     static constexpr bool meshes = true;    // some may be meshes
-    static constexpr int capacity = 8;      // solids inside one another; going over it fails the render (flag_media_overflow)
+    static constexpr int capacity =
+        8;  // solids inside one another; going over it fails the render (flag_media_overflow)
 
     uint32_t entries[capacity];  // solid << 8 | (count + 128)
     uint32_t size = 0;
@@ -61,13 +62,14 @@ struct MediaList {
     CISTULA_INLINE uint32_t medium() const {
         uint32_t best = no_solid;
         for (uint32_t i = 0; i < size; ++i)
-            if (count_of(entries[i]) > 0 && (best == no_solid || solid_of(entries[i]) > best)) best = solid_of(entries[i]);
+            if (count_of(entries[i]) > 0 && (best == no_solid || solid_of(entries[i]) > best))
+                best = solid_of(entries[i]);
         return best;
     }
 };
 
-/// The same where all closed solids are convex and none touches another: a ray is inside one at most, and its state lets
-/// it enter only from outside and leave only from inside.
+/// The same where all closed solids are convex and none touches another: a ray is inside one at most, and its state
+/// lets it enter only from outside and leave only from inside.
 struct OneMedium {
     static constexpr bool contacts = false, meshes = false;
 
@@ -99,15 +101,16 @@ CISTULA_INLINE void assign(OneMedium& to, const MediaList& from) {
     to.solid = from.medium();
 }
 
-/// A straight line of light. Where it passes a face without bending it keeps origin and direction, and `after` moves on.
+/// A straight line of light. Where it passes a face without bending it keeps origin and direction, and `after` moves
+/// on.
 template <class Real, class Media = MediaList>
 struct Ray {
     Vec3<Real> origin;
-    Vec3<Real> direction;           // unit to within a few u
-    uint32_t from_solid = no_solid; // where the line starts on a face: its solid
-    uint32_t from_face = 0;         // ... and the face: 2 slab + side, or the scene-wide triangle number
-    Crossing<Real> after;           // crossings up to and including this one are behind
-    Media media;                    // around the point `after`
+    Vec3<Real> direction;            // unit to within a few u
+    uint32_t from_solid = no_solid;  // where the line starts on a face: its solid
+    uint32_t from_face = 0;          // ... and the face: 2 slab + side, or the scene-wide triangle number
+    Crossing<Real> after;            // crossings up to and including this one are behind
+    Media media;                     // around the point `after`
 
     CISTULA_INLINE bool fresh() const { return after.t < Real(0); }
     /// Whether the line's first crossing of a mesh has to come from the side on which the line starts.

@@ -31,7 +31,8 @@ struct Branch {
     Weight weight{Real(1)};
     uint32_t depth : 29 = 0;  // surfaces above it
     uint32_t mirrored : 1 = 0;
-    uint32_t shown : 1 = 0;  // its line is the one on which the face that it left, a mirror, sends back one from the camera
+    uint32_t shown : 1 =
+        0;  // its line is the one on which the face that it left, a mirror, sends back one from the camera
     uint32_t dark : 1 = 0;  // its line is known to meet no seen light, however many faces it passes
 };
 
@@ -59,8 +60,9 @@ class WaitingBranch<Branch<Real, Media, Weight>> {
           media_(branch.ray.media) {}
 
     CISTULA_INLINE void give(Entry& branch) const {
-        static_assert(sizeof *this == sizeof origin_ + sizeof direction_ + sizeof weight_ + sizeof after_ + sizeof key_ +
-                                          sizeof from_solid_ + sizeof from_face_ + sizeof(uint32_t) + sizeof media_);
+        static_assert(sizeof *this == sizeof origin_ + sizeof direction_ + sizeof weight_ + sizeof after_ +
+                                          sizeof key_ + sizeof from_solid_ + sizeof from_face_ + sizeof(uint32_t) +
+                                          sizeof media_);
         branch.ray.origin = origin_;
         branch.ray.direction = direction_;
         branch.ray.from_solid = from_solid_;
@@ -162,8 +164,8 @@ class RayTree {
     using Weight = Share<Real, E>;
     using Entry = BranchOf<Real, E, Media>;
 
-    CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth,
-                           Sums& sums, PixelRays& rays, Stack& stack)
+    CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth, Sums& sums, PixelRays& rays,
+                           Stack& stack)
         : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums), rays_(rays), stack_(stack) {}
 
     /// Adds all that the primary ray sees to the sums, and tells what it meets first: first.surface(hit, normal), or
@@ -175,7 +177,8 @@ class RayTree {
         walk(branch, first);
     }
 
-    /// Goes on with a branch of another tree, which that one left. In any order only where the budget of truncation is 0.
+    /// Goes on with a branch of another tree, which that one left. In any order only where the budget of truncation is
+    /// 0.
     CISTULA_INLINE void resume(Entry& branch) {
         if (follow(branch)) walk(branch, Unnoted());
     }
@@ -195,7 +198,8 @@ class RayTree {
             if constexpr (requires { stack_.stopped(); })
                 if (++turns % turns_between_stops == 0 && stack_.stopped()) return stack_.clear();
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
-            Meeting<Real, Media> meeting;  // within the loop, as all that only some rays have: it holds no registers elsewhere
+            Meeting<Real, Media>
+                meeting;  // within the loop, as all that only some rays have: it holds no registers elsewhere
             bool light = false;
             if (next_surface(branch, meeting, light)) {
                 const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, meeting.hit);
@@ -264,12 +268,14 @@ class RayTree {
             const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
             if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
             if (!is_clear(scene_, solid)) return false;
-            if constexpr (E::has(effect_refraction)) return index_of(scene_, ray.media) == index_of(scene_, meeting.beyond);
+            if constexpr (E::has(effect_refraction))
+                return index_of(scene_, ray.media) == index_of(scene_, meeting.beyond);
             return true;
         }
     }
 
-    /// Goes on to the next face that has anything to shade. Otherwise adds the light or background that the ray ends on.
+    /// Goes on to the next face that has anything to shade. Otherwise adds the light or background that the ray ends
+    /// on.
     CISTULA_INLINE bool next_surface(Entry& branch, Meeting<Real, Media>& meeting, bool& light) {
         Absorption<E::has(effect_absorption)> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
@@ -307,7 +313,8 @@ class RayTree {
         return scene_.background;
     }
 
-    /// The seen light that the ray meets before `hit`. A line that may go straight on from there is searched to its end.
+    /// The seen light that the ray meets before `hit`. A line that may go straight on from there is searched to its
+    /// end.
     CISTULA_INLINE SeenHit<Real> light_before(const Hit<Real>& hit, Entry& branch) {
         if constexpr (lines_go_on<E>)
             if (branch.dark) return SeenHit<Real>();
@@ -319,8 +326,8 @@ class RayTree {
             branch.dark = lines_go_on<E>;
             return SeenHit<Real>();
         }
-        const bool goes_on = lines_go_on<E> && hit.found() && int(branch.depth) + 1 < depth_ &&
-                             transmits(scene_, key_solid(hit.key));
+        const bool goes_on =
+            lines_go_on<E> && hit.found() && int(branch.depth) + 1 < depth_ && transmits(scene_, key_solid(hit.key));
         const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t,
                                                       shown.lights, cell, mirror);
         if (seen.light == no_light) branch.dark = goes_on;
@@ -335,24 +342,27 @@ class RayTree {
         return MirrorNumbers::none;
     }
 
-    /// Adds a face's local light. What it sends on waits, before the lights are looked at: nothing of the branch has to be
-    /// kept at hand for later then.
+    /// Adds a face's local light. What it sends on waits, before the lights are looked at: nothing of the branch has to
+    /// be kept at hand for later then.
     CISTULA_INLINE void shade(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
         if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
         if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, meeting, s);
         const Real local = scene_.materials[s.material].local;
         if (local > Real(0))
-            add_local_light<Real, E>(scene_, intersector_, branch.ray, meeting.hit, s, branch.weight * local, sums_, rays_);
+            add_local_light<Real, E>(scene_, intersector_, branch.ray, meeting.hit, s, branch.weight * local, sums_,
+                                     rays_);
     }
 
     /// Pushes the heavier of the branch's children and then the lighter, which is next.
     CISTULA_INLINE void send_on(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
         const bool sheet = key_kind(meeting.hit.key) == CrossingKind::sheet;
-        const Shares<Real, Weight> shares = split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal,
-                                                      branch.ray.media, meeting.beyond, sheet);
+        const Shares<Real, Weight> shares =
+            split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal, branch.ray.media,
+                              meeting.beyond, sheet);
         const Weight mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
         // Sums over colors, so that a child that is not the heavier is at most half its parent.
-        const Real mirrored_size = total(mirrored), through_size = E::has(effect_transmission) ? total(through) : Real(0);
+        const Real mirrored_size = total(mirrored),
+                   through_size = E::has(effect_transmission) ? total(through) : Real(0);
         if (int(branch.depth) + 1 >= depth_) {
             CISTULA_NOT_UNROLLED
             for (int i = 0; i < (E::has(effect_transmission) ? 2 : 1); ++i)
@@ -384,7 +394,8 @@ class RayTree {
             spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
             child.shown = lines_go_on<E> && E::has(effect_visible_lights) && parent.ray.from_solid == no_solid;
         } else if (shares.bends) {
-            spawn(child.ray, far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit, meeting.beyond);
+            spawn(child.ray, far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit,
+                  meeting.beyond);
         } else {
             child.ray = parent.ray;
             if constexpr (lines_go_on<E>) child.shown = parent.shown, child.dark = parent.dark;

@@ -1,4 +1,5 @@
-// What the shared code needs to know about float and double, and the operations whose library forms differ between them.
+// What the shared code needs to know about float and double, and the operations whose library forms differ between
+// them.
 #pragma once
 
 #include "cistula/portable.h"
@@ -12,7 +13,7 @@ struct RealTraits;
 
 template <>
 struct RealTraits<float> {
-    using Up = double;                    // one precision up, for decisions (Snell)
+    using Up = double;                       // one precision up, for decisions (Snell)
     static constexpr float unit = 0x1p-24f;  // u, half an ulp of 1
     static constexpr float least_normal = 0x1p-126f;
     static constexpr float largest = 0x1.fffffep127f;

@@ -13,10 +13,11 @@ enum class SolidKind : uint32_t {
     sheet,   // open triangles, seen from both sides, with no inside
 };
 
-/// The points with low <= normal.x <= high. A single plane has low = -infinity. Face 2 i is slab i's low side, 2 i + 1 its high one.
+/// The points with low <= normal.x <= high. A single plane has low = -infinity. Face 2 i is slab i's low side, 2 i + 1
+/// its high one.
 template <class Real>
 struct alignas(16) Slab {  // wide loads
-    Vec3<Real> normal;  // unit
+    Vec3<Real> normal;     // unit
     Real low, high;
 };
 
@@ -34,21 +35,21 @@ struct alignas(32) SlabGroup {
 
 /// Solids are numbered in file order, which is also the priority of their media: later wins.
 struct alignas(16) Solid {
-    Vec3<float> center;               // convex: of a sphere around it,
-    float padded_square;              // ... and the square of its radius plus sphere_padding
-    Vec3<float> plane_normal;         // flat sheet: unit normal of its plane,
-    float plane_offset;               // ... and normal.x on it
+    Vec3<float> center;        // convex: of a sphere around it,
+    float padded_square;       // ... and the square of its radius plus sphere_padding
+    Vec3<float> plane_normal;  // flat sheet: unit normal of its plane,
+    float plane_offset;        // ... and normal.x on it
     SolidKind kind;
     uint32_t material;
     uint32_t first_slab, slab_count;  // convex: its slabs
     uint32_t first_group;             // convex: the same slabs, ceil(slab_count / 8) groups
     uint32_t first_triangle;          // mesh, sheet: scene-wide number of its first triangle
     uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
-    uint32_t flat;                    // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
-                                      // on it does not meet it again
-    uint32_t touched;                 // convex, mesh: 1 if its padded box meets that of another such solid
-    uint32_t alone;                   // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
-                                      // hits next is its own face
+    uint32_t flat;     // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
+                       // on it does not meet it again
+    uint32_t touched;  // convex, mesh: 1 if its padded box meets that of another such solid
+    uint32_t alone;    // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
+                       // hits next is its own face
 };
 
 /// The sphere around a convex solid.
@@ -70,8 +71,8 @@ struct alignas(16) SheetPlane {
     Vec3<Real> center, half;  // half: infinite where nobody knows
 
     CISTULA_INLINE static SheetPlane of(const Solid& solid, uint32_t index) {
-        return {Vec3<Real>(solid.plane_normal), Real(solid.plane_offset), index, solid.flat,
-                Vec3<Real>(Real(0)), Vec3<Real>(RealTraits<Real>::infinity)};
+        return {Vec3<Real>(solid.plane_normal),        Real(solid.plane_offset), index, solid.flat, Vec3<Real>(Real(0)),
+                Vec3<Real>(RealTraits<Real>::infinity)};
     }
 };
 
@@ -98,7 +99,8 @@ inline constexpr float plane_padding = 0x1p-10f;
 
 inline constexpr int cluster_lanes = 8;
 
-/// Up to eight neighbouring triangles of one solid, corner by corner and axis by axis, so that eight are tested at once.
+/// Up to eight neighbouring triangles of one solid, corner by corner and axis by axis, so that eight are tested at
+/// once.
 template <class Real>
 struct alignas(32) Cluster {
     Real corner[3][3][cluster_lanes];  // [corner][axis][lane]; unused lanes hold a zero-area triangle
@@ -108,8 +110,8 @@ struct alignas(32) Cluster {
     Real height[2][cluster_lanes];     // apex height h, [0] on the side normals point away from (inside), [1] outside
 };
 
-/// A triangle by itself, in whole words: what a tree of the device has in its leaves, since a thread there tests one at a
-/// time and reads no more than it tests. The same triangle as lane slot % 8 of cluster slot / 8.
+/// A triangle by itself, in whole words: what a tree of the device has in its leaves, since a thread there tests one at
+/// a time and reads no more than it tests. The same triangle as lane slot % 8 of cluster slot / 8.
 template <class Real>
 struct alignas(16) Facet {
     Real corner[3][3];  // [corner][axis]
@@ -120,28 +122,28 @@ struct alignas(16) Facet {
 template <class Real>
 struct LocalMaterial {
     Vec3<Real> color;
-    Vec3<Real> ambient;         // ka * A, the scene's ambient colour taken in
-    Vec3<Real> specular;        // ks * S
-    Real diffuse;               // kd
-    Real exponent;              // n; used where integer_exponent < 0
-    int32_t integer_exponent;   // n if it is an integer in [0, 1024], else -1
-    Real local;                 // max(0, 1 - kr - kt), rounded down
+    Vec3<Real> ambient;        // ka * A, the scene's ambient colour taken in
+    Vec3<Real> specular;       // ks * S
+    Real diffuse;              // kd
+    Real exponent;             // n; used where integer_exponent < 0
+    int32_t integer_exponent;  // n if it is an integer in [0, 1024], else -1
+    Real local;                // max(0, 1 - kr - kt), rounded down
 };
 
 /// What a face is made of. Shares: local 1 - kr - kt, reflected kr, transmitted kt * tint.
 template <class Real>
 struct Material : LocalMaterial<Real> {
-    Real reflection;            // kr
-    Real transmission;          // kt
-    Vec3<Real> filter;          // kt * tint
+    Real reflection;    // kr
+    Real transmission;  // kt
+    Vec3<Real> filter;  // kt * tint
     Vec3<Real> tint;
-    Vec3<Real> absorption;      // per unit of scene-frame length
-    double index;               // index of refraction
-    uint64_t filter_loss[3];    // -log2(kt * tint), Q11.52; 0 for opaque channels
-    uint32_t opaque;            // bit c: channel c does not pass (kt * tint = 0)
-    int32_t texture;            // -1: none
-    uint32_t fresnel;           // 0 or 1
-    uint32_t clear;             // 1: kr = 0, kt = 1, white tint: nothing to shade where the medium does not change either
+    Vec3<Real> absorption;    // per unit of scene-frame length
+    double index;             // index of refraction
+    uint64_t filter_loss[3];  // -log2(kt * tint), Q11.52; 0 for opaque channels
+    uint32_t opaque;          // bit c: channel c does not pass (kt * tint = 0)
+    int32_t texture;          // -1: none
+    uint32_t fresnel;         // 0 or 1
+    uint32_t clear;           // 1: kr = 0, kt = 1, white tint: nothing to shade where the medium does not change either
 };
 
 /// A point light that lights (its intensity is not zero).
@@ -193,9 +195,9 @@ struct alignas(16) TreeNode {
     uint32_t count[2];
 };
 
-/// A node of a tree over seen lights: few rays come near one, so that four boxes at a time are worth more than the nearer of
-/// two first. Boxes are already padded, and stored so that a ray from any side reads them alike; that of a child that is not
-/// there is less than empty.
+/// A node of a tree over seen lights: few rays come near one, so that four boxes at a time are worth more than the
+/// nearer of two first. Boxes are already padded, and stored so that a ray from any side reads them alike; that of a
+/// child that is not there is less than empty.
 struct alignas(16) LightNode {
     static constexpr int width = 4;
     struct alignas(16) Lanes {
@@ -217,9 +219,9 @@ struct SceneView {
     Span<Solid> solids;
     Span<Slab<Real>> slabs;
     Span<SlabGroup<Real>> slab_groups;
-    Span<uint32_t> convex;              // the convex solids; primitive p < convex.size is convex[p]
-    Span<Cluster<Real>> clusters;       // primitive p >= convex.size is clusters[p - convex.size]
-    Span<Facet<Real>> facets;           // or, where there are any, facets[p - convex.size]
+    Span<uint32_t> convex;         // the convex solids; primitive p < convex.size is convex[p]
+    Span<Cluster<Real>> clusters;  // primitive p >= convex.size is clusters[p - convex.size]
+    Span<Facet<Real>> facets;      // or, where there are any, facets[p - convex.size]
     Span<Vec2<Real>> uvs;
     Span<Material<Real>> materials;
     Span<Light<Real>> lights;
@@ -227,13 +229,13 @@ struct SceneView {
     Span<SeenLight<Real>> seen_lights;
     Span<Texture> textures;
     Span<Vec3<float>> texels;
-    Span<TreeNode> tree;                // over primitives; may be empty (then brute force or Embree finds hits)
+    Span<TreeNode> tree;  // over primitives; may be empty (then brute force or Embree finds hits)
     Span<uint32_t> tree_items;
-    Span<LightNode> seen_tree;          // over seen_lights; empty where there are few
+    Span<LightNode> seen_tree;  // over seen_lights; empty where there are few
     Vec3<Real> background;
-    Vec3<Real> bound;                   // B per channel, at most 1, slack included
-    Real largest_bound;                 // of these
-    Real extent;                        // M: the largest coordinate, in [1, 2)
+    Vec3<Real> bound;    // B per channel, at most 1, slack included
+    Real largest_bound;  // of these
+    Real extent;         // M: the largest coordinate, in [1, 2)
 };
 
 /// Whether any body absorbs: what arrives of a light then changes gradually. Asked of the scene, not of the effects

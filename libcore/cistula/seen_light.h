@@ -15,7 +15,8 @@ struct SeenHit {
     uint32_t light = no_light;
 };
 
-/// The front of one sphere, by the ray's closest approach (Haines et al., Ray Tracing Gems, ch. 7). From inside: nothing.
+/// The front of one sphere, by the ray's closest approach (Haines et al., Ray Tracing Gems, ch. 7). From inside:
+/// nothing.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, SeenHit<Real>& best) {
     const SeenLight<Real>& light = scene.seen_lights[index];
@@ -39,8 +40,8 @@ CISTULA_INLINE int32_t first_node([[maybe_unused]] const Scene& scene, [[maybe_u
     return LightStack::root;
 }
 
-/// The nearest seen light at or after ray.after and before t_limit, on a line that `mirror` shows in a part of the picture:
-/// `cell` with the lists of `shown`.
+/// The nearest seen light at or after ray.after and before t_limit, on a line that `mirror` shows in a part of the
+/// picture: `cell` with the lists of `shown`.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit,
                                                 const ShownLight* shown = nullptr, const LitCell& cell = {},

@@ -96,7 +96,8 @@ enum class LightSide { none, inside, outside };  // on no face of it; inside all
 
 /// By value: a reference would put the ray into memory.
 template <class Real, class Scene>
-CISTULA_SELDOM LightSide light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index, Vec3<Real> point) {
+CISTULA_SELDOM LightSide light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index,
+                                         Vec3<Real> point) {
     LightSide side = LightSide::none;
     for (uint32_t i = 0; i < light.incident_count; ++i) {
         const Incident& face = scene.incidents[light.first_incident + i];
@@ -126,7 +127,8 @@ CISTULA_SELDOM Real called_shadow_exit(const Scene& scene, uint32_t index, Vec3<
 /// A convex solid that the ray starts in. A light on its own face is never beyond that, whatever the rounding of two
 /// nearly equal distances says.
 template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
+CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                ShadowSum<E>& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
     const Solid& solid = scene.solids[index];
     const Material<Real>& material = scene.materials[solid.material];
@@ -145,8 +147,8 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
 
 /// One that it neither starts in nor left, nor passes by. With a light on its face half-spaces decide.
 template <class Real, class E, class Body, class Media, class Scene>
-CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Body& solid, const ShadowRay<Real, Media>& shadow,
-                                 ShadowSum<E>& sum) {
+CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Body& solid,
+                                 const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
     const LightSide side = light_side<E>(scene, index, shadow);
     if (side == LightSide::outside) return;
@@ -158,12 +160,14 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Body&
     if (side == LightSide::none) {
         if (!interval.met(scene.extent) || !(enter < shadow.distance)) return;
         if constexpr (Media::contacts)
-            if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction)) return;
+            if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
+                return;
         leave = greatest(interval.leave, Real(0));
         if (leave < shadow.distance) sum.cross(material);
     }
     sum.cross(material);
-    if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance) - enter, Real(0)));
+    if constexpr (E::has(effect_absorption))
+        sum.absorb(material, greatest(least(leave, shadow.distance) - enter, Real(0)));
 }
 
 template <class Real, class E, class Media, class Scene>
@@ -176,8 +180,8 @@ CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const Shad
         shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
 }
 
-/// Whether a mesh that touches others is crossed where the ray starts on one of them, and from the side on which the ray is
-/// not: it is behind the ray.
+/// Whether a mesh that touches others is crossed where the ray starts on one of them, and from the side on which the
+/// ray is not: it is behind the ray.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool behind_shadow(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
                                   const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray) {
@@ -201,7 +205,8 @@ CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32
 /// Takes an accepted crossing of a triangle into the sum if it lies before the light.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
-                                    const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
+                                    const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow,
+                                    ShadowSum<E>& sum) {
     if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
     if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
     if constexpr (E::has(effect_lights_on_faces))
@@ -222,8 +227,8 @@ CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const S
                                      const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
-        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, shadow,
-                                 sum);
+        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane,
+                                 c, shadow, sum);
     });
 }
 
@@ -231,7 +236,8 @@ CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const S
 template <class Real, class E, class Media, class Scene>
 CISTULA_SELDOM ShadowSum<E> called_shadow_triangles(const Scene& scene, uint32_t index, ShadowRay<Real, Media> shadow,
                                                     ShadowSum<E> sum) {
-    shadow_triangles<Real, E>(scene, index, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction), sum);
+    shadow_triangles<Real, E>(scene, index, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction),
+                              sum);
     return sum;
 }
 

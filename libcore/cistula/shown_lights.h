@@ -1,5 +1,5 @@
-// The seen lights that lines from the camera may come upon in a part of the picture: straight on, or where the first mirror
-// that they meet sends them. The host lists them (scene/light_images.h).
+// The seen lights that lines from the camera may come upon in a part of the picture: straight on, or where the first
+// mirror that they meet sends them. The host lists them (scene/light_images.h).
 #pragma once
 
 #include "cistula/portable.h"

@@ -72,7 +72,7 @@ struct SmallScene {
     KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
     ShadowPlan plan;
     uint32_t clear_solids, transmitting_solids;  // bit i: solid i is of a clear material, or of one that transmits
-    int32_t light_roots[ShadowPlan::solids];     // of seen_tree, by convex solids: the node with all lights that touch it
+    int32_t light_roots[ShadowPlan::solids];  // of seen_tree, by convex solids: the node with all lights that touch it
     MirrorNumbers mirrors;
     InlineSpan<Texture, 8> textures;
     // Elsewhere, as in the view that it was made of:
@@ -90,8 +90,8 @@ struct SmallScene {
     Real largest_bound;
     Real extent;
 
-    /// False if `here`, a view that can be read, is too large, or if a ray in it may be inside more than one solid or a mesh:
-    /// OneMedium asks for that. `there`: the same scene where kernels read it.
+    /// False if `here`, a view that can be read, is too large, or if a ray in it may be inside more than one solid or a
+    /// mesh: OneMedium asks for that. `there`: the same scene where kernels read it.
     bool assign(const SceneView<Real>& here, const SceneView<Real>& there) {
         for (const Solid& solid : here.solids)
             if (solid.kind == SolidKind::mesh || solid.touched) return false;
@@ -170,8 +170,8 @@ struct SmallScene {
     }
 };
 
-/// The part of a SmallScene of convex solids alone that the kernels of opaque ones read: launches take longer the larger their
-/// parameters are, 0.08 us a KiB (H200). Its solids are numbered as they are listed.
+/// The part of a SmallScene of convex solids alone that the kernels of opaque ones read: launches take longer the
+/// larger their parameters are, 0.08 us a KiB (H200). Its solids are numbered as they are listed.
 template <class Real>
 struct OpaqueScene {
     using Scalar = Real;

@@ -9,9 +9,9 @@ namespace cistula {
 
 template <class Real>
 struct Refraction {
-    bool total;              // total internal reflection: direction is not set
-    Vec3<Real> direction;    // unit to within a few u
-    Real reflectance;        // Fresnel's, unpolarized, in [0, 1]; 1 if total
+    bool total;            // total internal reflection: direction is not set
+    Vec3<Real> direction;  // unit to within a few u
+    Real reflectance;      // Fresnel's, unpolarized, in [0, 1]; 1 if total
 };
 
 /// One Newton step toward unit length; enough where the error is a few u.
@@ -44,8 +44,8 @@ CISTULA_HD inline Refraction<Real> refracted(const Vec3<Real>& direction, const 
     result.reflectance = Real(1);
     if (result.total) return result;
     const Up g = up_sqrt(g2), h = g + c, bend = excess / h;
-    result.direction = renormalized(
-        Vec3<Real>(Real((dx - bend * nx) / n), Real((dy - bend * ny) / n), Real((dz - bend * nz) / n)));
+    result.direction =
+        renormalized(Vec3<Real>(Real((dx - bend * nx) / n), Real((dy - bend * ny) / n), Real((dz - bend * nz) / n)));
     const Up a = bend / h, b = (c * h - Up(1)) / (c * bend + Up(1));
     result.reflectance = clamped(Real(a * a * (Up(1) + b * b) * Up(0.5)), Real(0), Real(1));
     return result;

@@ -10,9 +10,9 @@ namespace cistula {
 template <class Real>
 struct Surface {
     Vec3<Real> point;
-    Vec3<Real> normal;             // geometric, unit, toward the viewer
-    Vec3<Real> viewer_side;        // where rays that stay on the viewer's side start
-    Vec3<Real> color;              // the material's, times its texture
+    Vec3<Real> normal;       // geometric, unit, toward the viewer
+    Vec3<Real> viewer_side;  // where rays that stay on the viewer's side start
+    Vec3<Real> color;        // the material's, times its texture
     uint32_t material;
 };
 
@@ -35,7 +35,8 @@ CISTULA_INLINE const auto& solid_at(const Scene& scene, uint32_t index) {
         return scene.convex[index].solid;
 }
 
-/// Whether a solid's material is `clear`, or transmits. Scenes of few solids have bits for that: no number has to be waited for.
+/// Whether a solid's material is `clear`, or transmits. Scenes of few solids have bits for that: no number has to be
+/// waited for.
 template <class Scene>
 CISTULA_INLINE bool is_clear(const Scene& scene, uint32_t solid) {
     if constexpr (requires { scene.clear_solids; })
@@ -61,8 +62,8 @@ struct Apex {
         const Real step = Real(8) * RealTraits<Real>::unit * extent;
         return {along(centroid, height, normal), step < height * Real(0.125) ? step / height : Real(0.125)};
     }
-    /// From a point on the triangle: the segment crosses no other triangle (NUMERICS, 2), so that the new origin is on the
-    /// right side of all of them.
+    /// From a point on the triangle: the segment crosses no other triangle (NUMERICS, 2), so that the new origin is on
+    /// the right side of all of them.
     CISTULA_INLINE Vec3<Real> from(const Vec3<Real>& point) const { return along(point, share, place - point); }
 };
 
@@ -98,8 +99,8 @@ CISTULA_INLINE void triangle_corners(const Scene& scene, uint32_t slot, Vec3<Rea
 
 /// The apex on one side of a triangle, along `normal`; outside: on the side its corners turn counter-clockwise on.
 template <class Real, class Scene>
-CISTULA_INLINE Apex<Real> apex_of(const Scene& scene, uint32_t slot, const Vec3<Real> (&corner)[3], const Vec3<Real>& normal,
-                                  bool outside) {
+CISTULA_INLINE Apex<Real> apex_of(const Scene& scene, uint32_t slot, const Vec3<Real> (&corner)[3],
+                                  const Vec3<Real>& normal, bool outside) {
     const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);
     return Apex<Real>::of(centroid, normal, scene.clusters[slot / cluster_lanes].height[outside][slot % cluster_lanes],
                           scene.extent);
@@ -108,8 +109,8 @@ CISTULA_INLINE Apex<Real> apex_of(const Scene& scene, uint32_t slot, const Vec3<
 /// What hits on a triangle would find out each time: scenes of a few have it ready.
 template <class Real>
 struct TriangleSides {
-    Vec3<Real> normal;    // on the outside
-    Apex<Real> apex[2];   // inside, outside
+    Vec3<Real> normal;   // on the outside
+    Apex<Real> apex[2];  // inside, outside
 
     template <class Scene>
     static TriangleSides of(const Scene& scene, uint32_t slot) {

@@ -71,8 +71,8 @@ struct ShearedTriangle {
     CISTULA_INLINE static ShearedTriangle of(const Cluster<Real>& cluster, int lane, const TriangleRay<Real>& ray) {
         ShearedTriangle s;
         for (int c = 0; c < 3; ++c)
-            s.shear(c, cluster.corner[c][ray.kx][lane], cluster.corner[c][ray.ky][lane], cluster.corner[c][ray.kz][lane],
-                    ray);
+            s.shear(c, cluster.corner[c][ray.kx][lane], cluster.corner[c][ray.ky][lane],
+                    cluster.corner[c][ray.kz][lane], ray);
         s.find_edges();
         return s;
     }
@@ -113,7 +113,6 @@ struct ShearedTriangle {
         }
         return true;
     }
-
 };
 
 /// What the eight-lane test leaves for the lanes that it names: edge functions and corners' distances along kz.
@@ -218,9 +217,9 @@ CISTULA_INLINE bool leaves_flat(const Scene& scene, uint32_t cluster, const Ray<
     return solid == ray.from_solid && scene.solids[solid].flat != 0;
 }
 
-/// Whether a line from a place well off the plane of a flat sheet surely stays off it up to `limit`: spares most rays the
-/// triangles, decides no hit. Lines that stay so far off at a slant below plane_padding / 4 M have all of the sheet far
-/// beside them. `off`: of the origin from the plane; `slant`: of the direction.
+/// Whether a line from a place well off the plane of a flat sheet surely stays off it up to `limit`: spares most rays
+/// the triangles, decides no hit. Lines that stay so far off at a slant below plane_padding / 4 M have all of the sheet
+/// far beside them. `off`: of the origin from the plane; `slant`: of the direction.
 template <class Real>
 CISTULA_INLINE bool stays_off(Real off, Real slant, Real limit) {
     const Real ahead = off < Real(0) ? -slant : slant, far_off = magnitude(off);
@@ -231,14 +230,14 @@ CISTULA_INLINE bool stays_off(Real off, Real slant, Real limit) {
 template <class Real>
 inline constexpr Real least_slant = Real(0x1p-6);
 
-/// Whether a line surely crosses the plane of a flat sheet beside the sheet. Where it crosses is off by the rounding of a few
-/// u M over the slant, 2^-13 M at most, and the box is padded by more.
+/// Whether a line surely crosses the plane of a flat sheet beside the sheet. Where it crosses is off by the rounding of
+/// a few u M over the slant, 2^-13 M at most, and the box is padded by more.
 template <class Real>
-CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction, Real off,
-                                   Real slant) {
+CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                                   Real off, Real slant) {
     const Vec3<Real> at = along(origin, -off * reciprocal(slant), direction) - plane.center;
-    return (magnitude(slant) > least_slant<Real>) & ((magnitude(at.x) > plane.half.x) | (magnitude(at.y) > plane.half.y) |
-                                                     (magnitude(at.z) > plane.half.z));
+    return (magnitude(slant) > least_slant<Real>)&((magnitude(at.x) > plane.half.x) | (magnitude(at.y) > plane.half.y) |
+                                                   (magnitude(at.z) > plane.half.z));
 }
 
 /// The plane of a cluster's flat sheet, if it belongs to one.
@@ -288,14 +287,15 @@ CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_
     if (ray.after.before(c.t, key) && best.improves(c.t, key)) best.take(c.t, key, c.u(), c.v(), slot, c.enters());
 }
 
-/// The ray's next crossing of a cluster's triangles, if it is less than `best`. For a ray that does not start on the cluster's
-/// flat sheet.
+/// The ray's next crossing of a cluster's triangles, if it is less than `best`. For a ray that does not start on the
+/// cluster's flat sheet.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_triangles(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                       const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
-        closest_crossing(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, ray, best);
+        closest_crossing(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, ray,
+                         best);
     });
 }
 

@@ -95,7 +95,8 @@ CISTULA_HD inline DoubleDouble cos_reduced(double hi, double lo) {
     const DoubleDouble square = two_product(hi, hi);
     const DoubleDouble start = fast_two_sum(1, -0.5 * square.high);
     const double small = fused(-hi, lo, -0.5 * square.low);
-    return fast_two_sum(start.high, start.low + fused(square.high * square.high, polynomial(square.high, series), small));
+    return fast_two_sum(start.high,
+                        start.low + fused(square.high * square.high, polynomial(square.high, series), small));
 }
 
 /// Of an angle in radians. Infinite and NaN arguments give NaN; sin(-0) = -0.

@@ -119,8 +119,8 @@ void find_triangle_incidents(const std::vector<FramedLight>& lights, const Frame
 }
 
 template <class Real>
-void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid, double extent,
-                             IncidentLists& incidents) {
+void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid,
+                             double extent, IncidentLists& incidents) {
     const double tolerance = static_cast<double>(incidence<Real>) * extent;
     for (size_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].lights()) continue;
@@ -130,7 +130,8 @@ void find_triangle_incidents(const std::vector<FramedLight>& lights, const Frame
     }
 }
 
-std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights, const IncidentLists& incidents) {
+std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights,
+                         const IncidentLists& incidents) {
     for (size_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].lights() || incidents[i].empty()) continue;
         if (lights[i].convex >= 0) return "the lights on the edges of " + lights[i].place + " lie on its faces";
@@ -139,13 +140,13 @@ std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLigh
     return "";
 }
 
-#define CISTULA_INSTANTIATE(Real)                                                                                  \
-    template void find_convex_incidents<Real>(const std::vector<FramedLight>&, const std::vector<ConvexSolid>&,    \
-                                              double, IncidentLists&);                                             \
-    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, const Groups&, \
-                                                const Tree&, uint32_t, uint32_t, double, IncidentLists&);          \
-    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, uint32_t,      \
-                                                double, IncidentLists&);
+#define CISTULA_INSTANTIATE(Real)                                                                                     \
+    template void find_convex_incidents<Real>(const std::vector<FramedLight>&, const std::vector<ConvexSolid>&,       \
+                                              double, IncidentLists&);                                                \
+    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, const Groups&,    \
+                                                const Tree&, uint32_t, uint32_t, double, IncidentLists&);             \
+    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, uint32_t, double, \
+                                                IncidentLists&);
 CISTULA_INSTANTIATE(float)
 CISTULA_INSTANTIATE(double)
 #undef CISTULA_INSTANTIATE

@@ -44,10 +44,11 @@ void find_triangle_incidents(const std::vector<FramedLight>& lights, const Frame
 
 /// The same for a mesh without a tree, numbering its own triangles.
 template <class Real>
-void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid, double extent,
-                             IncidentLists& incidents);
+void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid,
+                             double extent, IncidentLists& incidents);
 
 /// Which lamp lies on a face, and of what, in words for explain_effects; empty if none does.
-std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights, const IncidentLists& incidents);
+std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights,
+                         const IncidentLists& incidents);
 
 }  // namespace cistula

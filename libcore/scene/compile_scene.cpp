@@ -38,7 +38,7 @@ void return_free_memory() {
 
 constexpr size_t most_pairs = 10'000'000;
 constexpr uint32_t most_outlined = 16;  // triangles: of larger meshes the box is outlined
-constexpr double touching = 0x1p-17;  // far above the reach of a meeting
+constexpr double touching = 0x1p-17;    // far above the reach of a meeting
 
 /// One compilation: the parts in the order in which they need one another.
 template <class Real>
@@ -49,8 +49,9 @@ class Compiler {
 
     std::unique_ptr<CompiledScene<Real>> compile() {
         if (source_.solids.size() >= no_solid)
-            throw scene_error(description_, "/objects",
-                              std::to_string(source_.solids.size()) + " solids: at most " + std::to_string(no_solid - 1));
+            throw scene_error(
+                description_, "/objects",
+                std::to_string(source_.solids.size()) + " solids: at most " + std::to_string(no_solid - 1));
         scene_.center = frame_.center;
         scene_.scale = frame_.scale;
         scene_.extent = rounded_up<Real>(frame_.extent);
@@ -110,7 +111,8 @@ class Compiler {
         std::vector<uint32_t> order;
         for (uint32_t i = 0; i < scene_.solids.size(); ++i)
             if (scene_.solids[i].kind != SolidKind::sheet && !boxes_[i].empty()) order.push_back(i);
-        std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return boxes_[a].low.x < boxes_[b].low.x; });
+        std::sort(order.begin(), order.end(),
+                  [&](uint32_t a, uint32_t b) { return boxes_[a].low.x < boxes_[b].low.x; });
         const auto near = [&](const Box& a, const Box& b, int axis) {
             return a.low[axis] <= b.high[axis] + touching && b.low[axis] <= a.high[axis] + touching;
         };

@@ -104,9 +104,10 @@ template <class Real>
 size_t CompiledScene<Real>::memory() const {
     size_t outlined = bytes_of(hulls);
     for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
-    return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) + bytes_of(clusters) + bytes_of(uvs) +
-           bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(seen_lights) + bytes_of(textures) +
-           bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) + bytes_of(seen_tree);
+    return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) +
+           bytes_of(clusters) + bytes_of(uvs) + bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) +
+           bytes_of(seen_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
+           bytes_of(seen_tree);
 }
 
 template <class Real>

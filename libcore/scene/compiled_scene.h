@@ -34,12 +34,12 @@ struct CompiledScene {
     Vec3<Real> background, bound;
     Real extent = 1;
 
-    Vec3<double> center{0};     // frame: coordinates are (world - center) * 2^scale
+    Vec3<double> center{0};  // frame: coordinates are (world - center) * 2^scale
     int scale = 0;
-    int radiance_exponent = 0;  // radiances are world's * 2^-radiance_exponent
-    uint32_t effects = 0;       // exactly what the scene requires (effects.h)
+    int radiance_exponent = 0;                 // radiances are world's * 2^-radiance_exponent
+    uint32_t effects = 0;                      // exactly what the scene requires (effects.h)
     std::vector<EffectReason> effect_reasons;  // one per effect: needed or not, and because of what
-    std::string hash;           // of all that the image depends on but for camera and settings; the same in both precisions
+    std::string hash;  // of all that the image depends on but for camera and settings; the same in both precisions
     std::vector<std::string> solid_names;  // a name per solid, for messages and the id layer
     std::vector<std::string> warnings;     // degenerate triangles left out, open meshes taken as sheets, ...
 

@@ -32,8 +32,8 @@ struct TextureDescription {
     std::string name;
     std::string file;  // absolute or relative to the working directory; empty: a checker
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
-    bool bilinear = true;      // a checker is always nearest
-    glm::dvec2 repeat{1};      // uv are multiplied by this; a checker's period is one unit of uv, two cells
+    bool bilinear = true;  // a checker is always nearest
+    glm::dvec2 repeat{1};  // uv are multiplied by this; a checker's period is one unit of uv, two cells
 };
 
 enum class PlatonicSolid { tetrahedron, cube, octahedron, dodecahedron, icosahedron };
@@ -62,8 +62,8 @@ struct TrianglesObject {
 };
 
 struct MeshObject {
-    std::string file;  // PLY or OBJ
-    glm::dvec3 center{0};    // added last
+    std::string file;      // PLY or OBJ
+    glm::dvec3 center{0};  // added last
     double scale = 1;
     glm::dvec3 rotation{0};
 };

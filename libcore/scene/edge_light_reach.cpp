@@ -19,7 +19,8 @@ bool stands_apart(CompiledScene<Real>& scene, uint32_t solid) {
     return std::all_of(scene.convex.begin(), scene.convex.end(), [&](uint32_t other) {
         const double lights = double(first_group(scene, other).light_square);
         if (other == solid || !(lights > 0)) return true;
-        const Vec3<double> between = Vec3<double>(scene.solids[solid].center) - Vec3<double>(scene.solids[other].center);
+        const Vec3<double> between =
+            Vec3<double>(scene.solids[solid].center) - Vec3<double>(scene.solids[other].center);
         const double reach = std::sqrt(lights) + std::sqrt(double(scene.solids[solid].padded_square));
         return dot(between, between) > reach * reach;
     });
@@ -31,7 +32,8 @@ template <class Real>
 void reach_edge_lights(CompiledScene<Real>& scene, const std::vector<uint32_t>& owners) {
     bool known = scene.convex.size() <= most_solids_of_edge_lights;
     for (const uint32_t owner : owners) known = known && owner != no_solid;
-    for (const uint32_t solid : scene.convex) known = known && scene.solids[solid].slab_count <= most_slabs_of_edge_lights;
+    for (const uint32_t solid : scene.convex)
+        known = known && scene.solids[solid].slab_count <= most_slabs_of_edge_lights;
     for (const uint32_t solid : scene.convex) {
         first_group(scene, solid).light_reach = known ? Real(0) : RealTraits<Real>::infinity;
         first_group(scene, solid).light_square = -RealTraits<Real>::infinity;

@@ -9,11 +9,11 @@ namespace cistula {
 /// Exit codes of every program (docs/programs.md).
 enum class ExitCode : int {
     done = 0,
-    failed = 1,       // a comparison or a case does not hold
-    usage = 2,        // the command line or the scene is wrong
-    file = 3,         // a file cannot be read or written
-    device = 4,       // no usable GPU, or CUDA is not in this build
-    target = 5,       // --target-error was not met
+    failed = 1,  // a comparison or a case does not hold
+    usage = 2,   // the command line or the scene is wrong
+    file = 3,    // a file cannot be read or written
+    device = 4,  // no usable GPU, or CUDA is not in this build
+    target = 5,  // --target-error was not met
     interrupted = 130,
 };
 

@@ -45,7 +45,7 @@ struct Film {
     double rounding = 0;        // how far rounding moves points, in widths of a pixel at distance 1 (scene units)
     std::vector<PixelRecord, UnsetAllocator<PixelRecord>> pixels;
     RayCounts rays;
-    uint32_t flags = 0;         // RenderFlag bits of all pixels
+    uint32_t flags = 0;  // RenderFlag bits of all pixels
 
     /// What one unit of a pixel's sums adds to its mean, in the scene's units of radiance.
     double unit() const { return std::ldexp(1.0, radiance_exponent - fixed_shift) / samples; }

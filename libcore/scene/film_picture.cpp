@@ -92,8 +92,7 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
         if (channels.samples) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.samples); });
         if (channels.cost) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.rays); });
         if (channels.z) fill([](const PixelRecord& pixel) { return pixel.z; });
-        for (int c = 0; c < 3 && channels.normal; ++c)
-            fill([c](const PixelRecord& pixel) { return pixel.normal[c]; });
+        for (int c = 0; c < 3 && channels.normal; ++c) fill([c](const PixelRecord& pixel) { return pixel.normal[c]; });
     }
     return picture;
 }

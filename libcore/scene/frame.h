@@ -22,7 +22,8 @@ struct Box {
     bool empty() const { return !(low.x <= high.x); }
     std::array<glm::dvec3, 8> corners() const {
         std::array<glm::dvec3, 8> all;
-        for (int i = 0; i < 8; ++i) all[size_t(i)] = {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z};
+        for (int i = 0; i < 8; ++i)
+            all[size_t(i)] = {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z};
         return all;
     }
 };

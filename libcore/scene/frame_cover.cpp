@@ -9,8 +9,8 @@
 namespace cistula {
 namespace {
 
-/// Hulls are cut this share of that in front of the camera. What they have nearer, in a view no wider than the above, is so
-/// near that the grown hull holds the camera, and is cut to an outline wider than the view.
+/// Hulls are cut this share of that in front of the camera. What they have nearer, in a view no wider than the above,
+/// is so near that the grown hull holds the camera, and is cut to an outline wider than the view.
 constexpr double share_of_growth = 0x1p-12;
 
 double cross(double ax, double ay, double bx, double by) {
@@ -20,7 +20,8 @@ double cross(double ax, double ay, double bx, double by) {
 /// The corners of the convex hull, in order (Andrew's monotone chain, 1979). Reorders `points`.
 template <class Point>
 std::vector<Point> convex_outline(std::vector<Point>& points) {
-    std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    std::sort(points.begin(), points.end(),
+              [](const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
     std::vector<Point> outline;
     const auto add = [&](const Point& p, size_t fewest) {
         while (outline.size() >= fewest + 2) {
@@ -55,9 +56,10 @@ void FrameCover::add(size_t number, const Hull& hull, double extent, const Frame
     add(filled(number, points->empty() ? *points : convex_outline(*points)));
 }
 
-/// The corners of what shows of a hull, and points between them; none where it is all behind the camera. Nothing where they
-/// are in doubt.
-std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& hull, double extent, const FrameView& frame) const {
+/// The corners of what shows of a hull, and points between them; none where it is all behind the camera. Nothing where
+/// they are in doubt.
+std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& hull, double extent,
+                                                                    const FrameView& frame) const {
     const Camera& camera = frame.camera;
     if (!margins_suffice(frame, extent)) return {};
     const double growth = picture_growth(frame, extent);
@@ -71,7 +73,8 @@ std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& 
     const double pixels = frame.width / (2 * camera.tan_half_width);  // to tangent 1
     std::vector<Point> points;
     const auto put = [&](const Vec3<double>& p) {
-        points.push_back({frame.width / 2.0 + p.x / p.z * pixels - rect_.x, frame.height / 2.0 - p.y / p.z * pixels - rect_.y});
+        points.push_back(
+            {frame.width / 2.0 + p.x / p.z * pixels - rect_.x, frame.height / 2.0 - p.y / p.z * pixels - rect_.y});
     };
     for (const Vec3<double>& a : ahead) {
         put(a);
@@ -80,7 +83,8 @@ std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& 
             put({a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), nearest});
         }
     }
-    const bool is_known = std::all_of(points.begin(), points.end(), [](const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
+    const bool is_known = std::all_of(points.begin(), points.end(),
+                                      [](const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
     return is_known ? std::optional(points) : std::nullopt;
 }
 
@@ -110,7 +114,8 @@ FrameCover::Outline FrameCover::filled(size_t number, const std::vector<Point>& 
                 return a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
             };
             Reach& reach = reached[size_t(band - first_band)];
-            for (const double x : {x_at(band * band_rows - picture_margin), x_at((band + 1) * band_rows + picture_margin)}) {
+            for (const double x :
+                 {x_at(band * band_rows - picture_margin), x_at((band + 1) * band_rows + picture_margin)}) {
                 reach.low = std::min(reach.low, x);
                 reach.high = std::max(reach.high, x);
             }
@@ -124,7 +129,8 @@ FrameCover::Outline FrameCover::filled(size_t number, const std::vector<Point>& 
     for (const Reach& reach : reached) {
         const double low = std::floor(reach.low - picture_margin), high = std::ceil(reach.high + picture_margin);
         const bool any = low < rect_.width && high > 0;
-        outline.runs.push_back(any ? PixelRun{int(std::max(low, 0.0)), int(std::min(high, double(rect_.width)))} : PixelRun());
+        outline.runs.push_back(any ? PixelRun{int(std::max(low, 0.0)), int(std::min(high, double(rect_.width)))}
+                                   : PixelRun());
     }
     return outline;
 }
@@ -135,7 +141,8 @@ void FrameCover::add(Outline outline) {
         if (run.begin == run.end) continue;
         std::vector<PixelRun>& runs = bands_[size_t(outline.first_band) + i];
         // Those that it meets become part of it.
-        const auto begin = std::find_if(runs.begin(), runs.end(), [&](const PixelRun& r) { return r.end >= run.begin; });
+        const auto begin =
+            std::find_if(runs.begin(), runs.end(), [&](const PixelRun& r) { return r.end >= run.begin; });
         const auto end = std::find_if(begin, runs.end(), [&](const PixelRun& r) { return r.begin > run.end; });
         for (auto r = begin; r != end; ++r) run = {std::min(run.begin, r->begin), std::max(run.end, r->end)};
         runs.insert(runs.erase(begin, end), run);

@@ -19,8 +19,8 @@ struct PixelRun {
     bool operator==(const PixelRun&) const = default;
 };
 
-/// By bands of rows of a frame's rectangle, the columns whose pixels may show something. Conservative: hulls are grown by far
-/// more than rounding moves a ray or a face (some u M). No ray is needed anywhere else.
+/// By bands of rows of a frame's rectangle, the columns whose pixels may show something. Conservative: hulls are grown
+/// by far more than rounding moves a ray or a face (some u M). No ray is needed anywhere else.
 class FrameCover {
   public:
     static constexpr int band_rows = 4;

@@ -55,8 +55,8 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     return frame;
 }
 
-/// The index in effect_masks of what renders a frame of a scene that calls for `effects`. After camera_solids, as a camera
-/// in a body adds to them.
+/// The index in effect_masks of what renders a frame of a scene that calls for `effects`. After camera_solids, as a
+/// camera in a body adds to them.
 inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.unshadowed) return unshadowed_mask;
     const uint32_t of_camera = frame.camera_media.empty() ? 0u : uint32_t(effect_insides);
@@ -65,7 +65,8 @@ inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const Fr
 
 /// A film of the right size for a frame, its pixels unset.
 template <class Real>
-void prepare_film(Film& film, const FrameSettings& settings, const CompiledScene<Real>& scene, const CameraFrame& camera) {
+void prepare_film(Film& film, const FrameSettings& settings, const CompiledScene<Real>& scene,
+                  const CameraFrame& camera) {
     film.full_width = settings.full_width;
     film.full_height = settings.full_height;
     film.rect = settings.crop;

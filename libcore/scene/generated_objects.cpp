@@ -86,7 +86,8 @@ class Objects : Part {
         }
         ObjectDescription object;
         object.name = "object " + std::to_string(scene_.objects.size());
-        object.material = reused_ >= 0 && !textured && random_.chance(0.2) ? reused_ : materials_.add(see_through, textured);
+        object.material =
+            reused_ >= 0 && !textured && random_.chance(0.2) ? reused_ : materials_.add(see_through, textured);
         if (scene_.materials[static_cast<size_t>(object.material)].texture < 0) reused_ = object.material;
         object.shape = std::move(shape);
         scene_.objects.push_back(std::move(object));

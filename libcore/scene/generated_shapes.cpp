@@ -40,8 +40,7 @@ Shape Shapes::closed_mesh(const dvec3& center, double radius) {
     const dvec3 turn = degrees();
     switch (random_.below(5)) {
         case 0:
-            return placed(bumpy_sphere(static_cast<uint32_t>(random_.of({60, 200, 700, 1500}))), center, radius,
-                          turn);
+            return placed(bumpy_sphere(static_cast<uint32_t>(random_.of({60, 200, 700, 1500}))), center, radius, turn);
         case 1: {
             const uint32_t around = 5 + random_.below(28);
             return placed(torus(0.7, 0.3, around, 4 + random_.below(12)), center, radius, turn);

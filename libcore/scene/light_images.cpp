@@ -11,7 +11,8 @@
 namespace cistula {
 namespace {
 
-/// Images that together hold more pixels, in windows of a mirror or in pictures, are one: any light may show all over it.
+/// Images that together hold more pixels, in windows of a mirror or in pictures, are one: any light may show all over
+/// it.
 constexpr int64_t overlap = 4, straight_overlap = 16;
 /// By so much of M a line that was mirrored once may be off, and more: its direction by a few u, its start by some u M.
 constexpr double mirrored_share = 0x1p-14;
@@ -26,13 +27,16 @@ Range range_of(double x, double z, double radius) {
     if (!(square > 0)) return {-infinity, infinity};
     const double reach = std::sqrt(square);  // to where lines touch it
     const double z_low = z * reach + x * radius, z_high = z * reach - x * radius;
-    return {z_low > 0 ? (x * reach - z * radius) / z_low : -infinity, z_high > 0 ? (x * reach + z * radius) / z_high : infinity};
+    return {z_low > 0 ? (x * reach - z * radius) / z_low : -infinity,
+            z_high > 0 ? (x * reach + z * radius) / z_high : infinity};
 }
 
 /// The whole pixels from `low` to `high`, within [begin, end]; all of these if nobody knows.
 void clip(double low, double high, int begin, int end, int& first, int& size) {
     if (!(low <= high)) low = begin, high = end;
-    const auto inside = [&](double value) { return std::clamp(value, double(begin), double(end)); };  // whatever fits no int
+    const auto inside = [&](double value) {
+        return std::clamp(value, double(begin), double(end));
+    };  // whatever fits no int
     first = int(std::floor(inside(low - picture_margin)));
     size = int(std::ceil(inside(high + picture_margin))) - first;
 }
@@ -59,8 +63,8 @@ PixelRect window_of(const FrameCover& cover, size_t hull) {
     return {0, 0, rect.width, rect.height};
 }
 
-/// Whether the mask that runs asks what mirrors show. Adaptive frames do not: on the CPU they run with all effects, and on
-/// devices a warp renders pixels of several blocks.
+/// Whether the mask that runs asks what mirrors show. Adaptive frames do not: on the CPU they run with all effects, and
+/// on devices a warp renders pixels of several blocks.
 bool asks_mirrors(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.adaptive()) return false;
     const uint32_t mask = effect_masks[mask_to_run(effects, settings, frame)];
@@ -77,7 +81,8 @@ LitCells::LitCells(const LightImages& images, int width, int height)
     const auto for_each_cell = [&](const PixelRect& rect, const auto& visit) {
         const int first = rect.x / width, end = (rect.x + rect.width + width - 1) / width;
         for (int row = rect.y / height; row * height < rect.y + rect.height; ++row)
-            for (int column = first; column < end; ++column) visit(indices_[size_t(row) * size_t(columns_) + size_t(column)]);
+            for (int column = first; column < end; ++column)
+                visit(indices_[size_t(row) * size_t(columns_) + size_t(column)]);
     };
     uint64_t unlisted = 0;  // mirrors
     for (const LightImage& image : images.images())
@@ -106,7 +111,8 @@ LitCells::LitCells(const LightImages& images, int width, int height)
         for_each_cell(image.rect, [&](uint32_t index) {
             LitCell& cell = cells_[index];
             cell.mirrors |= uint64_t{1} << image.mirror;
-            if (listed && has_list[index]) lights_[cell.first + cell.count++] = ShownLight::of(image.light, image.mirror);
+            if (listed && has_list[index])
+                lights_[cell.first + cell.count++] = ShownLight::of(image.light, image.mirror);
         });
     }
 }
@@ -135,10 +141,10 @@ PixelRect LightView::image_of(const Vec3<double>& center, double radius) const {
         return {};
     const Range across = range_of(x, z, radius), upward = range_of(y, z, radius);
     PixelRect image;
-    clip(middle_x_ + across.low * pixels_, middle_x_ + across.high * pixels_, window_.x, window_.x + window_.width, image.x,
-         image.width);
-    clip(middle_y_ - upward.high * pixels_, middle_y_ - upward.low * pixels_, window_.y, window_.y + window_.height, image.y,
-         image.height);
+    clip(middle_x_ + across.low * pixels_, middle_x_ + across.high * pixels_, window_.x, window_.x + window_.width,
+         image.x, image.width);
+    clip(middle_y_ - upward.high * pixels_, middle_y_ - upward.low * pixels_, window_.y, window_.y + window_.height,
+         image.y, image.height);
     return image.width > 0 && image.height > 0 ? image : PixelRect();
 }
 
@@ -172,8 +178,8 @@ LightImages light_images(const CompiledScene<Real>& scene, const FrameView& fram
     };
     const double growth = picture_growth(frame, extent);
     const PixelRect all = {0, 0, cover.rect().width, cover.rect().height};
-    add(LightView(frame, frame.camera, cover.rect(), all), all, straight_overlap * area(all), MirrorNumbers::straight, growth,
-        [](const Vec3<double>&, double) { return true; });
+    add(LightView(frame, frame.camera, cover.rect(), all), all, straight_overlap * area(all), MirrorNumbers::straight,
+        growth, [](const Vec3<double>&, double) { return true; });
     if (!asks_mirrors(scene.effects, settings, frame)) return images;
     const std::vector<MirrorPlane> planes = mirror_planes(scene.view());
     if (!planes.empty()) images.know_mirrors();
@@ -187,15 +193,17 @@ LightImages light_images(const CompiledScene<Real>& scene, const FrameView& fram
         const PixelRect window = window_of(cover, mirror.solid);
         if (area(window) == 0) continue;
         const double toward = side > 0 ? 1 : -1;  // the camera's side, from which lines come and to which they return
-        add(LightView(frame, mirrored(frame.camera, mirror), cover.rect(), window), window, overlap * area(window), mirror.number,
-            off, [&](const Vec3<double>& center, double reach) {
+        add(LightView(frame, mirrored(frame.camera, mirror), cover.rect(), window), window, overlap * area(window),
+            mirror.number, off, [&](const Vec3<double>& center, double reach) {
                 return !(toward * (dot(mirror.normal, center) - mirror.offset) < -reach);
             });
     }
     return images;
 }
 
-template LightImages light_images(const CompiledScene<float>&, const FrameView&, const FrameSettings&, const FrameCover&);
-template LightImages light_images(const CompiledScene<double>&, const FrameView&, const FrameSettings&, const FrameCover&);
+template LightImages light_images(const CompiledScene<float>&, const FrameView&, const FrameSettings&,
+                                  const FrameCover&);
+template LightImages light_images(const CompiledScene<double>&, const FrameView&, const FrameSettings&,
+                                  const FrameCover&);
 
 }  // namespace cistula

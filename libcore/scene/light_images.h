@@ -1,5 +1,5 @@
-// Where in a picture lines from the camera may come upon seen lights: straight on, or where the first mirror that they meet
-// sends them. What a plane mirror shows is what a camera beyond it would see.
+// Where in a picture lines from the camera may come upon seen lights: straight on, or where the first mirror that they
+// meet sends them. What a plane mirror shows is what a camera beyond it would see.
 #pragma once
 
 #include <vector>
@@ -73,8 +73,8 @@ class LitCells {
     std::vector<ShownLight> lights_;
 };
 
-/// A camera, or its image behind a mirror, that looks through a window of the picture: pixels from the top left corner of
-/// a frame's rectangle.
+/// A camera, or its image behind a mirror, that looks through a window of the picture: pixels from the top left corner
+/// of a frame's rectangle.
 class LightView {
   public:
     LightView(const FrameView& frame, const Camera& camera, const PixelRect& rect, const PixelRect& window);

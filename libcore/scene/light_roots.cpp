@@ -29,7 +29,8 @@ template <class Real>
 bool any_touches(const SceneView<Real>& scene, const Solid& solid, int32_t child) {
     if (child < 0) return touches(scene, solid, scene.seen_lights[uint32_t(~child)]);
     bool any = false;
-    for_each_child(scene.seen_tree[uint32_t(child)], [&](int32_t next) { any = any || any_touches(scene, solid, next); });
+    for_each_child(scene.seen_tree[uint32_t(child)],
+                   [&](int32_t next) { any = any || any_touches(scene, solid, next); });
     return any;
 }
 

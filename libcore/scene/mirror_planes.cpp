@@ -21,8 +21,9 @@ uint32_t faces_of(const SceneView<Real>& scene, uint32_t index) {
     const Solid& solid = scene.solids[index];
     if (solid.kind == SolidKind::convex) return 2 * solid.slab_count;
     uint32_t faces = 0;
-    for_each_triangle(scene, index,
-                      [&](uint32_t triangle, uint32_t) { faces = std::max(faces, triangle - solid.first_triangle + 1); });
+    for_each_triangle(scene, index, [&](uint32_t triangle, uint32_t) {
+        faces = std::max(faces, triangle - solid.first_triangle + 1);
+    });
     return faces;
 }
 
@@ -39,7 +40,8 @@ MirrorPlane plane_of_triangle(const SceneView<Real>& scene, uint32_t slot) {
         low = std::min(low, offset);
         high = std::max(high, offset);
         for (const Apex<Real>& apex : sides.apex)
-            plane.shift = std::max(plane.shift, double(apex.share) * length(Vec3<double>(apex.place) - Vec3<double>(c)));
+            plane.shift =
+                std::max(plane.shift, double(apex.share) * length(Vec3<double>(apex.place) - Vec3<double>(c)));
     }
     plane.offset = (low + high) / 2;
     plane.thickness = (high - low) / 2;
@@ -88,7 +90,8 @@ std::vector<MirrorPlane> mirror_planes(const SceneView<Real>& scene) {
                 add(plane.face, {0, 0, plane.normal / size, plane.offset / size});
             }
         else
-            for_each_triangle(scene, i, [&](uint32_t triangle, uint32_t slot) { add(triangle, plane_of_triangle(scene, slot)); });
+            for_each_triangle(scene, i,
+                              [&](uint32_t triangle, uint32_t slot) { add(triangle, plane_of_triangle(scene, slot)); });
     }
     return planes;
 }

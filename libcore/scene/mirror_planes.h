@@ -12,8 +12,8 @@ namespace cistula {
 template <class Real>
 MirrorNumbers number_mirrors(const SceneView<Real>& scene);
 
-/// A face that has a number. Points of it are within `thickness` of the plane; `shift`: how far from where they meet it the
-/// lines start that it sends back, beyond rounding.
+/// A face that has a number. Points of it are within `thickness` of the plane; `shift`: how far from where they meet it
+/// the lines start that it sends back, beyond rounding.
 struct MirrorPlane {
     uint32_t number, solid;
     Vec3<double> normal;  // unit; not finite for a triangle without area

@@ -6,9 +6,9 @@
 
 namespace cistula {
 
-/// The outlines of convex solids as the plane of each sheet that mirrors shows them to the camera, by the solids' numbers; of a
-/// sheet that is not flat, as its first triangle's does. They go on beyond the sheet, and nothing hides them. None in scenes of
-/// more than a SmallScene holds. `rect`: of the frame.
+/// The outlines of convex solids as the plane of each sheet that mirrors shows them to the camera, by the solids'
+/// numbers; of a sheet that is not flat, as its first triangle's does. They go on beyond the sheet, and nothing hides
+/// them. None in scenes of more than a SmallScene holds. `rect`: of the frame.
 template <class Real>
 FrameCover mirrored_cover(const CompiledScene<Real>& scene, const FrameView& frame, const PixelRect& rect);
 

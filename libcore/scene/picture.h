@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include <glm/vec3.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 namespace cistula {
 
@@ -21,16 +21,17 @@ struct ColorPicture {
 
 /// What is written to an EXR: named channels of width x height floats each, row-major from the top left.
 struct LayeredPicture {
-    int width = 0, height = 0;            // of the data window
-    int x = 0, y = 0;                     // its top left in the display window
+    int width = 0, height = 0;  // of the data window
+    int x = 0, y = 0;           // its top left in the display window
     int display_width = 0, display_height = 0;
     struct Channel {
-        std::string name;                 // "R", "error.R", "Z", "N.X", ...
-        bool half = false;                // stored as half; id, Z, samples, cost are always float
+        std::string name;   // "R", "error.R", "Z", "N.X", ...
+        bool half = false;  // stored as half; id, Z, samples, cost are always float
         std::vector<float> values;
     };
     std::vector<Channel> channels;
-    /// Header attributes, written in the order of their names. 16 floats become an M44f (row-vector convention of OpenEXR).
+    /// Header attributes, written in the order of their names. 16 floats become an M44f (row-vector convention of
+    /// OpenEXR).
     std::map<std::string, std::variant<std::string, int, double, std::vector<float>>> attributes;
 };
 

@@ -19,15 +19,15 @@ enum class Intersection { exact, native };
 
 struct FrameSettings {
     int full_width = 640, full_height = 480;
-    PixelRect crop;            // the pixels to render; all: {0, 0, full_width, full_height}
-    int supersample = 1;       // k: a k x k grid per pixel
-    int depth = 4;             // 1 to 1,024
-    double cutoff = 0;         // error budget per pixel in the scene's radiance units
-    double target_error = 0;   // above 0: samples of the 16 x 16 lattice as needed, and a quarter of it for the cutoff
-    int max_samples = 256;     // of a pixel, where there is a target: 5 to 256
-    uint32_t effects = 0;      // mask to run; 0: the least that contains what the scene requires
-    bool unshadowed = false;   // for measuring what shadows cost: the image is wrong; not with a target error
-    int tile = 16;             // pixels along a tile's side; never changes the image
+    PixelRect crop;           // the pixels to render; all: {0, 0, full_width, full_height}
+    int supersample = 1;      // k: a k x k grid per pixel
+    int depth = 4;            // 1 to 1,024
+    double cutoff = 0;        // error budget per pixel in the scene's radiance units
+    double target_error = 0;  // above 0: samples of the 16 x 16 lattice as needed, and a quarter of it for the cutoff
+    int max_samples = 256;    // of a pixel, where there is a target: 5 to 256
+    uint32_t effects = 0;     // mask to run; 0: the least that contains what the scene requires
+    bool unshadowed = false;  // for measuring what shadows cost: the image is wrong; not with a target error
+    int tile = 16;            // pixels along a tile's side; never changes the image
 
     bool operator==(const FrameSettings&) const = default;
 

@@ -111,8 +111,9 @@ class Explainer {
                         const bool gray = tint.x == tint.y && tint.y == tint.z;
                         return passes(*u.material) && !gray ? std::string("has a tint") : std::string();
                     });
-        by_material(effect_solids, "there is no convex solid",
-                    [](const MaterialUse& u) { return u.convex ? std::string("is on a convex solid") : std::string(); });
+        by_material(effect_solids, "there is no convex solid", [](const MaterialUse& u) {
+            return u.convex ? std::string("is on a convex solid") : std::string();
+        });
         by_material(effect_triangles, "there is neither mesh nor sheet",
                     [](const MaterialUse& u) { return u.convex ? std::string() : std::string("is on triangles"); });
         by_material(effect_insides, "no closed body lets rays pass; a camera in one adds it", [](const MaterialUse& u) {
@@ -120,7 +121,9 @@ class Explainer {
         });
         const bool on_face = lit_ && !lamp_on_face_.empty();
         reasons_.push_back({effect_lights_on_faces, on_face,
-                            on_face ? lamp_on_face_ : lit_ ? "no lamp lies on a face" : no_light_});
+                            on_face ? lamp_on_face_
+                            : lit_  ? "no lamp lies on a face"
+                                    : no_light_});
         return std::move(reasons_);
     }
 

@@ -25,12 +25,13 @@ struct MaterialUse {
 };
 
 /// One entry per effect, in the order of the bits. `uses` in file order; lights are those that light or are seen.
-/// `lamp_on_face`: which lamp lies on a face, and where ("the light /lights/0 lies on a face of /objects/2"); empty: none.
+/// `lamp_on_face`: which lamp lies on a face, and where ("the light /lights/0 lies on a face of /objects/2"); empty:
+/// none.
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
                                           const std::string& lamp_on_face);
 
-/// Opens the meshes that the scene names, but no textures. What lies on a face does so in single precision. Throws Error as
-/// compile_scene does.
+/// Opens the meshes that the scene names, but no textures. What lies on a face does so in single precision. Throws
+/// Error as compile_scene does.
 std::vector<EffectReason> explain_effects(const SceneDescription& scene);
 
 /// The names of the effects in a mask, in the order of the bits.

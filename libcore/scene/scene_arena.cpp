@@ -43,7 +43,8 @@ template <class Real>
 SceneView<Real> SceneArena<Real>::at(const void* base) const {
     SceneView<Real> view = offsets_;
     for_each_span(view, [&]<class T>(Span<T>& span) {
-        span.data = reinterpret_cast<const T*>(reinterpret_cast<uintptr_t>(base) + reinterpret_cast<uintptr_t>(span.data));
+        span.data =
+            reinterpret_cast<const T*>(reinterpret_cast<uintptr_t>(base) + reinterpret_cast<uintptr_t>(span.data));
     });
     return view;
 }

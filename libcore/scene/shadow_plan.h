@@ -1,5 +1,5 @@
-// Which primitives can lie between a solid and a light at all: found once for a small scene, so that most shadow rays are
-// spared most of them.
+// Which primitives can lie between a solid and a light at all: found once for a small scene, so that most shadow rays
+// are spared most of them.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@ namespace cistula {
 template <class Real>
 void plan_shadows(const SceneView<Real>& scene, ShadowPlan& plan);
 
-/// The form of a scene that a plain loop reads, with all that is found out for it beforehand; null where it fits into none. `here` and `there` as of
-/// SmallScene::assign.
+/// The form of a scene that a plain loop reads, with all that is found out for it beforehand; null where it fits into
+/// none. `here` and `there` as of SmallScene::assign.
 template <class Real>
 std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& here, const SceneView<Real>& there);
 template <class Real>

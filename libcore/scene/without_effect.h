@@ -9,8 +9,8 @@
 namespace cistula {
 
 /// The scene with `effect`, one bit, taken out of its materials, lights or objects and as little else as that allows
-/// (docs/effects.md); lamps that a scene places on a face by hand stay. Nothing for shadows, which no description leaves out (FrameSettings::unshadowed), and where
-/// nothing would be left to render.
+/// (docs/effects.md); lamps that a scene places on a face by hand stay. Nothing for shadows, which no description
+/// leaves out (FrameSettings::unshadowed), and where nothing would be left to render.
 std::optional<SceneDescription> without_effect(const SceneDescription& scene, uint32_t effect);
 
 }  // namespace cistula

@@ -76,7 +76,8 @@ inline SceneDescription scene_of(const std::vector<Body>& bodies, Form form, con
 }
 
 /// Where bodies are in the frame: the place of x = y = z = 0 and the three axes, the first twelve numbers of a case.
-inline void place_numbers(const glm::dvec3& turn, const glm::dvec3& center, double factor, std::vector<double>& numbers) {
+inline void place_numbers(const glm::dvec3& turn, const glm::dvec3& center, double factor,
+                          std::vector<double>& numbers) {
     const Rotation rotation(turn);
     for (const glm::dvec3& v :
          {-center * factor, rotation({factor, 0, 0}), rotation({0, factor, 0}), rotation({0, 0, factor})})

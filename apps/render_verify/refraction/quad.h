@@ -23,11 +23,11 @@ inline Quad root(Quad a) {
 enum RecordField : uint32_t {
     record_from,
     record_to,
-    record_direction,                          // 3
-    record_normal = record_direction + 3,      // 3
-    record_total = record_normal + 3,          // 1 or 0
-    record_reflectance,                        // a pair
-    record_through = record_reflectance + 2,   // 3 pairs
+    record_direction,                         // 3
+    record_normal = record_direction + 3,     // 3
+    record_total = record_normal + 3,         // 1 or 0
+    record_reflectance,                       // a pair
+    record_through = record_reflectance + 2,  // 3 pairs
     record_size = record_through + 6,
 };
 

@@ -52,7 +52,8 @@ struct FromOutside {
         const Vec3<Real> found = intersector.template transmittance<All>(shadow);
         tally.expect(found == Vec3<Real>(halvings < 0 ? Real(0) : parity::two_to<Real>(-halvings)));
         if (halvings < 0)
-            tally.expect(intersector.template transmittance<Effects<opaque_bodies | effect_lights_on_faces>>(shadow) == Real(0));
+            tally.expect(intersector.template transmittance<Effects<opaque_bodies | effect_lights_on_faces>>(shadow) ==
+                         Real(0));
     }
 };
 

@@ -57,7 +57,8 @@ struct ThroughSheets {
         const uint32_t light = draw.below(setup.scene.lights.size);
         const Vec3<double> from(setup.scene.lights[light].position),
             axis(setup.numbers[0], setup.numbers[1], setup.numbers[2]);
-        // At a corner, an edge or a diagonal of some sheet; every third line somewhere near, so that all go through all sheets.
+        // At a corner, an edge or a diagonal of some sheet; every third line somewhere near, so that all go through all
+        // sheets.
         Vec3<double> target(setup.point(draw.below(setup.points.size)));
         const Vec3<double> aside = draw.in_cube<double>(0.03125);
         if (draw.one_in(3)) target += aside;

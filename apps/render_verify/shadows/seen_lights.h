@@ -10,7 +10,8 @@ namespace cistula::verify::shadows {
 /// A tree over lights against the plain loop.
 struct SeenLightTree {
     static constexpr const char* name = "shadows/seen-lights/tree";
-    static constexpr const char* exact = "(t, light) of trees over seen lights, anywhere or on edges, equals a plain loop's";
+    static constexpr const char* exact =
+        "(t, light) of trees over seen lights, anywhere or on edges, equals a plain loop's";
     static constexpr Bound bound = no_failures("rays");
     static constexpr bool own_traversal = true, needs_witness = true;
 
@@ -37,14 +38,16 @@ struct SeenLightTree {
         for (const double radius : {0x1p-4, 0x1p-8, 0x1p-14}) {
             SceneDescription scene = lit_scene();
             double k = 0;
-            for (const PlatonicSolid shape : {PlatonicSolid::tetrahedron, PlatonicSolid::cube, PlatonicSolid::octahedron,
-                                              PlatonicSolid::dodecahedron, PlatonicSolid::icosahedron}) {
+            for (const PlatonicSolid shape :
+                 {PlatonicSolid::tetrahedron, PlatonicSolid::cube, PlatonicSolid::octahedron,
+                  PlatonicSolid::dodecahedron, PlatonicSolid::icosahedron}) {
                 SolidObject solid = solid_object(shape, {k - 2, k * 0.25 - 0.5, 0.125 * k}, 0.5, {17 * k, 41, 73});
                 solid.edge_lights = {6, glm::dvec3(0), glm::dvec3(1), radius, false};
                 add_solid(scene, Shape::planes, solid);
                 ++k;
             }
-            plan.add("on edges, radius " + std::to_string(radius), scene, SeenLightTree(), {}, plan.rays(100'000, 2500));
+            plan.add("on edges, radius " + std::to_string(radius), scene, SeenLightTree(), {},
+                     plan.rays(100'000, 2500));
         }
     }
 
