@@ -1,4 +1,4 @@
-// The host's launcher: render_pixel for any intersector, or packets of pixels, over tiles that TBB spreads.
+// The host's launcher: render_pixel for any intersector, over tiles that TBB spreads.
 #pragma once
 
 #include <immintrin.h>
@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "backend_embree/packet_tracer.h"
 #include "cistula/adaptive_pixel.h"
 #include "cistula/bvh.h"
 #include "scene/frame_contents.h"
@@ -59,11 +58,11 @@ Intersector among_lights(const Intersector& intersector, [[maybe_unused]] const 
     return here;
 }
 
-/// Calls render(x, y, count, writer, records, rays, flags) for runs of pixels of the film that may show something, in
-/// tiles.
+/// Calls render(x, y, shown, record, work) for each pixel of the film that may show something, in tiles.
 template <class Render>
-bool for_each_run(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
-                  const Render& render) {
+bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
+                    const Render& render) {
+    const LitCells lights(contents.lights, lit_cell, lit_cell);
     const PixelRect rect = film.rect;
     const int tile = settings.tile, columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
     std::mutex totals;
@@ -75,10 +74,18 @@ bool for_each_run(const FrameSettings& settings, const FrameContents& contents, 
             RayCounts rays;
             uint32_t flags = 0;
             const PixelWriter writer;
+            const auto render_run = [&](int begin, int end, int y, PixelRecord* pixels) {
+                for (int x = begin; x < end && !progress.stop.load(std::memory_order_relaxed); ++x) {
+                    PixelWork own;
+                    render(rect.x + x, rect.y + y, lights.at(x / lit_cell, y / lit_cell), pixels[x - begin], own);
+                    rays.add(own.rays);
+                    flags |= own.flags;
+                }
+            };
             for (int y = y0; y < y1; ++y)
                 contents.cover.for_each_part(y, x0, x1, [&](int begin, int end, bool covered) {
                     PixelRecord* pixels = &film.pixels[size_t(y) * size_t(rect.width) + size_t(begin)];
-                    if (covered) return render(rect.x + begin, rect.y + y, end - begin, writer, pixels, rays, flags);
+                    if (covered) return render_run(begin, end, y, pixels);
                     writer.fill(pixels, size_t(end - begin), contents.background.record);
                     contents.background.count(uint64_t(end - begin), rays, flags);
                 });
@@ -93,51 +100,15 @@ bool for_each_run(const FrameSettings& settings, const FrameContents& contents, 
     return !progress.stop.load();
 }
 
-/// Calls render(x, y, shown, record, work) for each pixel of such runs.
-template <class Render>
-bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
-                    const Render& render) {
-    const LitCells lights(contents.lights, lit_cell, lit_cell);
-    return for_each_run(
-        settings, contents, film, progress,
-        [&](int x, int y, int count, const PixelWriter&, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
-            for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); ++i) {
-                PixelWork own;
-                const int column = (x + i - film.rect.x) / lit_cell, row = (y - film.rect.y) / lit_cell;
-                render(x + i, y, lights.at(column, row), pixels[i], own);
-                rays.add(own.rays);
-                flags |= own.flags;
-            }
-        });
-}
-
-/// As render_tiles does, eight pixels at a time.
-template <class Real, class E>
-bool render_packets(const SmallScene<Real>& scene, const FrameView& frame, uint32_t in_view,
-                    const FrameSettings& settings, const FrameContents& contents, Film& film,
-                    RenderProgress& progress) {
-    return for_each_run(
-        settings, contents, film, progress,
-        [&](int x, int y, int count, const PixelWriter& writer, PixelRecord* pixels, RayCounts& rays, uint32_t& flags) {
-            PacketTracer<Real, E> tracer(scene, frame, in_view, progress.stop, rays, flags);
-            for (int i = 0; i < count && !progress.stop.load(std::memory_order_relaxed); i += lane_count)
-                tracer.render(x + i, y, std::min(count - i, lane_count), writer, pixels + i);
-        });
-}
-
 template <class Real, class E, class Intersector>
 bool render_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                   const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
-    if constexpr (fits_packets<E> && std::is_same_v<typename Intersector::Scene, SmallScene<Real>>) {
-        return render_packets<Real, E>(scene, frame, intersector.in_view, settings, contents, film, progress);
-    } else {
-        return for_each_pixel(settings, contents, film, progress,
-                              [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
-                                  StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-                                  render_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y,
-                                                        SampleRange(), pixel, own, stack);
-                              });
-    }
+    return for_each_pixel(settings, contents, film, progress,
+                          [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
+                              StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
+                              render_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y, SampleRange(),
+                                                    pixel, own, stack);
+                          });
 }
 
 /// Of a frame with a target error.
