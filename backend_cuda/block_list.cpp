@@ -16,52 +16,45 @@ constexpr int most_side_by_side = 16;
 
 /// Blocks of more weight come first: what takes longest, so that no block is long at work alone in the end. Where
 /// solids may show trees fork, and the more that may show the longer rays take. With one sample at 1280x720
-/// benchmark.json took 14 % less time so in float, and 4 % with 4x4. Blocks where mirrors alone may show solids come
-/// next: that spared it 1 % more (5 in double), and a frame of mirrors 7.
-constexpr int heaviest = 33;
-int weight_of(uint32_t in_view, bool is_mirrored) {
+/// benchmark.json took 14 % less time so in float, and 4 % with 4x4.
+constexpr int heaviest = 32;
+int weight_of(uint32_t in_view) {
     constexpr uint32_t solids = (1u << ShadowPlan::first_cluster) - 1;
-    return (in_view & solids) != 0 ? 1 + std::popcount(in_view) : is_mirrored ? 1 : 0;
+    return (in_view & solids) != 0 ? std::popcount(in_view) : 0;
 }
 
 }  // namespace
 
-BlockList::BlockList(const FrameCover& cover, const FrameCover& mirrored, const LitCells& lights,
-                     const std::vector<uint32_t>& primitives, const Strips& strips, const BlockPlan& plan)
+BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const Strips& strips,
+                     const BlockPlan& plan)
     : rect_(cover.rect()), strips_(strips), plan_(plan) {
     const BlockShape shape = this->shape();
     columns_ = (rect_.width + shape.width - 1) / shape.width;
     const int all = strips.count * (strip_rows / shape.height);
     listed_.assign(size_t(all) * size_t(columns_), 0);
     std::vector<uint32_t> in_view(listed_.size());
-    std::vector<uint8_t> is_mirrored(listed_.size());
     int rows = 0;  // that lie in the rectangle
     for (int i = 0; i < all && row_of(i) * shape.height < rect_.height; rows = ++i) {
         for_each_met(cover, i, [&](size_t block, size_t hull) {
             listed_[block] = 1;
             in_view[block] |= hull < primitives.size() ? primitives[hull] : ~0u;
         });
-        for_each_met(mirrored, i, [&](size_t block, size_t) { is_mirrored[block] = 1; });
     }
     listed_.resize(size_t(rows) * size_t(columns_));
     const size_t count = size_t(std::count(listed_.begin(), listed_.end(), 1));
     places_.reserve(count);
-    const size_t tiles = count * size_t(shape.tiles());
-    cells_.push_back(lights.cells().front());
-    if (lights.varies()) tiles_.reserve(tiles);
     const int groups = (columns_ + most_side_by_side - 1) / most_side_by_side, width = (columns_ + groups - 1) / groups;
     std::array<std::vector<size_t>, heaviest + 1> by_weight;
     for (int left = 0; left < columns_; left += width)
         for (int i = 0; i < rows; ++i)
             for (int column = left; column < std::min(left + width, columns_); ++column) {
                 const size_t block = size_t(i) * size_t(columns_) + size_t(column);
-                if (listed_[block]) by_weight[size_t(weight_of(in_view[block], is_mirrored[block]))].push_back(block);
+                if (listed_[block]) by_weight[size_t(weight_of(in_view[block]))].push_back(block);
             }
     for (int weight = heaviest; weight >= 0; --weight)
         for (const size_t block : by_weight[size_t(weight)]) {
             places_.push_back(
                 {uint16_t(block % size_t(columns_)), uint16_t(row_of(int(block / size_t(columns_)))), in_view[block]});
-            if (lights.varies()) add_tiles(places_.back(), lights, listed_per_tile * tiles);
         }
 }
 
@@ -74,23 +67,6 @@ void BlockList::for_each_met(const FrameCover& cover, int i, const Visit& visit)
             const PixelRun run = outline.run(row);
             for (int x = run.begin; x < run.end; x += shape.width - x % shape.width)
                 visit(size_t(i) * size_t(columns_) + size_t(x / shape.width), outline.hull);
-        }
-}
-
-void BlockList::add_tiles(const BlockPlace& place, const LitCells& lights, size_t most_listed) {
-    const int across = shape().width / tile_width, down = shape().height / tile_height;
-    for (int y = place.row * down; y < (place.row + 1) * down; ++y)
-        for (int x = place.column * across; x < (place.column + 1) * across; ++x) {
-            const bool is_beyond = x * tile_width >= rect_.width || y * tile_height >= rect_.height;
-            const uint32_t index = is_beyond ? 0 : lights.index_at(x, y);
-            tiles_.push_back(index == 0 ? 0 : uint32_t(cells_.size()));
-            if (index == 0) continue;
-            LitCell cell = lights.cells()[index];
-            const auto list = lights.lights().begin() + cell.first;
-            if (shown_.size() + cell.count > most_listed) cell.count = 0;
-            cell.first = uint32_t(shown_.size());
-            shown_.insert(shown_.end(), list, list + cell.count);
-            cells_.push_back(cell);
         }
 }
 

@@ -21,21 +21,13 @@ struct Strips {
 class BlockList {
   public:
     BlockList() = default;
-    /// `mirrored`: where mirrors may show solids (mirrored_cover), and `lights`, by cells of tile_width x tile_height,
-    /// are of the cover's rectangle. primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all
-    /// primitives where it has no such number.
-    BlockList(const FrameCover& cover, const FrameCover& mirrored, const LitCells& lights,
-              const std::vector<uint32_t>& primitives, const Strips& strips, const BlockPlan& plan);
+    /// primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all primitives where it has no such
+    /// number.
+    BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const Strips& strips,
+              const BlockPlan& plan);
 
     /// In the order in which they are rendered.
     const std::vector<BlockPlace>& places() const { return places_; }
-    /// By places, shape().tiles() for each: which of cells() that part is. Empty: the first is all of them.
-    const std::vector<uint32_t>& tiles() const { return tiles_; }
-    /// No more than there are tiles, and one.
-    const std::vector<LitCell>& cells() const { return cells_; }
-    /// Their lists: listed_per_tile a tile at the most, others are left out.
-    static constexpr size_t listed_per_tile = 4;
-    const std::vector<ShownLight>& shown() const { return shown_; }
     const BlockPlan& plan() const { return plan_; }
     BlockShape shape() const { return plan_.shape(); }
 
@@ -60,7 +52,6 @@ class BlockList {
     /// several times.
     template <class Visit>
     void for_each_met(const FrameCover& cover, int i, const Visit& visit) const;
-    void add_tiles(const BlockPlace& place, const LitCells& lights, size_t most_listed);
 
     /// In the rectangle, of the i-th row of blocks of the part.
     int row_of(int i) const {
@@ -80,9 +71,6 @@ class BlockList {
     int columns_ = 0;
     std::vector<uint8_t> listed_;  // by rows of blocks
     std::vector<BlockPlace> places_;
-    std::vector<uint32_t> tiles_;
-    std::vector<LitCell> cells_;
-    std::vector<ShownLight> shown_;
 };
 
 }  // namespace cistula

@@ -24,11 +24,6 @@ struct BlockShape {
     int width, height;
 
     CISTULA_INLINE constexpr int pixels() const { return width * height; }
-    /// Parts of tile_width x tile_height pixels, row by row.
-    CISTULA_INLINE constexpr int tiles() const { return pixels() / (tile_width * tile_height); }
-    CISTULA_INLINE constexpr int tile_of(int column, int row) const {
-        return row / tile_height * (width / tile_width) + column / tile_width;
-    }
 };
 
 struct PixelPlace {

@@ -10,7 +10,6 @@
 
 #include "backend_cuda/device_worker.h"
 #include "scene/frame_view.h"
-#include "scene/mirrored_cover.h"
 
 namespace cistula {
 namespace {
@@ -135,8 +134,6 @@ class CudaRenderer : public Renderer {
     struct Frame : Request {
         FrameView view;
         std::shared_ptr<const FrameContents> contents;
-        std::shared_ptr<const LitCells> lights;      // by tiles
-        std::shared_ptr<const FrameCover> mirrored;  // mirrored_cover
         BlockPlan plan;
         bool fits = true;  // the camera's list of media
         int mask = 0;
@@ -190,8 +187,6 @@ class CudaRenderer : public Renderer {
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
         frame.contents = std::make_shared<const FrameContents>(frame_contents(*scene_, frame.view, settings));
-        frame.lights = std::make_shared<const LitCells>(frame.contents->lights, tile_width, tile_height);
-        frame.mirrored = std::make_shared<const FrameCover>(mirrored_cover(*scene_, frame.view, rect));
         frame.plan = {deal_for(frame), warps_of_blocks(effect_masks[frame.mask])};
         constexpr int width = BlockPlan::width;
         const size_t strip_pixels = size_t((rect.width + width - 1) / width * width) * strip_rows;
@@ -266,8 +261,6 @@ class CudaRenderer : public Renderer {
             if (job.strips.count == 0) continue;
             job.frame = frame.view;
             job.contents = frame.contents;
-            job.lights = frame.lights;
-            job.mirrored = frame.mirrored;
             job.plan = frame.plan;
             job.first = first_pass(frame.settings);
             job.mask = frame.mask;

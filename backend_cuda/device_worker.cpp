@@ -154,13 +154,11 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, P
                  wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
     if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
     bool room = true;
-    // A block a tile at the most, and a cell more than tiles.
-    const size_t tiles = pixels / (tile_width * tile_height);
-    const size_t list_bytes = sizeof(LitCell) + tiles * (sizeof(LitCell) + sizeof(BlockPlace) + sizeof(uint32_t) +
-                                                         BlockList::listed_per_tile * sizeof(ShownLight));
+    // A block a tile at the most.
+    const size_t list_bytes = pixels / (tile_width * tile_height) * sizeof(BlockPlace);
     for (PartSlot& slot : slots_) {
-        room = room && slot.records.try_reserve(bytes) && slot.lists.try_reserve(list_bytes);
-        slot.lists_copy.reserve(list_bytes);
+        room = room && slot.records.try_reserve(bytes) && slot.blocks.try_reserve(list_bytes);
+        slot.blocks_copy.reserve(list_bytes);
     }
     for (DeviceMemory& queue : queue_) room = room && queue.try_reserve(wanted * branch);
     queue_capacity_ = wanted;
@@ -176,15 +174,9 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
-    slot.list = BlockList(part.contents->cover, *part.mirrored, *part.lights, primitives_, part.strips, part.plan);
+    slot.list = BlockList(part.contents->cover, primitives_, part.strips, part.plan);
     const std::vector<BlockPlace>& places = slot.list.places();
-    size_t listed = 0;  // bytes
-    const auto list = [&]<class T>(const std::vector<T>& items) {
-        const size_t begin = listed;
-        std::copy(items.begin(), items.end(), reinterpret_cast<T*>(slot.lists_copy.as<std::byte>() + begin));
-        listed += items.size() * sizeof(T);
-        return items.empty() ? nullptr : reinterpret_cast<const T*>(slot.lists.as<std::byte>() + begin);
-    };
+    std::copy(places.begin(), places.end(), slot.blocks_copy.as<BlockPlace>());
     const PixelRect& rect = part.contents->cover.rect();
     FrameJob job;
     job.frame = part.frame;
@@ -193,22 +185,15 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.y = rect.y;
     job.width = rect.width;
     job.height = rect.height;
-    job.first_cell = slot.list.cells().front();
-    // The strictest alignment first: each list then begins where its items may.
-    static_assert(alignof(LitCell) >= alignof(BlockPlace) && alignof(BlockPlace) >= alignof(uint32_t) &&
-                  alignof(uint32_t) >= alignof(ShownLight));
-    job.cells = list(slot.list.cells());
-    job.blocks = list(places);
-    job.tiles = list(slot.list.tiles());
-    job.shown = list(slot.list.shown());
+    job.blocks = slot.blocks.as<BlockPlace>();
     job.block_count = static_cast<unsigned int>(places.size());
     job.deal = slot.list.plan().deal;
     job.stop = stop_.as<unsigned int>();
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
-    CISTULA_CUDA_CHECK(
-        cudaMemcpyAsync(slot.lists.as<void>(), slot.lists_copy.as<void>(), listed, cudaMemcpyHostToDevice, compute_));
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.as<void>(), slot.blocks_copy.as<void>(),
+                                       places.size() * sizeof(BlockPlace), cudaMemcpyHostToDevice, compute_));
     const StreamGate::Hold held = gate_.hold(compute_);
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
     const auto queue = [&](int pass) {

@@ -26,8 +26,6 @@ void use_device(int device);
 struct FramePart {
     FrameView frame;
     std::shared_ptr<const FrameContents> contents;
-    std::shared_ptr<const LitCells> lights;      // by tiles
-    std::shared_ptr<const FrameCover> mirrored;  // mirrored_cover
     Strips strips;
     BlockPlan plan;
     Pass first = Pass::pixels;  // or adaptive_pixels
@@ -37,8 +35,8 @@ struct FramePart {
 
 /// A part on its way.
 struct PartSlot {
-    DeviceMemory records, lists, tally;
-    PinnedMemory lists_copy, tally_copy;
+    DeviceMemory records, blocks, tally;
+    PinnedMemory blocks_copy, tally_copy;
     CudaEvent begin, end, done;  // of the kernels; of all, the tally's copy too
     FramePart part;
     BlockList list;

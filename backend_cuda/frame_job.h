@@ -53,10 +53,6 @@ struct FrameJob {
     int x = 0, y = 0;  // of the rectangle in the frame
     int width = 0, height = 0;  // of the rectangle
     const BlockPlace* blocks = nullptr;
-    const uint32_t* tiles = nullptr;  // as in BlockList; null: all are the first cell
-    const LitCell* cells = nullptr;
-    const ShownLight* shown = nullptr;
-    LitCell first_cell;  // cells[0], here so that frames without images load none
     unsigned int block_count = 0;
     Deal deal = Deal::tiles;
     DeviceTally* tally = nullptr;

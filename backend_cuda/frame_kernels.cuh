@@ -116,17 +116,7 @@ __global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path>*
     Record& record = room.records[threadIdx.x];
     typename Stack::Room branches;
     Stack stack(branches, job, first + (shares ? unsigned(lane) : threadIdx.x));
-    ShownLights shown;
-    if constexpr (E::has(effect_visible_lights)) {
-        __shared__ Unset<BlockLights<threads>> lights;
-        LitCell& cell = lights.get().cells[threadIdx.x] = job.first_cell;
-        if (job.tiles != nullptr)
-            cell = job.cells[job.tiles[blockIdx.x * unsigned(shape.tiles()) +
-                                       unsigned(shape.tile_of(place.column, place.row))]];
-        shown = {&cell, job.shown};
-        __builtin_assume(shown.cell != nullptr);  // or every search asks, by the address of shared memory
-    }
-    const Intersector intersector = PathTraits<Real, E, path>::intersector(scene, block.in_view, shown);
+    const Intersector intersector = PathTraits<Real, E, path>::intersector(scene, block.in_view);
     const bool is_inside = column < job.width && row < job.height;
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);

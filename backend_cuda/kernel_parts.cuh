@@ -15,12 +15,6 @@ struct alignas(16) BlockRoom {
     PixelWork work[threads];
 };
 
-/// What its threads know of the lights where they render.
-template <int threads>
-struct BlockLights {
-    LitCell cells[threads];
-};
-
 /// Shared memory, unset: what it holds would be set by its constructors, of which the language allows none there.
 template <class T>
 struct alignas(T) Unset {
@@ -62,15 +56,13 @@ template <class Real, class E>
 struct PathTraits<Real, E, DevicePath::plain_loop> {
     using Scene = std::conditional_t<takes_opaque_scene(E::mask), OpaqueScene<Real>, SmallScene<Real>>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
-    __device__ static Intersector intersector(const Scene& scene, uint32_t in_view, const ShownLights& shown) {
-        return {scene, in_view, shown};
-    }
+    __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
 };
 template <class Real, class E>
 struct PathTraits<Real, E, DevicePath::tree> {
     using Scene = SceneView<Real>;
     using Intersector = BvhIntersector<Real, MediaList, Scene>;
-    __device__ static Intersector intersector(const Scene& scene, uint32_t, const ShownLights&) { return {scene}; }
+    __device__ static Intersector intersector(const Scene& scene, uint32_t) { return {scene}; }
 };
 
 /// Whether the host wants the kernel to end. Past the caches, which would keep what was there first.

@@ -47,22 +47,10 @@ class StoppableStack {
     const std::atomic<bool>& stop_;
 };
 
-/// Pixels along the side of a cell of LitCells.
-inline constexpr int lit_cell = 8;
-
-/// Looks for lights where they show.
-template <class Intersector>
-Intersector among_lights(const Intersector& intersector, [[maybe_unused]] const ShownLights& shown) {
-    Intersector here = intersector;
-    if constexpr (requires { here.shown; }) here.shown = shown;
-    return here;
-}
-
-/// Calls render(x, y, shown, record, work) for each pixel of the film that may show something, in tiles.
+/// Calls render(x, y, record, work) for each pixel of the film that may show something, in tiles.
 template <class Render>
 bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress,
                     const Render& render) {
-    const LitCells lights(contents.lights, lit_cell, lit_cell);
     const PixelRect rect = film.rect;
     const int tile = settings.tile, columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
     std::mutex totals;
@@ -77,7 +65,7 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
             const auto render_run = [&](int begin, int end, int y, PixelRecord* pixels) {
                 for (int x = begin; x < end && !progress.stop.load(std::memory_order_relaxed); ++x) {
                     PixelWork own;
-                    render(rect.x + x, rect.y + y, lights.at(x / lit_cell, y / lit_cell), pixels[x - begin], own);
+                    render(rect.x + x, rect.y + y, pixels[x - begin], own);
                     rays.add(own.rays);
                     flags |= own.flags;
                 }
@@ -103,12 +91,10 @@ bool for_each_pixel(const FrameSettings& settings, const FrameContents& contents
 template <class Real, class E, class Intersector>
 bool render_tiles(const typename Intersector::Scene& scene, const FrameView& frame, const Intersector& intersector,
                   const FrameSettings& settings, const FrameContents& contents, Film& film, RenderProgress& progress) {
-    return for_each_pixel(settings, contents, film, progress,
-                          [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
-                              StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-                              render_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y, SampleRange(),
-                                                    pixel, own, stack);
-                          });
+    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+        StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
+        render_pixel<Real, E>(scene, frame, intersector, x, y, SampleRange(), pixel, own, stack);
+    });
 }
 
 /// Of a frame with a target error.
@@ -117,12 +103,10 @@ bool render_adaptive_tiles(const typename Intersector::Scene& scene, const Frame
                            const Intersector& intersector, const FrameSettings& settings, const FrameContents& contents,
                            Film& film, RenderProgress& progress) {
     const bool gradual = shades_gradually(scene);
-    return for_each_pixel(settings, contents, film, progress,
-                          [&](int x, int y, const ShownLights& shown, PixelRecord& pixel, PixelWork& own) {
-                              StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
-                              render_adaptive_pixel<Real, E>(scene, frame, among_lights(intersector, shown), x, y,
-                                                             gradual, pixel, own, stack);
-                          });
+    return for_each_pixel(settings, contents, film, progress, [&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+        StoppableStack<StackOf<Real, E, typename Intersector::Media>> stack(progress.stop);
+        render_adaptive_pixel<Real, E>(scene, frame, intersector, x, y, gradual, pixel, own, stack);
+    });
 }
 
 template <class Real, class Intersector>

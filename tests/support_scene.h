@@ -237,13 +237,4 @@ inline void add_seen_lights(SceneDescription& scene, int count) {
     }
 }
 
-/// The lights that are listed for lines that a mirror shows.
-inline std::vector<uint32_t> listed_in(const ShownLights& shown, uint32_t mirror) {
-    std::vector<uint32_t> lights;
-    for (const ShownLight* next = shown.lights + shown.cell->first;
-         next != shown.lights + shown.cell->first + shown.cell->count; ++next)
-        if (next->mirror() == mirror) lights.push_back(next->light());
-    return lights;
-}
-
 }  // namespace cistula::test

@@ -153,39 +153,5 @@ TYPED_TEST(EdgeLights, AFewAreInNoTree) {
     EXPECT_GT(seen.lights, seen.rays / 10);
 }
 
-/// Calls visit(light) for all at or below a child of a node.
-template <class Visit>
-void for_each_light(const Span<LightNode>& tree, int32_t child, const Visit& visit) {
-    if (child < 0) return visit(uint32_t(~child));
-    const LightNode& node = tree[uint32_t(child)];
-    for (int i = 0; i < LightNode::width; ++i)
-        if (node.has_child(i)) for_each_light(tree, node.children.of[i], visit);
-}
-
-/// What ends within a solid begins there where all lights are that touch the solid, and few others.
-TYPED_TEST(EdgeLights, AreLookedForFromTheNodeOfASolid) {
-    const std::shared_ptr<const CompiledScene<TypeParam>> compiled = compile_scene<TypeParam>(edge_lit(6, 0.03));
-    const auto small = small_scene(compiled->view());
-    ASSERT_TRUE(small);
-    int below_the_root = 0;
-    for (const auto& listed : small->convex) {
-        std::set<uint32_t> below;
-        for_each_light(small->seen_tree, small->light_roots[listed.index],
-                       [&](uint32_t light) { below.insert(light); });
-        size_t near = 0;
-        for (uint32_t i = 0; i < small->seen_lights.size; ++i) {
-            // Lights on edges lie within the sphere around their solid, others far off here.
-            const auto off = Vec3<double>(small->seen_lights[i].center) - Vec3<double>(listed.solid.center);
-            if (dot(off, off) > 1.1 * double(listed.solid.padded_square)) continue;
-            ++near;
-            EXPECT_TRUE(below.contains(i)) << "light " << i << " of solid " << listed.index;
-        }
-        EXPECT_GT(near, 50u);
-        below_the_root += below.size() == near;
-    }
-    EXPECT_GE(below_the_root, 2);
-    EXPECT_EQ(small->light_roots[small->solids.size - 1], LightStack::root);  // the floor's
-}
-
 }  // namespace
 }  // namespace cistula

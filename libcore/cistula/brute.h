@@ -2,7 +2,6 @@
 #pragma once
 
 #include "cistula/shadow.h"
-#include "cistula/shown_lights.h"
 
 namespace cistula {
 
@@ -39,8 +38,6 @@ struct BruteIntersector {
     /// The primitives of a SmallScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of the
     /// picture, as long as they go straight on.
     uint32_t in_view = ~0u;
-    /// The seen lights that they can meet, or where a first mirror sends them.
-    ShownLights shown;
 
     /// The least (t, key) after ray.after that the primitive tests accept.
     template <class E = Effects<all_effects>>

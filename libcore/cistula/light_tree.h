@@ -51,8 +51,6 @@ class LightStack {
     /// The room apart, so that the rest stays in registers.
     CISTULA_INLINE explicit LightStack(Room& room) : waiting_(room) {}
 
-    /// For before the first pop: whether nothing was pushed yet.
-    CISTULA_INLINE bool is_new() const { return next_ == none; }
     CISTULA_INLINE void push(int32_t item) {
         if (next_ != none) waiting_[size_++] = next_;
         next_ = item;

@@ -29,10 +29,8 @@ template <class Real, class Media = MediaList, class Weight = Vec3<Real>>
 struct Branch {
     Ray<Real, Media> ray;
     Weight weight{Real(1)};
-    uint32_t depth : 29 = 0;  // surfaces above it
+    uint32_t depth : 30 = 0;  // surfaces above it
     uint32_t mirrored : 1 = 0;
-    uint32_t shown : 1 =
-        0;  // its line is the one on which the face that it left, a mirror, sends back one from the camera
     uint32_t dark : 1 = 0;  // its line is known to meet no seen light, however many faces it passes
 };
 
@@ -55,7 +53,6 @@ class WaitingBranch<Branch<Real, Media, Weight>> {
           from_face_(branch.ray.from_face),
           depth_(branch.depth),
           mirrored_(branch.mirrored),
-          shown_(branch.shown),
           dark_(branch.dark),
           media_(branch.ray.media) {}
 
@@ -72,7 +69,6 @@ class WaitingBranch<Branch<Real, Media, Weight>> {
         branch.weight = weight_;
         branch.depth = depth_;
         branch.mirrored = mirrored_;
-        branch.shown = shown_;
         branch.dark = dark_;
     }
 
@@ -81,7 +77,7 @@ class WaitingBranch<Branch<Real, Media, Weight>> {
     Weight weight_;
     Real after_;
     uint32_t key_[2], from_solid_, from_face_;
-    uint32_t depth_ : 29, mirrored_ : 1, shown_ : 1, dark_ : 1;
+    uint32_t depth_ : 30, mirrored_ : 1, dark_ : 1;
     Media media_;
 };
 
@@ -318,28 +314,11 @@ class RayTree {
     CISTULA_INLINE SeenHit<Real> light_before(const Hit<Real>& hit, Entry& branch) {
         if constexpr (lines_go_on<E>)
             if (branch.dark) return SeenHit<Real>();
-        ShownLights shown;
-        if constexpr (requires { intersector_.shown; }) shown = intersector_.shown;
-        const uint32_t mirror = mirror_of(branch);
-        const LitCell cell = shown.seen_in(mirror);
-        if (cell.is_dark(mirror)) {
-            branch.dark = lines_go_on<E>;
-            return SeenHit<Real>();
-        }
         const bool goes_on =
             lines_go_on<E> && hit.found() && int(branch.depth) + 1 < depth_ && transmits(scene_, key_solid(hit.key));
-        const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t,
-                                                      shown.lights, cell, mirror);
+        const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t);
         if (seen.light == no_light) branch.dark = goes_on;
         return seen.t <= hit.t ? seen : SeenHit<Real>();
-    }
-
-    /// What shows the branch's line to the camera, by MirrorNumbers.
-    CISTULA_INLINE uint32_t mirror_of([[maybe_unused]] const Entry& branch) const {
-        if (branch.ray.from_solid == no_solid) return MirrorNumbers::straight;
-        if constexpr (requires { scene_.mirrors; })
-            if (branch.shown) return scene_.mirrors.of(branch.ray.from_solid, branch.ray.from_face);
-        return MirrorNumbers::none;
     }
 
     /// Adds a face's local light. What it sends on waits, before the lights are looked at: nothing of the branch has to
@@ -392,13 +371,12 @@ class RayTree {
         child.mirrored = !goes_through;
         if (!goes_through) {
             spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
-            child.shown = lines_go_on<E> && E::has(effect_visible_lights) && parent.ray.from_solid == no_solid;
         } else if (shares.bends) {
             spawn(child.ray, far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit,
                   meeting.beyond);
         } else {
             child.ray = parent.ray;
-            if constexpr (lines_go_on<E>) child.shown = parent.shown, child.dark = parent.dark;
+            if constexpr (lines_go_on<E>) child.dark = parent.dark;
             Absorption<false> later;  // counted from there on
             pass(child.ray, meeting, later);
         }

@@ -3,7 +3,6 @@
 
 #include "cistula/edge_lights.h"
 #include "cistula/light_tree.h"
-#include "cistula/shown_lights.h"
 
 namespace cistula {
 
@@ -30,46 +29,26 @@ CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real
     if (t >= ray.after.t && (t < best.t || (t == best.t && index < best.light))) best = {t, index};
 }
 
-/// Where the walk of a line begins that ends at t_limit: what ends within a solid meets no light that is off it.
+/// The nearest seen light at or after ray.after and before t_limit.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE int32_t first_node([[maybe_unused]] const Scene& scene, [[maybe_unused]] const Ray<Real, Media>& ray,
-                                  [[maybe_unused]] Real t_limit) {
-    if constexpr (requires { scene.light_roots; })
-        if (const uint32_t around = ray.media.only(); around != no_solid && t_limit < RealTraits<Real>::infinity)
-            return scene.light_roots[around];
-    return LightStack::root;
-}
-
-/// The nearest seen light at or after ray.after and before t_limit, on a line that `mirror` shows in a part of the
-/// picture: `cell` with the lists of `shown`.
-template <class Real, class Media, class Scene>
-CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit,
-                                                const ShownLight* shown = nullptr, const LitCell& cell = {},
-                                                uint32_t mirror = MirrorNumbers::none) {
+CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit) {
     SeenHit<Real> best;
     best.t = t_limit;
     if (!is_finite(ray)) return best;
-    // What is listed, or in no tree, is looked at by the code that walks the tree.
-    static_assert(LitCell::most <= LightStack::capacity && fewest_in_light_tree <= LightStack::capacity);
+    // Lights that have no tree are looked at by the code that walks one.
+    static_assert(fewest_in_light_tree <= LightStack::capacity);
     LightStack::Room room;
     LightStack stack(room);
-    CISTULA_NOT_UNROLLED
-    for (uint32_t i = cell.first; i != cell.first + cell.count; ++i) {
-        const ShownLight next = shown[i];
-        if (next.mirror() == mirror) stack.push(~int32_t(next.light()));
-    }
     Real from = ray.after.t;
-    if (stack.is_new()) {
-        if (scene.seen_tree.empty()) {
-            CISTULA_NOT_UNROLLED
-            for (uint32_t i = 0; i < scene.seen_lights.size; ++i) stack.push(~int32_t(i));
-        } else {
-            stack.push(first_node(scene, ray, t_limit));
+    if (scene.seen_tree.empty()) {
+        CISTULA_NOT_UNROLLED
+        for (uint32_t i = 0; i < scene.seen_lights.size; ++i) stack.push(~int32_t(i));
+    } else {
+        stack.push(LightStack::root);
 #if !CISTULA_ON_DEVICE
-            from = greatest(from, Real(0));
-            if (!may_see_lights(scene, ray, from, t_limit)) return best;
+        from = greatest(from, Real(0));
+        if (!may_see_lights(scene, ray, from, t_limit)) return best;
 #endif
-        }
     }
     BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
     box_ray.near_limit = tree_near(from);

@@ -2,7 +2,6 @@
 // warp read at once. The same names as in SceneView, so that the same code reads either.
 #pragma once
 
-#include "cistula/shown_lights.h"
 #include "cistula/surface.h"
 #include "cistula/transmittance.h"
 #include "cistula/triangle.h"
@@ -38,7 +37,7 @@ struct InlineSpan {
 
 /// What is known of shadow rays before they are shot (plan_shadows, scene/shadow_plan.h).
 struct ShadowPlan {
-    static constexpr uint32_t solids = MirrorNumbers::solids, lights = 8, convex = 16, clusters = 4;
+    static constexpr uint32_t solids = 24, lights = 8, convex = 16, clusters = 4;
     static constexpr uint32_t first_cluster = convex;
     static_assert(solids <= 32 && first_cluster + clusters <= 32);
 
@@ -72,8 +71,6 @@ struct SmallScene {
     KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
     ShadowPlan plan;
     uint32_t clear_solids, transmitting_solids;  // bit i: solid i is of a clear material, or of one that transmits
-    int32_t light_roots[ShadowPlan::solids];  // of seen_tree, by convex solids: the node with all lights that touch it
-    MirrorNumbers mirrors;
     InlineSpan<Texture, 8> textures;
     // Elsewhere, as in the view that it was made of:
     Span<SlabGroup<Real>> slab_groups;
@@ -120,9 +117,7 @@ struct SmallScene {
             clear_solids |= uint32_t(is_clear(here, i)) << i;
             transmitting_solids |= uint32_t(transmits(here, i)) << i;
         }
-        for (int32_t& root : light_roots) root = 0;  // nothing is known
         plan.clear(convex.size, clusters.size);
-        mirrors.clear();
         background = here.background;
         bound = here.bound;
         largest_bound = here.largest_bound;

@@ -1,7 +1,5 @@
 #include "scene/frame_contents.h"
 
-#include <utility>
-
 #include "cistula/adaptive_pixel.h"
 #include "scene/frame.h"
 
@@ -61,9 +59,7 @@ BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameVi
 
 template <class Real>
 FrameContents frame_contents(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings) {
-    FrameCover cover = frame_cover(scene, frame, settings.crop);
-    LightImages lights = light_images(scene, frame, settings, cover);
-    return {std::move(cover), std::move(lights), background_pixel(scene, frame, settings.adaptive())};
+    return {frame_cover(scene, frame, settings.crop), background_pixel(scene, frame, settings.adaptive())};
 }
 
 template FrameContents frame_contents(const CompiledScene<float>&, const FrameView&, const FrameSettings&);

@@ -1,9 +1,8 @@
-// Where a frame may show something, where lights may show there, and what is everywhere else.
+// Where a frame may show something, and what is everywhere else.
 #pragma once
 
 #include "scene/compiled_scene.h"
 #include "scene/frame_cover.h"
-#include "scene/light_images.h"
 #include "scene/renderer.h"
 
 namespace cistula {
@@ -21,10 +20,9 @@ struct BackgroundPixel {
     }
 };
 
-/// `cover` and `lights` are over settings.crop.
+/// `cover` is over settings.crop.
 struct FrameContents {
     FrameCover cover;
-    LightImages lights;
     BackgroundPixel background;
 };
 template <class Real>

@@ -5,8 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "scene/light_roots.h"
-#include "scene/mirror_planes.h"
 #include "scene/solid_planes.h"
 
 namespace cistula {
@@ -119,8 +117,6 @@ std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& here, const
     auto small = std::make_unique<SmallScene<Real>>();
     if (!small->assign(here, there)) return nullptr;
     plan_shadows(here, small->plan);
-    small->mirrors = number_mirrors(here);
-    find_light_roots(here, small->light_roots);
     return small;
 }
 
