@@ -138,7 +138,7 @@ class WarpPixels {
   private:
     __device__ void begin(unsigned int place) {
         const BlockPlace tile = job_.blocks[place / warp_threads];
-        const PixelPlace in_tile = BlockPlan{Deal::shared}.place_of(int(place % warp_threads));
+        const PixelPlace in_tile = BlockPlan{PixelMapping::shared_tile}.place_of(int(place % warp_threads));
         const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
         record_ = place;
         records_[record_] = Record();  // beyond the rectangle too: all of a tile are copied

@@ -10,7 +10,7 @@ namespace cistula {
 
 /// Rows of a frame come in strips of this many, so that several devices can take turns.
 inline constexpr int strip_rows = 16;
-static_assert(strip_rows % BlockPlan{Deal::tiles, large_block_warps}.shape().height == 0 &&
+static_assert(strip_rows % BlockPlan{PixelMapping::own_tiles, large_block_warps}.shape().height == 0 &&
               tile_height % FrameCover::band_rows == 0);
 
 /// Strips first, first + step, ... of a frame's rectangle: `count` of them.

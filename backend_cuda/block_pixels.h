@@ -8,15 +8,13 @@ namespace cistula {
 inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_threads * block_warps;
 /// Of a large block: twice as many begin together and share the instructions that are fetched (warps_of_blocks).
 inline constexpr int large_block_warps = 2 * block_warps;
-/// A warp renders 8 x 4 pixels, next to each other or every other two: neighbors see the same things.
+/// A warp renders 8 x 4 pixels: neighbors see the same things.
 inline constexpr int tile_width = 8, tile_height = 4;
 
-/// How the pixels of a block are dealt out: by twos at the least, as two threads' records side by side are whole words
-/// of 16 bytes and cause few conflicts between the banks of shared memory.
-enum class Deal {
-    shared,       // one tile, for every warp: where pixels have several samples, so that no thread is long at work
-    tiles,        // a tile a warp
-    interleaved,  // of a large block: to a warp every fourth two of a row, and every other row
+/// Which pixels the warps of a block render.
+enum class PixelMapping {
+    shared_tile,  // one tile, for every warp: where pixels have several samples, so that no thread is long at work
+    own_tiles,    // a tile for each warp
 };
 
 /// Pixels of a block.
@@ -32,7 +30,7 @@ struct PixelPlace {
 
 /// The warps of a block, and which of its pixels are whose.
 struct BlockPlan {
-    Deal deal = Deal::tiles;
+    PixelMapping mapping = PixelMapping::own_tiles;
     int warps = block_warps;  // or large_block_warps
 
     static constexpr int width = 2 * tile_width;  // of blocks that do not share a tile
@@ -40,17 +38,11 @@ struct BlockPlan {
 
     /// Of a shared tile, or of a tile for each warp.
     CISTULA_INLINE constexpr BlockShape shape() const {
-        return deal == Deal::shared ? shared_shape : BlockShape{width, warps / 2 * tile_height};
+        return mapping == PixelMapping::shared_tile ? shared_shape : BlockShape{width, warps / 2 * tile_height};
     }
     /// The pixel, in its block, of record i.
     CISTULA_INLINE PixelPlace place_of(int i) const {
         const int warp = i / warp_threads, lane = i % warp_threads;
-        if (deal == Deal::interleaved) {
-            constexpr int in_row = large_block_warps / 2,
-                          own = width / in_row;  // warps that share a row, and what each has of it
-            const int x = lane % own, y = lane / own;
-            return {(x / 2 * in_row + warp % in_row) * 2 + x % 2, 2 * y + warp / in_row};
-        }
         return {lane % tile_width + warp % 2 * tile_width, lane / tile_width + warp / 2 * tile_height};
     }
 };

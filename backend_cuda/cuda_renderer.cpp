@@ -23,11 +23,6 @@ constexpr int deep = 5;
 /// Frames of up to so many samples split deep trees after so many levels.
 constexpr size_t few_samples = size_t{1} << 19;
 constexpr int split_levels = 4;
-/// From so many pixels of a device on the warps of a block interleave, of kernels that may: all eight then do much the
-/// same at a time and share the instructions that are fetched. Of fewer, the few that take longest are better kept
-/// apart, and of deep trees neighbors in a warp, which takes up to 17 % less time.
-constexpr size_t many_pixels = size_t{1} << 18;
-
 template <class Real>
 bool fits_plain_loop(const SceneView<Real>& scene) {
     if (scene.convex.size + scene.clusters.size > plain_loop_primitives) return false;
@@ -159,11 +154,8 @@ class CudaRenderer : public Renderer {
         return settings.adaptive() ? Pass::adaptive_pixels : Pass::pixels;
     }
 
-    Deal deal_for(const Frame& frame) const {
-        if (frame.view.supersample > 1) return Deal::shared;
-        const bool interleaves = may_interleave(effect_masks[frame.mask]) && frame.settings.depth <= deep &&
-                                 frame.contents->cover.pixels() / workers_.size() >= many_pixels;
-        return interleaves ? Deal::interleaved : Deal::tiles;
+    static PixelMapping mapping_for(const Frame& frame) {
+        return frame.view.supersample > 1 ? PixelMapping::shared_tile : PixelMapping::own_tiles;
     }
 
     /// A pixel's, more or less.
@@ -187,7 +179,7 @@ class CudaRenderer : public Renderer {
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
         frame.contents = std::make_shared<const FrameContents>(frame_contents(*scene_, frame.view, settings));
-        frame.plan = {deal_for(frame), warps_of_blocks(effect_masks[frame.mask])};
+        frame.plan = {mapping_for(frame), warps_of_blocks(effect_masks[frame.mask])};
         constexpr int width = BlockPlan::width;
         const size_t strip_pixels = size_t((rect.width + width - 1) / width * width) * strip_rows;
         const size_t samples = samples_of(settings);

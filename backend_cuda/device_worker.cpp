@@ -187,7 +187,7 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.height = rect.height;
     job.blocks = slot.blocks.as<BlockPlace>();
     job.block_count = static_cast<unsigned int>(places.size());
-    job.deal = slot.list.plan().deal;
+    job.mapping = slot.list.plan().mapping;
     job.stop = stop_.as<unsigned int>();
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));

@@ -54,7 +54,7 @@ struct FrameJob {
     int width = 0, height = 0;  // of the rectangle
     const BlockPlace* blocks = nullptr;
     unsigned int block_count = 0;
-    Deal deal = Deal::tiles;
+    PixelMapping mapping = PixelMapping::own_tiles;
     DeviceTally* tally = nullptr;
     BranchQueue from, to;                // passes after the first read `from`
     int split_depth = whole_trees;       // branches of this depth and more go `to` the queue
@@ -81,12 +81,6 @@ constexpr bool takes_opaque_scene(uint32_t effects) {
 constexpr int warps_of_blocks(uint32_t effects) {
     const bool is_large = (effects & effect_refraction) != 0 || effects == (clear_bodies | effect_visible_lights);
     return is_large ? large_block_warps : block_warps;
-}
-
-/// Whether frames of a mask may be dealt out as Deal::interleaved, as those of the largest code and few bounces are:
-/// seed.json takes 2 to 7 % less time so. With all others that costs more than it saves.
-constexpr bool may_interleave(uint32_t effects) {
-    return (effects & effect_refraction) != 0;
 }
 
 /// The scene in all forms; the last two are set for the plain loop only, `opaque` where a mask that takes it may run.

@@ -103,11 +103,9 @@ __global__ void __launch_bounds__(pixel_threads<E>, least_blocks<Real, E, path>*
     __shared__ Unset<BlockRoom<Record, threads>> memory;
     BlockRoom<Record, threads>& room = memory.get();
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
-    const bool shares = job.deal == Deal::shared;
+    const bool shares = job.mapping == PixelMapping::shared_tile;
     const BlockPlace block = job.blocks[blockIdx.x];
-    const BlockPlan plan{job.deal, warps};
-    static_assert(!pixels_interleave<E> || warps == large_block_warps);
-    if constexpr (!pixels_interleave<E>) __builtin_assume(job.deal != Deal::interleaved);
+    const BlockPlan plan{job.mapping, warps};
     const BlockShape shape = plan.shape();
     const PixelPlace place = plan.place_of(shares ? lane : int(threadIdx.x));
     const int column = block.column * shape.width + place.column, row = block.row * shape.height + place.row;

@@ -46,10 +46,6 @@ inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeo
 template <class E>
 inline constexpr int pixel_threads = warp_threads* warps_of_blocks(E::mask);
 
-/// Whether frames may be dealt out as Deal::interleaved.
-template <class E>
-inline constexpr bool pixels_interleave = may_interleave(E::mask);
-
 template <class Real, class E, DevicePath path>
 struct PathTraits;
 template <class Real, class E>

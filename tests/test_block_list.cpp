@@ -14,11 +14,10 @@ using namespace cistula;
 
 namespace {
 
-constexpr BlockPlan plans[] = {{Deal::shared},
-                               {Deal::shared, large_block_warps},
-                               {Deal::tiles},
-                               {Deal::tiles, large_block_warps},
-                               {Deal::interleaved, large_block_warps}};
+constexpr BlockPlan plans[] = {{PixelMapping::shared_tile},
+                               {PixelMapping::shared_tile, large_block_warps},
+                               {PixelMapping::own_tiles},
+                               {PixelMapping::own_tiles, large_block_warps}};
 
 FrameView frame_of(const PixelRect& rect) {
     return test::frame_from({0, 0, 0}, 1, rect.x + rect.width, rect.y + rect.height);
