@@ -98,7 +98,6 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     scene_.view = scene.at(arena_.as<void>());
     if (path_ != DevicePath::plain_loop) return;
     scene_.small = *small_scene(here, scene_.view);
-    if (here.convex.size == here.solids.size) scene_.opaque.assign(scene_.small);
     primitives_.assign(here.solids.size, 0);
     for (uint32_t i = 0; i < here.convex.size; ++i) primitives_[here.convex[i]] |= 1u << i;
     for (uint32_t i = 0; i < here.clusters.size; ++i)

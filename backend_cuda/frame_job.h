@@ -71,11 +71,6 @@ enum class DevicePath {
 };
 inline constexpr int device_path_count = 2;
 
-/// Whether plain loops of these effects take an OpaqueScene.
-constexpr bool takes_opaque_scene(uint32_t effects) {
-    return (effects & ~opaque_solids) == 0;
-}
-
 /// Warps of the blocks in which a mask's pixels are rendered. Large blocks pay where the code is much more than the
 /// instruction caches hold; with other masks most frames take longer (docs/architecture.md).
 constexpr int warps_of_blocks(uint32_t effects) {
@@ -83,12 +78,11 @@ constexpr int warps_of_blocks(uint32_t effects) {
     return is_large ? large_block_warps : block_warps;
 }
 
-/// The scene in all forms; the last two are set for the plain loop only, `opaque` where a mask that takes it may run.
+/// The scene in both forms; `small` is set for the plain loop only.
 template <class Real>
 struct DeviceScene {
     SceneView<Real> view;  // in device memory
     SmallScene<Real> small;
-    OpaqueScene<Real> opaque;
 };
 
 /// Bytes of a queued branch.

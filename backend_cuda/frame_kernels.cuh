@@ -245,8 +245,6 @@ void launch_mask(DevicePath path, Pass pass, const DeviceScene<Real>& scene, con
     };
     if (path == DevicePath::tree)
         launch.template operator()<DevicePath::tree>(scene.view);
-    else if constexpr (takes_opaque_scene(E::mask))
-        launch.template operator()<DevicePath::plain_loop>(scene.opaque);
     else
         launch.template operator()<DevicePath::plain_loop>(scene.small);
     check_cuda(cudaGetLastError(), pass == Pass::branches ? "launch of render_branches"

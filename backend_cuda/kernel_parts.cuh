@@ -50,7 +50,7 @@ template <class Real, class E, DevicePath path>
 struct PathTraits;
 template <class Real, class E>
 struct PathTraits<Real, E, DevicePath::plain_loop> {
-    using Scene = std::conditional_t<takes_opaque_scene(E::mask), OpaqueScene<Real>, SmallScene<Real>>;
+    using Scene = SmallScene<Real>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
 };

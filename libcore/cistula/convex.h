@@ -162,8 +162,8 @@ inline constexpr bool calls_seldom_code = CISTULA_ON_DEVICE&& requires(const Sce
 };
 
 /// `may_stop`: where it is sure not to be met, that is all that is known.
-template <class Real, class Body, class Scene>
-CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Body& solid, const Vec3<Real>& origin,
+template <class Real, class Scene>
+CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                                     const Vec3<Real>& direction, [[maybe_unused]] bool may_stop) {
     ConvexInterval<Real> interval;
 #if CISTULA_ON_DEVICE
@@ -185,15 +185,11 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Bo
             return careful_interval(scene, solid.first_slab, end, origin, direction);
     }
 #else
-    if constexpr (requires { scene.slab_groups; }) {
-        for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
-            alignas(32) Real enter[slab_lanes], leave[slab_lanes];
-            cross_slabs(scene.slab_groups[solid.first_group + first / slab_lanes], origin, direction, enter, leave);
-            interval.enter = greatest(greatest_lane(enter), interval.enter);
-            interval.leave = least(least_lane(leave), interval.leave);
-        }
-    } else {  // an OpaqueScene, from which hosts render in tests only
-        return careful_interval(scene, solid.first_slab, solid.first_slab + solid.slab_count, origin, direction);
+    for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
+        alignas(32) Real enter[slab_lanes], leave[slab_lanes];
+        cross_slabs(scene.slab_groups[solid.first_group + first / slab_lanes], origin, direction, enter, leave);
+        interval.enter = greatest(greatest_lane(enter), interval.enter);
+        interval.leave = least(least_lane(leave), interval.leave);
     }
 #endif
     return interval;
@@ -273,8 +269,8 @@ CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& sol
 }
 
 /// The first face by which the line enters, as convex_interval found it.
-template <class Real, class Body, class Scene>
-CISTULA_INLINE uint32_t convex_face(const Scene& scene, const Body& solid, [[maybe_unused]] const Vec3<Real>& origin,
+template <class Real, class Scene>
+CISTULA_INLINE uint32_t convex_face(const Scene& scene, const Solid& solid, [[maybe_unused]] const Vec3<Real>& origin,
                                     const Vec3<Real>& direction, const ConvexInterval<Real>& interval) {
 #if CISTULA_ON_DEVICE
     const uint32_t i = interval.enter_slab;
@@ -351,8 +347,8 @@ CISTULA_SELDOM bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real>
 }
 
 /// The way into a convex solid that the ray neither is inside nor left, nor passes by.
-template <class Real, class Body, class Media, class Scene>
-CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Body& solid, const Ray<Real, Media>& ray,
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Solid& solid, const Ray<Real, Media>& ray,
                                   Hit<Real>& best) {
     const ConvexInterval<Real> interval = convex_interval(scene, solid, ray.origin, ray.direction, true);
     if (!interval.met(scene.extent)) return;

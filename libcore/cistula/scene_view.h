@@ -76,18 +76,12 @@ struct alignas(16) SheetPlane {
     }
 };
 
-/// What rays ask of an opaque convex solid that passes_by lets them come near.
-struct OpaqueSolid {
-    uint32_t material;
-    uint32_t first_slab, slab_count;
-};
-
 /// A solid, and what is asked of it first: its sphere with the number beside it, as most rays ask for no more.
-template <class Real, class Body = Solid>
+template <class Real>
 struct NumberedSolid {
     Ball<Real> ball;
     uint32_t index;
-    Body solid;
+    Solid solid;
 };
 
 /// So much that rounding never turns a ray that the slabs accept into one that passes the sphere by: the terms of the
@@ -242,13 +236,9 @@ struct SceneView {
 /// that are compiled in, so that these leave the image alone.
 template <class Scene>
 CISTULA_INLINE bool shades_gradually(const Scene& scene) {
-    if constexpr (requires { scene.gradual; }) {
-        return scene.gradual;
-    } else {
-        bool any = false;
-        for (uint32_t i = 0; i < scene.materials.size; ++i) any |= largest_component(scene.materials[i].absorption) > 0;
-        return any;
-    }
+    bool any = false;
+    for (uint32_t i = 0; i < scene.materials.size; ++i) any |= largest_component(scene.materials[i].absorption) > 0;
+    return any;
 }
 
 }  // namespace cistula

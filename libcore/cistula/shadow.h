@@ -45,8 +45,8 @@ struct ShadowSum {
 
     CISTULA_INLINE bool dark() const { return opaque == 7u; }
 
-    template <class AnyMaterial>
-    CISTULA_INLINE void cross(const AnyMaterial& material) {
+    template <class Real>
+    CISTULA_INLINE void cross(const Material<Real>& material) {
         if constexpr (!E::has(effect_transparent_shadows)) {
             opaque = 7u;
         } else {
@@ -146,8 +146,8 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
 }
 
 /// One that it neither starts in nor left, nor passes by. With a light on its face half-spaces decide.
-template <class Real, class E, class Body, class Media, class Scene>
-CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Body& solid,
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid& solid,
                                  const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
     const LightSide side = light_side<E>(scene, index, shadow);
@@ -156,7 +156,7 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Body&
         convex_interval(scene, solid, ray.origin, ray.direction, side == LightSide::none);
     const Real enter = greatest(interval.enter, Real(0));
     Real leave = shadow.distance;
-    const auto& material = scene.materials[solid.material];
+    const Material<Real>& material = scene.materials[solid.material];
     if (side == LightSide::none) {
         if (!interval.met(scene.extent) || !(enter < shadow.distance)) return;
         if constexpr (Media::contacts)

@@ -165,47 +165,4 @@ struct SmallScene {
     }
 };
 
-/// The part of a SmallScene of convex solids alone that the kernels of opaque ones read: launches take longer the
-/// larger their parameters are, 0.08 us a KiB (H200). Its solids are numbered as they are listed.
-template <class Real>
-struct OpaqueScene {
-    using Scalar = Real;
-    struct Plan {
-        uint32_t all_convex;
-        uint16_t near[ShadowPlan::convex][ShadowPlan::lights];
-    };
-    static_assert(ShadowPlan::convex <= 16);
-
-    InlineSpan<NumberedSolid<Real, OpaqueSolid>, ShadowPlan::convex> convex;
-    InlineSpan<Slab<Real>, SmallScene<Real>::most_slabs> slabs;
-    InlineSpan<LocalMaterial<Real>, SmallScene<Real>::most_materials> materials;
-    InlineSpan<Light<Real>, ShadowPlan::lights> lights;
-    Plan plan;     // as in a ShadowPlan
-    bool gradual;  // shades_gradually
-    Vec3<Real> background;
-    Vec3<Real> bound;
-    Real largest_bound;
-    Real extent;
-
-    /// `scene` has no solids but opaque convex ones.
-    void assign(const SmallScene<Real>& scene) {
-        convex.assign(scene.convex.size, [&](uint32_t i) {
-            const NumberedSolid<Real>& from = scene.convex[i];
-            return NumberedSolid<Real, OpaqueSolid>{
-                from.ball, from.index, {from.solid.material, from.solid.first_slab, from.solid.slab_count}};
-        });
-        slabs = scene.slabs;
-        materials.assign(scene.materials.size, [&](uint32_t i) { return scene.materials[i]; });
-        lights = scene.lights;
-        plan.all_convex = scene.plan.all_convex;
-        for (uint32_t i = 0; i < convex.size; ++i)
-            for (uint32_t l = 0; l < ShadowPlan::lights; ++l) plan.near[i][l] = uint16_t(scene.plan.near[i][l]);
-        gradual = shades_gradually(scene);
-        background = scene.background;
-        bound = scene.bound;
-        largest_bound = scene.largest_bound;
-        extent = scene.extent;
-    }
-};
-
 }  // namespace cistula

@@ -21,20 +21,6 @@ template <class E>
 CISTULA_INLINE bool is_convex(const Solid& solid) {
     return E::solids && (!E::triangles || solid.kind == SolidKind::convex);
 }
-template <class E>
-CISTULA_INLINE bool is_convex(const OpaqueSolid&) {
-    return true;
-}
-
-/// A solid by its number; scenes of opaque convex ones have no other list.
-template <class Scene>
-CISTULA_INLINE const auto& solid_at(const Scene& scene, uint32_t index) {
-    if constexpr (requires { scene.solids; })
-        return scene.solids[index];
-    else
-        return scene.convex[index].solid;
-}
-
 /// Whether a solid's material is `clear`, or transmits. Scenes of few solids have bits for that: no number has to be
 /// waited for.
 template <class Scene>
@@ -145,7 +131,7 @@ CISTULA_INLINE Vec3<Real> far_side(const Scene& scene, const Hit<Real>& hit, con
 /// The unit normal on the viewer's side.
 template <class E = Effects<all_effects>, class Real, class Scene>
 CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
-    const auto& solid = solid_at(scene, key_solid(hit.key));
+    const Solid& solid = scene.solids[key_solid(hit.key)];
     const uint32_t face = key_face(hit.key);
     if (is_convex<E>(solid)) {
         const Vec3<Real>& normal = scene.slabs[solid.first_slab + face / 2].normal;
@@ -173,10 +159,10 @@ CISTULA_INLINE bool lies_at_start(const Scene& scene, const Ray<Real, Media>& ra
 
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
-    const auto& solid = solid_at(scene, key_solid(hit.key));
+    const Solid& solid = scene.solids[key_solid(hit.key)];
     Surface<Real> s;
     s.material = solid.material;
-    const auto& material = scene.materials[s.material];
+    const Material<Real>& material = scene.materials[s.material];
     s.color = material.color;
     s.normal = normal_at<E>(scene, hit);
     if (is_convex<E>(solid)) {
