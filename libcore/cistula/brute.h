@@ -151,12 +151,8 @@ struct BruteIntersector {
 
     template <class E>
     CISTULA_INLINE void add_cluster(uint32_t i, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) const {
-        // In double kernels spill by the call, and sums of absorption are too much to be passed.
-        if constexpr (sizeof(Real) == sizeof(float) && !E::has(effect_absorption) && calls_seldom_code<Scene>)
-            sum = called_shadow_triangles<Real, E>(scene, i, shadow, sum);
-        else
-            shadow_triangles<Real, E>(scene, i, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction),
-                                      sum);
+        shadow_triangles<Real, E>(scene, i, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction),
+                                  sum);
     }
 };
 

@@ -145,29 +145,13 @@ CISTULA_INLINE ConvexInterval<Real> careful_interval(const Scene& scene, uint32_
     return interval;
 }
 
-#if CISTULA_ON_DEVICE
-/// The same out of the way. By value, as it is called.
-template <class Real, class Scene>
-CISTULA_SELDOM ConvexInterval<Real> called_interval(const Scene& scene, uint32_t first, uint32_t end, Vec3<Real> origin,
-                                                    Vec3<Real> direction) {
-    return careful_interval(scene, first, end, origin, direction);
-}
-#endif
-
-/// Whether seldom code is called by the kernels that read this kind of scene: those of trees only spill more by that.
-/// Hosts have nothing to gain.
-template <class Scene>
-inline constexpr bool calls_seldom_code = CISTULA_ON_DEVICE&& requires(const Scene& scene) {
-    scene.plan;
-};
-
 /// `may_stop`: where it is sure not to be met, that is all that is known.
 template <class Real, class Scene>
 CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                                     const Vec3<Real>& direction, [[maybe_unused]] bool may_stop) {
     ConvexInterval<Real> interval;
 #if CISTULA_ON_DEVICE
-    // As if no slab were parallel to the line; with more care where one was, in code that is out of the way.
+    // As if no slab were parallel to the line; with more care where one was.
     const uint32_t end = solid.first_slab + solid.slab_count;
     ParallelSlab<Real> parallel;
 #pragma unroll 1
@@ -178,12 +162,7 @@ CISTULA_INLINE ConvexInterval<Real> convex_interval(const Scene& scene, const So
         interval.leave = lesser(crossing.leave(), interval.leave);
         if (may_stop && interval.enter > interval.leave) break;
     }
-    if (parallel.found()) {
-        if constexpr (calls_seldom_code<Scene>)
-            return called_interval(scene, solid.first_slab, end, origin, direction);
-        else
-            return careful_interval(scene, solid.first_slab, end, origin, direction);
-    }
+    if (parallel.found()) return careful_interval(scene, solid.first_slab, end, origin, direction);
 #else
     for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
         alignas(32) Real enter[slab_lanes], leave[slab_lanes];
@@ -216,32 +195,6 @@ CISTULA_INLINE ConvexExit<Real> careful_exit(const Scene& scene, uint32_t first,
     return exit;
 }
 
-/// The same out of the way. By value, as it is called.
-template <class Real, class Scene>
-CISTULA_SELDOM ConvexExit<Real> called_exit(const Scene& scene, uint32_t first, uint32_t count, Vec3<Real> origin,
-                                            Vec3<Real> direction, uint32_t skipped) {
-    return careful_exit(scene, first, count, origin, direction, skipped);
-}
-
-/// As if no slab were parallel to the line and no face skipped; with more care where one was.
-template <class Real, class Scene>
-CISTULA_INLINE ConvexExit<Real> quick_exit(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
-                                           const Vec3<Real>& direction, uint32_t skipped) {
-    ConvexExit<Real> exit;
-    uint32_t leaving = 0;
-    Real leaving_slope = Real(0);
-    ParallelSlab<Real> parallel;
-#pragma unroll 1  // code that fits the instruction cache is worth more
-    for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const SlabCrossing<Real> crossing(scene.slabs.data[solid.first_slab + i], origin, direction);
-        parallel.take(crossing.slope);
-        if (crossing.leave() < exit.t) exit.t = crossing.leave(), leaving = i, leaving_slope = crossing.slope;
-    }
-    exit.face = leaving_face(leaving, leaving_slope);
-    if (parallel.found() || exit.face == skipped)
-        return called_exit(scene, solid.first_slab, solid.slab_count, origin, direction, skipped);
-    return exit;
-}
 #endif
 
 /// Where a line from inside leaves: by another face than `skipped`, whatever rounding says about where it starts.
@@ -249,10 +202,7 @@ template <class Real, class Scene>
 CISTULA_INLINE ConvexExit<Real> convex_exit(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                             const Vec3<Real>& direction, uint32_t skipped = no_face) {
 #if CISTULA_ON_DEVICE
-    if constexpr (calls_seldom_code<Scene>)
-        return quick_exit(scene, solid, origin, direction, skipped);
-    else
-        return careful_exit(scene, solid.first_slab, solid.slab_count, origin, direction, skipped);
+    return careful_exit(scene, solid.first_slab, solid.slab_count, origin, direction, skipped);
 #else
     ConvexExit<Real> exit;
     const Slab<Real>* slabs = scene.slabs.data + solid.first_slab;

@@ -56,16 +56,16 @@ class PixelSums {
     }
 
     /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of
-    /// the budget that is left, and what could add one unit of the sums at most. `calls`: what is seldom to be looked
-    /// at closely is called.
-    template <bool calls = false, class Share>
+    /// the budget that is left, and what could add one unit of the sums at most.
+    template <class Share>
     CISTULA_INLINE bool afford(const Share& weight) {
         if (left_ == 0 && clearly_counts(weight)) return true;
-        const Real scale = Real(settings_.fixed_scale);
-        const Verdict verdict = calls ? called_weigh(bounded(weight), scale, left_, record_.pruned, flags_)
-                                      : weigh(bounded(weight), scale, left_, record_.pruned, flags_);
-        left_ = verdict.left;
-        return verdict.follows;
+        int64_t most[3];
+        const int64_t worst = most_of(bounded(weight), Real(settings_.fixed_scale), flags_, most);
+        if (worst > 1 && worst > left_ / 10) return true;
+        for (int c = 0; c < 3; ++c) record_.pruned[c] += most[c];
+        left_ = worst < left_ ? left_ - worst : 0;
+        return false;
     }
 
     /// A branch beyond the depth.
@@ -106,26 +106,6 @@ class PixelSums {
             worst = most[c] > worst ? most[c] : worst;
         }
         return worst;
-    }
-
-    struct Verdict {
-        int64_t left;
-        bool follows;
-    };
-    /// Of a branch that perhaps counts for nothing.
-    CISTULA_INLINE static Verdict weigh(const Vec3<Real>& bounded, Real scale, int64_t left, int64_t (&pruned)[3],
-                                        uint32_t& flags) {
-        int64_t most[3];
-        const int64_t worst = most_of(bounded, scale, flags, most);
-        if (worst > 1 && worst > left / 10) return {left, true};
-        for (int c = 0; c < 3; ++c) pruned[c] += most[c];
-        return {worst < left ? left - worst : 0, false};
-    }
-
-    /// The same out of the way. By value, as it is called.
-    CISTULA_SELDOM static Verdict called_weigh(Vec3<Real> bounded, Real scale, int64_t left, int64_t (&pruned)[3],
-                                               uint32_t& flags) {
-        return weigh(bounded, scale, left, pruned, flags);
     }
 
     /// Exact.

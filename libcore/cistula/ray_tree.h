@@ -221,7 +221,7 @@ class RayTree {
     }
 
     CISTULA_INLINE bool follow(const Entry& branch) {
-        if (!sums_.template afford<calls_seldom_code<Scene>>(branch.weight)) return false;
+        if (!sums_.afford(branch.weight)) return false;
         rays_.reflected += branch.mirrored;
         rays_.transmitted += 1 - branch.mirrored;
         return true;

@@ -117,13 +117,6 @@ CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const Sh
     return LightSide::none;
 }
 
-/// The way out, called where a plan mostly tells it. By value for that.
-template <class Real, class Scene>
-CISTULA_SELDOM Real called_shadow_exit(const Scene& scene, uint32_t index, Vec3<Real> origin, Vec3<Real> direction,
-                                       uint32_t skipped) {
-    return convex_exit(scene, scene.solids[index], origin, direction, skipped).t;
-}
-
 /// A convex solid that the ray starts in. A light on its own face is never beyond that, whatever the rounding of two
 /// nearly equal distances says.
 template <class Real, class E, class Media, class Scene>
@@ -135,11 +128,7 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     Real leave = shadow.distance;
     if (light_side<E>(scene, index, shadow) == LightSide::none) {
         const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
-        if constexpr (!E::has(effect_absorption) && calls_seldom_code<Scene>)
-            leave = called_shadow_exit(scene, index, ray.origin, ray.direction, skipped);
-        else
-            leave = convex_exit(scene, solid, ray.origin, ray.direction, skipped).t;
-        leave = greatest(leave, Real(0));
+        leave = greatest(convex_exit(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
         if (leave < shadow.distance) sum.cross(material);
     }
     if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance), Real(0)));
@@ -230,15 +219,6 @@ CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const S
         shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane,
                                  c, shadow, sum);
     });
-}
-
-/// The same out of the way, as sheets seldom lie between a face and its lamps. By value, as it is called.
-template <class Real, class E, class Media, class Scene>
-CISTULA_SELDOM ShadowSum<E> called_shadow_triangles(const Scene& scene, uint32_t index, ShadowRay<Real, Media> shadow,
-                                                    ShadowSum<E> sum) {
-    shadow_triangles<Real, E>(scene, index, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction),
-                              sum);
-    return sum;
 }
 
 template <class Real, class E, class Media, class Scene>

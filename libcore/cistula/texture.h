@@ -12,10 +12,11 @@ CISTULA_INLINE uint32_t remainder(Real i, uint32_t n) {
     const Real r = i - floor_of(i / Real(n)) * Real(n);
     return uint32_t(clamped(r, Real(0), Real(n - 1)));
 }
-CISTULA_SELDOM inline uint32_t called_remainder(float i, uint32_t n) {
+/// i modulo n for any whole i.
+CISTULA_SELDOM inline uint32_t any_remainder(float i, uint32_t n) {
     return magnitude(i) < 0x1p23f ? remainder(i, n) : remainder(double(i), n);
 }
-CISTULA_SELDOM inline uint32_t called_remainder(double i, uint32_t n) {
+CISTULA_SELDOM inline uint32_t any_remainder(double i, uint32_t n) {
     return remainder(i, n);
 }
 
@@ -23,7 +24,7 @@ CISTULA_SELDOM inline uint32_t called_remainder(double i, uint32_t n) {
 template <class Real>
 CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
     constexpr Real few = sizeof(Real) == sizeof(float) ? Real(0x1p23) : Real(0x1p31);
-    return ((n & (n - 1)) == 0) & (magnitude(i) < few) ? uint32_t(int32_t(i)) & (n - 1) : called_remainder(i, n);
+    return ((n & (n - 1)) == 0) & (magnitude(i) < few) ? uint32_t(int32_t(i)) & (n - 1) : any_remainder(i, n);
 }
 
 /// Between the four texels around (x, y); texel(i, j) are their colors.
