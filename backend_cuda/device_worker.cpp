@@ -193,7 +193,6 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.as<void>(), slot.blocks_copy.as<void>(),
                                        places.size() * sizeof(BlockPlace), cudaMemcpyHostToDevice, compute_));
-    const StreamGate::Hold held = gate_.hold(compute_);
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
     const auto queue = [&](int pass) {
         BranchQueue q;

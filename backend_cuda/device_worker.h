@@ -9,7 +9,6 @@
 #include "backend_cuda/block_list.h"
 #include "backend_cuda/cuda_resources.h"
 #include "backend_cuda/frame_job.h"
-#include "backend_cuda/stream_gate.h"
 #include "scene/film.h"
 #include "scene/scene_arena.h"
 
@@ -86,7 +85,6 @@ class DeviceWorker {
     const int device_;
     const DevicePath path_;
     CudaStream compute_, copy_;
-    StreamGate gate_;  // of compute_
     DeviceMemory arena_, queue_[2], counters_;
     PinnedMemory staging_[2];
     CudaEvent staged_[2];
