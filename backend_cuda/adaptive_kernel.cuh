@@ -8,15 +8,15 @@
 
 namespace cistula {
 
-inline constexpr int warp_pixels = pixels_at_work / block_warps;
+inline constexpr int warp_pixels = pixels_at_work / adaptive_shape.warps;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
 
-/// Work of a warp's pixels, counted through: lane s knows how many pieces come before pixel s's.
-struct WarpDeal {
+/// Deals the pieces of work of a warp's pixels to its lanes: lane s knows how many pieces come before pixel s's.
+struct WarpScheduler {
     int before, total;
 
     /// `count`: lane s's is pixel s's, others' are 0.
-    __device__ static WarpDeal of(int count) {
+    __device__ static WarpScheduler of(int count) {
         const int lane = threadIdx.x % warp_threads;
         int sum = count;
         for (int step = 1; step < warp_pixels; step *= 2) {
@@ -56,17 +56,16 @@ struct AtomicAdd {
     }
 };
 
-/// The pixels that a warp has at work: lane s < warp_pixels has the s-th. Record: RecordOf a mask.
-template <class Record>
+/// The pixels that a warp has at work: lane s < warp_pixels has the s-th.
 class WarpPixels {
   public:
     __device__ WarpPixels(const FrameJob& job)
         : job_(job),
-          records_(static_cast<Record*>(job.records)),
+          records_(job.records),
           lane_(threadIdx.x % warp_threads),
           places_(job.block_count * warp_threads),
-          at_once_(clamped(int(places_ / (gridDim.x * block_warps)), 1, warp_pixels)),
-          rooms_(job.rooms + (blockIdx.x * block_warps + threadIdx.x / warp_threads) * warp_pixels) {}
+          at_once_(clamped(int(places_ / (gridDim.x * adaptive_shape.warps)), 1, warp_pixels)),
+          storage_(job.storage + (blockIdx.x * adaptive_shape.warps + threadIdx.x / warp_threads) * warp_pixels) {}
 
     /// New pixels for those that are done, while less than a sample a lane is wanted.
     __device__ void refill() {
@@ -87,19 +86,19 @@ class WarpPixels {
         __syncwarp();
     }
 
-    /// take(x, y, room, slot, record) for one wanted sample a lane; false if there is none for any.
+    /// Calls take(x, y, storage, slot, record) for one wanted sample a lane; false if there is none for any.
     template <class Take>
     __device__ bool take_samples(const Take& take) {
-        const WarpDeal deal = WarpDeal::of(wanted_ - given_);
-        if (deal.total == 0) return false;
+        const WarpScheduler pieces = WarpScheduler::of(wanted_ - given_);
+        if (pieces.total == 0) return false;
         int pixel = 0, i = 0;
-        deal.find(lane_, pixel, i);
+        pieces.find(lane_, pixel, i);
         const int x = __shfl_sync(whole_warp, x_, pixel), y = __shfl_sync(whole_warp, y_, pixel);
         const unsigned int record = __shfl_sync(whole_warp, record_, pixel);
         i += __shfl_sync(whole_warp, given_, pixel);
-        if (lane_ < deal.total) take(x, y, rooms_[pixel], rooms_[pixel].pixel.wanted(i), records_[record]);
+        if (lane_ < pieces.total) take(x, y, storage_[pixel], storage_[pixel].pixel.wanted(i), records_[record]);
         __syncwarp();
-        given_ += clamped(warp_threads - deal.before, 0, wanted_ - given_);
+        given_ += clamped(warp_threads - pieces.before, 0, wanted_ - given_);
         return true;
     }
 
@@ -108,29 +107,29 @@ class WarpPixels {
         const bool ready = wanted_ != 0 && given_ == wanted_;
         if (!__any_sync(whole_warp, ready)) return;
         const LatticeSettings& settings = job_.frame.lattice;
-        const WarpDeal cells = WarpDeal::of(ready ? cells_ : 0);
-        cells.for_each([&](int pixel, int i) { rooms_[pixel].pixel.judge(settings, rooms_[pixel].samples, i); });
+        const WarpScheduler cells = WarpScheduler::of(ready ? cells_ : 0);
+        cells.for_each([&](int pixel, int i) { storage_[pixel].pixel.judge(settings, storage_[pixel].samples, i); });
         if (ready) {
-            rooms_[lane_].pixel.divide(settings);
+            storage_[lane_].pixel.divide(settings);
             note_wishes();
         }
         __syncwarp();
         const bool done = ready && wanted_ == 0;
-        const WarpDeal standing = WarpDeal::of(done ? cells_ : 0);
+        const WarpScheduler standing = WarpScheduler::of(done ? cells_ : 0);
         const unsigned int record = record_;
         for (int j = lane_; __any_sync(whole_warp, j < standing.total); j += warp_threads) {
             int pixel = 0, i = 0;
             standing.find(j, pixel, i);
-            Record& to = records_[__shfl_sync(whole_warp, record, pixel)];
+            PixelRecord& to = records_[__shfl_sync(whole_warp, record, pixel)];
             if (j >= standing.total) continue;
             // In one sum: to read the next sample after adding where others add would be to wait for it.
-            Record cell = Record();
-            rooms_[pixel].pixel.settle(
-                settings, i, [&](int slot, int weight) { rooms_[pixel].samples[slot].give(cell, weight, Plus()); });
+            PixelRecord cell = PixelRecord();
+            storage_[pixel].pixel.settle(
+                settings, i, [&](int slot, int weight) { storage_[pixel].samples[slot].give(cell, weight, Plus()); });
             cell.give(to, AtomicAdd());
         }
         if (!done) return;
-        const uint32_t taken = uint32_t(rooms_[lane_].pixel.taken()), unmet = rooms_[lane_].pixel.unmet();
+        const uint32_t taken = uint32_t(storage_[lane_].pixel.taken()), unmet = storage_[lane_].pixel.unmet();
         records_[record_].samples = taken;
         records_[record_].unmet = unmet;
     }
@@ -141,27 +140,27 @@ class WarpPixels {
         const PixelPlace in_tile = BlockPlan{PixelMapping::shared_tile}.place_of(int(place % warp_threads));
         const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
         record_ = place;
-        records_[record_] = Record();  // beyond the rectangle too: all of a tile are copied
+        records_[record_] = PixelRecord();  // beyond the rectangle too: all of a tile are copied
         if (column >= job_.width || row >= job_.height) return;
         x_ = job_.x + column;
         y_ = job_.y + row;
-        rooms_[lane_].pixel.begin(job_.frame.lattice);
+        storage_[lane_].pixel.begin(job_.frame.lattice);
         note_wishes();
     }
 
     /// Right after the pixel has decided, while it is at hand.
     __device__ void note_wishes() {
         given_ = 0;
-        wanted_ = rooms_[lane_].pixel.wanted();
-        cells_ = rooms_[lane_].pixel.cells();
+        wanted_ = storage_[lane_].pixel.wanted();
+        cells_ = storage_[lane_].pixel.cells();
     }
 
     const FrameJob& job_;
-    Record* const records_;
+    PixelRecord* const records_;
     const int lane_;
     const unsigned int places_;  // of pixels: blocks are tiles
     const int at_once_;          // pixels: of a small frame fewer, so that all warps have some
-    LatticeRoom* const rooms_;
+    LatticeStorage* const storage_;
     bool more_ = true;  // pixels that nobody has begun
     int x_ = 0, y_ = 0;
     unsigned int record_ = 0;
@@ -169,36 +168,26 @@ class WarpPixels {
     int cells_ = 0;
 };
 
-/// Ends a sample between two walks of its tree, which may be many and long. Base: StackOf a mask.
-template <class Base>
-class StoppableBranchStack : public Base {
-  public:
-    __device__ explicit StoppableBranchStack(const FrameJob& job) : job_(job) {}
-    __device__ bool stopped() const { return cistula::stopped(job_); }
-
-  private:
-    const FrameJob& job_;
-};
-
-template <class Real, class E, DevicePath path>
-__global__ void __launch_bounds__(block_threads, least_blocks<Real>)
+template <class Real, DevicePath path>
+__global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(adaptive_shape, path))
     render_adaptive(const __grid_constant__ FrameJob job,
-                    const __grid_constant__ typename PathTraits<Real, E, path>::Scene scene) {
-    using Intersector = typename PathTraits<Real, E, path>::Intersector;
-    using Record = RecordOf<E>;
-    __shared__ Unset<BlockRoom<Record>> memory;
-    BlockRoom<Record>& room = memory.get();
-    PixelWork& own = room.work[threadIdx.x] = PixelWork();
-    Record& taken = room.records[threadIdx.x];
-    StoppableBranchStack<StackOf<Real, E, typename Intersector::Media>> stack(job);
+                    const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
+    using E = Effects<all_effects>;
+    using Stack = DeviceStack<Real, E, path>;
+    __shared__ Unset<BlockStorage<adaptive_shape.threads()>> memory;
+    PixelWork& own = memory.get().work[threadIdx.x] = PixelWork();
+    PixelRecord& taken = memory.get().records[threadIdx.x];
+    typename Stack::Storage branches;
+    Stack stack(branches, JobStop{job.stop});
+    const typename PathTraits<Real, path>::Intersector intersector{scene};
     const bool gradual = shades_gradually(scene);
-    WarpPixels<Record> pixels(job);
+    WarpPixels pixels(job);
     for (;;) {
         pixels.refill();
-        const bool ends = stopped(job);  // asked ahead: the answer takes a while
-        const bool any = pixels.take_samples([&](int x, int y, LatticeRoom& pixel, int slot, Record& record) {
+        const bool ends = stack.stopped();  // asked ahead: the answer takes a while
+        const bool any = pixels.take_samples([&](int x, int y, LatticeStorage& pixel, int slot, PixelRecord& record) {
             const uint32_t met =
-                take_sample<Real, E>(scene, job.frame, Intersector{scene}, x, y, slot, gradual, taken, own, stack);
+                take_sample<Real, E>(scene, job.frame, intersector, x, y, slot, gradual, taken, own, stack);
             pixel.samples[slot].keep(taken, met);
             AtomicAdd()(record.rays, taken.rays);
             if (LatticePixel::is_chosen(job.frame.lattice, slot)) choose_sample(taken, record);

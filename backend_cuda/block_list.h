@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "backend_cuda/block_pixels.h"
-#include "scene/frame_contents.h"
+#include "scene/frame_hints.h"
 
 namespace cistula {
 
 /// Rows of a frame come in strips of this many, so that several devices can take turns.
 inline constexpr int strip_rows = 16;
-static_assert(strip_rows % BlockPlan{PixelMapping::own_tiles, large_block_warps}.shape().height == 0 &&
+static_assert(strip_rows % BlockPlan{PixelMapping::own_tiles, most_warps}.shape().height == 0 &&
               tile_height % FrameCover::band_rows == 0);
 
 /// Strips first, first + step, ... of a frame's rectangle: `count` of them.

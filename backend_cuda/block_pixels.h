@@ -1,13 +1,11 @@
 // Which pixels a block's threads render, and where it leaves their records, on the device and on the host.
 #pragma once
 
-#include "cistula/pixel.h"
+#include "backend_cuda/kernel_shape.h"
+#include "cistula/portable.h"
 
 namespace cistula {
 
-inline constexpr int warp_threads = 32, block_warps = 4, block_threads = warp_threads * block_warps;
-/// Of a large block: twice as many begin together and share the instructions that are fetched (warps_of_blocks).
-inline constexpr int large_block_warps = 2 * block_warps;
 /// A warp renders 8 x 4 pixels: neighbors see the same things.
 inline constexpr int tile_width = 8, tile_height = 4;
 
@@ -31,7 +29,7 @@ struct PixelPlace {
 /// The warps of a block, and which of its pixels are whose.
 struct BlockPlan {
     PixelMapping mapping = PixelMapping::own_tiles;
-    int warps = block_warps;  // or large_block_warps
+    int warps = 4;  // of KernelShape
 
     static constexpr int width = 2 * tile_width;  // of blocks that do not share a tile
     static constexpr BlockShape shared_shape = {tile_width, tile_height};

@@ -18,11 +18,6 @@ namespace {
 constexpr uint32_t plain_loop_primitives = 16;
 /// Samples of a part: what is copied while the next is in the kernels.
 constexpr size_t part_samples = size_t{1} << 25;
-/// Trees of more surfaces are deep.
-constexpr int deep = 5;
-/// Frames of up to so many samples split deep trees after so many levels.
-constexpr size_t few_samples = size_t{1} << 19;
-constexpr int split_levels = 4;
 template <class Real>
 bool fits_plain_loop(const SceneView<Real>& scene) {
     if (scene.convex.size + scene.clusters.size > plain_loop_primitives) return false;
@@ -128,11 +123,10 @@ class CudaRenderer : public Renderer {
     };
     struct Frame : Request {
         FrameView view;
-        std::shared_ptr<const FrameContents> contents;
+        std::shared_ptr<const FrameHints> hints;
         BlockPlan plan;
         bool fits = true;  // the camera's list of media
         int mask = 0;
-        int split_depth = 0;
         int strips = 0;       // of the whole rectangle
         int part_strips = 0;  // of a part, per device
         int parts = 0;
@@ -150,8 +144,8 @@ class CudaRenderer : public Renderer {
 
     int devices() const { return int(workers_.size()); }
 
-    static Pass first_pass(const FrameSettings& settings) {
-        return settings.adaptive() ? Pass::adaptive_pixels : Pass::pixels;
+    static Sampling sampling_of(const FrameSettings& settings) {
+        return settings.adaptive() ? Sampling::adaptive : Sampling::uniform;
     }
 
     static PixelMapping mapping_for(const Frame& frame) {
@@ -178,30 +172,19 @@ class CudaRenderer : public Renderer {
         effects_ = effect_masks[frame.mask];
         const PixelRect& rect = settings.crop;
         frame.strips = (rect.height + strip_rows - 1) / strip_rows;
-        frame.contents = std::make_shared<const FrameContents>(frame_contents(*scene_, frame.view, settings));
-        frame.plan = {mapping_for(frame), warps_of_blocks(effect_masks[frame.mask])};
+        frame.hints = std::make_shared<const FrameHints>(frame_hints(*scene_, frame.view, settings));
+        frame.plan = {mapping_for(frame), kernel_shapes[frame.mask].warps};
         constexpr int width = BlockPlan::width;
         const size_t strip_pixels = size_t((rect.width + width - 1) / width * width) * strip_rows;
         const size_t samples = samples_of(settings);
         const int per_device = (frame.strips + devices() - 1) / devices();
         int wanted = int(std::clamp<size_t>(part_samples / (strip_pixels * samples), 1, size_t(per_device)));
         if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / strip_pixels, 1, size_t(wanted)));
-        frame.split_depth = split_depth(settings, frame, size_t(per_device) * strip_pixels * samples);
         frame.part_strips = reserve(wanted, strip_pixels, frame);
         frame.parts = (per_device + frame.part_strips - 1) / frame.part_strips;
         frame.first_slot = slot % DeviceWorker<Real>::slots;
         start(frame, 0);
         return frame;
-    }
-
-    /// Of a frame of few samples the last threads would be long alone with the deepest trees; others keep the device
-    /// busy meanwhile. Trees without forks cannot be split. A budget of truncation is spent in the order of one
-    /// thread's stack.
-    int split_depth(const FrameSettings& settings, const Frame& frame, size_t samples_per_device) const {
-        if (settings.adaptive() || !trees_fork(frame.mask)) return 0;
-        const int chosen = samples_per_device <= few_samples && settings.depth > deep ? split_levels : 0;
-        const int split = options_.split != CudaOptions::automatic ? options_.split : chosen;
-        return frame.view.tree.budget == 0 && split > 0 && split < settings.depth ? split : 0;
     }
 
     /// Memory for parts of `strips`, or of half as many until it is enough.
@@ -210,16 +193,12 @@ class CudaRenderer : public Renderer {
         const auto has_room = [&] {
             bool room = true;
             for (auto& worker : workers_)
-                room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit, frame.mask,
-                                               first_pass(frame.settings), frame.split_depth != 0);
+                room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit,
+                                               sampling_of(frame.settings), frame.mask);
             return room;
         };
         for (;; strips = (strips + 1) / 2) {
             if (has_room()) break;
-            if (frame.split_depth != 0) {  // queues spare time, but are not needed
-                frame.split_depth = 0;
-                if (has_room()) break;
-            }
             if (strips == 1)
                 throw Error(ExitCode::device,
                             fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or "
@@ -252,11 +231,10 @@ class CudaRenderer : public Renderer {
             job.strips = {part * frame.part_strips * devices() + int(d), devices(), strips_of(frame, part, d)};
             if (job.strips.count == 0) continue;
             job.frame = frame.view;
-            job.contents = frame.contents;
+            job.hints = frame.hints;
             job.plan = frame.plan;
-            job.first = first_pass(frame.settings);
+            job.sampling = sampling_of(frame.settings);
             job.mask = frame.mask;
-            job.split_depth = frame.split_depth;
             workers_[d]->start(job, (frame.first_slot + part) % DeviceWorker<Real>::slots);
         }
     }

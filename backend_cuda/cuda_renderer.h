@@ -30,9 +30,7 @@ std::string cuda_driver_version();
 struct CudaOptions {
     std::vector<int> devices = {0};  // CudaDevice::index; all share every frame, by interleaved tiles
     // None of these changes the image:
-    size_t memory_limit = 0;  // bytes of a device that pixels may take; 0: what is free
-    static constexpr int automatic = -1;
-    int split = automatic;     // depth from which other threads follow a tree's branches; 0: never
+    size_t memory_limit = 0;   // bytes of a device that pixels may take; 0: what is free
     bool always_tree = false;  // a tree even where a plain loop would do; for tests
 };
 

@@ -17,9 +17,6 @@ namespace {
 
 constexpr size_t staging_bytes = size_t{32} << 20;
 constexpr int blocks_together = 16;  // that a thread of the host unpacks
-/// Branches that may wait per pixel of a part, and in all; trees that find no room are walked to their end where they
-/// are.
-constexpr size_t queued_per_pixel = 2, most_queued = size_t{1} << 21;
 /// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
 constexpr int most_blocks = 6;
 /// So long the host asks again and again whether a part is done, then every hundredth of the time that it has waited.
@@ -43,7 +40,7 @@ bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
     return true;
 }
 
-constexpr size_t most_records = large_block_warps * warp_threads;  // of a block
+constexpr size_t most_records = most_warps * warp_threads;  // of a block
 using RecordOrder = std::array<uint8_t, most_records>;
 static_assert(most_records - 1 <= UINT8_MAX);
 
@@ -58,9 +55,8 @@ RecordOrder rows_of_records(const BlockPlan& plan) {
     return records;
 }
 
-/// A block's records into the film.
-template <class Record>
-void unpack(const Record* from, const RecordOrder& records, BlockShape shape, const BlockPlace& block, Film& film,
+/// Puts a block's records into the film.
+void unpack(const PixelRecord* from, const RecordOrder& records, BlockShape shape, const BlockPlace& block, Film& film,
             const PixelWriter& writer) {
     const int left = block.column * shape.width, top = block.row * shape.height;
     const int width = std::min(shape.width, film.rect.width - left),
@@ -68,7 +64,7 @@ void unpack(const Record* from, const RecordOrder& records, BlockShape shape, co
     for (int row = 0; row < height; ++row) {
         PixelRecord* to = &film.pixels[size_t(top + row) * size_t(film.rect.width) + size_t(left)];
         for (int column = 0; column < width; ++column)
-            writer.put(to[column], whole_record(from[records[size_t(row * shape.width + column)]]));
+            writer.put(to[column], from[records[size_t(row * shape.width + column)]]);
     }
 }
 
@@ -85,7 +81,7 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     arena_.reserve(std::max<size_t>(scene.bytes().size(), 1));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(),
                                        cudaMemcpyHostToDevice, compute_));
-    counters_.reserve(counters * sizeof(unsigned int));
+    next_.reserve(next_bytes);
     stop_.reserve(sizeof(unsigned int));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(stop_.as<void>(), 0, sizeof(unsigned int), compute_));
     one_.reserve(sizeof(unsigned int));
@@ -106,52 +102,47 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
 
 /// For as many blocks as the device can have at work, or half as many until there is memory.
 template <class Real>
-void DeviceWorker<Real>::reserve_rooms() {
-    if (room_blocks_ != 0) return;
+void DeviceWorker<Real>::reserve_storage() {
+    if (storage_blocks_ != 0) return;
     int multiprocessors = 0;
     CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
-    constexpr size_t block = pixels_at_work * sizeof(LatticeRoom);
+    constexpr size_t block = pixels_at_work * sizeof(LatticeStorage);
     unsigned int blocks = unsigned(multiprocessors * most_blocks);
-    while (blocks > 1 && !rooms_.try_reserve(blocks * block)) blocks /= 2;
-    rooms_.reserve(blocks * block);
-    room_blocks_ = blocks;
+    while (blocks > 1 && !storage_.try_reserve(blocks * block)) blocks /= 2;
+    storage_.reserve(blocks * block);
+    storage_blocks_ = blocks;
 }
 
 /// A kernel's first launch takes memory for its threads' stacks: over a gigabyte on a large device. It must come before
 /// the pixels', which can do with less. It may also wait for other kernels, which must not be endless then.
 template <class Real>
-void DeviceWorker<Real>::prime(int mask, Pass pass) {
-    const int kernel = 3 * mask + int(pass);
+void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
+    const int kernel = 2 * mask + int(sampling);
     if (primed_ >> kernel & 1u) return;
     PartSlot& slot = slots_[0];
     slot.records.reserve(most_records * sizeof(PixelRecord));
     FrameJob job;  // of a rectangle without height: no pixel of its block is rendered
-    job.records = slot.records.as<void>();
+    job.records = slot.records.as<PixelRecord>();
     job.tally = slot.tally.as<DeviceTally>();
-    job.next = job.from.size = counters_.as<unsigned int>();
-    job.blocks = counters_.as<BlockPlace>();
+    job.next = next_.as<unsigned int>();
+    job.blocks = next_.as<BlockPlace>();
     job.block_count = 1;
     job.stop = stop_.as<unsigned int>();
-    if (pass == Pass::adaptive_pixels) reserve_rooms();
-    job.rooms = rooms_.as<LatticeRoom>();
-    job.room_blocks = room_blocks_;
-    CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
-    launch(pass, mask, path_, scene_, job, compute_);
+    if (sampling == Sampling::adaptive) reserve_storage();
+    job.storage = storage_.as<LatticeStorage>();
+    job.storage_blocks = storage_blocks_;
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(next_.as<void>(), 0, next_bytes, compute_));
+    launch(sampling, mask, path_, scene_, job, compute_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
     primed_ |= 1u << kernel;
 }
 
 template <class Real>
-bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, Pass first, bool splits) {
+bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, Sampling sampling, int mask) {
     use_device(device_);
-    prime(mask, first);
-    if (splits) prime(mask, Pass::branches);
-    const size_t bytes = pixels * record_bytes(mask);
-    if (!splits)
-        for (DeviceMemory& queue : queue_) queue.free();
-    const size_t branch = queued_branch_bytes<Real>(path_),
-                 wanted = splits ? std::min(queued_per_pixel * pixels, most_queued) : 0;
-    if (memory_limit != 0 && slots * bytes + 2 * wanted * branch > memory_limit) return false;
+    prime(sampling, mask);
+    const size_t bytes = pixels * sizeof(PixelRecord);
+    if (memory_limit != 0 && slots * bytes > memory_limit) return false;
     bool room = true;
     // A block a tile at the most.
     const size_t list_bytes = pixels / (tile_width * tile_height) * sizeof(BlockPlace);
@@ -159,12 +150,9 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, int mask, P
         room = room && slot.records.try_reserve(bytes) && slot.blocks.try_reserve(list_bytes);
         slot.blocks_copy.reserve(list_bytes);
     }
-    for (DeviceMemory& queue : queue_) room = room && queue.try_reserve(wanted * branch);
-    queue_capacity_ = wanted;
     if (room) return true;
     // What one has got would be missing when the others ask for less.
     for (PartSlot& slot : slots_) slot.records.free();
-    for (DeviceMemory& queue : queue_) queue.free();
     return false;
 }
 
@@ -173,13 +161,13 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     use_device(device_);
     PartSlot& slot = slots_[index];
     slot.part = part;
-    slot.list = BlockList(part.contents->cover, primitives_, part.strips, part.plan);
+    slot.list = BlockList(part.hints->cover, primitives_, part.strips, part.plan);
     const std::vector<BlockPlace>& places = slot.list.places();
     std::copy(places.begin(), places.end(), slot.blocks_copy.as<BlockPlace>());
-    const PixelRect& rect = part.contents->cover.rect();
+    const PixelRect& rect = part.hints->cover.rect();
     FrameJob job;
     job.frame = part.frame;
-    job.records = slot.records.as<void>();
+    job.records = slot.records.as<PixelRecord>();
     job.x = rect.x;
     job.y = rect.y;
     job.width = rect.width;
@@ -190,35 +178,14 @@ void DeviceWorker<Real>::start(const FramePart& part, int index) {
     job.stop = stop_.as<unsigned int>();
     job.tally = slot.tally.as<DeviceTally>();
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
-    CISTULA_CUDA_CHECK(cudaMemsetAsync(counters_.as<void>(), 0, counters * sizeof(unsigned int), compute_));
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(next_.as<void>(), 0, next_bytes, compute_));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.as<void>(), slot.blocks_copy.as<void>(),
                                        places.size() * sizeof(BlockPlace), cudaMemcpyHostToDevice, compute_));
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
-    const auto queue = [&](int pass) {
-        BranchQueue q;
-        q.items = queue_[pass % 2].as<void>();
-        q.capacity = static_cast<unsigned int>(queue_capacity_);
-        q.size = counters_.as<unsigned int>() + pass;
-        return q;
-    };
-    // A pass follows trees that many levels further down, the last one to their end.
-    const auto give = [&](int pass) {
-        const int depth = (pass + 1) * part.split_depth;
-        const bool last = part.split_depth == 0 || pass + 1 == passes || depth >= part.frame.tree.depth;
-        job.to = last ? BranchQueue() : queue(pass);
-        job.split_depth = last ? whole_trees : depth;
-        return !last;
-    };
-    bool more = give(0) && !places.empty();
-    job.next = counters_.as<unsigned int>() + passes;
-    job.rooms = rooms_.as<LatticeRoom>();
-    job.room_blocks = room_blocks_;
-    if (!places.empty()) launch(part.first, part.mask, path_, scene_, job, compute_);
-    for (int pass = 1; more; ++pass) {
-        job.from = queue(pass - 1);
-        more = give(pass);
-        launch(Pass::branches, part.mask, path_, scene_, job, compute_);
-    }
+    job.next = next_.as<unsigned int>();
+    job.storage = storage_.as<LatticeStorage>();
+    job.storage_blocks = storage_blocks_;
+    if (!places.empty()) launch(part.sampling, part.mask, path_, scene_, job, compute_);
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.end, compute_));
     CISTULA_CUDA_CHECK(
         cudaMemcpyAsync(slot.tally_copy.as<void>(), job.tally, sizeof(DeviceTally), cudaMemcpyDeviceToHost, compute_));
@@ -268,7 +235,7 @@ void DeviceWorker<Real>::wait() {
 /// What no block renders is background.
 template <class Real>
 void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
-    const BackgroundPixel& background = slot.part.contents->background;
+    const BackgroundPixel& background = slot.part.hints->background;
     std::atomic<uint64_t> pixels{0};
     tbb::parallel_for(0, slot.list.rows(), [&](int i) {
         const PixelWriter writer;
@@ -289,8 +256,8 @@ void DeviceWorker<Real>::copy_blocks(const PartSlot& slot, Film& film) {
     const std::vector<BlockPlace>& places = slot.list.places();
     const BlockShape shape = slot.list.shape();
     const auto order = rows_of_records(slot.list.plan());
-    const int mask = slot.part.mask, count = int(places.size());
-    const size_t block_bytes = size_t(shape.pixels()) * record_bytes(mask);
+    const int count = int(places.size());
+    const size_t block_bytes = size_t(shape.pixels()) * sizeof(PixelRecord);
     // No more than there is: to lock pages takes longer than to render a small frame.
     const int batch = std::min(int(staging_bytes / block_bytes), count);
     for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * block_bytes);
@@ -309,12 +276,8 @@ void DeviceWorker<Real>::copy_blocks(const PartSlot& slot, Film& film) {
         tbb::parallel_for(blocks, [&](const tbb::blocked_range<int>& some) {
             const PixelWriter writer;
             for (int i = some.begin(); i < some.end(); ++i) {
-                const std::byte* records = from + size_t(i) * block_bytes;
-                const BlockPlace& place = places[size_t(first + i)];
-                if (has_ledger(mask))
-                    unpack(reinterpret_cast<const PixelRecord*>(records), order, shape, place, film, writer);
-                else
-                    unpack(reinterpret_cast<const SeenRecord*>(records), order, shape, place, film, writer);
+                const auto* records = reinterpret_cast<const PixelRecord*>(from + size_t(i) * block_bytes);
+                unpack(records, order, shape, places[size_t(first + i)], film, writer);
             }
         });
     }

@@ -24,12 +24,11 @@ void use_device(int device);
 /// Strips of the rectangle of a frame's cover that a device renders in one go.
 struct FramePart {
     FrameView frame;
-    std::shared_ptr<const FrameContents> contents;
+    std::shared_ptr<const FrameHints> hints;
     Strips strips;
     BlockPlan plan;
-    Pass first = Pass::pixels;  // or adaptive_pixels
-    int mask = 0;               // index of effect_masks
-    int split_depth = 0;        // from which other threads follow a tree's branches; 0: never
+    Sampling sampling = Sampling::uniform;
+    int mask = 0;  // index of effect_masks
 };
 
 /// A part on its way.
@@ -49,10 +48,9 @@ class DeviceWorker {
     /// `here`: the scene of the arena, where this program can read it.
     DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path);
 
-    /// Room for parts of that many pixels, those of whole blocks, in both slots, beside what the kernels of `mask` take
-    /// for themselves, of which `first` goes over the pixels. False where there is none. `splits`: with queues for
-    /// branches.
-    bool reserve(size_t pixels, size_t memory_limit, int mask, Pass first, bool splits);
+    /// Takes memory for parts of that many pixels, those of whole blocks, in both slots, beside what a mask's kernel
+    /// takes for itself. False where there is none.
+    bool reserve(size_t pixels, size_t memory_limit, Sampling sampling, int mask);
 
     /// Enqueues a part; nothing is waited for. Its slot must be free.
     void start(const FramePart& part, int slot);
@@ -74,25 +72,23 @@ class DeviceWorker {
     uint32_t flags = 0;
 
   private:
-    static constexpr int passes = 6;             // over pixels, then over queues
-    static constexpr int counters = passes + 1;  // sizes of queues, and the next pixel
+    static constexpr size_t next_bytes = 16;
 
-    void prime(int mask, Pass pass);
-    void reserve_rooms();
+    void prime(Sampling sampling, int mask);
+    void reserve_storage();
     void fill_gaps(const PartSlot& slot, Film& film);
     void copy_blocks(const PartSlot& slot, Film& film);
 
     const int device_;
     const DevicePath path_;
     CudaStream compute_, copy_;
-    DeviceMemory arena_, queue_[2], counters_;
+    DeviceMemory arena_, next_;  // next_: FrameJob::next
     PinnedMemory staging_[2];
     CudaEvent staged_[2];
-    DeviceMemory rooms_;
-    unsigned int room_blocks_ = 0;  // 0: rooms_ is empty
-    size_t queue_capacity_ = 0;
-    uint32_t primed_ = 0;  // bit 3 m + p: that mask m's kernel of pass p has run
-    DeviceMemory stop_;    // what kernels look at; 0 unless stopped_
+    DeviceMemory storage_;             // FrameJob::storage
+    unsigned int storage_blocks_ = 0;  // 0: storage_ is empty
+    uint32_t primed_ = 0;              // bit 2 m + s: that mask m's kernel of Sampling s has run
+    DeviceMemory stop_;                // what kernels look at; 0 unless stopped_
     PinnedMemory one_;  // from where it is set: by a copy, as a kernel that does so might have to wait for the others
     bool stopped_ = false;
     DeviceScene<Real> scene_;

@@ -9,9 +9,9 @@
 namespace cistula {
 
 /// What a block keeps of its pixels while it renders them: registers are dearer.
-template <class Record, int threads = block_threads>
-struct alignas(16) BlockRoom {
-    Record records[threads];
+template <int threads>
+struct alignas(16) BlockStorage {
+    PixelRecord records[threads];
     PixelWork work[threads];
 };
 
@@ -22,49 +22,44 @@ struct alignas(T) Unset {
     __device__ T& get() { return reinterpret_cast<T&>(bytes); }
 };
 
-/// Blocks that share a multiprocessor: what bounds the registers of a thread. As measured on an H200: trees that fork
-/// are slower with more blocks of fewer registers, and plain loops over what sends nothing on are quicker.
-constexpr int blocks_at_work(uint32_t mask, DevicePath path, bool in_float) {
-    const auto within = [&](uint32_t effects) { return path == DevicePath::plain_loop && (mask & ~effects) == 0; };
-    if (within(opaque_solids)) return in_float ? 9 : 6;
-    if (within(opaque_bodies)) return in_float ? 8 : 5;
-    if (within(mirrors)) return in_float ? 7 : 4;
-    return in_float ? 6 : 4;
-}
-/// As many as have room: a multiprocessor of capability 7.5 takes 1,024 threads, later ones 1,536 and more.
+/// Threads that a multiprocessor has room for: 1,024 of capability 7.5, later ones 1,536 and more.
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
-inline constexpr int most_blocks_at_work = 1024 / block_threads;
+inline constexpr int most_threads = 1024;
 #else
-inline constexpr int most_blocks_at_work = 1536 / block_threads;
+inline constexpr int most_threads = 1536;
 #endif
-/// In blocks of block_threads.
-template <class Real, class E = Effects<all_effects>, DevicePath path = DevicePath::tree>
-inline constexpr int least_blocks = std::min(blocks_at_work(E::mask, path, sizeof(Real) == sizeof(float)),
-                                             most_blocks_at_work);
+/// Blocks that a multiprocessor is to hold at least, for __launch_bounds__.
+template <class Real>
+constexpr int least_blocks(const KernelShape& shape, DevicePath path) {
+    return std::min(shape.blocks(path, sizeof(Real) == sizeof(float)), most_threads / shape.threads());
+}
 
-/// Threads of a block of render_pixels.
-template <class E>
-inline constexpr int pixel_threads = warp_threads* warps_of_blocks(E::mask);
-
-template <class Real, class E, DevicePath path>
+/// The form of the scene that a path's kernels read, and their intersector.
+template <class Real, DevicePath path>
 struct PathTraits;
-template <class Real, class E>
-struct PathTraits<Real, E, DevicePath::plain_loop> {
+template <class Real>
+struct PathTraits<Real, DevicePath::plain_loop> {
     using Scene = SmallScene<Real>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
 };
-template <class Real, class E>
-struct PathTraits<Real, E, DevicePath::tree> {
+template <class Real>
+struct PathTraits<Real, DevicePath::tree> {
     using Scene = SceneView<Real>;
     using Intersector = BvhIntersector<Real, MediaList, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t) { return {scene}; }
 };
 
-/// Whether the host wants the kernel to end. Past the caches, which would keep what was there first.
-__device__ inline bool stopped(const FrameJob& job) {
-    return *static_cast<const volatile unsigned int*>(job.stop) != 0;
-}
+/// Ends trees once the host wants the kernel to end. Read past the caches, which would keep what was there first.
+struct JobStop {
+    const unsigned int* flag;  // FrameJob::stop
+
+    CISTULA_INLINE bool operator()() const { return *static_cast<const volatile unsigned int*>(flag) != 0; }
+};
+
+/// The stack of a kernel's trees.
+template <class Real, class E, DevicePath path>
+using DeviceStack = StoppableStack<StackOf<Real, E, typename PathTraits<Real, path>::Intersector::Media>, JobStop>;
 
 /// Over all lanes, for every one.
 __device__ inline unsigned int warp_sum(unsigned int value) {

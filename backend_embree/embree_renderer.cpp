@@ -20,8 +20,10 @@ class EmbreeRenderer : public Renderer {
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
         if (plain_) return plain_->render(camera, settings, film, progress);
-        return render_frame(*scene_, view_, EmbreeIntersector<Real>{view_, tree_->scene()}, camera, settings, film,
-                            progress, effects_);
+        const EmbreeIntersector<Real> intersector{view_, tree_->scene()};
+        FrameTask task(*scene_, intersector, camera, settings, film, progress);
+        effects_ = task.effects();
+        return task.run();
     }
     uint32_t effects() const override { return plain_ ? plain_->effects() : effects_; }
     std::string intersector() const override { return "embree"; }

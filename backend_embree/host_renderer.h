@@ -16,7 +16,10 @@ class HostRenderer : public Renderer {
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
-        return render_frame(*scene_, *form_, Intersector{*form_}, camera, settings, film, progress, effects_);
+        const Intersector intersector{*form_};
+        FrameTask task(*scene_, intersector, camera, settings, film, progress);
+        effects_ = task.effects();
+        return task.run();
     }
     uint32_t effects() const override { return effects_; }
     std::string intersector() const override { return name_; }

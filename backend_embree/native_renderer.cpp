@@ -59,8 +59,10 @@ class NativeRenderer : public Renderer {
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
-        return render_frame(*scene_, view_, NativeIntersector<Real>{view_, tree_.scene()}, camera, settings, film,
-                            progress, effects_);
+        const NativeIntersector<Real> intersector{view_, tree_.scene()};
+        FrameTask task(*scene_, intersector, camera, settings, film, progress);
+        effects_ = task.effects();
+        return task.run();
     }
     uint32_t effects() const override { return effects_; }
     std::string intersector() const override { return "native"; }

@@ -77,7 +77,7 @@ struct ObservedIntersector {
 template <class Real, class Inner>
 class ObservedStack {
   public:
-    explicit ObservedStack(SampleRecorder<Real, Inner>& recorder) : recorder_(recorder) {}
+    explicit ObservedStack(SampleRecorder<Real, Inner>& recorder) : recorder_(recorder), inner_(storage_) {}
 
     bool push(const Branch<Real>& branch) {
         const bool fits = inner_.push(branch);
@@ -91,8 +91,12 @@ class ObservedStack {
         return true;
     }
 
+    void clear() { inner_.clear(); }
+    bool stopped() const { return false; }
+
   private:
     SampleRecorder<Real, Inner>& recorder_;
+    typename BranchStack<Branch<Real>>::Storage storage_;
     BranchStack<Branch<Real>> inner_;
 };
 

@@ -190,7 +190,8 @@ double seen_through(const SceneView<Real>& scene, const Ray<Real>& ray, uint32_t
     PixelRecord record = PixelRecord();
     PixelSums<Real> sums(settings, scene, record, flags);
     PixelRays rays;
-    Stack stack;
+    typename Stack::Storage storage;
+    Stack stack(storage);
     struct Unnoted {
         void surface(const Hit<Real>&, const Vec3<Real>&) const {}
         void nothing(bool) const {}

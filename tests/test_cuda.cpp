@@ -112,14 +112,12 @@ TYPED_TEST(Cuda, GeneratedScenesAreEqualWhateverThePath) {
         const SceneDescription scene = generated_scene(seed, source + "/scenes");
         FrameSettings settings = generated_settings(scene);
         const Image expected = this->expected(scene, settings);
-        for (const int split : {0, 1, 3})
-            for (const bool always_tree : {false, true}) {
-                CudaOptions options;
-                options.split = split;
-                options.always_tree = always_tree;
-                EXPECT_EQ(render(*this->gpu(scene, options), scene, settings), expected)
-                    << "seed " << seed << ", split " << split << (always_tree ? ", tree" : "");
-            }
+        for (const bool always_tree : {false, true}) {
+            CudaOptions options;
+            options.always_tree = always_tree;
+            EXPECT_EQ(render(*this->gpu(scene, options), scene, settings), expected)
+                << "seed " << seed << (always_tree ? ", tree" : "");
+        }
         settings.effects = all_effects;
         EXPECT_EQ(render(*this->gpu(scene), scene, settings), expected) << "seed " << seed << " with all effects";
     }
@@ -258,30 +256,24 @@ TYPED_TEST(Cuda, StopsWithinAnEndlessFrame) {
         return TestFixture::expected(scene, settings);
     };
     struct Case {
-        int split = CudaOptions::automatic, supersample = 1;
+        int supersample = 1;
         double target_error = 0;
         std::vector<int> devices = {0};
     };
-    const std::vector<Case> cases = {{},   // queues that overflow
-                                     {0},  // whole trees
-                                     {3},
-                                     {0, 4},
-                                     {0, 1, 1e-6},  // of many samples, adaptive
-                                     {CudaOptions::automatic, 1, 0, {0, 0}}};
+    const std::vector<Case> cases = {{}, {4}, {1, 1e-6}, {1, 0, {0, 0}}};  // the third is adaptive
     // By a tree, and by a plain loop.
     for (const SceneDescription& scene : {scene_of("hard/furnace"), test::room_of_mirrors()})
         for (const Case& one : cases) {
             CudaOptions options;
-            options.split = one.split;
             options.devices = one.devices;
             FrameSettings settings = test::endless_settings(96, 54);
             if (one.target_error > 0) settings = test::endless_settings(1920, 1080);
             settings.supersample = one.supersample;
             settings.target_error = one.target_error;
             check_endless(*this->gpu(scene, options), scene, settings, expected,
-                          scene.source + ", split " + std::to_string(one.split) + ", samples " +
-                              std::to_string(one.supersample) + (one.target_error > 0 ? ", adaptive" : "") +
-                              ", shares " + std::to_string(one.devices.size()));
+                          scene.source + ", samples " + std::to_string(one.supersample) +
+                              (one.target_error > 0 ? ", adaptive" : "") + ", shares " +
+                              std::to_string(one.devices.size()));
         }
 }
 

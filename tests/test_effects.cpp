@@ -64,7 +64,7 @@ TYPED_TEST(EffectTest, NoGeneratedSceneDoes) {
         const SceneDescription scene = generated_scene(seed, source + "/scenes");
         ran.insert(this->compare(scene, generated_settings(scene), "generated scene " + std::to_string(seed)));
     }
-    EXPECT_GE(ran.size(), 4u);
+    EXPECT_GE(ran.size(), 3u);
 }
 
 /// Most generated scenes call for much: here less is left of them, so that every mask but the largest has its share.
@@ -88,11 +88,7 @@ TYPED_TEST(EffectTest, EveryMaskRuns) {
     const SceneDescription benchmark = load("benchmark");
     const SceneDescription reflecting = without_effect(benchmark, effect_transmission).value();
     const SceneDescription lit = without_effect(reflecting, effect_reflection).value();
-    const SceneDescription solids = without_effect(lit, effect_triangles).value();
-    SceneDescription seen = benchmark;
-    seen.lights[0].radius = 0.1;
-    const std::vector<SceneDescription> scenes = {solids,           lit,          reflecting, benchmark, seen,
-                                                  load("platonic"), load("glass")};
+    const std::vector<SceneDescription> scenes = {lit, reflecting, benchmark, load("platonic"), load("glass")};
     ASSERT_EQ(scenes.size(), size_t(effect_mask_count));
     for (size_t i = 0; i < scenes.size(); ++i)
         EXPECT_EQ(this->compare(scenes[i], small_frame(scenes[i]), "scene " + std::to_string(i)), effect_masks[i]) << i;
@@ -116,7 +112,7 @@ TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
     const std::string dark = hash();
     test::add_edge_lights(scene, 4);
     test::add_seen_lights(scene, 40);
-    EXPECT_EQ(this->compare(scene, settings, "lights"), effect_masks[4]);
+    EXPECT_EQ(this->compare(scene, settings, "lights"), effect_masks[3]);
     EXPECT_NE(hash(), dark);
 }
 

@@ -6,7 +6,7 @@
 #include "cistula/adaptive_pixel.h"
 #include "cistula/bvh.h"
 #include "golden.h"
-#include "scene/frame_contents.h"
+#include "scene/frame_hints.h"
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
 #include "support_camera.h"
@@ -30,27 +30,29 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
     FrameView frame = frame_view(scene, camera, settings);
     camera_solids(view, intersector, frame.camera.position, frame.camera_media);
     const PixelRect& rect = settings.crop;
-    const FrameContents contents = frame_contents(scene, frame, settings);
+    const FrameHints hints = frame_hints(scene, frame, settings);
     const bool gradual = shades_gradually(view);
     size_t wrong = 0;
     for (int y = 0; y < rect.height; ++y)
-        contents.cover.for_each_part(y, 0, rect.width, [&](int begin, int end, bool covered) {
+        hints.cover.for_each_part(y, 0, rect.width, [&](int begin, int end, bool covered) {
             for (int x = begin; x < end; ++x) {
                 PixelRecord record;
                 PixelWork work;
                 using E = Effects<all_effects>;
-                StackOf<Real, E, MediaList> stack;
+                using Stack = StackOf<Real, E, MediaList>;
+                typename Stack::Storage storage;
+                Stack stack(storage);
                 if (settings.adaptive())
                     render_adaptive_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, gradual, record,
                                                    work, stack);
                 else
                     render_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, SampleRange(), record, work,
                                           stack);
-                const bool is_background = test::same_bytes(record, contents.background.record);
+                const bool is_background = test::same_bytes(record, hints.background.record);
                 share.all += 1;
                 share.background += is_background;
                 share.left_out += !covered;
-                if (!covered) wrong += !is_background || work.rays.total() != contents.background.work.rays.total();
+                if (!covered) wrong += !is_background || work.rays.total() != hints.background.work.rays.total();
             }
         });
     EXPECT_EQ(wrong, 0u) << what;
@@ -62,7 +64,7 @@ FrameCover cover_of(const SceneDescription& description) {
     const auto scene = compile_scene<Real>(description);
     FrameSettings settings;
     settings.set_size(40, 30);
-    return frame_contents(*scene, frame_view(*scene, camera_at(description.camera, 0), settings), settings).cover;
+    return frame_hints(*scene, frame_view(*scene, camera_at(description.camera, 0), settings), settings).cover;
 }
 
 template <class Real>

@@ -67,9 +67,9 @@ TEST(RequiredEffects, AnOpaqueCubeUnderALamp) {
     EXPECT_EQ(because(scene, effect_opaque_shadows), "material plain of /objects/0 has kt 0");
     EXPECT_EQ(because(scene, effect_refraction), "no material lets rays pass");
     scene.materials[0].specular = 0.5;
-    EXPECT_EQ(effects_of(scene), opaque_solids);
+    EXPECT_EQ(effects_of(scene), opaque_bodies & ~(effect_texture | effect_triangles));
     scene.materials[0].diffuse = 0;
-    EXPECT_EQ(effects_of(scene), opaque_solids & ~effect_diffuse);
+    EXPECT_EQ(effects_of(scene), opaque_bodies & ~(effect_texture | effect_triangles | effect_diffuse));
 }
 
 TEST(RequiredEffects, MirrorsAndGlass) {

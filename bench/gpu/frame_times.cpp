@@ -42,14 +42,12 @@ FrameRuns timed(Renderer& renderer, const SceneDescription& scene, const FrameSe
 }
 
 template <class Real>
-void time_one(GpuRecord& record, const SceneDescription& scene, int width, int height, int depth, int runs, int split) {
-    CudaOptions options;
-    options.split = split;
-    const auto renderer = make_cuda_renderer<Real>(compile_scene<Real>(scene), options);
+void time_one(GpuRecord& record, const SceneDescription& scene, int width, int height, int depth, int runs) {
+    const auto renderer = make_cuda_renderer<Real>(compile_scene<Real>(scene));
     const FrameRuns r = timed(*renderer, scene, settings_of(width, height, depth, 1), 3, runs);
     const RayCounts& rays = r.film.rays;
-    record.add_times(fmt::format("benchmark.json/{}x{}/depth:{}/{}/split:{}", width, height, depth,
-                                 sizeof(Real) == sizeof(float) ? "float" : "double", split),
+    record.add_times(fmt::format("benchmark.json/{}x{}/depth:{}/{}", width, height, depth,
+                                 sizeof(Real) == sizeof(float) ? "float" : "double"),
                      r.kernel,
                      {{"rays", rays.total()},
                       {"surfaces", rays.primary + rays.reflected + rays.transmitted},
@@ -81,14 +79,14 @@ void time_devices(GpuRecord& record, const std::string& folder, int runs) {
     }
 }
 
-void time_frames(GpuRecord& record, const std::string& folder, int runs, int split) {
+void time_frames(GpuRecord& record, const std::string& folder, int runs) {
     const SceneDescription scene = read_scene(folder + "/scenes/benchmark.json");
     for (const int depth : {4, 8}) {
-        time_one<float>(record, scene, 3840, 2160, depth, runs, split);
-        time_one<double>(record, scene, 3840, 2160, depth, runs, split);
+        time_one<float>(record, scene, 3840, 2160, depth, runs);
+        time_one<double>(record, scene, 3840, 2160, depth, runs);
     }
-    time_one<float>(record, scene, 640, 480, 8, runs, split);
-    time_one<double>(record, scene, 640, 480, 8, runs, split);
+    time_one<float>(record, scene, 640, 480, 8, runs);
+    time_one<double>(record, scene, 640, 480, 8, runs);
 }
 
 }  // namespace cistula::bench

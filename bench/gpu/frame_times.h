@@ -9,7 +9,7 @@ namespace cistula::bench {
 
 /// FOLDER/scenes/benchmark.json at 3840x2160 in depth 4 and 8, at 640x480 in depth 8, in both precisions: medians of
 /// `runs` after warm-up, with the rays that they took.
-void time_frames(GpuRecord& record, const std::string& folder, int runs, int split);
+void time_frames(GpuRecord& record, const std::string& folder, int runs);
 
 /// The same scene at 3840x2160 in depth 8 with 4 x 4 samples on one GPU, two, ... all: the slowest one's kernels, and
 /// that the integers are the same.

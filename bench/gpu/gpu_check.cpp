@@ -12,7 +12,6 @@
 #include "bench/gpu/image_parity.h"
 #include "bench/gpu/ray_times.h"
 #include "bench/gpu/record.h"
-#include "cistula/ray_tree.h"
 #include "scene/error.h"
 
 namespace cistula::bench {
@@ -22,12 +21,12 @@ struct Options {
     std::string folder = ".", json;
     uint64_t functions = 0, generated = 0;
     bool scenes = false, times = false, effects = false, rays = false, devices = false;
-    int runs = 20, split = CudaOptions().split, film = 0;
+    int runs = 20, film = 0;
 };
 
 int run(const Options& options) {
     GpuRecord record;
-    if (options.times) time_frames(record, options.folder, options.runs, options.split);
+    if (options.times) time_frames(record, options.folder, options.runs);
     if (options.effects) time_effects(record, options.folder, options.runs);
     if (options.devices) time_devices(record, options.folder, 5);
     if (options.rays) time_rays(record, options.runs);
@@ -60,9 +59,6 @@ int main(int argc, char** argv) {
     app.add_flag("--rays", options.rays, "time rays on a mesh, and compare their hits");
     app.add_option("--film", options.film, "frames of a film to time, rendered and written");
     app.add_option("--runs", options.runs, "runs of each, after warm-up")->check(CLI::Range(1, 10000));
-    app.add_option("--split", options.split,
-                   "depth from which other threads follow a tree's branches; 0: never; -1: by the size of the frame")
-        ->check(CLI::Range(-1, largest_depth));
     app.add_option("--json", options.json, "where the record goes");
     try {
         app.parse(argc, argv);

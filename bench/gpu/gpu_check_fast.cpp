@@ -6,21 +6,17 @@
 
 #include "backend_cuda/cuda_renderer.h"
 #include "bench/gpu/frame_times.h"
-#include "cistula/ray_tree.h"
 #include "scene/error.h"
 
 int main(int argc, char** argv) {
     using namespace cistula;
     std::string folder = ".", json;
     bool times = false;
-    int runs = 20, split = CudaOptions().split;
+    int runs = 20;
     CLI::App app("Times frames whose arithmetic is approximate.", "gpu_check_fast");
     app.add_option("--folder", folder, "where scenes/ lies");
     app.add_flag("--times", times, "time frames")->required();
     app.add_option("--runs", runs, "runs of each, after warm-up")->check(CLI::Range(1, 10000));
-    app.add_option("--split", split,
-                   "depth from which other threads follow a tree's branches; 0: never; -1: by the size of the frame")
-        ->check(CLI::Range(-1, largest_depth));
     app.add_option("--json", json, "where the record goes");
     try {
         app.parse(argc, argv);
@@ -29,7 +25,7 @@ int main(int argc, char** argv) {
     }
     try {
         bench::GpuRecord record("gpu_check_fast");
-        bench::time_frames(record, folder, runs, split);
+        bench::time_frames(record, folder, runs);
         if (!json.empty()) record.write(json);
         return int(ExitCode::done);
     } catch (const Error& error) {

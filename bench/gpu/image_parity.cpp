@@ -28,7 +28,6 @@ Json first_pixel(const FilmDifference& difference, const Film& cpu, const Film& 
 template <class Real>
 void check(GpuRecord& record, const std::string& name, const SceneDescription& scene, const FrameSettings& settings,
            const std::string& hash) {
-    const std::vector<int> splits = settings.adaptive() ? std::vector<int>{0} : std::vector<int>{0, 1, 3};
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
     const Film cpu = golden::render_with(*make_embree_renderer<Real>(compiled, {.always_tree = true}), scene, settings);
     const char* precision = sizeof(Real) == sizeof(float) ? "float" : "double";
@@ -45,14 +44,9 @@ void check(GpuRecord& record, const std::string& name, const SceneDescription& s
                           d.compared, d.differing, first_pixel(d, cpu, gpu));
     };
     for (const bool always_tree : {false, true}) {
-        for (const int split : splits) {
-            CudaOptions options;
-            options.always_tree = always_tree;
-            options.split = split;
-            compare(options, settings, fmt::format("split:{}", split));
-        }
         CudaOptions options;
         options.always_tree = always_tree;
+        compare(options, settings, "needed_effects");
         compare(options, with_all, "all_effects");
     }
 }

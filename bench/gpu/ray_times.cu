@@ -30,7 +30,7 @@ __global__ void __launch_bounds__(block_rays)
 
 // With the registers of the frame's kernels: left to itself, ptxas takes fewer and spills.
 template <class Real>
-__global__ void __launch_bounds__(block_rays, least_blocks<Real>)
+__global__ void __launch_bounds__(block_rays, least_blocks<Real>(adaptive_shape, DevicePath::tree))
     find_light(const __grid_constant__ SceneView<Real> scene, const StoredRay<Real>* rays, uint8_t* light) {
     light[ray_index()] = light_of(scene, rays[ray_index()]);
 }

@@ -9,9 +9,10 @@ namespace cistula {
 /// Takes sample `slot` of pixel (px, py) into `record`, and gives what it met: its signature. A tree of more than
 /// most_branches is walked again with four times the budget, and so on: the ledger says so. `gradual`:
 /// shades_gradually(scene), found once. `work` is the thread's own.
-template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
+template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE uint32_t take_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
-                                    int py, int slot, bool gradual, Record& record, PixelWork& work, Stack& stack) {
+                                    int py, int slot, bool gradual, PixelRecord& record, PixelWork& work,
+                                    Stack& stack) {
     const uint32_t before = work.rays.total();
     TreeSettings settings = frame.tree;
     for (;; settings.budget = 4 * greatest(settings.budget, int64_t(1))) {
@@ -22,26 +23,24 @@ CISTULA_INLINE uint32_t take_sample(const Scene& scene, const FrameView& frame, 
                                px, py, slot % lattice_side, slot / lattice_side, true, record, work, signing);
         record.rays = work.rays.total() - before;
         if (!signing.drop()) return signature.value;
-        if constexpr (requires { stack.stopped(); })
-            if (stack.stopped()) return signature.value;
+        if (stack.stopped()) return signature.value;
     }
 }
 
 /// Copies what is one sample's alone.
-CISTULA_INLINE void choose_sample(const SeenRecord& sample, SeenRecord& pixel) {
+CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel) {
     pixel.id = sample.id;
     pixel.z = sample.z;
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
 }
 
 /// All that the pixel wants, with room of its own for samples. take(slot, taken): a sample's record; gives what it met.
-/// `record`: a PixelRecord or RecordOf<E>.
-template <class Record, class Take>
-CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, Record& record, const Take& take) {
+template <class Take>
+CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, PixelRecord& record, const Take& take) {
     LatticeSample samples[lattice_samples];
-    Record taken;
+    PixelRecord taken;
     LatticePixel pixel;
-    record = Record();
+    record = PixelRecord();
     for (pixel.begin(settings); pixel.wanted() > 0;) {
         for (int i = 0; i < pixel.wanted(); ++i) {
             const int slot = pixel.wanted(i);
@@ -59,10 +58,11 @@ CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, Record& r
     record.unmet = pixel.unmet();
 }
 
-template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
+template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
-                                          int px, int py, bool gradual, Record& record, PixelWork& work, Stack& stack) {
-    sample_adaptively(frame.lattice, record, [&](int slot, Record& taken) {
+                                          int px, int py, bool gradual, PixelRecord& record, PixelWork& work,
+                                          Stack& stack) {
+    sample_adaptively(frame.lattice, record, [&](int slot, PixelRecord& taken) {
         return take_sample<Real, E>(scene, frame, intersector, px, py, slot, gradual, taken, work, stack);
     });
 }

@@ -50,21 +50,19 @@ struct Effects {
 template <class Real, class E>
 using Share = std::conditional_t<E::has(effect_tint | effect_absorption), Vec3<Real>, Real>;
 
-/// Bodies that light falls on and passes by: planes alone; any; mirrors too.
-inline constexpr uint32_t opaque_solids = effect_diffuse | effect_specular | effect_opaque_shadows | effect_solids;
-inline constexpr uint32_t opaque_bodies = opaque_solids | effect_texture | effect_triangles;
+/// Bodies that light falls on and passes by; mirrors too.
+inline constexpr uint32_t opaque_bodies =
+    effect_diffuse | effect_specular | effect_opaque_shadows | effect_solids | effect_texture | effect_triangles;
 inline constexpr uint32_t mirrors = opaque_bodies | effect_reflection;
-/// What passes them goes straight on, all colors alike.
+/// Bodies through which light goes straight on, all colors alike.
 inline constexpr uint32_t clear_bodies = mirrors | effect_transparent_shadows | effect_transmission | effect_insides;
 
 /// The masks that are instantiated, each a superset of what some common kind of scene needs, ordered by size
-/// (docs/effects.md has what was measured).
+/// (docs/effects.md).
 inline constexpr uint32_t effect_masks[] = {
-    opaque_solids,
     opaque_bodies,
     mirrors,
     clear_bodies,
-    clear_bodies | effect_visible_lights,
     clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
     all_effects,
     all_effects &
@@ -72,19 +70,8 @@ inline constexpr uint32_t effect_masks[] = {
 };
 inline constexpr int compiled_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
 inline constexpr int unshadowed_mask = compiled_mask_count - 1;
-/// Of the masks that scenes run with; the last is all_effects.
+/// Masks that scenes run with; the last is all_effects.
 inline constexpr int effect_mask_count = unshadowed_mask;
-
-/// Whether rays are sent on, so that there is anything to cut and the ledger to write it down.
-constexpr bool sends_rays_on(uint32_t effects) {
-    return (effects & (effect_reflection | effect_transmission)) != 0;
-}
-
-/// Only what passes a face makes trees fork. Of such masks devices have a kernel for branches that other threads
-/// follow.
-constexpr bool trees_fork(int mask) {
-    return mask < effect_mask_count && (effect_masks[mask] & effect_transmission) != 0;
-}
 
 /// The index in effect_masks of the least mask that contains `required`.
 constexpr int least_mask(uint32_t required) {

@@ -54,34 +54,27 @@ struct LatticeSample {
     uint32_t hits, rays;
     uint32_t signature;  // of its ray tree (signature.h)
 
-    CISTULA_INLINE void keep(const SeenRecord& record, uint32_t met) {
-        for (int c = 0; c < 3; ++c) radiance[c] = record.radiance[c];
-        hits = record.hits;
-        rays = record.rays;
-        signature = met;
-    }
     CISTULA_INLINE void keep(const PixelRecord& record, uint32_t met) {
-        keep(static_cast<const SeenRecord&>(record), met);
         for (int c = 0; c < 3; ++c) {
+            radiance[c] = record.radiance[c];
             pruned[c] = record.pruned[c];
             cut[c] = record.cut[c];
         }
+        hits = record.hits;
+        rays = record.rays;
+        signature = met;
     }
 
     /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice; for a
     /// ledger only if what was kept had one.
     template <class Add>
-    CISTULA_INLINE void give(SeenRecord& record, int weight, const Add& add) const {
-        for (int c = 0; c < 3; ++c) add(record.radiance[c], weight * radiance[c]);
-        add(record.hits, uint32_t(weight) * hits);
-    }
-    template <class Add>
     CISTULA_INLINE void give(PixelRecord& record, int weight, const Add& add) const {
-        give(static_cast<SeenRecord&>(record), weight, add);
         for (int c = 0; c < 3; ++c) {
+            add(record.radiance[c], weight * radiance[c]);
             add(record.pruned[c], weight * pruned[c]);
             add(record.cut[c], weight * cut[c]);
         }
+        add(record.hits, uint32_t(weight) * hits);
     }
 };
 

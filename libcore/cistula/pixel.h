@@ -109,7 +109,7 @@ template <class Real>
 struct FirstSeen {
     const FrameView& frame;
     const PixelWork& work;
-    SeenRecord& record;
+    PixelRecord& record;
     bool middle;  // the sample that stands for the pixel where no mean makes sense
 
     CISTULA_INLINE void nothing(bool light) const { record.hits += light ? 1 : 0; }
@@ -122,10 +122,6 @@ struct FirstSeen {
     }
 };
 
-/// What a mask's pixels need: no ledger where it would be empty.
-template <class E>
-using RecordOf = std::conditional_t<sends_rays_on(E::mask), PixelRecord, SeenRecord>;
-
 /// Which of a pixel's samples are rendered: all, or every step-th where several threads share a pixel.
 struct SampleRange {
     int first = 0, step = 1;
@@ -133,17 +129,17 @@ struct SampleRange {
 
 /// Sample (column, row) of the k x k grid of pixel (px, py), added to the record. `settings`: frame.tree, or a budget
 /// of the sample's own.
-template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
+template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, const TreeSettings& settings,
                                   const Intersector& intersector, int px, int py, int column, int row, bool middle,
-                                  Record& record, PixelWork& work, Stack& stack) {
+                                  PixelRecord& record, PixelWork& work, Stack& stack) {
     const int k = frame.supersample;
     Ray<Real, typename Intersector::Media> ray;
     // In half samples from the middle of the picture.
     const int across = 2 * (px * k + column) + 1 - frame.width * k;
     const int down = 2 * (py * k + row) + 1 - frame.height * k;
     const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
-    PixelSums<Real, Record> sums(settings, scene, record, work.flags);
+    PixelSums<Real> sums(settings, scene, record, work.flags);
     ++work.rays.primary;
     double start;
     if (!primary_ray(scene, frame, direction, ray, start)) {
@@ -154,52 +150,37 @@ CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, co
         work.start = start;
         work.facing = dot(direction, frame.camera.forward);
     }
-    RayTree<Real, E, Intersector, Stack, Record> tree(scene, intersector, settings.depth, sums, work.rays, stack);
+    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, settings.depth, sums, work.rays, stack);
     tree.trace(ray, FirstSeen<Real>{frame, work, record, middle});
 }
 
 /// A pixel's record before its first sample, and after its last.
-template <class Record>
-CISTULA_INLINE void begin_pixel(Record& record) {
-    record = Record();
+CISTULA_INLINE void begin_pixel(PixelRecord& record) {
+    record = PixelRecord();
     record.z = RealTraits<float>::infinity;
 }
-template <class Record>
-CISTULA_INLINE void end_pixel(Record& record, const PixelWork& work) {
+CISTULA_INLINE void end_pixel(PixelRecord& record, const PixelWork& work) {
     record.rays = work.rays.total();
     record.samples = work.rays.primary;
 }
 
 /// Sample i of pixel (px, py), row by row of its k x k grid.
-template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
+template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void add_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
-                               int py, int i, Record& record, PixelWork& work, Stack& stack) {
+                               int py, int i, PixelRecord& record, PixelWork& work, Stack& stack) {
     const int k = frame.supersample, row = k == 1 ? 0 : i / k, column = i - row * k;
     render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row, column == k / 2 && row == k / 2,
                            record, work, stack);
 }
 
-/// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own. Branches that `stack` gives away
-/// are missing from the record: resume_branch adds them. `record`: a PixelRecord or RecordOf<E>.
-template <class Real, class E, class Intersector, class Stack, class Scene, class Record>
+/// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own.
+template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
-                                 int py, SampleRange samples, Record& record, PixelWork& work, Stack& stack) {
+                                 int py, SampleRange samples, PixelRecord& record, PixelWork& work, Stack& stack) {
     begin_pixel(record);
     for (int i = samples.first; i < frame.supersample * frame.supersample; i += samples.step)
         add_sample<Real, E>(scene, frame, intersector, px, py, i, record, work, stack);
     end_pixel(record, work);
-}
-
-/// The rest of a tree from a branch that another stack gave away; `record` and `work` get what is its own.
-template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void resume_branch(const Scene& scene, const FrameView& frame, const Intersector& intersector,
-                                  BranchOf<Real, E, typename Intersector::Media>& branch, PixelRecord& record,
-                                  PixelWork& work, Stack& stack) {
-    record = PixelRecord();
-    PixelSums<Real> sums(frame.tree, scene, record, work.flags);
-    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, frame.tree.depth, sums, work.rays, stack);
-    tree.resume(branch);
-    record.rays = work.rays.total();
 }
 
 }  // namespace cistula

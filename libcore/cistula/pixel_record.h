@@ -60,7 +60,7 @@ struct Plus {
 };
 
 /// Sums over the pixel's samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
-struct SeenRecord {
+struct PixelRecord {
     int64_t radiance[3];
     uint32_t hits;          // samples whose primary ray hit anything (a seen light too)
     uint32_t rays;          // rays of all kinds
@@ -69,48 +69,29 @@ struct SeenRecord {
     float normal[3];        // that sample's unit normal, toward the viewer, in world axes; 0: none
     uint32_t samples : 31;  // that were rendered
     uint32_t unmet : 1;     // adaptive sampling wanted more than it may have
+    int64_t pruned[3];      // upper bound on what the cutoff took away
+    int64_t cut[3];         // upper bound on what the depth limit took away
 
-    /// add(to, value) for the sums; not for the counts of rays and samples.
+    /// Calls add(to, value) for the sums; not for the counts of rays and samples.
     template <class Add>
-    CISTULA_INLINE void give(SeenRecord& to, const Add& add) const {
-        for (int c = 0; c < 3; ++c) add(to.radiance[c], radiance[c]);
+    CISTULA_INLINE void give(PixelRecord& to, const Add& add) const {
+        for (int c = 0; c < 3; ++c) {
+            add(to.radiance[c], radiance[c]);
+            add(to.pruned[c], pruned[c]);
+            add(to.cut[c], cut[c]);
+        }
         add(to.hits, hits);
     }
 
     /// Takes other samples of the same pixel in.
-    CISTULA_INLINE void add(const SeenRecord& o) {
+    CISTULA_INLINE void add(const PixelRecord& o) {
         o.give(*this, Plus());
-        take_rest(o);
-    }
-
-  protected:
-    CISTULA_INLINE void take_rest(const SeenRecord& o) {
         rays += o.rays;
         samples += o.samples;
         if (o.id == 0) return;
         id = o.id;
         z = o.z;
         for (int c = 0; c < 3; ++c) normal[c] = o.normal[c];
-    }
-};
-
-/// The same with the ledger, which stays empty where no ray is sent on: devices do without it there.
-struct PixelRecord : SeenRecord {
-    int64_t pruned[3];  // upper bound on what the cutoff took away
-    int64_t cut[3];     // upper bound on what the depth limit took away
-
-    template <class Add>
-    CISTULA_INLINE void give(PixelRecord& to, const Add& add) const {
-        SeenRecord::give(to, add);
-        for (int c = 0; c < 3; ++c) {
-            add(to.pruned[c], pruned[c]);
-            add(to.cut[c], cut[c]);
-        }
-    }
-
-    CISTULA_INLINE void add(const PixelRecord& o) {
-        o.give(*this, Plus());
-        take_rest(o);
     }
 };
 

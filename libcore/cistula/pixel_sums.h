@@ -36,13 +36,12 @@ CISTULA_INLINE bool clear_fault(Real& units, Real scale) {
     return is_fault;
 }
 
-/// Into a PixelRecord, or a SeenRecord where nothing is ever sent on.
-template <class Real, class Record = PixelRecord>
+template <class Real>
 class PixelSums {
   public:
     /// For one sample. Weights have a share per color, or one for all.
     template <class Scene>
-    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, Record& record, uint32_t& flags)
+    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
         : settings_(settings),
           bound_(scene.bound),
           largest_bound_(scene.largest_bound),
@@ -121,7 +120,7 @@ class PixelSums {
     const TreeSettings& settings_;
     const Vec3<Real>& bound_;  // the scene's radiance bound B
     const Real& largest_bound_;
-    Record& record_;
+    PixelRecord& record_;
     uint32_t& flags_;
     int64_t left_;
 };

@@ -80,6 +80,9 @@ class SigningStack {
         return true;
     }
 
+    CISTULA_INLINE void clear() { inner_.clear(); }
+    CISTULA_INLINE bool stopped() const { return inner_.stopped(); }
+
     /// Empties the stack. False if it was: the tree was followed to its end.
     CISTULA_INLINE bool drop() {
         const bool any = !inner_.empty();

@@ -55,10 +55,11 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     return frame;
 }
 
-/// The index in effect_masks of what renders a frame of a scene that calls for `effects`. After camera_solids, as a
-/// camera in a body adds to them.
+/// The index in effect_masks of what renders a frame of a scene that calls for `effects`. After camera_solids, since a
+/// camera in a body adds to them. Adaptive sampling runs with all effects.
 inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.unshadowed) return unshadowed_mask;
+    if (settings.adaptive()) return effect_mask_count - 1;
     const uint32_t of_camera = frame.camera_media.empty() ? 0u : uint32_t(effect_insides);
     return least_mask(settings.effects | effects | of_camera);
 }

@@ -9,14 +9,6 @@
 
 namespace cistula {
 
-/// As films keep it: with an empty ledger where there was none.
-inline PixelRecord whole_record(const PixelRecord& record) {
-    return record;
-}
-inline PixelRecord whole_record(const SeenRecord& record) {
-    return {record, {}, {}};
-}
-
 /// Writes pixels one after the other; what one object has written is there for other threads once it is gone.
 class PixelWriter {
   public:

@@ -85,12 +85,10 @@ std::vector<std::function<std::unique_ptr<Renderer>(Compiled<Real>)>> renderers(
     } else {
         DeviceChoice every;
         every.all = true;
-        std::vector<CudaOptions> variants(5, choose_devices(Backend::cuda, {}).options);
+        std::vector<CudaOptions> variants(4, choose_devices(Backend::cuda, {}).options);
         variants[1].devices = choose_devices(Backend::cuda, every).options.devices;  // one GPU or several
-        variants[2].split = 1;
-        variants[3].always_tree = true;
-        variants[4].split = 2;
-        variants[4].memory_limit = size_t(1) << 20;
+        variants[2].always_tree = true;
+        variants[3].memory_limit = size_t(1) << 20;
         for (const CudaOptions& options : variants)
             all.push_back(
                 [options](Compiled<Real> scene) { return make_renderer<Real>(Backend::cuda, scene, options); });

@@ -75,7 +75,8 @@ CISTULA_HD inline void trace(const Setup<Real>& setup, const Intersector& inters
     } any_scene;
     PixelSums<Real> sums(settings, any_scene, record, lines.flags);
     PixelRays rays;
-    Stack stack;
+    typename Stack::Storage storage;
+    Stack stack(storage);
     lines.count = 0;
     const Watched<Real, Intersector> watched{setup.scene, intersector, lines};
     Tree(setup.scene, watched, settings.depth, sums, rays, stack).trace(ray, Unnoted());

@@ -21,11 +21,11 @@ struct BackgroundPixel {
 };
 
 /// `cover` is over settings.crop.
-struct FrameContents {
+struct FrameHints {
     FrameCover cover;
     BackgroundPixel background;
 };
 template <class Real>
-FrameContents frame_contents(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings);
+FrameHints frame_hints(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings);
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-#include "scene/frame_contents.h"
+#include "scene/frame_hints.h"
 
 #include "cistula/adaptive_pixel.h"
 #include "scene/frame.h"
@@ -58,11 +58,11 @@ BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameVi
 }  // namespace
 
 template <class Real>
-FrameContents frame_contents(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings) {
+FrameHints frame_hints(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings) {
     return {frame_cover(scene, frame, settings.crop), background_pixel(scene, frame, settings.adaptive())};
 }
 
-template FrameContents frame_contents(const CompiledScene<float>&, const FrameView&, const FrameSettings&);
-template FrameContents frame_contents(const CompiledScene<double>&, const FrameView&, const FrameSettings&);
+template FrameHints frame_hints(const CompiledScene<float>&, const FrameView&, const FrameSettings&);
+template FrameHints frame_hints(const CompiledScene<double>&, const FrameView&, const FrameSettings&);
 
 }  // namespace cistula
