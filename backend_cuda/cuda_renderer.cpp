@@ -14,16 +14,8 @@
 namespace cistula {
 namespace {
 
-/// Up to this many primitives a plain loop is faster than any tree.
-constexpr uint32_t plain_loop_primitives = 16;
 /// Samples of a part: what is copied while the next is in the kernels.
 constexpr size_t part_samples = size_t{1} << 25;
-template <class Real>
-bool fits_plain_loop(const SceneView<Real>& scene) {
-    if (scene.convex.size + scene.clusters.size > plain_loop_primitives) return false;
-    const auto small = std::make_unique<SmallScene<Real>>();
-    return small->assign(scene, scene);
-}
 
 bool same(const CameraFrame& a, const CameraFrame& b) {
     const Camera &p = a.camera, &q = b.camera;
@@ -38,7 +30,7 @@ class CudaRenderer : public Renderer {
         : scene_(std::move(scene)), options_(options), view_(scene_->view()) {
         const std::vector<CudaDevice> known = list_cuda_devices();
         for (const int index : options_.devices) require(known, index);
-        path_ = !options_.always_tree && fits_plain_loop(view_) ? DevicePath::plain_loop : DevicePath::tree;
+        path_ = options_.always_tree ? DevicePath::tree : path_for(view_);
         if (path_ == DevicePath::tree) {
             tree_ = facet_tree(view_);
             tree_.put_into(view_);
@@ -67,44 +59,21 @@ class CudaRenderer : public Renderer {
             if (begun_) drop();
             begun_ = begin(camera, settings);
         }
-        Frame frame = *begun_;
+        const FramePlan plan = *begun_;
         begun_.reset();
-        if (!frame.fits) film.flags |= flag_media_overflow;
-        for (auto& worker : workers_) {
-            worker->kernel_seconds = worker->transfer_seconds = 0;
-            worker->rays = RayCounts();
-            worker->flags = 0;
-        }
-        RayCounts before;
-        for (int part = 0; part < frame.parts; ++part) {
-            if (progress.stop) {
+        if (!plan.fits) film.flags |= flag_media_overflow;
+        for (auto& worker : workers_) worker->totals = {};
+        for (int part = 0; part < plan.parts; ++part) {
+            if (progress.stop || !finish(plan, part, film, progress)) {
                 drop();
                 return false;
             }
-            if (part + 1 < frame.parts)
-                start(frame, part + 1);
-            else if (expected_ && expected_->settings == settings)  // others may need memory that this one still has
-                begun_ = begin(expected_->camera, expected_->settings, frame.first_slot + part + 1);
-            const int slot = (frame.first_slot + part) % DeviceWorker<Real>::slots;
-            std::atomic<bool> stopped{false};
-            tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
-                if (strips_of(frame, part, d) > 0 && !workers_[d]->fetch(slot, film, progress.stop)) stopped = true;
-            });
-            if (stopped) {
-                drop();
-                return false;
-            }
-            film.rays = RayCounts();
-            for (const auto& worker : workers_) film.rays.add(worker->rays);
-            progress.rays += film.rays.total() - before.total();
-            progress.pixels_done += pixels_of(frame, part);
-            before = film.rays;
         }
         expected_.reset();
         for (const auto& worker : workers_) {
-            film.flags |= worker->flags;
-            times_.kernel = std::max(times_.kernel, worker->kernel_seconds);
-            times_.transfer = std::max(times_.transfer, worker->transfer_seconds);
+            film.flags |= worker->totals.flags;
+            times_.kernel = std::max(times_.kernel, worker->totals.kernel_seconds);
+            times_.transfer = std::max(times_.transfer, worker->totals.transfer_seconds);
         }
         return !progress.stop;
     }
@@ -121,18 +90,6 @@ class CudaRenderer : public Renderer {
         CameraFrame camera;
         FrameSettings settings;
     };
-    struct Frame : Request {
-        FrameView view;
-        std::shared_ptr<const FrameHints> hints;
-        BlockPlan plan;
-        bool fits = true;  // the camera's list of media
-        int mask = 0;
-        int strips = 0;       // of the whole rectangle
-        int part_strips = 0;  // of a part, per device
-        int parts = 0;
-        int first_slot = 0;
-    };
-
     static void require(const std::vector<CudaDevice>& known, int index) {
         if (index < 0 || size_t(index) >= known.size())
             throw Error(ExitCode::device, fmt::format("--device {}: there is no such GPU; this machine has 0 to {}",
@@ -142,101 +99,91 @@ class CudaRenderer : public Renderer {
                                                       known[size_t(index)].obstacle));
     }
 
-    int devices() const { return int(workers_.size()); }
-
-    static Sampling sampling_of(const FrameSettings& settings) {
-        return settings.adaptive() ? Sampling::adaptive : Sampling::uniform;
+    /// Plans a frame and sets its first part on its way.
+    FramePlan begin(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) {
+        FramePlan plan;
+        plan.camera = camera;
+        plan.settings = settings;
+        plan.view = frame_view(*scene_, camera, settings);
+        const Vec3<double> position = plan.view.camera.position;
+        plan.fits = path_ == DevicePath::tree
+                        ? camera_solids(view_, BvhIntersector<Real>{view_}, position, plan.view.camera_media)
+                        : camera_solids(view_, BruteIntersector<Real>{view_}, position, plan.view.camera_media);
+        plan.mask = mask_to_run(scene_->effects, settings, plan.view);
+        effects_ = effect_masks[plan.mask];
+        plan.sampling = settings.adaptive() ? Sampling::adaptive : Sampling::uniform;
+        plan.blocks = {plan.view.supersample > 1 ? PixelMapping::shared_tile : PixelMapping::own_tiles,
+                       kernel_shapes[plan.mask].warps};
+        plan.hints = std::make_shared<const FrameHints>(frame_hints(*scene_, plan.view, settings));
+        plan.devices = int(workers_.size());
+        plan.first_slot = slot % DeviceWorker<Real>::slots;
+        divide(plan);
+        start(plan, 0);
+        return plan;
     }
 
-    static PixelMapping mapping_for(const Frame& frame) {
-        return frame.view.supersample > 1 ? PixelMapping::shared_tile : PixelMapping::own_tiles;
-    }
-
-    /// A pixel's, more or less.
-    static size_t samples_of(const FrameSettings& settings) {
-        constexpr size_t adaptive = 16;
-        return settings.adaptive() ? adaptive : size_t(settings.supersample) * size_t(settings.supersample);
-    }
-
-    /// The frame's plan, its first part on its way.
-    Frame begin(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) {
-        Frame frame;
-        frame.camera = camera;
-        frame.settings = settings;
-        frame.view = frame_view(*scene_, camera, settings);
-        const Vec3<double> position = frame.view.camera.position;
-        frame.fits = path_ == DevicePath::tree
-                         ? camera_solids(view_, BvhIntersector<Real>{view_}, position, frame.view.camera_media)
-                         : camera_solids(view_, BruteIntersector<Real>{view_}, position, frame.view.camera_media);
-        frame.mask = mask_to_run(scene_->effects, settings, frame.view);
-        effects_ = effect_masks[frame.mask];
-        const PixelRect& rect = settings.crop;
-        frame.strips = (rect.height + strip_rows - 1) / strip_rows;
-        frame.hints = std::make_shared<const FrameHints>(frame_hints(*scene_, frame.view, settings));
-        frame.plan = {mapping_for(frame), kernel_shapes[frame.mask].warps};
+    /// Divides a frame into parts for which there is memory.
+    void divide(FramePlan& plan) {
+        const PixelRect& rect = plan.settings.crop;
         constexpr int width = BlockPlan::width;
-        const size_t strip_pixels = size_t((rect.width + width - 1) / width * width) * strip_rows;
-        const size_t samples = samples_of(settings);
-        const int per_device = (frame.strips + devices() - 1) / devices();
-        int wanted = int(std::clamp<size_t>(part_samples / (strip_pixels * samples), 1, size_t(per_device)));
-        if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / strip_pixels, 1, size_t(wanted)));
-        frame.part_strips = reserve(wanted, strip_pixels, frame);
-        frame.parts = (per_device + frame.part_strips - 1) / frame.part_strips;
-        frame.first_slot = slot % DeviceWorker<Real>::slots;
-        start(frame, 0);
-        return frame;
+        plan.strips = (rect.height + strip_rows - 1) / strip_rows;
+        plan.strip_pixels = size_t((rect.width + width - 1) / width * width) * strip_rows;
+        const int most = plan.strips_per_device();
+        int wanted = int(std::clamp<size_t>(part_samples / (plan.strip_pixels * plan.samples()), 1, size_t(most)));
+        if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / plan.strip_pixels, 1, size_t(wanted)));
+        plan.part_strips = reserve(wanted, plan);
+        plan.parts = (most + plan.part_strips - 1) / plan.part_strips;
     }
 
-    /// Memory for parts of `strips`, or of half as many until it is enough.
-    int reserve(int strips, size_t strip_pixels, Frame& frame) {
+    /// Takes memory for parts of `strips`, or of half as many until it is enough: of how many.
+    int reserve(int strips, const FramePlan& plan) {
         const int wanted = strips;
         const auto has_room = [&] {
-            bool room = true;
-            for (auto& worker : workers_)
-                room = room && worker->reserve(size_t(strips) * strip_pixels, options_.memory_limit,
-                                               sampling_of(frame.settings), frame.mask);
-            return room;
+            return std::all_of(workers_.begin(), workers_.end(), [&](const auto& worker) {
+                return worker->reserve(size_t(strips) * plan.strip_pixels, options_.memory_limit, plan.sampling,
+                                       plan.mask);
+            });
         };
-        for (;; strips = (strips + 1) / 2) {
-            if (has_room()) break;
+        for (; !has_room(); strips = (strips + 1) / 2)
             if (strips == 1)
-                throw Error(ExitCode::device,
-                            fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or "
-                                        "--crop needs less, or free memory that other programs hold",
-                                        strip_pixels));
-        }
+                throw Error(
+                    ExitCode::device,
+                    fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or --crop needs "
+                                "less, or free memory that other programs hold",
+                                plan.strip_pixels));
         if (strips < wanted) {
-            largest_part_ = size_t(strips) * strip_pixels;
+            largest_part_ = size_t(strips) * plan.strip_pixels;
             notes_.push_back(fmt::format("the GPU's memory is short: {} pixels at a time instead of {}",
-                                         size_t(strips) * strip_pixels, size_t(wanted) * strip_pixels));
+                                         size_t(strips) * plan.strip_pixels, size_t(wanted) * plan.strip_pixels));
         }
         return strips;
     }
 
-    /// How many strips of a part are device d's: strip s of the rectangle is device s % devices()'s.
-    int strips_of(const Frame& frame, int part, size_t d) const {
-        const int own = (frame.strips - int(d) + devices() - 1) / devices();
-        return std::clamp(own - part * frame.part_strips, 0, frame.part_strips);
+    void start(const FramePlan& plan, int part) {
+        for (size_t d = 0; d < workers_.size(); ++d)
+            if (const Strips strips = plan.strips_of(part, int(d)); strips.count > 0)
+                workers_[d]->start(plan, strips, (plan.first_slot + part) % DeviceWorker<Real>::slots);
     }
 
-    uint64_t pixels_of(const Frame& frame, int part) const {
-        const int first = part * frame.part_strips * devices() * strip_rows;
-        const int last = std::min((part + 1) * frame.part_strips * devices() * strip_rows, frame.settings.crop.height);
-        return uint64_t(std::max(last - first, 0)) * uint64_t(frame.settings.crop.width);
-    }
-
-    void start(const Frame& frame, int part) {
-        for (size_t d = 0; d < workers_.size(); ++d) {
-            FramePart job;
-            job.strips = {part * frame.part_strips * devices() + int(d), devices(), strips_of(frame, part, d)};
-            if (job.strips.count == 0) continue;
-            job.frame = frame.view;
-            job.hints = frame.hints;
-            job.plan = frame.plan;
-            job.sampling = sampling_of(frame.settings);
-            job.mask = frame.mask;
-            workers_[d]->start(job, (frame.first_slot + part) % DeviceWorker<Real>::slots);
-        }
+    /// Starts what comes after a part and puts the part into the film; false if that was stopped.
+    bool finish(const FramePlan& plan, int part, Film& film, RenderProgress& progress) {
+        if (part + 1 < plan.parts)
+            start(plan, part + 1);
+        else if (expected_ && expected_->settings == plan.settings)  // others may need memory that this one still has
+            begun_ = begin(expected_->camera, expected_->settings, plan.first_slot + part + 1);
+        const int slot = (plan.first_slot + part) % DeviceWorker<Real>::slots;
+        std::atomic<bool> stopped{false};
+        tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
+            if (plan.strips_of(part, int(d)).count > 0 && !workers_[d]->fetch(slot, film, progress.stop))
+                stopped = true;
+        });
+        if (stopped) return false;
+        const uint64_t before = film.rays.total();
+        film.rays = RayCounts();
+        for (const auto& worker : workers_) film.rays.add(worker->totals.rays);
+        progress.rays += film.rays.total() - before;
+        progress.pixels_done += plan.pixels_of(part);
+        return true;
     }
 
     /// Ends all that was begun and forgets it. All workers first: one GPU may have several.
@@ -253,7 +200,7 @@ class CudaRenderer : public Renderer {
     DevicePath path_;
     std::vector<std::unique_ptr<DeviceWorker<Real>>> workers_;
     std::optional<Request> expected_;
-    std::optional<Frame> begun_;
+    std::optional<FramePlan> begun_;
     RenderTimes times_;
     std::vector<std::string> notes_;
     size_t bytes_ = 0, largest_part_ = 0;

@@ -214,12 +214,12 @@ struct ConvexIntervalCase {
     CISTULA_HD static void run(const Input& in, Words& out) {
         const SceneView<Real> scene = view_of(in);
         const Vec3<Real>&o = in.ray.origin, &d = in.ray.direction;
-        const ConvexInterval<Real> all = convex_interval(scene, in.solid, o, d, false);
-        const ConvexExit<Real> rest = convex_exit(scene, in.solid, o, d, in.skipped);
+        const auto all = convex_here::interval_of(scene, in.solid, o, d, false);
+        const auto rest = convex_here::exit_of(scene, in.solid, o, d, in.skipped);
         out.unsigned_zero(all.enter);
         out.unsigned_zero(all.leave);
         out.unsigned_zero(rest.t);
-        out.bits(all.met(scene.extent));
+        out.bits(is_met(all, scene.extent));
         // Misses, and lies beyond half the way to it.
         const bool misses = passes_by(Ball<Real>::of(in.solid), o, d, RealTraits<Real>::infinity);
         const bool beyond = passes_by(Ball<Real>::of(in.solid), o, d, all.enter * Real(0.5));

@@ -59,8 +59,8 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
             soon[g][i] = out - half;
             leave[i] = out + half;
         }
-        from = greatest(greatest_lane(enter), from);
-        to = least(least_lane(leave), to);
+        from = greatest(convex_host::greatest_lane(enter), from);
+        to = least(convex_host::least_lane(leave), to);
     }
     if (!(from <= to)) return false;
     uint32_t entering = 0, leaving = 0;  // planes
@@ -68,8 +68,8 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
     for (int g = 0; g < count; ++g) {
         entering |= lanes_from(past[g], from) << g * slab_lanes;
         leaving |= lanes_to(soon[g], to) << g * slab_lanes;
-        first = least(least_lane(soon[g]), first);
-        last = greatest(greatest_lane(past[g]), last);
+        first = least(convex_host::least_lane(soon[g]), first);
+        last = greatest(convex_host::greatest_lane(past[g]), last);
     }
     const bool two_at_first = (entering & (entering - 1)) != 0, two_at_last = (leaving & (leaving - 1)) != 0;
     if (!two_at_first && !two_at_last && (entering == 0 || leaving == 0)) return false;

@@ -128,7 +128,7 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     Real leave = shadow.distance;
     if (light_side<E>(scene, index, shadow) == LightSide::none) {
         const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
-        leave = greatest(convex_exit(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
+        leave = greatest(convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
         if (leave < shadow.distance) sum.cross(material);
     }
     if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance), Real(0)));
@@ -141,13 +141,12 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid
     const Ray<Real, Media>& ray = shadow.ray;
     const LightSide side = light_side<E>(scene, index, shadow);
     if (side == LightSide::outside) return;
-    const ConvexInterval<Real> interval =
-        convex_interval(scene, solid, ray.origin, ray.direction, side == LightSide::none);
+    const auto interval = convex_here::interval_of(scene, solid, ray.origin, ray.direction, side == LightSide::none);
     const Real enter = greatest(interval.enter, Real(0));
     Real leave = shadow.distance;
     const Material<Real>& material = scene.materials[solid.material];
     if (side == LightSide::none) {
-        if (!interval.met(scene.extent) || !(enter < shadow.distance)) return;
+        if (!is_met(interval, scene.extent) || !(enter < shadow.distance)) return;
         if constexpr (Media::contacts)
             if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
                 return;
