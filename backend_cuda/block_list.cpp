@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-#include "cistula/small_scene.h"
+#include "cistula/constant_scene.h"
 
 namespace cistula {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "backend_cuda/block_pixels.h"
 #include "backend_cuda/cuda_renderer.h"
+#include "cistula/constant_scene.h"
 #include "cistula/lattice.h"
 #include "cistula/pixel.h"
-#include "cistula/small_scene.h"
 
 namespace cistula {
 
@@ -46,11 +46,11 @@ struct FrameJob {
     unsigned int storage_blocks = 0;
 };
 
-/// The scene in both forms; `small` is set for the plain loop only.
+/// The scene in both forms; `constant` is set for the plain loop only.
 template <class Real>
 struct DeviceScene {
     SceneView<Real> view;  // in device memory
-    SmallScene<Real> small;
+    ConstantScene<Real> constant;
 };
 
 /// What a kernel renders: all pixels of the job with their grid of samples, or those of a frame with a target error.

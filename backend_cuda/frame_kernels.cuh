@@ -142,7 +142,7 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
     if (path == DevicePath::tree)
         launch.template operator()<DevicePath::tree>(scene.view);
     else
-        launch.template operator()<DevicePath::plain_loop>(scene.small);
+        launch.template operator()<DevicePath::plain_loop>(scene.constant);
 }
 
 }  // namespace cistula

@@ -39,7 +39,7 @@ template <class Real, DevicePath path>
 struct PathTraits;
 template <class Real>
 struct PathTraits<Real, DevicePath::plain_loop> {
-    using Scene = SmallScene<Real>;
+    using Scene = ConstantScene<Real>;
     using Intersector = BruteIntersector<Real, OneMedium, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
 };

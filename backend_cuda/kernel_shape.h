@@ -9,7 +9,7 @@ inline constexpr int warp_threads = 32;
 
 /// Which intersector and which form of media the kernels use. Never changes the image.
 enum class DevicePath {
-    plain_loop,  // a SmallScene of few primitives, closed solids all convex and apart
+    plain_loop,  // a ConstantScene of few primitives, closed solids all convex and apart
     tree,        // any scene
 };
 

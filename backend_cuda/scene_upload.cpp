@@ -1,9 +1,8 @@
 #include "backend_cuda/scene_upload.h"
 
 #include <algorithm>
-#include <memory>
 
-#include "scene/shadow_plan.h"
+#include "scene/constant_scene.h"
 
 namespace cistula {
 
@@ -11,8 +10,7 @@ template <class Real>
 DevicePath path_for(const SceneView<Real>& scene) {
     constexpr uint32_t most_primitives = 16;
     if (scene.convex.size + scene.clusters.size > most_primitives) return DevicePath::tree;
-    const auto small = std::make_unique<SmallScene<Real>>();
-    return small->assign(scene, scene) ? DevicePath::plain_loop : DevicePath::tree;
+    return constant_scene(scene) ? DevicePath::plain_loop : DevicePath::tree;
 }
 
 template <class Real>
@@ -24,7 +22,7 @@ SceneUpload<Real>::SceneUpload(const SceneArena<Real>& scene, const SceneView<Re
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(stream));
     scene_.view = scene.at(arena_.as<void>());
     if (path != DevicePath::plain_loop) return;
-    scene_.small = *small_scene(here, scene_.view);
+    scene_.constant = *constant_scene(here, scene_.view);
     primitives_.assign(here.solids.size, 0);
     for (uint32_t i = 0; i < here.convex.size; ++i) primitives_[here.convex[i]] |= 1u << i;
     for (uint32_t i = 0; i < here.clusters.size; ++i)

@@ -13,7 +13,7 @@ class EmbreeRenderer : public Renderer {
     EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, std::shared_ptr<const EmbreeTree<Real>> tree)
         : scene_(std::move(scene)), view_(scene_->view()), tree_(std::move(tree)) {
         if (tree_) return;
-        plain_ = make_small_renderer<Real>(scene_);
+        plain_ = make_constant_renderer<Real>(scene_);
         if (!plain_) plain_ = make_host_renderer<Real>(scene_, HostIntersector::brute);
     }
 

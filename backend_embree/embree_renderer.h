@@ -20,10 +20,10 @@ template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options = {});
 
-/// The same loop over a SmallScene, as kernels run it: masks reach the primitives' tests, and the shadow plan spares
+/// The same loop over a ConstantScene, as kernels run it: masks reach the primitives' tests, and the shadow plan spares
 /// most of them. Null where the scene fits into none.
 template <class Real>
-std::unique_ptr<Renderer> make_small_renderer(std::shared_ptr<const CompiledScene<Real>> scene);
+std::unique_ptr<Renderer> make_constant_renderer(std::shared_ptr<const CompiledScene<Real>> scene);
 
 /// The same loop over Embree's own triangles, solids of planes too: another image, approximate at edges and where
 /// bodies touch, its hits in float whatever Real is. For previews and comparisons (native_intersector.h).

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "backend_cuda/block_list.h"
-#include "cistula/small_scene.h"
+#include "cistula/constant_scene.h"
 #include "support_camera.h"
 #include "support_scene.h"
 

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "cistula/bvh.h"
-#include "cistula/small_scene.h"
+#include "cistula/constant_scene.h"
 #include "golden.h"
+#include "scene/constant_scene.h"
 #include "scene/frame_view.h"
 #include "scene/generated_scene.h"
 #include "scene/put_pixels.h"
-#include "scene/shadow_plan.h"
 #include "scene/without_effect.h"
 
 using namespace cistula;
@@ -82,12 +82,12 @@ bool check(const std::string& name, const SceneDescription& description, const F
         EXPECT_EQ(film.rays.shadow, expected.rays.shadow) << where;
     };
     using Tree = BvhIntersector<Real, MediaList>;
-    using PlainLoop = BruteIntersector<Real, OneMedium, SmallScene<Real>>;
+    using PlainLoop = BruteIntersector<Real, OneMedium, ConstantScene<Real>>;
     const FacetTree<Real> tree = facet_tree(compiled->view());
     SceneView<Real> view = compiled->view();
     tree.put_into(view);
     expect_same(render_as_device<Real, Tree>(*compiled, view, description, settings), "tree");
-    const auto small = small_scene(view);
+    const auto small = constant_scene(view);
     if (small) expect_same(render_as_device<Real, PlainLoop>(*compiled, *small, description, settings), "plain loop");
     return small != nullptr;
 }

@@ -6,8 +6,8 @@
 
 #include "cistula/seen_light.h"
 #include "scene/compiled_scene.h"
+#include "scene/constant_scene.h"
 #include "scene/read_scene.h"
-#include "scene/shadow_plan.h"
 
 namespace cistula {
 namespace {
@@ -48,7 +48,7 @@ class EdgeLights : public ::testing::Test {
     Seen compare(const SceneDescription& description, int count) {
         const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(description);
         const SceneView<Real> scene = compiled->view();
-        const auto small = small_scene(scene);  // null where solids touch
+        const auto small = constant_scene(scene);  // null where solids touch
         Seen seen;
         for (int i = 0; i < count; ++i) {
             Real limit = RealTraits<Real>::infinity;

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cistula/brute.h"
-#include "scene/shadow_plan.h"
+#include "scene/constant_scene.h"
 #include "support_scene.h"
 #include "tests/scene_samples.h"
 
@@ -33,7 +33,7 @@ SceneDescription sheets_scene(Random& random, bool across_z) {
 
 /// Lines at all distances from a sheet's border, half of them within a few u of it, at slants from 1 to below 2^-10.
 template <class Real>
-Ray<Real, OneMedium> aimed(Random& random, const SmallScene<Real>& scene, uint32_t index) {
+Ray<Real, OneMedium> aimed(Random& random, const ConstantScene<Real>& scene, uint32_t index) {
     const Cluster<Real>& cluster = scene.clusters[index];
     const uint32_t lane = random.below(cluster.count), c = random.below(3), d = (c + 1) % 3;
     dvec3 from, to, third;
@@ -55,7 +55,7 @@ Ray<Real, OneMedium> aimed(Random& random, const SmallScene<Real>& scene, uint32
 
 /// Called: inlined, GCC takes the lack of a solid for an index out of bounds.
 template <class Real>
-[[gnu::noinline]] bool is_hit(const SmallScene<Real>& scene, uint32_t index, const Ray<Real, OneMedium>& ray) {
+[[gnu::noinline]] bool is_hit(const ConstantScene<Real>& scene, uint32_t index, const Ray<Real, OneMedium>& ray) {
     Hit<Real> hit;
     closest_triangles(scene, index, ray, TriangleRay<Real>::of(ray.origin, ray.direction), hit);
     return hit.found();
@@ -72,7 +72,7 @@ TYPED_TEST(FlatSheets, NoHitIsHidden) {
     int hits = 0, hidden = 0, misses = 0, spared = 0;
     for (int n = 0; n < 60; ++n) {
         const auto compiled = compile_scene<Real>(sheets_scene(random, n % 3 == 0));
-        const auto scene = small_scene(compiled->view());
+        const auto scene = constant_scene(compiled->view());
         ASSERT_TRUE(scene);
         for (int i = 0; i < 10000; ++i) {
             const uint32_t index = random.below(scene->clusters.size);
@@ -99,7 +99,7 @@ TYPED_TEST(FlatSheets, MostMissesAreSpared) {
     int misses = 0, spared = 0;
     for (int n = 0; n < 60; ++n) {
         const auto compiled = compile_scene<Real>(sheets_scene(random, true));
-        const auto scene = small_scene(compiled->view());
+        const auto scene = constant_scene(compiled->view());
         ASSERT_TRUE(scene);
         for (int i = 0; i < 2000; ++i) {
             Ray<Real, OneMedium> ray;

@@ -7,8 +7,8 @@
 #include "cistula/brute.h"
 #include "cistula/lighting.h"
 #include "scene/compiled_scene.h"
+#include "scene/constant_scene.h"
 #include "scene/read_scene.h"
-#include "scene/shadow_plan.h"
 
 namespace cistula {
 namespace {
@@ -18,7 +18,7 @@ const std::string source = CISTULA_SOURCE_DIR;
 template <class Real>
 class ShadowPlans : public ::testing::Test {
   public:
-    using Small = SmallScene<Real>;
+    using Small = ConstantScene<Real>;
     using Intersector = BruteIntersector<Real, OneMedium, Small>;
     using E = Effects<clear_bodies>;
 
@@ -26,8 +26,10 @@ class ShadowPlans : public ::testing::Test {
     bool load(const SceneDescription& description) {
         compiled_ = compile_scene<Real>(description);
         const SceneView<Real> view = compiled_->view();
-        if (!blind_->assign(view, view) || !planned_->assign(view, view)) return false;
-        plan_shadows(view, planned_->plan);
+        planned_ = constant_scene(view);
+        blind_ = constant_scene(view);
+        if (!planned_) return false;
+        blind_->plan.clear(blind_->convex.size, blind_->clusters.size);
         return true;
     }
 
@@ -94,7 +96,7 @@ class ShadowPlans : public ::testing::Test {
     }
 
     std::shared_ptr<const CompiledScene<Real>> compiled_;
-    std::unique_ptr<Small> blind_ = std::make_unique<Small>(), planned_ = std::make_unique<Small>();
+    std::unique_ptr<Small> blind_, planned_;
 };
 
 using Reals = ::testing::Types<float, double>;

@@ -35,8 +35,8 @@ struct BruteIntersector {
     using Media = MediaKind;
     using Scene = SceneKind;
     const Scene& scene;
-    /// The primitives of a SmallScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of the
-    /// picture, as long as they go straight on.
+    /// The primitives of a ConstantScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of
+    /// the picture, as long as they go straight on.
     uint32_t in_view = ~0u;
 
     /// The least (t, key) after ray.after that the primitive tests accept.

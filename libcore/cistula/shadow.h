@@ -16,25 +16,6 @@ struct ShadowRay {
     const Light<Real>* light;
 };
 
-/// By value, as it is called: what scenes do not know.
-template <class Real>
-CISTULA_SELDOM Real unknown_share(uint64_t loss) {
-    return share_of<Real>(loss);
-}
-
-/// 2^-loss; scenes may know those that are asked for most.
-template <class Real, class Scene>
-CISTULA_INLINE Real looked_up_share(const Scene& scene, uint64_t loss) {
-    if constexpr (requires { scene.known_shares; }) {
-        Real share = Real(-1);
-        for (const KnownShare<Real>& known : scene.known_shares)
-            if (known.loss == loss) share = known.share;
-        return share >= Real(0) ? share : unknown_share<Real>(loss);
-    } else {
-        return share_of<Real>(loss);
-    }
-}
-
 /// What has been met so far on the way to a light, for every color or for all at once (Share).
 template <class E = Effects<all_effects>>
 struct ShadowSum {
@@ -80,7 +61,7 @@ struct ShadowSum {
             if constexpr (E::has(effect_transparent_shadows)) {
                 uint64_t total = loss[c];
                 if constexpr (E::has(effect_absorption)) total = saturating_add(total, path[c].loss());
-                if (total != known) known = total, known_share = looked_up_share<Real>(scene, total);
+                if (total != known) known = total, known_share = transmitted_share(scene, total);
             }
             shares[c] = opaque >> c & 1u ? Real(0) : known_share;
         }

@@ -240,17 +240,6 @@ CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Rea
                                                    (magnitude(at.z) > plane.half.z));
 }
 
-/// The plane of a cluster's flat sheet, if it belongs to one.
-template <class Real, class Scene>
-CISTULA_INLINE SheetPlane<Real> plane_of(const Scene& scene, uint32_t cluster) {
-    if constexpr (requires { scene.planes; }) {
-        return scene.planes[cluster];
-    } else {
-        const uint32_t solid = scene.clusters[cluster].solid;
-        return SheetPlane<Real>::of(scene.solids[solid], solid);
-    }
-}
-
 /// Whether a line surely meets nothing of a flat sheet up to `limit`. `from`: the solid that it leaves.
 template <class Real>
 CISTULA_INLINE bool misses_flat(const SheetPlane<Real>& plane, uint32_t from, const Vec3<Real>& origin,
@@ -264,7 +253,7 @@ CISTULA_INLINE bool misses_flat(const SheetPlane<Real>& plane, uint32_t from, co
 /// The same of a cluster, if that belongs to a flat sheet.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
-    return misses_flat(plane_of<Real>(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
+    return misses_flat(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
 }
 
 /// Takes an accepted crossing if it is the ray's next.

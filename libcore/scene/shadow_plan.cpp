@@ -112,17 +112,6 @@ void plan_shadows(const SceneView<Real>& scene, ShadowPlan& plan) {
     }
 }
 
-template <class Real>
-std::unique_ptr<SmallScene<Real>> small_scene(const SceneView<Real>& here, const SceneView<Real>& there) {
-    auto small = std::make_unique<SmallScene<Real>>();
-    if (!small->assign(here, there)) return nullptr;
-    plan_shadows(here, small->plan);
-    return small;
-}
-
 template void plan_shadows<float>(const SceneView<float>&, ShadowPlan&);
 template void plan_shadows<double>(const SceneView<double>&, ShadowPlan&);
-template std::unique_ptr<SmallScene<float>> small_scene(const SceneView<float>&, const SceneView<float>&);
-template std::unique_ptr<SmallScene<double>> small_scene(const SceneView<double>&, const SceneView<double>&);
-
 }  // namespace cistula
