@@ -63,6 +63,29 @@ struct ReplayedIntersector {
     Hit<Real> closest(const Ray<Real>&) const { return next < looks.size() ? looks[next++].hit : Hit<Real>(); }
 };
 
+/// Gives the shadows once more, in their order; `agrees` becomes false where others are asked for.
+template <class Real>
+struct ReplayedShadows {
+    const std::vector<typename BranchSeen<Real>::Shadow>& shadows;
+    size_t& next;
+    bool& agrees;
+
+    template <class E>
+    Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
+        if (next == shadows.size() || shadows[next].shadow.light != shadow.light) {
+            agrees = false;
+            return Vec3<Real>(Real(0));
+        }
+        return shadows[next++].arrives;
+    }
+};
+
+/// Sums that were added before.
+struct DiscardedSums {
+    template <class Radiance>
+    void add(const Radiance&) const {}
+};
+
 template <class Real, class Intersector>
 class BranchReader {
   public:
@@ -199,7 +222,7 @@ class BranchReader {
             out.fresnel = 0;
         }
         read_children(walk, shares);
-        if (m.local > Real(0)) read_light(walk, ray, s);
+        if (m.local > Real(0)) read_light(walk, ray, meeting.hit, s);
     }
 
     void read_children(Walk& walk, const Shares<Real>& shares) const {
@@ -236,46 +259,63 @@ class BranchReader {
         }
     }
 
-    /// As add_local_light, whose shadow rays were seen.
-    void read_light(Walk& walk, const Ray<Real>& ray, const Surface<Real>& s) const {
+    /// Lights the surface once more, with the shadows that were seen.
+    void read_light(Walk& walk, const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s) const {
         PixelSurface& out = walk.branch.surface;
-        const Material<Real>& m = scene_.materials[s.material];
-        const double radiance = elementary::power_of_two(compiled_.radiance_exponent);
         const auto& shadows = walk.seen.shadows;
-        const auto sum_before = [&](size_t i) {
-            return i < shadows.size() ? shadows[i].before : walk.seen.end.radiance;
-        };
-        out.ambient = Vec3<double>(s.color * m.ambient) * radiance;
-        out.ambient_adds = less(sum_before(0), walk.seen.begin.radiance);
+        out.ambient = Vec3<double>(s.color * scene_.materials[s.material].ambient) * radiance_unit();
+        out.ambient_adds = less(shadows.empty() ? walk.seen.end.radiance : shadows[0].before, walk.seen.begin.radiance);
+        out.lights.resize(scene_.lights.size);
         size_t next = 0;
-        for (uint32_t i = 0; i < scene_.lights.size; ++i) {
-            const Light<Real>& light = scene_.lights[i];
-            LightShare& share = out.lights.emplace_back();
-            share.light = i;
-            share.fate = LightFate::behind;
-            Vec3<Real> to_light = light.position - s.viewer_side;
-            const bool before_face = dot(s.normal, to_light) > incidence<Real> * scene_.extent;
-            const Real distance = length(to_light);
-            share.distance = double(distance) * frame_.unit_length;
-            to_light *= reciprocal(distance);
-            const Real n_l = dot(s.normal, to_light);
-            share.cosine = double(n_l);
-            if (!before_face || !(n_l > Real(0))) continue;
-            const Vec3<Real> lit = phong<Real, E>(m, s.color, light, s.normal, to_light, -ray.direction, n_l, distance);
-            share.unshadowed = Vec3<double>(lit) * radiance;
-            share.fate = LightFate::nothing;
-            if (lit == Vec3<Real>(Real(0))) continue;
-            const bool asked = next < shadows.size() && shadows[next].shadow.light == &light;
-            require(walk.seen, asked, "which lights cast shadows");
-            if (!asked) continue;
-            const typename Seen::Shadow& shadow = shadows[next++];
-            share.arrives = Vec3<double>(shadow.arrives);
-            share.adds = less(sum_before(next), shadow.before);
-            share.fate = shadow.arrives == Vec3<Real>(Real(0)) ? LightFate::shadow : LightFate::adds;
-            if (shadow.arrives != Vec3<Real>(Real(1))) share.through = solids_on_the_way(shadow.shadow);
-        }
+        bool agrees = true;
+        const ReplayedShadows<Real> replayed{shadows, next, agrees};
+        const Local local{*this, walk, s, next};
+        DiscardedSums sums;
+        PixelRays rays;
+        add_local_light<Real, E>(scene_, replayed, ray, hit, s, walk.weight * scene_.materials[s.material].local, sums,
+                                 rays, local);
+        require(walk.seen, agrees, "which lights cast shadows");
         require(walk.seen, next == shadows.size(), "the number of shadow rays");
     }
+
+    /// Notes down what each light adds to a surface. `next`: of the shadows seen, the one that is asked for next.
+    struct Local {
+        const BranchReader& reader;
+        Walk& walk;
+        const Surface<Real>& s;
+        const size_t& next;
+
+        LightShare& share(uint32_t i) const {
+            LightShare& share = walk.branch.surface.lights[i];
+            share.light = i;
+            return share;
+        }
+        void aim(LightShare& share, const LightAim<Real>& aim) const {
+            share.distance = double(aim.distance) * reader.frame_.unit_length;
+            share.cosine = double(aim.cosine);
+        }
+        void behind(uint32_t i, const Light<Real>& light) const {
+            aim(share(i), LightAim<Real>::of(light, s));
+            share(i).fate = LightFate::behind;
+        }
+        void unshadowed(uint32_t i, const LightAim<Real>& to_light, const Vec3<Real>& lit) const {
+            aim(share(i), to_light);
+            share(i).unshadowed = Vec3<double>(lit) * reader.radiance_unit();
+            share(i).fate = LightFate::nothing;
+        }
+        void arrives(uint32_t i, const ShadowRay<Real>& shadow, const Vec3<Real>& arrives) const {
+            const auto& shadows = walk.seen.shadows;
+            if (next == 0) return;  // it was never asked for
+            LightShare& to = share(i);
+            to.arrives = Vec3<double>(arrives);
+            to.adds =
+                less(next < shadows.size() ? shadows[next].before : walk.seen.end.radiance, shadows[next - 1].before);
+            to.fate = arrives == Vec3<Real>(Real(0)) ? LightFate::shadow : LightFate::adds;
+            if (arrives != Vec3<Real>(Real(1))) to.through = reader.solids_on_the_way(shadow);
+        }
+    };
+
+    double radiance_unit() const { return elementary::power_of_two(compiled_.radiance_exponent); }
 
     /// Which solids take light from a shadow ray, in the order in which it meets them; the first eight.
     std::vector<uint32_t> solids_on_the_way(const ShadowRay<Real>& shadow) const {
