@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "scene/box.h"
 #include "scene/frame.h"
 #include "scene/platonic.h"
 

@@ -1,6 +1,9 @@
 #include "scene/frame.h"
 
+#include <cmath>
+
 #include "cistula/vec.h"
+#include "scene/box.h"
 #include "scene/platonic.h"
 #include "scene/rotation.h"
 

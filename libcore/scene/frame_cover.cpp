@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/frame.h"
+#include "scene/box.h"
 #include "scene/picture_margins.h"
 
 namespace cistula {

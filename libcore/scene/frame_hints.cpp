@@ -1,7 +1,7 @@
 #include "scene/frame_hints.h"
 
 #include "cistula/adaptive_pixel.h"
-#include "scene/frame.h"
+#include "scene/box.h"
 
 namespace cistula {
 namespace {

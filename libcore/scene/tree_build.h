@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cistula/scene_view.h"
+#include "scene/box.h"
 #include "scene/embree_handles.h"
-#include "scene/frame.h"
 
 namespace cistula {
 
