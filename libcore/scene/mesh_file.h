@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene_source.h"
+#include "scene/description.h"
+#include "scene/mesh_source.h"
 
 namespace cistula {
 

@@ -8,7 +8,7 @@
 
 #include "cistula/vec.h"
 #include "scene/frame.h"
-#include "scene/scene_source.h"
+#include "scene/mesh_source.h"
 
 namespace cistula {
 

@@ -2,36 +2,14 @@
 // libcore/scene.
 #pragma once
 
-#include <array>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/mesh_source.h"
 
 namespace cistula {
-
-/// Triangles in scene units, owned (read from a file) or lent by the description. Moves keep the spans valid.
-struct MeshSource {
-    std::span<const glm::dvec3> vertices;
-    std::span<const std::array<uint32_t, 3>> triangles;
-    std::span<const glm::dvec2> uvs;  // one a vertex, or none
-
-    std::vector<glm::dvec3> owned_vertices;
-    std::vector<std::array<uint32_t, 3>> owned_triangles;
-    std::vector<glm::dvec2> owned_uvs;
-
-    MeshSource() = default;
-    MeshSource(MeshSource&&) = default;
-    MeshSource& operator=(MeshSource&&) = default;
-
-    void view_owned() {
-        vertices = owned_vertices;
-        triangles = owned_triangles;
-        uvs = owned_uvs;
-    }
-};
 
 /// What one Solid is made from.
 struct SourceSolid {

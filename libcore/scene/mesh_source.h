@@ -1,0 +1,35 @@
+// The triangles of one mesh, wherever they come from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace cistula {
+
+/// Triangles in scene units, owned (read from a file) or lent by the description. Moves keep the spans valid.
+struct MeshSource {
+    std::span<const glm::dvec3> vertices;
+    std::span<const std::array<uint32_t, 3>> triangles;
+    std::span<const glm::dvec2> uvs;  // one a vertex, or none
+
+    std::vector<glm::dvec3> owned_vertices;
+    std::vector<std::array<uint32_t, 3>> owned_triangles;
+    std::vector<glm::dvec2> owned_uvs;
+
+    MeshSource() = default;
+    MeshSource(MeshSource&&) = default;
+    MeshSource& operator=(MeshSource&&) = default;
+
+    void view_owned() {
+        vertices = owned_vertices;
+        triangles = owned_triangles;
+        uvs = owned_uvs;
+    }
+};
+
+}  // namespace cistula
