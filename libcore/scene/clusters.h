@@ -1,7 +1,7 @@
 // Triangles to clusters of up to eight neighbors. Inside libcore/scene.
 #pragma once
 
-#include "scene/compiled_scene.h"
+#include "cistula/scene_view.h"
 #include "scene/mesh_apex.h"
 #include "scene/mesh_topology.h"
 #include "scene/tree_build.h"
