@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "expect_error.h"
+#include "scene/read_seed.h"
 #include "scene_dump.h"
 #include "scratch_directory.h"
 

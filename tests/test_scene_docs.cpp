@@ -8,6 +8,7 @@
 
 #include "scene/json_reader.h"
 #include "scene/read_scene.h"
+#include "scene/read_seed.h"
 #include "scene/scene_keys.h"
 #include "scene_dump.h"
 #include "scratch_directory.h"

@@ -5,6 +5,7 @@
 
 #include "expect_error.h"
 #include "scene/read_scene.h"
+#include "scene/read_seed.h"
 #include "scene/suggest.h"
 #include "scene_dump.h"
 #include "scratch_directory.h"

@@ -6,6 +6,7 @@
 
 #include "expect_error.h"
 #include "scene/read_scene.h"
+#include "scene/read_seed.h"
 #include "scene_dump.h"
 
 namespace cistula {

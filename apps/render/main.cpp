@@ -19,6 +19,7 @@
 #include "scene/compiled_scene.h"
 #include "scene/error.h"
 #include "scene/read_scene.h"
+#include "scene/read_seed.h"
 #include "scene/required_effects.h"
 #include "scene/suggest.h"
 

@@ -15,7 +15,4 @@ SceneDescription read_scene(const std::string& path);
 /// (empty: the working directory). JSON if the first character that is not white is '{', else the seed's text.
 SceneDescription read_scene_text(const std::string& text, const std::string& source_name, const std::string& base_dir);
 
-/// A valid input in the seed's text format, its most colorful one; reading it gives scenes/seed.json.
-std::string seed_template();
-
 }  // namespace cistula

@@ -6,7 +6,6 @@
 
 #include "scene/quad.h"
 #include "scene/read_json.h"
-#include "scene/read_scene.h"
 #include "scene/seed_tokens.h"
 
 namespace cistula {

@@ -1,4 +1,5 @@
-// The text input of the program that Cistula grew from (docs/scene.md, "The seed's text"). Use read_scene.h.
+// The text input of the program that Cistula grew from (docs/scene.md, "The seed's text"). Scenes are read through
+// read_scene.h.
 #pragma once
 
 #include <string>
@@ -9,5 +10,8 @@ namespace cistula {
 
 /// Throws Error (usage): "label:line: expected ..., found ...". Does not set `source`.
 SceneDescription read_seed_scene(const std::string& text, const std::string& label, const std::string& base_dir);
+
+/// A valid input in the seed's text format, its most colorful one; reading it gives scenes/seed.json.
+std::string seed_template();
 
 }  // namespace cistula
