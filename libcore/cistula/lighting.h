@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cistula/phong.h"
-#include "cistula/pixel_sums.h"
+#include "cistula/pixel_record.h"
 #include "cistula/shadow.h"
 #include "cistula/surface.h"
 

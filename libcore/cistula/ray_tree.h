@@ -5,6 +5,7 @@
 #include "cistula/branch_stack.h"
 #include "cistula/lighting.h"
 #include "cistula/next_surface.h"
+#include "cistula/pixel_sums.h"
 
 namespace cistula {
 

@@ -5,6 +5,7 @@
 #include "apps/render_verify/crossings.h"
 #include "apps/render_verify/scenes.h"
 #include "cistula/lighting.h"
+#include "cistula/pixel_sums.h"
 
 namespace cistula::verify::shadows {
 
