@@ -8,7 +8,7 @@
 
 #include "apps/common/command_line.h"
 #include "cistula/effects.h"
-#include "cistula/lattice.h"
+#include "cistula/lattice_settings.h"
 #include "cistula/ray_tree.h"
 #include "frame_list.h"
 #include "scene/suggest.h"

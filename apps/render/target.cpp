@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "cistula/lattice.h"
+#include "cistula/lattice_settings.h"
 #include "cistula/signature.h"
 #include "stats.h"
 

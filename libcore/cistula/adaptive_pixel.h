@@ -1,6 +1,7 @@
 // One adaptively sampled pixel: what both backends do where a frame has a target.
 #pragma once
 
+#include "cistula/lattice.h"
 #include "cistula/pixel.h"
 #include "cistula/signature.h"
 

@@ -2,19 +2,14 @@
 // Decided in integers from the pixel's own samples, so that crops, tiles and backends agree.
 #pragma once
 
+#include "cistula/lattice_settings.h"
 #include "cistula/pixel_record.h"
 #include "cistula/real.h"
 
 namespace cistula {
 
-inline constexpr int lattice_side = 16, lattice_samples = lattice_side * lattice_side;
 /// Sample (column, row) is slot 16 row + column; the middle of the pixel is the corner of all quadrants.
 inline constexpr int lattice_middle = lattice_side / 2 * (lattice_side + 1);
-/// The fewest that a pixel can do with: its corners and its middle.
-inline constexpr int least_lattice_samples = 5;
-/// Colors are compared in units of 2^-44 of the radiance bound's power of two: a target may be 2^-32 of that, as in
-/// closed-box.json. What is computed of them takes at most 13 bits more.
-inline constexpr int color_bits = 44, color_shift = 54 - color_bits;
 /// Rays of a tree that sees many things, and the largest cell that may stand undivided in a pixel that met one.
 inline constexpr uint32_t bushy_tree = 96;
 inline constexpr int bushy_area = lattice_samples / 8;
@@ -39,14 +34,6 @@ inline constexpr int wide_range = 16, wide_area = lattice_samples / 16;
 /// 0.11 %, of mesh.json 0.03 % instead of 0.05 %, for 0.4 % and 0.2 % more samples; without a limit slivers.json takes
 /// 16 % more.
 inline constexpr int steepest = 4;
-
-/// What a frame asks of adaptive sampling.
-struct LatticeSettings {
-    int64_t target = 0;          // error that sampling may leave, in units of 2^-color_bits; 0: no adaptive sampling
-    int most = lattice_samples;  // samples of a pixel
-    bool fine = true;            // also looks at the middle of every pixel, and splits in four first: for small targets
-    double significant = 0;      // branches of less weight than this do not tell samples apart
-};
 
 /// What one sample of a pixel adds, in units of 2^-54 (fixed_sum.h, 256 samples), and what it met.
 struct LatticeSample {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cistula/camera.h"
-#include "cistula/lattice.h"
+#include "cistula/lattice_settings.h"
 #include "cistula/ray_tree.h"
 
 namespace cistula {
