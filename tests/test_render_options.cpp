@@ -6,11 +6,11 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "apps/common/describe_flags.h"
+#include "apps/common/film_progress.h"
+#include "apps/common/header_attributes.h"
+#include "apps/common/stats.h"
 #include "apps/render/explain.h"
-#include "apps/render/film_loop.h"
-#include "apps/render/header_attributes.h"
-#include "apps/render/progress.h"
-#include "apps/render/stats.h"
 #include "cistula/ray_tree.h"
 #include "expect_error.h"
 
@@ -501,7 +501,7 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     EXPECT_NE(measured.find("7 frames of 12.5 ms"), std::string::npos) << measured;
 }
 
-TEST(FilmLoop, EveryFlagHasItsWords) {
+TEST(DescribeFlags, EveryFlagHasItsWords) {
     EXPECT_EQ(describe_flags(flag_not_finite), "a radiance was infinite or not a number");
     EXPECT_EQ(describe_flags(flag_not_finite | flag_media_overflow),
               "a radiance was infinite or not a number; a ray was inside more solids at once than it can list");

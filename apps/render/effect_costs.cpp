@@ -3,7 +3,6 @@
 #include "apps/common/timing.h"
 #include "scene/error.h"
 #include "scene/without_effect.h"
-#include "stats.h"
 
 namespace cistula {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
-#include "apps/render/options.h"
+#include "apps/common/picture_size.h"
 #include "reference.h"
 #include "scene/suggest.h"
 
