@@ -109,6 +109,9 @@ TEST(RenderOptions, Actions) {
     EXPECT_EQ(parse({"--list-devices"}).action, Action::list_devices);
     EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
     EXPECT_EQ(parse({"s.json", "--explain=measure"}).action, Action::measure);
+    EXPECT_EQ(parse({"--explain", "s.json"}).action, Action::explain);
+    EXPECT_EQ(parse({"--explain", "s.json"}).scene, "s.json");
+    EXPECT_EQ(parse({"--explain", "--explain=measure", "s.json"}).action, Action::measure);
     expect_refused({"s.json", "--explain=mesure"},
                    "--explain mesure: must be needs or measure; did you mean 'measure'?");
     expect_refused({"s.json", "--explain=measure", "--target-error", "0.01"},

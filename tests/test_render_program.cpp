@@ -41,6 +41,8 @@ TEST_F(RenderProgram, PrintsWhatItIsAskedFor) {
     const ProgramResult help = run({"--help"}), version = run({"--version"}), sample = run({"--print-template"});
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
+    EXPECT_NE(help.out.find("  --explain "), std::string::npos) << help.out;
+    EXPECT_EQ(help.out.find_first_of("{}"), std::string::npos) << help.out;
     EXPECT_EQ(version.code, 0);
     EXPECT_EQ(version.out, "render (Cistula) " CISTULA_VERSION "\n");
     EXPECT_EQ(sample.code, 0);

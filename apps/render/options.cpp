@@ -58,8 +58,8 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
     app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
-    app.add_flag(
-        "--explain{needs}", texts.explain,
+    add_valued_flag(
+        app, "--explain", texts.explain, "needs",
         "print the effects the scene calls for and why; renders nothing. --explain=measure: and what each costs");
     app.add_option("--pixel", texts.pixel, "print how this pixel comes about, ray by ray; renders nothing")
         ->type_name("X,Y");
