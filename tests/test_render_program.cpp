@@ -63,6 +63,10 @@ TEST_F(RenderProgram, MeasuresWhatEffectsCost) {
     EXPECT_EQ(result.code, 0) << result.error;
     for (const char* part : {"cost", " %", "medians of 7 frames"})
         EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+    const std::string shown = run({"s.json", "--explain=measure", "--progress", "plain"}).error;
+    EXPECT_EQ(shown.rfind("compiling\n", 0), 0u) << shown;
+    EXPECT_NE(shown.find("\nmeasuring\n"), std::string::npos) << shown;
+    EXPECT_EQ(run({"s.json", "--explain=measure", "--progress", "plain", "-q"}).error, "");
 }
 
 TEST_F(RenderProgram, AllEffectsWriteTheSameFile) {

@@ -13,6 +13,7 @@
 #include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
 #include "backend_embree/embree_pixel_tree.h"
 #include "explain.h"
@@ -182,9 +183,9 @@ void measure_scene(const RenderOptions& options) {
     const SceneDescription scene = read_scene(options.scene);
     const FrameSettings settings = frame_settings(options, scene);
     const std::vector<EffectReason> reasons = explain_effects(scene);
-    RenderProgress progress;  // outlives the guard
+    StepProgress progress(options.quiet ? ProgressStyle::none : options.progress);  // outlives the guard
     InterruptGuard guard;
-    guard.watch(progress.stop);
+    guard.watch(progress.render.stop);
     on_threads(options, [&] {
         const auto make = [&](const SceneDescription& of) {
             return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
