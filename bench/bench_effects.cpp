@@ -5,6 +5,7 @@
 #include <set>
 
 #include "backend_embree/embree_renderer.h"
+#include "cistula/effects.h"
 #include "effect_scenes.h"
 #include "program.h"
 #include "scene/camera_path.h"

@@ -29,3 +29,14 @@ target_include_directories(cistula_build_info PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(cistula_build_info PRIVATE
     CISTULA_BUILD_FLAGS="${_flags}" CISTULA_BUILD_COMMIT="${_commit}")
 target_link_libraries(cistula_build_info PRIVATE cistula_contract cistula_warnings)
+
+# cistula_record_cuda(TARGET FLAG...): gives a program the name of nvcc and the flags of kernels, for the records that it writes.
+function(cistula_record_cuda target)
+    string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+    list(JOIN ARGN " " flags)
+    list(JOIN CMAKE_CUDA_ARCHITECTURES "," architectures)
+    string(STRIP "${CMAKE_CUDA_FLAGS} ${CMAKE_CUDA_FLAGS_${type}}" any_flags)
+    string(STRIP "${any_flags} ${flags} -arch ${architectures}" flags)
+    target_compile_definitions(${target} PRIVATE
+        CISTULA_CUDA_COMPILER="${CMAKE_CUDA_COMPILER_ID} ${CMAKE_CUDA_COMPILER_VERSION}" CISTULA_CUDA_FLAGS="${flags}")
+endfunction()

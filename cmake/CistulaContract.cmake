@@ -18,6 +18,7 @@ endforeach()
 # GCC 12 takes double -> float -> double roundings away where its basic-block vectorizer pairs them (tests/test_compiler.cpp).
 set(_host -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-tree-slp-vectorize -march=x86-64-v3)
 string(REPLACE ";" "," _host_of_nvcc "${_host}")
+set(_device -fmad=false -prec-div=true -prec-sqrt=true -ftz=false)
 
 add_library(cistula_contract INTERFACE)
 add_library(cistula::contract ALIAS cistula_contract)
@@ -26,6 +27,6 @@ target_compile_features(cistula_contract INTERFACE cxx_std_20)
 target_compile_definitions(cistula_contract INTERFACE GLM_FORCE_PURE)
 target_compile_options(cistula_contract INTERFACE
     "$<$<COMPILE_LANGUAGE:CXX>:${_host}>"
-    "$<$<COMPILE_LANGUAGE:CUDA>:-fmad=false;-prec-div=true;-prec-sqrt=true;-ftz=false;-Xcompiler=${_host_of_nvcc}>"
+    "$<$<COMPILE_LANGUAGE:CUDA>:${_device};-Xcompiler=${_host_of_nvcc}>"
     # GLM's constexpr constructors; its headers are system headers, but nvcc warns all the same.
     "$<$<COMPILE_LANGUAGE:CUDA>:SHELL:-Xcudafe --diag_suppress=20012>")

@@ -8,6 +8,7 @@
 #include "golden.h"
 #include "scene/compiled_scene.h"
 #include "scene/generated_scene.h"
+#include "scene/required_effects.h"
 #include "scene/without_effect.h"
 #include "support_scene.h"
 

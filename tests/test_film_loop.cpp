@@ -1,5 +1,5 @@
 // A film's loop over a renderer that costs nothing: what it is told, what is said, what is left when it ends early.
-#include "apps/render/film_loop.h"
+#include "apps/common/film_loop.h"
 
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
@@ -79,7 +79,7 @@ class FilmLoop : public RenderProgram {
     }
 
     const SceneDescription scene_;
-    RenderOptions options_;
+    FilmOptions options_;
     FrameSettings settings_;
     FakeRenderer renderer_;
     RunStats stats_;

@@ -1,4 +1,4 @@
-#include "apps/render/frame_list.h"
+#include "apps/common/frame_list.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Several frames on their way to files at once: bounded, in order where it shows, ended by the first failure.
-#include "apps/render/frame_writer.h"
+#include "apps/common/frame_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 #include <iostream>
 
 #include "backend_embree/embree_api.h"
+#include "cistula/effects.h"
 #include "cistula/fixed_sum.h"
 #include "golden.h"
 #include "scene/compiled_scene.h"

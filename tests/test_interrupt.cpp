@@ -1,4 +1,4 @@
-#include "apps/render/interrupt.h"
+#include "apps/common/interrupt.h"
 
 #include <gtest/gtest.h>
 

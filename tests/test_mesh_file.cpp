@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "cistula/effects.h"
 #include "scene/compiled_scene.h"
 #include "scene/generated_mesh.h"
 #include "scene/mesh_topology.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "apps/render/header_attributes.h"
+#include "apps/common/header_attributes.h"
 #include "apps/render/options.h"
 #include "backend_embree/native_triangles.h"
 #include "cistula/trigonometry.h"

@@ -1,4 +1,4 @@
-#include "apps/render/output_name.h"
+#include "apps/common/output_name.h"
 
 #include <gtest/gtest.h>
 

@@ -1,16 +1,25 @@
 #include "apps/render/options.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <pty.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
+#include "apps/common/describe_flags.h"
+#include "apps/common/film_progress.h"
+#include "apps/common/header_attributes.h"
+#include "apps/common/stats.h"
+#include "apps/common/step_progress.h"
 #include "apps/render/explain.h"
-#include "apps/render/film_loop.h"
-#include "apps/render/header_attributes.h"
-#include "apps/render/progress.h"
-#include "apps/render/stats.h"
 #include "cistula/ray_tree.h"
 #include "expect_error.h"
 
@@ -109,6 +118,9 @@ TEST(RenderOptions, Actions) {
     EXPECT_EQ(parse({"--list-devices"}).action, Action::list_devices);
     EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
     EXPECT_EQ(parse({"s.json", "--explain=measure"}).action, Action::measure);
+    EXPECT_EQ(parse({"--explain", "s.json"}).action, Action::explain);
+    EXPECT_EQ(parse({"--explain", "s.json"}).scene, "s.json");
+    EXPECT_EQ(parse({"--explain", "--explain=measure", "s.json"}).action, Action::measure);
     expect_refused({"s.json", "--explain=mesure"},
                    "--explain mesure: must be needs or measure; did you mean 'measure'?");
     expect_refused({"s.json", "--explain=measure", "--target-error", "0.01"},
@@ -466,6 +478,59 @@ TEST(Progress, Texts) {
     EXPECT_EQ(progress_line(state), "frame 12 (1/10): 0 %, 3.0 Mrays/s, ETA ?");
 }
 
+/// Makes standard error a terminal as long as it lives.
+class Terminal {
+  public:
+    Terminal() : before_(dup(STDERR_FILENO)) {
+        int shown = -1;
+        if (openpty(&seen_, &shown, nullptr, nullptr, nullptr) != 0) throw std::runtime_error("there is no terminal");
+        dup2(shown, STDERR_FILENO);
+        close(shown);
+        setenv("TERM", "xterm", 1);
+    }
+    ~Terminal() {
+        dup2(before_, STDERR_FILENO);
+        close(before_);
+        close(seen_);
+    }
+
+    /// Whether `text` appears within a minute, after what was found before.
+    bool shows(const std::string& text) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        pollfd waited{seen_, POLLIN, 0};
+        while (shown_.find(text) == std::string::npos) {
+            char bytes[256];
+            if (std::chrono::steady_clock::now() > end || poll(&waited, 1, 60'000) != 1) return false;
+            shown_.append(bytes, static_cast<size_t>(std::max<ssize_t>(read(seen_, bytes, sizeof bytes), 0)));
+        }
+        shown_.erase(0, shown_.find(text) + text.size());
+        return true;
+    }
+
+  private:
+    const int before_;
+    int seen_ = -1;
+    std::string shown_;
+};
+
+TEST(Progress, IsDrawnAgainOnATerminalAndIsGoneInTheEnd) {
+    Terminal terminal;
+    {
+        StepProgress progress(ProgressStyle::automatic);
+        progress.begin("cases", 4);
+        progress.name_part("geometry/fans");
+        progress.advance();
+        EXPECT_TRUE(terminal.shows("\rcases: geometry/fans: 25 %, ETA 0:"));
+        progress.aside([] { std::fputs("a row\n", stderr); });
+        EXPECT_TRUE(terminal.shows("\r\033[Ka row\r\n\rcases: geometry/fans: 25 %, ETA 0:"));
+        progress.advance(2);
+        progress.render.pixels_done = 50;
+        progress.frame(100);
+        EXPECT_TRUE(terminal.shows("\rcases: geometry/fans: 87 %"));
+    }
+    EXPECT_TRUE(terminal.shows("\033[K\r\033[K"));
+}
+
 TEST(Stats, LedgerTotalsAreInTheScenesUnits) {
     Film film;
     film.samples = 4;
@@ -501,7 +566,7 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     EXPECT_NE(measured.find("7 frames of 12.5 ms"), std::string::npos) << measured;
 }
 
-TEST(FilmLoop, EveryFlagHasItsWords) {
+TEST(DescribeFlags, EveryFlagHasItsWords) {
     EXPECT_EQ(describe_flags(flag_not_finite), "a radiance was infinite or not a number");
     EXPECT_EQ(describe_flags(flag_not_finite | flag_media_overflow),
               "a radiance was infinite or not a number; a ray was inside more solids at once than it can list");

@@ -41,6 +41,8 @@ TEST_F(RenderProgram, PrintsWhatItIsAskedFor) {
     const ProgramResult help = run({"--help"}), version = run({"--version"}), sample = run({"--print-template"});
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
+    EXPECT_NE(help.out.find("  --explain "), std::string::npos) << help.out;
+    EXPECT_EQ(help.out.find_first_of("{}"), std::string::npos) << help.out;
     EXPECT_EQ(version.code, 0);
     EXPECT_EQ(version.out, "render (Cistula) " CISTULA_VERSION "\n");
     EXPECT_EQ(sample.code, 0);
@@ -61,6 +63,10 @@ TEST_F(RenderProgram, MeasuresWhatEffectsCost) {
     EXPECT_EQ(result.code, 0) << result.error;
     for (const char* part : {"cost", " %", "medians of 7 frames"})
         EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+    const std::string shown = run({"s.json", "--explain=measure", "--progress", "plain"}).error;
+    EXPECT_EQ(shown.rfind("compiling\n", 0), 0u) << shown;
+    EXPECT_NE(shown.find("\nmeasuring\n"), std::string::npos) << shown;
+    EXPECT_EQ(run({"s.json", "--explain=measure", "--progress", "plain", "-q"}).error, "");
 }
 
 TEST_F(RenderProgram, AllEffectsWriteTheSameFile) {

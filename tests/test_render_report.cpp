@@ -260,6 +260,13 @@ TEST_F(Program, ShowsVerdictsAndTheSeedsTimes) {
     EXPECT_EQ(unbalanced(page), "");
 }
 
+TEST_F(Program, HelpShowsEveryOptionAsItIsWritten) {
+    const ProgramResult help = run({"--help"});
+    EXPECT_EQ(help.code, 0) << help.error;
+    EXPECT_NE(help.out.find("  --scaling "), std::string::npos) << help.out;
+    EXPECT_EQ(help.out.find_first_of("{}"), std::string::npos) << help.out;
+}
+
 TEST_F(Program, RefusesWhatIsWrong) {
     put_bytes(folder.file("bad.json"), "{\"context\": {}}");
     const struct {

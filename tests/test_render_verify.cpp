@@ -227,6 +227,13 @@ TEST_F(RenderVerify, ABackendThatIsNotThereIsAnError) {
         expect_refused({"--backend", backend, "--quick", "--case", "geometry/fans"}, ExitCode::device, "");
 }
 
+TEST_F(RenderVerify, HelpShowsEveryOptionAsItIsWritten) {
+    const ProgramResult help = run({"--help"});
+    EXPECT_EQ(help.code, 0) << help.error;
+    EXPECT_NE(help.out.find("--precision NAME"), std::string::npos) << help.out;
+    EXPECT_EQ(help.out.find_first_of("{}"), std::string::npos) << help.out;
+}
+
 TEST_F(RenderVerify, WritesATableARecordAndAPage) {
     const ProgramResult result = run({"--quick", "--case", "geometry/axis-parallel", "--case", "geometry/broken/*",
                                       "--precision", "double", "--json", "a.json", "--html", "a.html"});

@@ -51,6 +51,12 @@ void fail_choice(const char* option, const std::string& text, const std::vector<
                            suggestion(text, names, "names")));
 }
 
+void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
+                     const std::string& description) {
+    // expected(0, 1) would take a scene that follows; expected(0) would make the lone flag "true".
+    app.add_option(name, text, description)->expected(0, 0)->default_str(alone)->take_last()->option_text(" ");
+}
+
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
                         const std::function<std::string(const std::string&)>& extra_positional) {
     app.allow_extras();

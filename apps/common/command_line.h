@@ -44,6 +44,11 @@ T chosen(const char* option, const std::string& text, const std::vector<std::pai
     fail_choice(option, text, names);
 }
 
+/// An option that stands alone or has a value: --NAME makes `text` what `alone` says, --NAME=VALUE makes it VALUE. The
+/// word that follows is never taken for the value.
+void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
+                     const std::string& description);
+
 /// Fills the variables that the options of `app` are bound to; false where --help was asked for. Throws Error (usage)
 /// for unknown options and empty values; `extra_positional` makes the message for a word that has no place.
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,

@@ -1,6 +1,7 @@
-// Times of repeated runs: the median is what counts, the range says how far to trust it.
+// Times of runs, repeated ones too: the median is what counts, the range says how far to trust it.
 #pragma once
 
+#include <chrono>
 #include <vector>
 
 namespace cistula {
@@ -14,5 +15,13 @@ struct Timing {
     double least() const;
     double most() const;
 };
+
+/// Seconds that `work` takes.
+template <class Work>
+double seconds_of(Work&& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 }  // namespace cistula

@@ -1,9 +1,10 @@
 #include "effect_costs.h"
 
+#include <bit>
+
 #include "apps/common/timing.h"
 #include "scene/error.h"
 #include "scene/without_effect.h"
-#include "stats.h"
 
 namespace cistula {
 namespace {
@@ -16,10 +17,13 @@ struct Variant {
     FrameSettings settings;
     Timing time;
 
-    void run(const CameraFrame& camera, RenderProgress& progress, bool counts) {
+    void run(const CameraFrame& camera, StepProgress& progress, bool counts) {
+        progress.render.pixels_done = 0;
+        progress.frame(static_cast<uint64_t>(settings.crop.width) * static_cast<uint64_t>(settings.crop.height));
         Film film;
         bool whole = false;
-        const double all = seconds_of([&] { whole = renderer->render(camera, settings, film, progress); });
+        const double all = seconds_of([&] { whole = renderer->render(camera, settings, film, progress.render); });
+        progress.advance();
         if (!whole) throw Error(ExitCode::interrupted, "interrupted");
         const double kernel = renderer->times().kernel;
         if (counts) time.runs.push_back((kernel > 0 ? kernel : all) * 1e3);
@@ -29,9 +33,9 @@ struct Variant {
 }  // namespace
 
 EffectCosts measure_effects(const SceneDescription& scene, const std::vector<EffectReason>& reasons, int frame,
-                            const FrameSettings& settings, const MakeRenderer& make, RenderProgress& progress,
-                            int runs) {
+                            const FrameSettings& settings, const MakeRenderer& make, StepProgress& progress, int runs) {
     const uint32_t needed = required_effects(reasons);
+    progress.begin("compiling", std::popcount(needed));
     std::vector<Variant> variants;
     const auto add = [&](const SceneDescription& of, FrameSettings how) {
         variants.push_back({make(of), how, {}});
@@ -52,8 +56,10 @@ EffectCosts measure_effects(const SceneDescription& scene, const std::vector<Eff
         if (!reason.needed) continue;
         const auto less = without_effect(scene, reason.effect);
         taken_out.push_back({reason.effect, less ? add(*less, settings) : 0});
+        progress.advance();
     }
     const CameraFrame camera = camera_at(scene.camera, frame);
+    progress.begin("measuring", static_cast<double>(variants.size()) * (runs + 1));
     for (int run = -1; run < runs; ++run)
         for (Variant& variant : variants) variant.run(camera, progress, run >= 0);
 

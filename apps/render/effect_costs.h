@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/step_progress.h"
 #include "scene/description.h"
 #include "scene/renderer.h"
 #include "scene/required_effects.h"
@@ -32,7 +33,7 @@ using MakeRenderer = std::function<std::unique_ptr<Renderer>(const SceneDescript
 /// medians: of kernels where the renderer has devices, else of whole frames. Both kinds of shadow are taken out
 /// together.
 EffectCosts measure_effects(const SceneDescription& scene, const std::vector<EffectReason>& reasons, int frame,
-                            const FrameSettings& settings, const MakeRenderer& make, RenderProgress& progress,
+                            const FrameSettings& settings, const MakeRenderer& make, StepProgress& progress,
                             int runs = 7);
 
 }  // namespace cistula

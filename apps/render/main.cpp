@@ -9,12 +9,16 @@
 
 #include "apps/common/backends.h"
 #include "apps/common/command_line.h"
+#include "apps/common/describe_flags.h"
+#include "apps/common/film_loop.h"
+#include "apps/common/film_progress.h"
+#include "apps/common/interrupt.h"
+#include "apps/common/step_progress.h"
+#include "apps/common/timing.h"
 #include "backend_embree/embree_pixel_tree.h"
 #include "explain.h"
-#include "film_loop.h"
-#include "interrupt.h"
+#include "options.h"
 #include "pixel_report.h"
-#include "progress.h"
 #include "scene/atomic_file.h"
 #include "scene/compiled_scene.h"
 #include "scene/error.h"
@@ -180,9 +184,9 @@ void measure_scene(const RenderOptions& options) {
     const SceneDescription scene = read_scene(options.scene);
     const FrameSettings settings = frame_settings(options, scene);
     const std::vector<EffectReason> reasons = explain_effects(scene);
-    RenderProgress progress;  // outlives the guard
+    StepProgress progress(options.quiet ? ProgressStyle::none : options.progress);  // outlives the guard
     InterruptGuard guard;
-    guard.watch(progress.stop);
+    guard.watch(progress.render.stop);
     on_threads(options, [&] {
         const auto make = [&](const SceneDescription& of) {
             return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)

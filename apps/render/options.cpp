@@ -7,26 +7,17 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
+#include "apps/common/frame_list.h"
 #include "cistula/effects.h"
 #include "cistula/lattice_settings.h"
 #include "cistula/ray_tree.h"
-#include "frame_list.h"
+#include "exclusions.h"
 #include "scene/suggest.h"
 
 namespace cistula {
 namespace {
 
-/// The options' texts as CLI11 leaves them.
-struct Texts {
-    std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, target_error,
-        max_samples, threads, layers, device, pixel, json, backend = "embree", precision = "float",
-                                                           intersector = "exact", effects = "auto", bits = "float",
-                                                           progress = "auto";
-    std::string explain;
-    bool resume = false, quiet = false, verbose = false, version = false, print_template = false, list_devices = false;
-};
-
-void declare(CLI::App& app, Texts& texts) {
+void declare(CLI::App& app, OptionTexts& texts) {
     app.add_option("SCENE", texts.scene, "scene file: JSON or the seed's text; - reads standard input")->type_name("");
     app.add_option("-o,--output", texts.output,
                    "image: .exr, or .out/.data for the seed's raw frames; #### or %04d is the frame number")
@@ -58,8 +49,8 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
     app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
-    app.add_flag(
-        "--explain{needs}", texts.explain,
+    add_valued_flag(
+        app, "--explain", texts.explain, "needs",
         "print the effects the scene calls for and why; renders nothing. --explain=measure: and what each costs");
     app.add_option("--pixel", texts.pixel, "print how this pixel comes about, ray by ray; renders nothing")
         ->type_name("X,Y");
@@ -73,33 +64,7 @@ void declare(CLI::App& app, Texts& texts) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
-/// Of an option that has no meaning beside another one.
-void refuse_beside(const char* other, const std::string& value, bool given, const char* option, const char* why) {
-    if (given)
-        fail_usage(fmt::format("{} {}: {} has no place here: {}; leave it out", other, one_line(value), option, why));
-}
-
-/// What has no meaning where one pixel is taken apart.
-void refuse_with_pixel(const Texts& texts) {
-    const auto refuse = [&](bool given, const char* option, const char* why) {
-        refuse_beside("--pixel", texts.pixel, given, option, why);
-    };
-    constexpr const char* no_image = "no image is written";
-    refuse(!texts.output.empty(), "-o", no_image);
-    refuse(!texts.preview.empty(), "--preview", no_image);
-    refuse(!texts.stats.empty(), "--stats", "nothing is timed");
-    refuse(!texts.layers.empty(), "--aov", no_image);
-    refuse(texts.bits != "float", "--bits", no_image);
-    refuse(!texts.crop.empty(), "--crop", "the pixel counts from the top left of the full frame");
-    refuse(texts.resume, "--resume", no_image);
-    refuse(texts.progress != "auto", "--progress", "one pixel takes no time");
-    refuse(!texts.explain.empty(), "--explain", "each prints a report of its own");
-    refuse(!texts.target_error.empty(), "--target-error", "it shows the samples of a grid; --supersample chooses one");
-    refuse(texts.backend != "embree", "--backend", "the CPU follows the rays, and every backend gives the same bits");
-    refuse(texts.intersector != "exact", "--intersector", "the rays of the exact image are followed");
-}
-
-RenderOptions checked(const Texts& texts) {
+RenderOptions checked(const OptionTexts& texts) {
     RenderOptions options;
     if (texts.version) options.action = Action::print_version;
     if (texts.print_template) options.action = Action::print_template;
@@ -132,13 +97,6 @@ RenderOptions checked(const Texts& texts) {
     if (!texts.pixel.empty()) {
         options.pixel = parse_pixel(texts.pixel);
         options.action = Action::pixel;
-        refuse_with_pixel(texts);
-        if (options.frames.size() > 1)
-            fail_usage(fmt::format("--frames names {} frames, and --pixel {} is of one; name that one",
-                                   options.frames.size(), texts.pixel));
-    } else if (!texts.json.empty()) {
-        fail_usage(
-            fmt::format("--json {}: is for --pixel X,Y; of a render, --stats FILE.json tells the times", texts.json));
     }
     if (!texts.layers.empty()) options.channels = parse_layers(texts.layers);
     options.channels.half = chosen<bool>("--bits", texts.bits, {{"float", false}, {"half", true}});
@@ -157,46 +115,24 @@ RenderOptions checked(const Texts& texts) {
         if (!options.target_error || !std::isfinite(*options.target_error) || !(*options.target_error > 0))
             fail_usage(fmt::format("--target-error {}: must be a number above 0, in the scene's units of radiance",
                                    one_line(texts.target_error)));
-        const auto refuse = [&](bool given, const char* option, const char* why) {
-            refuse_beside("--target-error", texts.target_error, given, option, why);
-        };
-        refuse(!texts.supersample.empty(), "--supersample", "pixels get as many samples as they need");
-        refuse(!texts.cutoff.empty(), "--cutoff", "a quarter of the target is the cutoff");
     }
-    if (options.action == Action::measure)
-        refuse_beside("--explain", texts.explain, options.target_error.has_value(), "--target-error",
-                      "it times the samples of a grid; --supersample chooses one");
-    if (!texts.max_samples.empty()) {
+    if (!texts.max_samples.empty())
         options.max_samples =
             integer_option("--max-samples", texts.max_samples, least_lattice_samples, lattice_samples);
-        if (!options.target_error)
-            fail_usage(fmt::format("--max-samples {}: is for --target-error E; a grid's are --supersample's",
-                                   texts.max_samples));
-    }
+    refuse_exclusions(texts);
+    if (options.action == Action::pixel && options.frames.size() > 1)
+        fail_usage(fmt::format("--frames names {} frames, and --pixel {} is of one; name that one",
+                               options.frames.size(), texts.pixel));
     if (options.scene.empty())
         fail_usage("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
-    if (options.quiet && options.verbose) fail_usage("-q and -v exclude each other; give one");
     return options;
-}
-
-/// Two numbers around an x at the front of `text`, which it takes away.
-std::optional<PictureSize> take_size(std::string_view& text) {
-    const size_t x = text.find('x');
-    if (x == text.npos) return std::nullopt;
-    const size_t end = std::min(text.find('+', x), text.size());
-    const auto width = whole_number<int>(text.substr(0, x)),
-               height = whole_number<int>(text.substr(x + 1, end - x - 1));
-    if (!width || !height || *width < 1 || *height < 1 || *width > largest_side || *height > largest_side)
-        return std::nullopt;
-    text.remove_prefix(end);
-    return PictureSize{*width, *height};
 }
 
 }  // namespace
 
 RenderOptions parse_options(int argc, const char* const* argv) {
     CLI::App app;
-    Texts texts;
+    OptionTexts texts;
     declare(app, texts);
     const bool whole = parse_command_line(app, argc, argv, [&](const std::string& extra) {
         return fmt::format("{}: one scene at a time, and {} is it already", extra, texts.scene);
@@ -212,7 +148,7 @@ RenderOptions parse_options(int argc, const char* const* argv) {
 std::string help_text() {
     CLI::App app("Renders a scene to OpenEXR: the same bits on every machine and with any number of threads.",
                  "render");
-    Texts texts;
+    OptionTexts texts;
     declare(app, texts);
     app.footer(R"(
 Examples:
@@ -234,30 +170,6 @@ seed's text input to the pattern on its third line. A name without a pattern hol
 Exit codes: 0 done, 1 the image cannot be trusted, 2 command line or scene, 3 file, 4 device,
 5 target error not met (the image is written), 130 interrupted.)");
     return app.help();
-}
-
-PictureSize parse_size(std::string_view text) {
-    std::string_view rest = text;
-    const std::optional<PictureSize> size = take_size(rest);
-    if (!size || !rest.empty())
-        fail_usage(
-            fmt::format("--res {}: must be WIDTHxHEIGHT, each from 1 to {}, as in 1280x720", text, largest_side));
-    return *size;
-}
-
-PixelRect parse_crop(std::string_view text) {
-    std::string_view rest = text;
-    const std::optional<PictureSize> size = take_size(rest);
-    if (size && !rest.empty()) {
-        rest.remove_prefix(1);
-        const size_t plus = rest.find('+');
-        if (plus != rest.npos) {
-            const auto x = whole_number<int>(rest.substr(0, plus)), y = whole_number<int>(rest.substr(plus + 1));
-            if (x && y && *x >= 0 && *y >= 0) return {*x, *y, size->width, size->height};
-        }
-    }
-    fail_usage(
-        fmt::format("--crop {}: must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96", text));
 }
 
 PixelPlace parse_pixel(std::string_view text) {

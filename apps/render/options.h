@@ -6,48 +6,37 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/common/backends.h"
-#include "output_name.h"
+#include "apps/common/film_options.h"
+#include "apps/common/picture_size.h"
 #include "scene/film_picture.h"
 #include "scene/renderer.h"
 
 namespace cistula {
 
-struct PictureSize {
-    int width = 0, height = 0;
-};
 struct PixelPlace {
     int x = 0, y = 0;  // from the top left of the full frame
 };
 
-enum class ProgressStyle { automatic, plain, none };
 enum class Action { render, explain, measure, pixel, print_help, print_version, print_template, list_devices };
 
-struct RenderOptions {
+struct RenderOptions : FilmOptions {
     Action action = Action::render;
-    std::string scene;           // "-": standard input
-    std::string output;          // as given; empty: see default_output
-    std::string preview, stats;  // as given; empty: none
-    std::vector<int> frames;     // empty: none given
-    Backend backend = Backend::embree;
-    DeviceChoice devices;  // of the CUDA backend
-    Intersection intersection = Intersection::exact;
+    std::string scene;        // "-": standard input
+    std::string output;       // as given; empty: see default_output
+    std::string preview;      // as given; empty: none
+    std::vector<int> frames;  // empty: none given
+    DeviceChoice devices;     // of the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
     PixelPlace pixel;  // with Action::pixel
-    std::string json;  // the same: a file, "-" or empty
+    std::string json;  // with Action::pixel: a file, "-" or empty
     std::optional<int> supersample, depth;
     std::optional<double> cutoff, target_error;
     std::optional<int> max_samples;  // with a target error
     bool all_effects = false;        // --effects all
-    Precision precision = Precision::single_;
-    int threads = 0;          // 0: all
-    OutputChannels channels;  // of --bits and --aov
-    bool resume = false, quiet = false, verbose = false;
-    ProgressStyle progress = ProgressStyle::automatic;
+    int threads = 0;                 // 0: all
 };
 
-inline constexpr int largest_side = 65536;      // pixels
 inline constexpr int largest_supersample = 64;  // k
 
 /// Throws Error (usage); the message names the option, what is wrong and what would be right.
@@ -55,12 +44,6 @@ RenderOptions parse_options(int argc, const char* const* argv);
 
 /// What --help prints: the options, examples, exit codes.
 std::string help_text();
-
-/// "640x480". Throws Error (usage).
-PictureSize parse_size(std::string_view text);
-
-/// "WxH+X+Y", X and Y from the top left of the full frame. Throws Error (usage).
-PixelRect parse_crop(std::string_view text);
 
 /// "X,Y". Throws Error (usage).
 PixelPlace parse_pixel(std::string_view text);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "film_loop.h"
+#include "apps/common/describe_flags.h"
 #include "pixel_report.h"
 
 namespace cistula {

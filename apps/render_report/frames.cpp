@@ -6,8 +6,8 @@
 #include <mutex>
 #include <thread>
 
-#include "apps/render/film_loop.h"
-#include "apps/render/stats.h"
+#include "apps/common/describe_flags.h"
+#include "apps/common/timing.h"
 #include "scene/error.h"
 
 namespace cistula::report {
@@ -60,7 +60,7 @@ class Watch {
 }  // namespace
 
 Frames::Frames(const SceneDescription& description, const Machine& machine, int frame_width, int frame_height,
-               Progress& watched)
+               StepProgress& watched)
     : renderers(description, machine),
       scene(description),
       camera(camera_at(description.camera, 0)),
@@ -68,7 +68,7 @@ Frames::Frames(const SceneDescription& description, const Machine& machine, int 
       height(frame_height),
       progress(watched) {}
 
-void check_interrupt(const Progress& progress) {
+void check_interrupt(const StepProgress& progress) {
     if (progress.render.stop) throw Error(ExitCode::interrupted, "interrupted; nothing was written");
 }
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "progress.h"
+#include "apps/common/step_progress.h"
 #include "renderers.h"
 #include "scene/camera_path.h"
 #include "scene/film.h"
@@ -19,7 +19,7 @@ struct FrameLimit {
 
 class Frames {
   public:
-    Frames(const SceneDescription& scene, const Machine& machine, int width, int height, Progress& progress);
+    Frames(const SceneDescription& scene, const Machine& machine, int width, int height, StepProgress& progress);
 
     /// Seconds of wall clock. Throws Error: interrupted after Ctrl-C, failed where the frame cannot be trusted.
     double render(const Setting& setting, Film& film, uint32_t effects = 0);
@@ -34,7 +34,7 @@ class Frames {
     const SceneDescription& scene;
     const CameraFrame camera;
     const int width, height;
-    Progress& progress;
+    StepProgress& progress;
 
   private:
     void begin();
@@ -42,6 +42,6 @@ class Frames {
 };
 
 /// Throws Error (interrupted) if Ctrl-C was pressed.
-void check_interrupt(const Progress& progress);
+void check_interrupt(const StepProgress& progress);
 
 }  // namespace cistula::report

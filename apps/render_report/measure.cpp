@@ -40,7 +40,7 @@ std::string unused_name(const std::string& file, const Record& record) {
 
 }  // namespace
 
-void measure_scene(const std::string& file, const MeasureSettings& settings, Progress& progress, Record& record) {
+void measure_scene(const std::string& file, const MeasureSettings& settings, StepProgress& progress, Record& record) {
     const SceneDescription description = read_scene(file);
     SceneRecord scene;
     scene.name = unused_name(file, record);

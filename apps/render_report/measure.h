@@ -23,7 +23,7 @@ struct MeasureSettings {
 };
 
 /// Adds the scene and its benchmarks to the record. Throws Error.
-void measure_scene(const std::string& file, const MeasureSettings& settings, Progress& progress, Record& record);
+void measure_scene(const std::string& file, const MeasureSettings& settings, StepProgress& progress, Record& record);
 
 /// The steps, each of which fills its part of the scene's record.
 void measure_sweep(Frames& frames, const MeasureSettings& settings, SceneRecord& scene, Record& record);
@@ -34,12 +34,12 @@ void measure_parity(Frames& frames, const MeasureSettings& settings, SceneRecord
 
 /// seed_baseline's record as a table, ours measured for the same picture if the scene is the same and the machine too.
 SeedTable read_seed_table(const std::string& file);
-void measure_seed_table(const std::string& scene_file, const MeasureSettings& settings, Progress& progress,
+void measure_seed_table(const std::string& scene_file, const MeasureSettings& settings, StepProgress& progress,
                         const Record& record, SeedTable& table);
 bool is_same_machine(const Json& seed_context, const Json& context);
 
 /// Time against triangles, lights, depth, pixels and GPUs.
-void measure_scaling(const std::string& scene_file, const MeasureSettings& settings, Progress& progress,
+void measure_scaling(const std::string& scene_file, const MeasureSettings& settings, StepProgress& progress,
                      Record& record);
 
 }  // namespace cistula::report

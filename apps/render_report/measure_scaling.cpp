@@ -61,7 +61,7 @@ SceneDescription scene_with_lights(int count) {
 
 class Scaling {
   public:
-    Scaling(const MeasureSettings& settings, Progress& progress) : settings_(settings), progress_(progress) {}
+    Scaling(const MeasureSettings& settings, StepProgress& progress) : settings_(settings), progress_(progress) {}
 
     /// False where it took longer than the limit: larger ones are then left out, and it too if its first frame did.
     bool add(ScalingSeries& series, double value, Frames& frames, const Setting& setting) {
@@ -91,12 +91,12 @@ class Scaling {
 
   private:
     const MeasureSettings& settings_;
-    Progress& progress_;
+    StepProgress& progress_;
 };
 
 }  // namespace
 
-void measure_scaling(const std::string& scene_file, const MeasureSettings& settings, Progress& progress,
+void measure_scaling(const std::string& scene_file, const MeasureSettings& settings, StepProgress& progress,
                      Record& record) {
     Scaling scaling(settings, progress);
     const Machine& machine = settings.machine;

@@ -63,7 +63,7 @@ bool is_same_machine(const Json& seed, const Json& context) {
            text_of(seed, "driver") == text_of(context, "gpu_driver");
 }
 
-void measure_seed_table(const std::string& scene_file, const MeasureSettings& settings, Progress& progress,
+void measure_seed_table(const std::string& scene_file, const MeasureSettings& settings, StepProgress& progress,
                         const Record& record, SeedTable& table) {
     table.same_machine = is_same_machine(table.context, record.context);
     if (!table.same_machine) return;

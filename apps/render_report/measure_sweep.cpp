@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "apps/render/target.h"
+#include "apps/common/target.h"
 #include "measure.h"
 #include "reference.h"
 #include "scene/error.h"

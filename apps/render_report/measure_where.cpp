@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/render/header_attributes.h"
-#include "apps/render/stats.h"
+#include "apps/common/header_attributes.h"
+#include "apps/common/timing.h"
 #include "cistula/effects.h"
 #include "measure.h"
 #include "png.h"

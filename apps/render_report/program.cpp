@@ -7,7 +7,8 @@
 #include <filesystem>
 
 #include "apps/common/command_line.h"
-#include "apps/render/interrupt.h"
+#include "apps/common/interrupt.h"
+#include "apps/common/step_progress.h"
 #include "html_page.h"
 #include "measure.h"
 #include "options.h"
@@ -57,7 +58,8 @@ Record measure(const ReportOptions& options, int threads) {
     record.context["quick"] = settings.quick;
     record.context["limit_seconds"] = settings.limit;
 
-    Progress progress(options.quiet);
+    const ProgressStyle style = is_terminal() ? ProgressStyle::automatic : ProgressStyle::plain;
+    StepProgress progress(options.quiet ? ProgressStyle::none : style);
     InterruptGuard guard;
     guard.watch(progress.render.stop);
     if (options.scaling != ScalingChoice::only)

@@ -28,7 +28,7 @@ struct Rays {
 /// Of a setting with a target.
 struct TargetOutcome {
     double over = 0;      // share of the pixels that are farther than the target from the reference
-    uint64_t missed = 0;  // pixels that say so themselves: see apps/render/target.h
+    uint64_t missed = 0;  // pixels that say so themselves: see apps/common/target.h
 };
 
 /// A setting of the sweep, measured.

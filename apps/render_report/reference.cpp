@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "apps/common/build_info.h"
-#include "apps/render/header_attributes.h"
-#include "apps/render/stats.h"
+#include "apps/common/header_attributes.h"
+#include "apps/common/timing.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
 #include "scene/file_bytes.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "apps/render/stats.h"
+#include "apps/common/timing.h"
 #include "scene/compiled_scene.h"
 
 namespace cistula::report {

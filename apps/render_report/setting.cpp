@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "apps/render/options.h"
 #include "cistula/ray_tree.h"
 
 namespace cistula::report {

@@ -4,6 +4,7 @@
 
 #include "apps/common/backends.h"
 #include "apps/common/command_line.h"
+#include "apps/common/step_progress.h"
 #include "apps/render_verify/report.h"
 #include "scene/atomic_file.h"
 #include "scene/error.h"
@@ -23,8 +24,12 @@ int run(const VerifyOptions& options) {
         if (!file.empty()) AtomicFile probe(file);
     const auto start = std::chrono::steady_clock::now();
     print(table_head(options.cases));
-    const std::vector<Outcome> outcomes = run_cases(
-        options.cases, options.settings, [&](const Outcome& outcome) { print(table_row(outcome, options.cases)); });
+    const std::vector<Outcome> outcomes = [&] {
+        StepProgress progress(ProgressStyle::automatic);
+        return run_cases(options.cases, options.settings, progress, [&](const Outcome& outcome) {
+            progress.aside([&] { print(table_row(outcome, options.cases)); });
+        });
+    }();
     context.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     print(summary(outcomes));
     if (!options.json.empty())

@@ -213,14 +213,18 @@ bool Outcome::holds() const {
 }
 
 std::vector<Outcome> run_cases(const std::vector<const CaseEntry*>& cases, const RunSettings& settings,
-                               const std::function<void(const Outcome&)>& done) {
+                               StepProgress& progress, const std::function<void(const Outcome&)>& done) {
     std::vector<Outcome> all;
+    progress.begin("cases", static_cast<double>(cases.size() * settings.precisions.size()));
     for (const CaseEntry* entry : cases)
-        for (const Precision precision : settings.precisions)
+        for (const Precision precision : settings.precisions) {
+            progress.name_part(entry->info.name);
             for (Outcome& outcome : CaseRun(*entry, settings, precision).run()) {
                 done(outcome);
                 all.push_back(std::move(outcome));
             }
+            progress.advance();
+        }
     return all;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/step_progress.h"
 #include "apps/render_verify/case_table.h"
 #include "scene/renderer.h"
 
@@ -37,8 +38,9 @@ struct RunSettings {
     std::vector<Precision> precisions;
 };
 
-/// Calls `done` after each outcome, in the order of the cases, then precisions, then intersectors.
+/// Calls `done` after each outcome, in the order of the cases, then precisions, then intersectors. `progress` shows the
+/// case under way.
 std::vector<Outcome> run_cases(const std::vector<const CaseEntry*>& cases, const RunSettings& settings,
-                               const std::function<void(const Outcome&)>& done);
+                               StepProgress& progress, const std::function<void(const Outcome&)>& done);
 
 }  // namespace cistula::verify

@@ -6,6 +6,7 @@
 
 #include "backend_cuda/cuda_renderer.h"
 #include "bench/effect_scenes.h"
+#include "cistula/effects.h"
 #include "cistula/real.h"
 #include "scene/camera_path.h"
 #include "scene/compiled_scene.h"

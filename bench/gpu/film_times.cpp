@@ -8,8 +8,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "apps/render/film_loop.h"
-#include "apps/render/frame_writer.h"
+#include "apps/common/film_loop.h"
+#include "apps/common/frame_writer.h"
+#include "apps/common/timing.h"
 #include "backend_cuda/cuda_renderer.h"
 #include "scene/read_scene.h"
 
@@ -114,7 +115,7 @@ class FilmTimer {
     std::unique_ptr<Renderer> renderer_;
     std::vector<int> frames_;
     FrameSettings settings_;
-    RenderOptions options_;
+    FilmOptions options_;
 };
 
 /// The median over a film's frames, in milliseconds.

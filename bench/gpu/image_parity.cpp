@@ -8,6 +8,7 @@
 #include "apps/common/golden.h"
 #include "backend_cuda/cuda_renderer.h"
 #include "backend_embree/embree_renderer.h"
+#include "cistula/effects.h"
 #include "scene/film_difference.h"
 #include "scene/generated_scene.h"
 #include "scene/read_scene.h"

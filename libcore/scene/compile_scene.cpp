@@ -16,6 +16,7 @@
 #include "scene/error.h"
 #include "scene/light_tree.h"
 #include "scene/radiance_bound.h"
+#include "scene/required_effects.h"
 #include "scene/scene_hash.h"
 
 namespace cistula {

@@ -7,8 +7,8 @@
 
 #include "cistula/scene_view.h"
 #include "scene/description.h"
+#include "scene/effect_reason.h"
 #include "scene/hull.h"
-#include "scene/required_effects.h"
 
 namespace cistula {
 

@@ -1,5 +1,6 @@
 #include "scene/required_effects.h"
 
+#include <bit>
 #include <sstream>
 
 #include "scene/compile_lights.h"
@@ -10,6 +11,7 @@ namespace cistula {
 namespace {
 
 using glm::dvec3;
+using Text = std::string;
 
 bool any(const dvec3& v) {
     return v.x > 0 || v.y > 0 || v.z > 0;
@@ -19,14 +21,6 @@ std::string number(double value) {
     std::ostringstream stream;
     stream << value;
     return stream.str();
-}
-
-std::string named(const MaterialUse& use) {
-    return "material " + use.material->name + " of " + use.place;
-}
-
-bool passes(const MaterialDescription& m) {
-    return m.transmission > 0 || (m.fresnel && m.reflection > 0);
 }
 
 struct SceneLight {
@@ -47,148 +41,189 @@ std::vector<SceneLight> all_lights(const SceneDescription& scene) {
     return lights;
 }
 
-class Explainer {
-  public:
-    Explainer(const SceneDescription& scene, const std::vector<MaterialUse>& uses, const std::string& lamp_on_face)
-        : scene_(scene), uses_(uses), lights_(all_lights(scene)), lamp_on_face_(lamp_on_face) {}
+/// What must hold of the whole scene before a material or a light can call for an effect.
+enum class Premise { none, lamp, shown_light, passing_rays };
 
-    std::vector<EffectReason> explain() {
-        for (const SceneLight& light : lights_)
-            if (light.lights) lit_ = true;
-        for (const MaterialUse& use : uses_)
-            if (passes(*use.material)) passing_ = true;
-        if (!lit_) no_light_ = "no light has an intensity above 0";
-        by_material(effect_texture, "no material has a texture", [&](const MaterialUse& u) {
-            const MaterialDescription& m = *u.material;
-            const bool shows = any(m.color) && ((lit_ && m.diffuse > 0) || (m.ambient > 0 && any(scene_.ambient)));
-            return m.texture >= 0 && local_share(m) > 0 && shows ? "has a texture" : std::string();
-        });
-        const bool diffuse = by_lit_material(effect_diffuse, "no material has kd above 0", [](const MaterialUse& u) {
-            const MaterialDescription& m = *u.material;
-            return local_share(m) > 0 && m.diffuse > 0 && any(m.color) ? "has kd " + number(m.diffuse) : std::string();
-        });
-        const bool specular = by_lit_material(effect_specular, "no material has ks above 0", [](const MaterialUse& u) {
-            const MaterialDescription& m = *u.material;
-            const bool shines = local_share(m) > 0 && m.specular > 0 && any(m.specular_color);
-            return shines ? "has ks " + number(m.specular) : std::string();
-        });
-        lit_ = diffuse || specular;
-        shadows(lit_);
+/// What holds of the whole scene.
+struct Facts {
+    bool ambient = false;       // there is ambient light
+    bool lamp = false;          // a light has an intensity
+    bool shown_light = false;   // a surface shows light of a lamp
+    bool passing_rays = false;  // a material lets rays pass
 
-        by_material(effect_reflection, "no material has kr above 0, none reflects totally", [&](const MaterialUse& u) {
-            const MaterialDescription& m = *u.material;
-            if (m.reflection > 0) return "has kr " + number(m.reflection);
-            if (m.fresnel && passes(m)) return std::string("splits its light by Fresnel's terms");
-            if (u.closed && m.index != 1 && passing_) return "has index " + number(m.index) + ": total reflection";
-            return std::string();
-        });
-        by_material(effect_transmission, "no material has kt above 0", [](const MaterialUse& u) {
-            const MaterialDescription& m = *u.material;
-            if (m.transmission > 0) return "has kt " + number(m.transmission);
-            return passes(m) ? std::string("splits its light by Fresnel's terms") : std::string();
-        });
-        by_material(effect_refraction, passing_ ? "no solid has an index other than 1" : "no material lets rays pass",
-                    [&](const MaterialUse& u) {
-                        const bool bends = passing_ && u.closed && u.material->index != 1;
-                        return bends ? "has index " + number(u.material->index) : std::string();
-                    });
-        by_material(effect_fresnel, "no material that reflects or transmits has fresnel on", [](const MaterialUse& u) {
-            const MaterialDescription& m = *u.material;
-            return m.fresnel && m.reflection + m.transmission > 0 ? "has fresnel on" : std::string();
-        });
-        by_material(effect_absorption, "no solid absorbs", [](const MaterialUse& u) {
-            return u.closed && any(u.material->absorption) ? std::string("absorbs light") : std::string();
-        });
-        by_light(effect_visible_lights, "no light has a radius above 0",
-                 [](const SceneLight& l) { return !l.seen ? "" : (l.several ? " are seen" : " is seen"); });
-        by_light(effect_light_falloff, lit_ ? "no light falls off with distance" : no_light_, [&](const SceneLight& l) {
-            if (!l.lights || !l.falloff || !lit_) return "";
-            return l.several ? " fall off with distance" : " falls off with distance";
-        });
-        by_material(effect_tint, passing_ ? "what passes keeps its color" : "no material lets rays pass",
-                    [](const MaterialUse& u) {
-                        const dvec3& tint = u.material->tint;
-                        const bool gray = tint.x == tint.y && tint.y == tint.z;
-                        return passes(*u.material) && !gray ? std::string("has a tint") : std::string();
-                    });
-        by_material(effect_solids, "there is no convex solid", [](const MaterialUse& u) {
-            return u.convex ? std::string("is on a convex solid") : std::string();
-        });
-        by_material(effect_triangles, "there is neither mesh nor sheet",
-                    [](const MaterialUse& u) { return u.convex ? std::string() : std::string("is on triangles"); });
-        by_material(effect_insides, "no closed body lets rays pass; a camera in one adds it", [](const MaterialUse& u) {
-            return u.closed && passes(*u.material) ? std::string("lets rays into a closed body") : std::string();
-        });
-        const bool on_face = lit_ && !lamp_on_face_.empty();
-        reasons_.push_back({effect_lights_on_faces, on_face,
-                            on_face ? lamp_on_face_
-                            : lit_  ? "no lamp lies on a face"
-                                    : no_light_});
-        return std::move(reasons_);
+    /// Says why a premise does not hold; null where it holds.
+    const char* against(Premise premise) const {
+        if (premise == Premise::none) return nullptr;
+        if (premise == Premise::passing_rays) return passing_rays ? nullptr : "no material lets rays pass";
+        if (!lamp) return "no light has an intensity above 0";
+        return premise == Premise::lamp || shown_light ? nullptr : "no surface shows light of any lamp";
     }
-
-  private:
-    template <class Test>
-    bool by_material(uint32_t effect, const std::string& otherwise, const Test& test) {
-        for (const MaterialUse& use : uses_) {
-            const std::string because = test(use);
-            if (because.empty()) continue;
-            reasons_.push_back({effect, true, named(use) + " " + because});
-            return true;
-        }
-        reasons_.push_back({effect, false, otherwise});
-        return false;
-    }
-
-    template <class Test>
-    bool by_lit_material(uint32_t effect, const std::string& otherwise, const Test& test) {
-        if (lit_) return by_material(effect, otherwise, test);
-        reasons_.push_back({effect, false, no_light_});
-        return false;
-    }
-
-    template <class Test>
-    void by_light(uint32_t effect, const std::string& otherwise, const Test& test) {
-        for (const SceneLight& light : lights_) {
-            const std::string because = test(light);
-            if (because.empty()) continue;
-            reasons_.push_back({effect, true, light.name + because});
-            return;
-        }
-        reasons_.push_back({effect, false, otherwise});
-    }
-
-    void shadows(bool lit) {
-        by_material(effect_opaque_shadows, lit ? "every material lets every color pass" : no_light_,
-                    [&](const MaterialUse& u) {
-                        const MaterialDescription& m = *u.material;
-                        for (int c = 0; c < 3; ++c)
-                            if (lit && !(m.transmission * m.tint[c] > 0))
-                                return m.transmission > 0 ? std::string("lets a color not pass") : "has kt 0";
-                        return std::string();
-                    });
-        by_material(effect_transparent_shadows, lit ? "no material has kt above 0" : no_light_,
-                    [&](const MaterialUse& u) {
-                        const MaterialDescription& m = *u.material;
-                        const bool lets_pass = lit && any(m.transmission * m.tint);
-                        return lets_pass ? "has kt " + number(m.transmission) : std::string();
-                    });
-    }
-
-    const SceneDescription& scene_;
-    const std::vector<MaterialUse>& uses_;
-    std::vector<SceneLight> lights_;
-    const std::string& lamp_on_face_;
-    std::vector<EffectReason> reasons_;
-    bool lit_ = false, passing_ = false;
-    std::string no_light_ = "no surface shows light of any lamp";
 };
+
+/// A material on an object of a scene of which `facts` hold.
+struct Use {
+    const Facts& facts;
+    const MaterialDescription& material;
+    bool closed, convex;
+};
+
+bool passes(const MaterialDescription& m) {
+    return m.transmission > 0 || (m.fresnel && m.reflection > 0);
+}
+
+bool shows_texture(const Use& use) {
+    const MaterialDescription& m = use.material;
+    const bool lit = (use.facts.lamp && m.diffuse > 0) || (use.facts.ambient && m.ambient > 0);
+    return m.texture >= 0 && local_share(m) > 0 && any(m.color) && lit;
+}
+
+bool shows_diffuse(const Use& use) {
+    return local_share(use.material) > 0 && use.material.diffuse > 0 && any(use.material.color);
+}
+
+bool shows_specular(const Use& use) {
+    return local_share(use.material) > 0 && use.material.specular > 0 && any(use.material.specular_color);
+}
+
+bool keeps_a_color(const Use& use) {
+    const MaterialDescription& m = use.material;
+    for (int c = 0; c < 3; ++c)
+        if (!(m.transmission * m.tint[c] > 0)) return true;
+    return false;
+}
+
+bool bends(const Use& use) {
+    return use.facts.passing_rays && use.closed && use.material.index != 1;
+}
+
+bool reflects(const Use& use) {
+    return use.material.reflection > 0 || (use.material.fresnel && passes(use.material)) || bends(use);
+}
+
+bool is_tinted(const Use& use) {
+    const dvec3& tint = use.material.tint;
+    return passes(use.material) && !(tint.x == tint.y && tint.y == tint.z);
+}
+
+Text because_of_reflection(const Use& use) {
+    if (use.material.reflection > 0) return "has kr " + number(use.material.reflection);
+    if (use.material.fresnel && passes(use.material)) return "splits its light by Fresnel's terms";
+    return "has index " + number(use.material.index) + ": total reflection";
+}
+
+Text because_of_transmission(const Use& use) {
+    const double transmission = use.material.transmission;
+    return transmission > 0 ? "has kt " + number(transmission) : "splits its light by Fresnel's terms";
+}
+
+/// An effect that materials call for. `because` goes on after the name of the first one that does.
+struct MaterialRow {
+    uint32_t effect;
+    Premise premise;
+    bool (*needed)(const Use&);
+    Text (*because)(const Use&);
+    const char* otherwise;
+};
+
+const MaterialRow material_rows[] = {
+    {effect_texture, Premise::none, shows_texture, [](const Use&) -> Text { return "has a texture"; },
+     "no material has a texture"},
+    {effect_diffuse, Premise::lamp, shows_diffuse, [](const Use& u) { return "has kd " + number(u.material.diffuse); },
+     "no material has kd above 0"},
+    {effect_specular, Premise::lamp, shows_specular,
+     [](const Use& u) { return "has ks " + number(u.material.specular); }, "no material has ks above 0"},
+    {effect_opaque_shadows, Premise::shown_light, keeps_a_color,
+     [](const Use& u) -> Text { return u.material.transmission > 0 ? "lets a color not pass" : "has kt 0"; },
+     "every material lets every color pass"},
+    {effect_transparent_shadows, Premise::shown_light,
+     [](const Use& u) { return any(u.material.transmission * u.material.tint); },
+     [](const Use& u) { return "has kt " + number(u.material.transmission); }, "no material has kt above 0"},
+    {effect_reflection, Premise::none, reflects, because_of_reflection,
+     "no material has kr above 0, none reflects totally"},
+    {effect_transmission, Premise::none, [](const Use& u) { return passes(u.material); }, because_of_transmission,
+     "no material has kt above 0"},
+    {effect_refraction, Premise::passing_rays, bends,
+     [](const Use& u) { return "has index " + number(u.material.index); }, "no solid has an index other than 1"},
+    {effect_fresnel, Premise::none,
+     [](const Use& u) { return u.material.fresnel && u.material.reflection + u.material.transmission > 0; },
+     [](const Use&) -> Text { return "has fresnel on"; }, "no material that reflects or transmits has fresnel on"},
+    {effect_absorption, Premise::none, [](const Use& u) { return u.closed && any(u.material.absorption); },
+     [](const Use&) -> Text { return "absorbs light"; }, "no solid absorbs"},
+    {effect_tint, Premise::passing_rays, is_tinted, [](const Use&) -> Text { return "has a tint"; },
+     "what passes keeps its color"},
+    {effect_solids, Premise::none, [](const Use& u) { return u.convex; },
+     [](const Use&) -> Text { return "is on a convex solid"; }, "there is no convex solid"},
+    {effect_triangles, Premise::none, [](const Use& u) { return !u.convex; },
+     [](const Use&) -> Text { return "is on triangles"; }, "there is neither mesh nor sheet"},
+    {effect_insides, Premise::none, [](const Use& u) { return u.closed && passes(u.material); },
+     [](const Use&) -> Text { return "lets rays into a closed body"; },
+     "no closed body lets rays pass; a camera in one adds it"},
+};
+
+/// An effect that lights call for. `one` or `several` goes on after the name of the first that does.
+struct LightRow {
+    uint32_t effect;
+    Premise premise;
+    bool (*needed)(const SceneLight&);
+    const char *one, *several;
+    const char* otherwise;
+};
+
+const LightRow light_rows[] = {
+    {effect_visible_lights, Premise::none, [](const SceneLight& light) { return light.seen; }, "is seen", "are seen",
+     "no light has a radius above 0"},
+    {effect_light_falloff, Premise::shown_light, [](const SceneLight& light) { return light.lights && light.falloff; },
+     "falls off with distance", "fall off with distance", "no light falls off with distance"},
+};
+
+/// Names the first material that calls for the effect; empty: none does.
+Text cause(const MaterialRow& row, const std::vector<MaterialUse>& uses, const Facts& facts) {
+    for (const MaterialUse& one : uses) {
+        const Use use{facts, *one.material, one.closed, one.convex};
+        if (row.needed(use)) return "material " + use.material.name + " of " + one.place + " " + row.because(use);
+    }
+    return "";
+}
+
+/// Names the first light that calls for the effect; empty: none does.
+Text cause(const LightRow& row, const std::vector<SceneLight>& lights) {
+    for (const SceneLight& light : lights)
+        if (row.needed(light)) return light.name + " " + (light.several ? row.several : row.one);
+    return "";
+}
+
+Facts find_facts(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
+                 const std::vector<SceneLight>& lights) {
+    Facts facts;
+    facts.ambient = any(scene.ambient);
+    for (const SceneLight& light : lights) facts.lamp = facts.lamp || light.lights;
+    for (const MaterialUse& one : uses) {
+        const Use use{facts, *one.material, one.closed, one.convex};
+        if (facts.lamp && (shows_diffuse(use) || shows_specular(use))) facts.shown_light = true;
+        if (passes(use.material)) facts.passing_rays = true;
+    }
+    return facts;
+}
 
 }  // namespace
 
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
                                           const std::string& lamp_on_face) {
-    return Explainer(scene, uses, lamp_on_face).explain();
+    const std::vector<SceneLight> lights = all_lights(scene);
+    const Facts facts = find_facts(scene, uses, lights);
+    std::vector<EffectReason> reasons(effect_count);
+    const auto put = [&](uint32_t effect, Premise premise, const Text& cause, const char* otherwise) {
+        const char* const against = facts.against(premise);
+        const bool needed = !against && !cause.empty();
+        reasons[static_cast<size_t>(std::countr_zero(effect))] = {effect, needed,
+                                                                  needed    ? cause
+                                                                  : against ? against
+                                                                            : otherwise};
+    };
+    for (const MaterialRow& row : material_rows) put(row.effect, row.premise, cause(row, uses, facts), row.otherwise);
+    for (const LightRow& row : light_rows) put(row.effect, row.premise, cause(row, lights), row.otherwise);
+    put(effect_lights_on_faces, Premise::shown_light, lamp_on_face, "no lamp lies on a face");
+    return reasons;
 }
 
 std::vector<EffectReason> explain_effects(const SceneDescription& scene) {

@@ -6,15 +6,9 @@
 
 #include "cistula/effects.h"
 #include "scene/description.h"
+#include "scene/effect_reason.h"
 
 namespace cistula {
-
-/// `because` names the material, object or light that calls for the effect, or says that none does.
-struct EffectReason {
-    uint32_t effect = 0;  // one bit of Effect
-    bool needed = false;
-    std::string because;
-};
 
 /// A material as it is used: by which object, and of what kind that is.
 struct MaterialUse {

@@ -11,6 +11,7 @@
 
 namespace cistula {
 
+/// How many pixels of a frame missed the target, by reasons.
 struct TargetReport {
     uint64_t samples = 0;         // of all pixels
     uint64_t truncated = 0;       // pixels whose ledger is above a quarter of the target, in any channel
@@ -23,7 +24,7 @@ struct TargetReport {
     void add(const TargetReport& other);
 };
 
-/// Of a film of a frame with a target.
+/// Judges the film of a frame that has a target error.
 TargetReport target_report(const Film& film, const FrameSettings& settings);
 
 struct FrameStats;

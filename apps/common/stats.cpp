@@ -1,4 +1,4 @@
-#include "stats.h"
+#include "apps/common/stats.h"
 
 #include <fmt/format.h>
 
@@ -92,7 +92,7 @@ LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) 
     return totals;
 }
 
-std::string stats_json(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
+std::string stats_json(const RunStats& stats, const FrameSettings& settings, const FilmOptions& options) {
     const PixelRect& crop = settings.crop;
     Json context = run_context("render");
     context.update({

@@ -1,13 +1,13 @@
-#include "target.h"
+#include "apps/common/target.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "apps/common/stats.h"
 #include "cistula/lattice_settings.h"
 #include "cistula/signature.h"
-#include "stats.h"
 
 namespace cistula {
 

@@ -2,19 +2,18 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "options.h"
+#include "apps/common/film_options.h"
+#include "apps/common/target.h"
 #include "scene/film.h"
 #include "scene/renderer.h"
-#include "target.h"
 
 namespace cistula {
 
-/// Of one ledger over a frame: the mean and the largest pixel, per channel, in the scene's units of radiance.
+/// Mean and largest pixel of one ledger over a frame, per channel, in the scene's units of radiance.
 struct LedgerTotals {
     std::array<double, 3> mean{}, worst{};
 };
@@ -45,14 +44,6 @@ struct RunStats {
 LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*ledger)[3]);
 
 /// The JSON text.
-std::string stats_json(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options);
-
-/// Seconds that `work` takes.
-template <class Work>
-double seconds_of(Work&& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+std::string stats_json(const RunStats& stats, const FrameSettings& settings, const FilmOptions& options);
 
 }  // namespace cistula

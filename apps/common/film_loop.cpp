@@ -1,4 +1,4 @@
-#include "film_loop.h"
+#include "apps/common/film_loop.h"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <set>
 
-#include "frame_list.h"
-#include "progress.h"
+#include "apps/common/describe_flags.h"
+#include "apps/common/film_progress.h"
+#include "apps/common/frame_list.h"
+#include "apps/common/timing.h"
 #include "scene/error.h"
 #include "scene/exr.h"
 
@@ -92,7 +94,7 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
 // with one frame for each core, cores idle until as many are rendered, and again while the last ones are written. Two
 // frames at least, so that one is encoded while the other one is compressed. The CPU backend needs the cores itself,
 // and memory for no more than two films.
-WriterLimits writer_limits(const RenderOptions& options) {
+WriterLimits writer_limits(const FilmOptions& options) {
     WriterLimits limits;
     if (options.backend == Backend::cuda) {
         const int threads = tbb::this_task_arena::max_concurrency();
@@ -102,17 +104,8 @@ WriterLimits writer_limits(const RenderOptions& options) {
     return limits;
 }
 
-std::string describe_flags(uint32_t flags) {
-    std::vector<std::string> parts;
-    if (flags & flag_not_finite) parts.push_back("a radiance was infinite or not a number");
-    if (flags & flag_media_overflow) parts.push_back("a ray was inside more solids at once than it can list");
-    if (flags & flag_stack_overflow) parts.push_back("a ray's tree had more branches waiting than there is room for");
-    if (flags & flag_too_many_crossings) parts.push_back("a straight ray crossed more faces than the limit");
-    return fmt::format("{}", fmt::join(parts, "; "));
-}
-
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
-    const RenderOptions& options = job.options;
+    const FilmOptions& options = job.options;
     std::vector<CameraFrame> cameras;
     for (const int frame : job.frames) {
         CameraFrame camera = camera_at(job.scene.camera, frame);
@@ -128,7 +121,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
     std::set<std::string> notes;  // said so far
     FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options), progress.stop, stats.frames);
     {
-        ProgressReport report(options.quiet ? ProgressStyle::none : options.progress, cameras.size(), progress);
+        FilmProgress report(options.quiet ? ProgressStyle::none : options.progress, cameras.size(), progress);
         for (size_t i = 0; i < cameras.size() && !progress.stop; ++i) {
             const int frame = cameras[i].frame;
             progress.pixels_done = 0;

@@ -4,17 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "frame_writer.h"
-#include "options.h"
-#include "output_name.h"
+#include "apps/common/film_options.h"
+#include "apps/common/frame_writer.h"
+#include "apps/common/output_name.h"
+#include "apps/common/stats.h"
+#include "scene/description.h"
 #include "scene/renderer.h"
-#include "stats.h"
 
 namespace cistula {
 
 /// All that the frames have in common.
 struct FilmJob {
-    const RenderOptions& options;
+    const FilmOptions& options;
     const SceneDescription& scene;
     const std::string& scene_hash;
     const FrameSettings& settings;
@@ -29,9 +30,6 @@ struct FilmJob {
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats);
 
 /// What may be on its way to files while frames render.
-WriterLimits writer_limits(const RenderOptions& options);
-
-/// What the flags of a film mean, for a message.
-std::string describe_flags(uint32_t flags);
+WriterLimits writer_limits(const FilmOptions& options);
 
 }  // namespace cistula

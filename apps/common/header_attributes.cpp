@@ -1,4 +1,4 @@
-#include "header_attributes.h"
+#include "apps/common/header_attributes.h"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-#include "frame_list.h"
+#include "apps/common/frame_list.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "output_name.h"
+#include "apps/common/output_name.h"
 
 #include <fmt/format.h>
 

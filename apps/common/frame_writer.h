@@ -12,10 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include "header_attributes.h"
-#include "options.h"
+#include "apps/common/header_attributes.h"
+#include "apps/common/stats.h"
 #include "scene/film.h"
-#include "stats.h"
+#include "scene/film_picture.h"
 
 namespace cistula {
 

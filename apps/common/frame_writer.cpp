@@ -1,7 +1,9 @@
-#include "frame_writer.h"
+#include "apps/common/frame_writer.h"
 
 #include <algorithm>
 
+#include "apps/common/output_name.h"
+#include "apps/common/timing.h"
 #include "scene/exr.h"
 #include "scene/picture_io.h"
 #include "scene/seed_data.h"

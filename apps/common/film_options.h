@@ -1,0 +1,23 @@
+// What whoever renders a film asks for, beside the scene and the settings of its frames.
+#pragma once
+
+#include <string>
+
+#include "apps/common/backends.h"
+#include "apps/common/status_line.h"
+#include "scene/film_picture.h"
+#include "scene/renderer.h"
+
+namespace cistula {
+
+struct FilmOptions {
+    Backend backend = Backend::embree;
+    Intersection intersection = Intersection::exact;
+    Precision precision = Precision::single_;
+    OutputChannels channels;
+    std::string stats;  // the file for the times and counts, as given; empty: none
+    bool resume = false, quiet = false, verbose = false;
+    ProgressStyle progress = ProgressStyle::automatic;
+};
+
+}  // namespace cistula

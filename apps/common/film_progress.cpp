@@ -1,0 +1,90 @@
+#include "apps/common/film_progress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cistula {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::string left_text(const ProgressState& state) {
+    const double left = remaining_seconds(state);
+    return left < 0 ? "?" : format_duration(left);
+}
+
+}  // namespace
+
+double remaining_seconds(const ProgressState& state) {
+    const double done = static_cast<double>(state.index) + state.fraction;
+    return done > 0 ? state.elapsed * (static_cast<double>(state.count) - done) / done : -1;
+}
+
+std::string format_rate(double rays_per_second) {
+    if (rays_per_second >= 999.5e6) return fmt::format("{:.2f} Grays/s", rays_per_second * 1e-9);
+    if (rays_per_second >= 999.5e3) return fmt::format("{:.1f} Mrays/s", rays_per_second * 1e-6);
+    if (rays_per_second >= 999.5) return fmt::format("{:.1f} krays/s", rays_per_second * 1e-3);
+    return fmt::format("{:.0f} rays/s", rays_per_second);
+}
+
+std::string progress_bar(const ProgressState& state, int columns) {
+    const std::string head = state.count > 1
+                                 ? fmt::format("frame {} ({}/{}) ", state.frame, state.index + 1, state.count)
+                                 : fmt::format("frame {} ", state.frame);
+    const std::string tail = fmt::format(" {:3.0f} %  {}  ETA {}", std::floor(state.fraction * 100),
+                                         format_rate(state.rays_per_second), left_text(state));
+    const int room = std::min(columns - static_cast<int>(head.size() + tail.size()) - 2, 40);
+    std::string line = head;
+    if (room >= 5) {
+        const int full = std::clamp(static_cast<int>(state.fraction * room), 0, room);
+        line += '[' + std::string(static_cast<size_t>(full), '#') + std::string(static_cast<size_t>(room - full), '-') +
+                ']';
+    }
+    return (line + tail).substr(0, static_cast<size_t>(std::max(columns, 0)));
+}
+
+std::string progress_line(const ProgressState& state) {
+    return fmt::format("frame {} ({}/{}): {:.0f} %, {}, ETA {}", state.frame, state.index + 1, state.count,
+                       std::floor(state.fraction * 100), format_rate(state.rays_per_second), left_text(state));
+}
+
+FilmProgress::FilmProgress(ProgressStyle style, size_t frames, const RenderProgress& progress)
+    : count_(frames), progress_(progress), line_(style, [this](int columns) { return text(columns); }) {}
+
+void FilmProgress::begin_frame(int frame, size_t index, uint64_t pixels) {
+    line_.update([&] {
+        frame_ = frame;
+        index_ = index;
+        pixels_ = pixels;
+        frame_start_ = Clock::now();
+        in_frame_ = true;
+    });
+}
+
+void FilmProgress::end_frame() {
+    line_.milestone(progress_line(state()));
+    line_.update([&] { in_frame_ = false; });
+}
+
+ProgressState FilmProgress::state() const {
+    const double pixels = static_cast<double>(progress_.pixels_done.load());
+    const double rays = static_cast<double>(progress_.rays.load());
+    const double frame_seconds = std::max(seconds_since(frame_start_), 1e-6);
+    return {frame_,
+            index_,
+            count_,
+            std::min(pixels / static_cast<double>(pixels_), 1.0),
+            seconds_since(start_),
+            rays / frame_seconds};
+}
+
+std::string FilmProgress::text(int columns) const {
+    if (!in_frame_) return "";
+    return columns > 0 ? progress_bar(state(), columns) : progress_line(state());
+}
+
+}  // namespace cistula

@@ -1,0 +1,73 @@
+#include "exclusions.h"
+
+#include <fmt/format.h>
+
+#include "apps/common/command_line.h"
+#include "scene/suggest.h"
+
+namespace cistula {
+namespace {
+
+/// `other` has no place beside `option`, which is given where its text is not empty.
+struct Exclusion {
+    const char* option;
+    const std::string& text;
+    const char* other;
+    bool other_given;
+    const char* why;
+};
+
+/// `option` has a meaning only beside another one.
+struct Need {
+    const char* option;
+    const std::string& text;
+    bool other_given;
+    const char* otherwise;
+};
+
+}  // namespace
+
+void refuse_exclusions(const OptionTexts& texts) {
+    const OptionTexts defaults;
+    const std::string measure = texts.explain == "measure" ? texts.explain : "";
+    constexpr const char* no_image = "no image is written";
+    const Exclusion exclusions[] = {
+        {"--pixel", texts.pixel, "-o", !texts.output.empty(), no_image},
+        {"--pixel", texts.pixel, "--preview", !texts.preview.empty(), no_image},
+        {"--pixel", texts.pixel, "--stats", !texts.stats.empty(), "nothing is timed"},
+        {"--pixel", texts.pixel, "--aov", !texts.layers.empty(), no_image},
+        {"--pixel", texts.pixel, "--bits", texts.bits != defaults.bits, no_image},
+        {"--pixel", texts.pixel, "--crop", !texts.crop.empty(), "the pixel counts from the top left of the full frame"},
+        {"--pixel", texts.pixel, "--resume", texts.resume, no_image},
+        {"--pixel", texts.pixel, "--progress", texts.progress != defaults.progress, "one pixel takes no time"},
+        {"--pixel", texts.pixel, "--explain", !texts.explain.empty(), "each prints a report of its own"},
+        {"--pixel", texts.pixel, "--target-error", !texts.target_error.empty(),
+         "it shows the samples of a grid; --supersample chooses one"},
+        {"--pixel", texts.pixel, "--backend", texts.backend != defaults.backend,
+         "the CPU follows the rays, and every backend gives the same bits"},
+        {"--pixel", texts.pixel, "--intersector", texts.intersector != defaults.intersector,
+         "the rays of the exact image are followed"},
+        {"--target-error", texts.target_error, "--supersample", !texts.supersample.empty(),
+         "pixels get as many samples as they need"},
+        {"--target-error", texts.target_error, "--cutoff", !texts.cutoff.empty(),
+         "a quarter of the target is the cutoff"},
+        {"--explain", measure, "--target-error", !texts.target_error.empty(),
+         "it times the samples of a grid; --supersample chooses one"},
+    };
+    for (const auto& [option, text, other, other_given, why] : exclusions)
+        if (!text.empty() && other_given)
+            fail_usage(
+                fmt::format("{} {}: {} has no place here: {}; leave it out", option, one_line(text), other, why));
+
+    const Need needs[] = {
+        {"--json", texts.json, !texts.pixel.empty(),
+         "is for --pixel X,Y; of a render, --stats FILE.json tells the times"},
+        {"--max-samples", texts.max_samples, !texts.target_error.empty(),
+         "is for --target-error E; a grid's are --supersample's"},
+    };
+    for (const auto& [option, text, other_given, otherwise] : needs)
+        if (!text.empty() && !other_given) fail_usage(fmt::format("{} {}: {}", option, one_line(text), otherwise));
+    if (texts.quiet && texts.verbose) fail_usage("-q and -v exclude each other; give one");
+}
+
+}  // namespace cistula
