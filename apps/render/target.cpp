@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "cistula/lattice.h"
-#include "cistula/signature.h"
+#include "cistula/path_hash.h"
 #include "stats.h"
 
 namespace cistula {

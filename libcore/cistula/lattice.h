@@ -15,9 +15,9 @@ inline constexpr int least_lattice_samples = 5;
 /// Colors are compared in units of 2^-44 of the radiance bound's power of two: a target may be 2^-32 of that, as in
 /// closed-box.json. What is computed of them takes at most 13 bits more.
 inline constexpr int color_bits = 44, color_shift = 54 - color_bits;
-/// Rays of a tree that sees many things, and the largest cell that may stand undivided in a pixel that met one.
-inline constexpr uint32_t bushy_tree = 96;
-inline constexpr int bushy_area = lattice_samples / 8;
+/// Rays of a large tree, which sees many things, and the largest cell that may stand undivided in a pixel that met one.
+inline constexpr uint32_t large_tree = 96;
+inline constexpr int large_tree_area = lattice_samples / 8;
 /// How much brighter or darker what lies unseen in such a cell is taken to be: on infinity.json at most one pixel in
 /// 1,500 is then beyond targets of 0.001 to 0.01.
 inline constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
@@ -52,9 +52,9 @@ struct LatticeSettings {
 struct LatticeSample {
     int64_t radiance[3], pruned[3], cut[3];
     uint32_t hits, rays;
-    uint32_t signature;  // of its ray tree (signature.h)
+    uint32_t path_hash;  // of its ray tree (path_hash.h)
 
-    CISTULA_INLINE void keep(const PixelRecord& record, uint32_t met) {
+    CISTULA_INLINE void keep(const PixelRecord& record, uint32_t hash) {
         for (int c = 0; c < 3; ++c) {
             radiance[c] = record.radiance[c];
             pruned[c] = record.pruned[c];
@@ -62,7 +62,7 @@ struct LatticeSample {
         }
         hits = record.hits;
         rays = record.rays;
-        signature = met;
+        path_hash = hash;
     }
 
     /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice; for a
@@ -126,7 +126,7 @@ class LatticePixel {
         const int count = now.cells;
         for (int i = 0; i < count; ++i) {
             const Cell& cell = cells_[i];
-            now.bushy |= cell.bushy;
+            now.met_large |= cell.met_large;
             now.first_rays = greatest(now.first_rays, cell.first_rays);
             now.range = greatest(now.range, cell.range);
             now.jump = greatest(now.jump, cell.jump);
@@ -153,17 +153,17 @@ class LatticePixel {
         tally_ = now;
     }
 
-    /// stand(slot, weight): samples that stand for cell i once the pixel is done.
-    template <class Stand>
-    CISTULA_INLINE void settle(const LatticeSettings& settings, int i, const Stand& stand) const {
+    /// add(slot, weight): samples that stand for cell i once the pixel is done.
+    template <class Add>
+    CISTULA_INLINE void accumulate(const LatticeSettings& settings, int i, const Add& add) const {
         const Cell& cell = cells_[i];
         int each = area_of(cell) / 4;
         if (settings.fine && is_whole(cell)) {
             // Simpson's rule, near enough, where all is smooth.
             each = cell.differs ? 32 : 24;
-            stand(lattice_middle, lattice_samples - 4 * each);
+            add(lattice_middle, lattice_samples - 4 * each);
         }
-        for (int c = 0; c < 4; ++c) stand(corner(cell, c), each);
+        for (int c = 0; c < 4; ++c) add(corner(cell, c), each);
     }
 
     /// Samples taken.
@@ -181,7 +181,7 @@ class LatticePixel {
 
     struct Cell {
         uint8_t x, y, width, height;
-        bool is_new, wants_split, across, differs, bushy;
+        bool is_new, wants_split, across, differs, met_large;
         uint32_t first_rays;  // of the largest tree, set of the whole pixel
         int64_t range, jump;  // of colors: of all corners; in a small cell, of those that met the same
     };
@@ -190,7 +190,7 @@ class LatticePixel {
     /// member.
     struct Tally {
         int cells, due, wanted;  // samples due: taken and wanted
-        bool unmet, bushy;       // bushy: whether a cell had a bushy corner
+        bool unmet, met_large;   // met_large: whether the tree of a corner of any cell was large
         uint32_t first_rays;     // of the largest of the first trees
         int64_t range, jump;     // greatest of any cell
     };
@@ -235,11 +235,11 @@ class LatticePixel {
         const LatticeSample* at[4];
         for (int c = 0; c < 4; ++c) at[c] = samples + corner(cell, c);
         const bool whole = is_whole(cell), has_middle = settings.fine && whole;
-        bool differs = has_middle && samples[lattice_middle].signature != at[0]->signature;
-        bool bushy = at[0]->rays >= bushy_tree;
+        bool differs = has_middle && samples[lattice_middle].path_hash != at[0]->path_hash;
+        bool met_large = at[0]->rays >= large_tree;
         for (int c = 1; c < 4; ++c) {
-            differs |= at[c]->signature != at[0]->signature;
-            bushy |= at[c]->rays >= bushy_tree;
+            differs |= at[c]->path_hash != at[0]->path_hash;
+            met_large |= at[c]->rays >= large_tree;
         }
         int64_t range = 0, bend = 0, across = 0, down = 0;
         for (int c = 0; c < 3; ++c) {
@@ -271,14 +271,14 @@ class LatticePixel {
         }
         cell.is_new = false;
         cell.differs = differs;
-        cell.bushy = bushy;
+        cell.met_large = met_large;
         cell.across = is_split_across(cell, across, down);
         cell.range = range;
         cell.jump = 0;
         if (area > jump_area) return;
         for (int i = 0; i < 4; ++i)
             for (int j = 0; j < i; ++j)
-                for (int c = 0; c < 3 && at[i]->signature == at[j]->signature; ++c)
+                for (int c = 0; c < 3 && at[i]->path_hash == at[j]->path_hash; ++c)
                     cell.jump = greatest(cell.jump, magnitude_of(color(*at[i], c) - color(*at[j], c)));
     }
 
@@ -331,7 +331,7 @@ class LatticePixel {
     CISTULA_INLINE static bool bends_between(const LatticeSettings& settings, const LatticeSample& before,
                                              const LatticeSample& first, const LatticeSample& last, int steps,
                                              int64_t area) {
-        if (before.signature != first.signature || first.signature != last.signature) return false;
+        if (before.path_hash != first.path_hash || first.path_hash != last.path_hash) return false;
         for (int c = 0; c < 3; ++c) {
             const int64_t from = color(first, c), slope = from - color(before, c);
             if (magnitude_of(slope) > steepest * settings.target) continue;
@@ -342,12 +342,12 @@ class LatticePixel {
     }
 
     /// Whether a cell that is split is so in four at once, which spares a round: where its halves would be too,
-    /// whatever they show, and where trees are bushy and the target coarse, as all that wait in a round wait for its
+    /// whatever they show, and where trees are large and the target coarse, as all that wait in a round wait for its
     /// largest tree.
     CISTULA_INLINE static bool wants_four(const LatticeSettings& settings, const Tally& now, const Cell& cell) {
         static_assert(unseen_alike <= unseen_unlike, "cells overlook more if they differ");
         return cell.width >= 4 && cell.height >= 4 &&
-               (overlooks(settings, now, false, area_of(cell) / 2) || (now.bushy && !settings.fine));
+               (overlooks(settings, now, false, area_of(cell) / 2) || (now.met_large && !settings.fine));
     }
 
     /// Whether a cell whose corners agree (or differ) may well hide what is worth the target, by what the pixel shows
@@ -355,9 +355,9 @@ class LatticePixel {
     CISTULA_INLINE static bool overlooks(const LatticeSettings& settings, const Tally& now, bool differs,
                                          int64_t area) {
         const int64_t allowed = settings.target * lattice_samples;
-        // Bushy trees see so much that some of it may well lie between a few samples that agree, be these bushy or not:
-        // a light's image ends a tree early, and hides between others as others do between lights.
-        if (settings.fine && now.bushy && (area > bushy_area || unseen_range * area > allowed)) return true;
+        // Large trees see so much that some of it may well lie between a few samples that agree, be theirs large or
+        // not: a light's image ends a tree early, and hides between others as others do between lights.
+        if (settings.fine && now.met_large && (area > large_tree_area || unseen_range * area > allowed)) return true;
         if (settings.fine && now.first_rays >= many_rays && area == lattice_samples) return true;
         if (settings.fine && now.first_rays >= some_rays && area > wide_area &&
             now.range >= wide_range * settings.target)
