@@ -15,30 +15,17 @@ inline constexpr int least_lattice_samples = 5;
 /// Colors are compared in units of 2^-44 of the radiance bound's power of two: a target may be 2^-32 of that, as in
 /// closed-box.json. What is computed of them takes at most 13 bits more.
 inline constexpr int color_bits = 44, color_shift = 54 - color_bits;
-/// Rays of a large tree, which sees many things, and the largest cell that may stand undivided in a pixel that met one.
+/// Rays of a large tree, which sees many things, and how much brighter or darker what lies unseen in a cell is taken to
+/// be once a pixel met one.
 inline constexpr uint32_t large_tree = 96;
-inline constexpr int large_tree_area = lattice_samples / 8;
-/// How much brighter or darker what lies unseen in such a cell is taken to be: on infinity.json at most one pixel in
-/// 1,500 is then beyond targets of 0.001 to 0.01.
 inline constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
-/// Eighths of a cell that something unseen in it is taken to fill. If its corners met different things, that may differ
-/// as corners of any of the pixel's cells do; if they met the same, it is as much brighter or darker as samples that
-/// met the same are at corners of a small cell: on both sides of a texture's border, say, but not where shading is
-/// gradual. Of critical-angle.json at 97x73 and 0.004, unseen_alike = 3 leaves 0.06 % of the pixels beyond, 2 leaves
-/// 0.10 % and 0 leaves 0.20 %. Of mesh.json at 320x180, 0.14 % are by these alone; 6 would leave 0.09 % for 5 % more
-/// samples, but what is seen beside cells (is_crossed) leaves 0.06 % for 2 % more.
-inline constexpr int unseen_unlike = 4, unseen_alike = 3, jump_area = 8;
-/// For small targets: where one of a pixel's first five trees has many_rays, no cell stands for all of the pixel; where
-/// one has some_rays and a cell's colors span wide_range targets, no cell larger than wide_area stands, as a highlight
-/// may lie between. Of platonic.json at 320x180 and 0.004 that leaves 0.11 % of the pixels beyond instead of 0.19 %,
-/// for 5 % more samples; closed-box.json takes 10 % more, other golden scenes at most 4 %.
-inline constexpr uint32_t many_rays = 24, some_rays = 5;
+/// Eighths of a cell that something unseen in it is taken to fill, as much brighter or darker as samples that met the
+/// same are at corners of a small cell: on both sides of a texture's border, say, but not where shading is gradual.
+inline constexpr int unseen_alike = 3, jump_area = 8;
+/// For small targets: where one of a pixel's first five trees has some_rays and a cell's colors span wide_range
+/// targets, no cell larger than wide_area stands, as a highlight may lie between.
+inline constexpr uint32_t some_rays = 5;
 inline constexpr int wide_range = 16, wide_area = lattice_samples / 16;
-/// For small targets: by how many of them colors right beside each other may differ to tell of a slope (bends_between),
-/// not of a texture's border. Of platonic.json at 320x180 and 0.004 that leaves 0.08 % of the pixels beyond instead of
-/// 0.11 %, of mesh.json 0.03 % instead of 0.05 %, for 0.4 % and 0.2 % more samples; without a limit slivers.json takes
-/// 16 % more.
-inline constexpr int steepest = 4;
 
 /// What a frame asks of adaptive sampling.
 struct LatticeSettings {
@@ -135,8 +122,7 @@ class LatticePixel {
         for (int y = 0; y < lattice_side; ++y) fresh_[y] = 0;
         for (int i = 0; i < count; ++i) {
             const Cell cell = cells_[i];
-            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, now, cell.differs, area_of(cell))))
-                continue;
+            if (area_of(cell) == 4 || !(cell.wants_split || overlooks(settings, now, area_of(cell)))) continue;
             const bool first = settings.fine && is_whole(cell);
             const int in_four = first ? 11 : 12, in_two = 4;  // of the first the middle is there
             if ((first || wants_four(settings, now, cell)) && now.due + in_four <= settings.most) {
@@ -283,8 +269,7 @@ class LatticePixel {
     }
 
     /// Whether a sample right beside a cell tells of what its corners do not: between the corners of a side of
-    /// something that comes in there (comes_in), beside a corner, for small targets, of a bend (bends_between). `rows`:
-    /// the samples to look at.
+    /// something that comes in there. `rows`: the samples to look at.
     CISTULA_INLINE static bool is_crossed(const LatticeSettings& settings, const LatticeSample* samples,
                                           const Cell& cell, const uint16_t* rows) {
         const int64_t area = area_of(cell);
@@ -293,21 +278,12 @@ class LatticePixel {
             const int size = upright ? cell.width : cell.height, length = upright ? cell.height : cell.width;
             const int beside = (upright ? cell.x : cell.y) + (far ? size : -1);
             if (beside < 0 || beside >= lattice_side) continue;
-            const int first = far ? (upright ? 1 : 2) : 0, last = far ? 3 : upright ? 2 : 1, opposite = upright ? 1 : 2;
-            const LatticeSample& a = samples[corner(cell, first)];
-            const LatticeSample& b = samples[corner(cell, last)];
-            for (int k = 0; k < length; ++k) {
+            const LatticeSample& a = samples[corner(cell, far ? (upright ? 1 : 2) : 0)];
+            const LatticeSample& b = samples[corner(cell, far ? 3 : upright ? 2 : 1)];
+            for (int k = 1; k < length - 1; ++k) {
                 const int x = upright ? beside : cell.x + k, y = upright ? cell.y + k : beside;
-                if ((rows[y] >> x & 1) == 0) continue;
-                if (k == 0 || k == length - 1) {
-                    const int near = k == 0 ? first : last;
-                    if (settings.fine && size > 2 &&
-                        bends_between(settings, samples[y * lattice_side + x], samples[corner(cell, near)],
-                                      samples[corner(cell, near ^ opposite)], size - 1, area))
-                        return true;
-                    continue;
-                }
-                if (comes_in(settings, a, b, samples[y * lattice_side + x], area)) return true;
+                if ((rows[y] >> x & 1) != 0 && comes_in(settings, a, b, samples[y * lattice_side + x], area))
+                    return true;
             }
         }
         return false;
@@ -325,44 +301,23 @@ class LatticePixel {
         return false;
     }
 
-    /// Whether shading has to bend between two corners of a cell, `steps` samples apart, by what it does right before
-    /// the first: if going on as it came from `before` would lead so far from the last that this, all over the cell,
-    /// would be worth the target. A groove may lie between, though the corners agree.
-    CISTULA_INLINE static bool bends_between(const LatticeSettings& settings, const LatticeSample& before,
-                                             const LatticeSample& first, const LatticeSample& last, int steps,
-                                             int64_t area) {
-        if (before.path_hash != first.path_hash || first.path_hash != last.path_hash) return false;
-        for (int c = 0; c < 3; ++c) {
-            const int64_t from = color(first, c), slope = from - color(before, c);
-            if (magnitude_of(slope) > steepest * settings.target) continue;
-            if (magnitude_of(from + steps * slope - color(last, c)) * area > settings.target * lattice_samples)
-                return true;
-        }
-        return false;
-    }
-
     /// Whether a cell that is split is so in four at once, which spares a round: where its halves would be too,
-    /// whatever they show, and where trees are large and the target coarse, as all that wait in a round wait for its
-    /// largest tree.
+    /// whatever they show.
     CISTULA_INLINE static bool wants_four(const LatticeSettings& settings, const Tally& now, const Cell& cell) {
-        static_assert(unseen_alike <= unseen_unlike, "cells overlook more if they differ");
-        return cell.width >= 4 && cell.height >= 4 &&
-               (overlooks(settings, now, false, area_of(cell) / 2) || (now.met_large && !settings.fine));
+        return cell.width >= 4 && cell.height >= 4 && overlooks(settings, now, area_of(cell) / 2);
     }
 
-    /// Whether a cell whose corners agree (or differ) may well hide what is worth the target, by what the pixel shows
-    /// so far.
-    CISTULA_INLINE static bool overlooks(const LatticeSettings& settings, const Tally& now, bool differs,
-                                         int64_t area) {
+    /// Whether a cell may well hide what is worth the target, however alike its corners are, by what the pixel shows so
+    /// far.
+    CISTULA_INLINE static bool overlooks(const LatticeSettings& settings, const Tally& now, int64_t area) {
         const int64_t allowed = settings.target * lattice_samples;
         // Large trees see so much that some of it may well lie between a few samples that agree, be theirs large or
         // not: a light's image ends a tree early, and hides between others as others do between lights.
-        if (settings.fine && now.met_large && (area > large_tree_area || unseen_range * area > allowed)) return true;
-        if (settings.fine && now.first_rays >= many_rays && area == lattice_samples) return true;
+        if (settings.fine && now.met_large && unseen_range * area > allowed) return true;
         if (settings.fine && now.first_rays >= some_rays && area > wide_area &&
             now.range >= wide_range * settings.target)
             return true;
-        return (differs ? unseen_unlike * now.range : unseen_alike * now.jump) * area > 8 * allowed;
+        return unseen_alike * now.jump * area > 8 * allowed;
     }
 
     /// Child `nth` of cell i: the left or right half (-1, 1; 0: both) of the upper or lower half; wants the corners
