@@ -189,15 +189,16 @@ TEST(Lattice, LargeTreesAreNotTrustedToBeAlike) {
     const auto with = [&](const LatticeSettings& settings, uint32_t rays) {
         return sampled(settings, flat, one_kind, [&](int, int) { return rays; });
     };
-    for (const double target : {0.001, 0.0001}) EXPECT_EQ(with(lattice(target, true), large_tree - 1).samples, 5u);
-    EXPECT_EQ(with(lattice(0.1, false), large_tree).samples, 4u);
+    for (const double target : {0.001, 0.0001})
+        EXPECT_EQ(with(lattice(target, true), LargeTrees::large_tree - 1).samples, 5u);
+    EXPECT_EQ(with(lattice(0.1, false), LargeTrees::large_tree).samples, 4u);
     // The smaller the target, the more something unseen would be worth: cells of 64, 32, 16, 8 and 4 samples stand.
-    EXPECT_EQ(with(lattice(0.003, true), large_tree).samples, 16u);
-    EXPECT_EQ(with(lattice(0.001, true), large_tree).samples, 32u);
-    EXPECT_EQ(with(lattice(0.0005, true), large_tree).samples, 64u);
-    EXPECT_EQ(with(lattice(0.00025, true), large_tree).samples, 128u);
-    EXPECT_EQ(with(lattice(0.0001, true), large_tree).samples, 256u);
-    const PixelRecord few = with(lattice(0.001, true, 20), large_tree);
+    EXPECT_EQ(with(lattice(0.003, true), LargeTrees::large_tree).samples, 16u);
+    EXPECT_EQ(with(lattice(0.001, true), LargeTrees::large_tree).samples, 32u);
+    EXPECT_EQ(with(lattice(0.0005, true), LargeTrees::large_tree).samples, 64u);
+    EXPECT_EQ(with(lattice(0.00025, true), LargeTrees::large_tree).samples, 128u);
+    EXPECT_EQ(with(lattice(0.0001, true), LargeTrees::large_tree).samples, 256u);
+    const PixelRecord few = with(lattice(0.001, true, 20), LargeTrees::large_tree);
     EXPECT_EQ(few.samples, 20u);
     EXPECT_EQ(few.unmet, 1u);
 }
@@ -207,13 +208,13 @@ TEST(Lattice, OneLargeTreeIsEnoughForItsPixel) {
     const LatticeSettings settings = lattice(0.00025, true);
     for (int corner = 0; corner < 4; ++corner) {
         const auto rays = [&](int x, int y) {
-            return x == (corner & 1 ? 15 : 0) && y == (corner & 2 ? 15 : 0) ? large_tree : 1;
+            return x == (corner & 1 ? 15 : 0) && y == (corner & 2 ? 15 : 0) ? LargeTrees::large_tree : 1;
         };
         EXPECT_EQ(sampled(settings, flat, one_kind, rays).samples, 128u) << corner;
         EXPECT_EQ(sampled(lattice(0.001, true), flat, one_kind, rays).samples, 32u) << corner;
     }
     // Met in a later round, by no corner of the pixel: what is then undecided is divided, whatever it met itself.
-    const auto late = [](int x, int y) { return x == 15 && y == 8 ? large_tree : 1; };
+    const auto late = [](int x, int y) { return x == 15 && y == 8 ? LargeTrees::large_tree : 1; };
     const auto border = [](int x, int y) { return x + y < 8 ? fixed(1) : 0; };
     const auto side = [](int x, int y) { return uint32_t(x + y < 8); };
     EXPECT_GT(sampled(settings, border, side, late).samples, sampled(settings, border, side).samples + 24);
@@ -223,7 +224,7 @@ TEST(Lattice, OneLargeTreeIsEnoughForItsPixel) {
             const auto image = [&](int x, int y) { return x >= left && x < left + 6 && y >= top && y < top + 6; };
             const PixelRecord record = sampled(
                 settings, [&](int x, int y) { return image(x, y) ? fixed(0.02) : 0; },
-                [&](int x, int y) { return uint32_t(image(x, y)); }, [](int, int) { return large_tree; });
+                [&](int x, int y) { return uint32_t(image(x, y)); }, [](int, int) { return LargeTrees::large_tree; });
             EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, 0.02 * 36 / 256, 0.00025) << left << ", " << top;
         }
 }
@@ -261,7 +262,7 @@ TEST(Lattice, WhatComesInThroughASideIsSeenFromBesideIt) {
     const double truth = 0.35 - 0.3 * (2 + 4 + 7 + 1) / 256;
     const PixelRecord record = sampled(
         lattice(0.004, true), [&](int x, int y) { return notch(x, y) ? fixed(0.05) : fixed(0.35); },
-        [&](int x, int y) { return uint32_t(notch(x, y)); }, [](int, int) { return large_tree; });
+        [&](int x, int y) { return uint32_t(notch(x, y)); }, [](int, int) { return LargeTrees::large_tree; });
     EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, 0.001);
 }
 
@@ -269,7 +270,7 @@ TEST(Lattice, WhereColorsSpanMuchNoLargeCellStands) {
     // A border at the left, and a highlight of 5 x 5 samples between corners that agree, anywhere beside it.
     const auto side = [](int x, int) { return x < 3; };
     const auto met = [&](int x, int y) { return uint32_t(side(x, y)); };
-    const double light = 0.5, dark = light - wide_range * 0.004 - 0.001;
+    const double light = 0.5, dark = light - WideColors::wide_range * 0.004 - 0.001;
     for (int left = 4; left <= 11; ++left)
         for (int top = 0; top <= 11; ++top) {
             const auto lit = [&](int x, int y) {
@@ -277,7 +278,7 @@ TEST(Lattice, WhereColorsSpanMuchNoLargeCellStands) {
             };
             const PixelRecord record = sampled(
                 lattice(0.004, true), [&](int x, int y) { return fixed(lit(x, y) ? light : dark); }, met,
-                [](int, int) { return some_rays; });
+                [](int, int) { return WideColors::some_rays; });
             const double truth = dark + (light - dark) * (3 * 16 + 25) / 256;
             EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, 0.004) << left << ", " << top;
         }
@@ -285,7 +286,7 @@ TEST(Lattice, WhereColorsSpanMuchNoLargeCellStands) {
     const auto taken = [&](uint32_t rays) {
         return sampled(lattice(0.004, true), plain, met, [&](int, int) { return rays; }).samples;
     };
-    EXPECT_GT(taken(some_rays), taken(some_rays - 1));
+    EXPECT_GT(taken(WideColors::some_rays), taken(WideColors::some_rays - 1));
 }
 
 TEST(Lattice, FiveSamplesThatMetDifferentThingsAreNotEnough) {
