@@ -103,7 +103,7 @@ class WarpPixels {
     }
 
     /// Lets those that have all that they wanted in their round decide what they want next.
-    __device__ void settle() {
+    __device__ void finish_round() {
         const bool ready = wanted_ != 0 && given_ == wanted_;
         if (!__any_sync(whole_warp, ready)) return;
         const LatticeSettings& settings = job_.frame.lattice;
@@ -124,7 +124,7 @@ class WarpPixels {
             if (j >= standing.total) continue;
             // In one sum: to read the next sample after adding where others add would be to wait for it.
             PixelRecord cell = PixelRecord();
-            storage_[pixel].pixel.settle(
+            storage_[pixel].pixel.accumulate(
                 settings, i, [&](int slot, int weight) { storage_[pixel].samples[slot].give(cell, weight, Plus()); });
             cell.give(to, AtomicAdd());
         }
@@ -186,14 +186,14 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
         pixels.refill();
         const bool ends = stack.stopped();  // asked ahead: the answer takes a while
         const bool any = pixels.take_samples([&](int x, int y, LatticeStorage& pixel, int slot, PixelRecord& record) {
-            const uint32_t met =
+            const uint32_t hash =
                 take_sample<Real, E>(scene, job.frame, intersector, x, y, slot, gradual, taken, own, stack);
-            pixel.samples[slot].keep(taken, met);
+            pixel.samples[slot].keep(taken, hash);
             AtomicAdd()(record.rays, taken.rays);
             if (LatticePixel::is_chosen(job.frame.lattice, slot)) choose_sample(taken, record);
         });
         if (!any || __any_sync(whole_warp, ends)) break;
-        pixels.settle();
+        pixels.finish_round();
     }
     add_to_tally(*job.tally, own.rays, own.flags);
 }

@@ -7,7 +7,7 @@
 
 #include "apps/common/stats.h"
 #include "cistula/lattice_settings.h"
-#include "cistula/signature.h"
+#include "cistula/path_hash.h"
 
 namespace cistula {
 

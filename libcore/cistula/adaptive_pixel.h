@@ -2,14 +2,14 @@
 #pragma once
 
 #include "cistula/lattice.h"
+#include "cistula/path_hash.h"
 #include "cistula/pixel.h"
-#include "cistula/signature.h"
 
 namespace cistula {
 
-/// Takes sample `slot` of pixel (px, py) into `record`, and gives what it met: its signature. A tree of more than
-/// most_branches is walked again with four times the budget, and so on: the ledger says so. `gradual`:
-/// shades_gradually(scene), found once. `work` is the thread's own.
+/// Takes sample `slot` of pixel (px, py) into `record`, and gives its path hash. A tree of more than most_branches is
+/// walked again with four times the budget, and so on: the ledger says so. `gradual`: shades_gradually(scene), found
+/// once. `work` is the thread's own.
 template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE uint32_t take_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
                                     int py, int slot, bool gradual, PixelRecord& record, PixelWork& work,
@@ -18,13 +18,13 @@ CISTULA_INLINE uint32_t take_sample(const Scene& scene, const FrameView& frame, 
     TreeSettings settings = frame.tree;
     for (;; settings.budget = 4 * greatest(settings.budget, int64_t(1))) {
         begin_pixel(record);
-        Signature signature;
-        SigningStack<Stack, Real> signing(stack, signature, Real(frame.lattice.significant));
-        render_sample<Real, E>(scene, frame, settings, SigningIntersector<Intersector>{intersector, signature, gradual},
-                               px, py, slot % lattice_side, slot / lattice_side, true, record, work, signing);
+        PathHash hash;
+        HashingStack<Stack, Real> hashing(stack, hash, Real(frame.lattice.significant));
+        render_sample<Real, E>(scene, frame, settings, HashingIntersector<Intersector>{intersector, hash, gradual}, px,
+                               py, slot % lattice_side, slot / lattice_side, true, record, work, hashing);
         record.rays = work.rays.total() - before;
-        if (!signing.drop()) return signature.value;
-        if (stack.stopped()) return signature.value;
+        if (!hashing.drop()) return hash.value;
+        if (stack.stopped()) return hash.value;
     }
 }
 
@@ -35,7 +35,8 @@ CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel)
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
 }
 
-/// All that the pixel wants, with room of its own for samples. take(slot, taken): a sample's record; gives what it met.
+/// Takes all samples that the pixel wants, with room of its own for them, into `record`. take(slot, taken): a sample's
+/// record; gives its path hash.
 template <class Take>
 CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, PixelRecord& record, const Take& take) {
     LatticeSample samples[lattice_samples];
@@ -45,8 +46,8 @@ CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, PixelReco
     for (pixel.begin(settings); pixel.wanted() > 0;) {
         for (int i = 0; i < pixel.wanted(); ++i) {
             const int slot = pixel.wanted(i);
-            const uint32_t met = take(slot, taken);
-            samples[slot].keep(taken, met);
+            const uint32_t hash = take(slot, taken);
+            samples[slot].keep(taken, hash);
             record.rays += taken.rays;
             if (LatticePixel::is_chosen(settings, slot)) choose_sample(taken, record);
         }
@@ -54,11 +55,12 @@ CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, PixelReco
         pixel.divide(settings);
     }
     for (int i = 0; i < pixel.cells(); ++i)
-        pixel.settle(settings, i, [&](int slot, int weight) { samples[slot].give(record, weight, Plus()); });
+        pixel.accumulate(settings, i, [&](int slot, int weight) { samples[slot].give(record, weight, Plus()); });
     record.samples = uint32_t(pixel.taken());
     record.unmet = pixel.unmet();
 }
 
+/// Renders pixel (px, py) of a frame with a target error.
 template <class Real, class E, class Intersector, class Stack, class Scene>
 CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
                                           int px, int py, bool gradual, PixelRecord& record, PixelWork& work,

@@ -1,7 +1,7 @@
 // What a frame asks of adaptive sampling, for whoever makes frames: lattice.h samples by it.
 #pragma once
 
-#include <cstdint>
+#include "cistula/portable.h"
 
 namespace cistula {
 
@@ -19,6 +19,12 @@ struct LatticeSettings {
     int most = lattice_samples;  // samples of a pixel
     bool fine = true;            // also looks at the middle of every pixel, and splits in four first: for small targets
     double significant = 0;      // branches of less weight than this do not tell samples apart
+
+    /// Whether an error of `color` in `area` samples, in units of 2^-color_bits, is worth more than the target to the
+    /// pixel.
+    CISTULA_INLINE bool exceeded_by(int64_t color, int64_t area) const {
+        return color * area > target * lattice_samples;
+    }
 };
 
 }  // namespace cistula

@@ -1,5 +1,5 @@
-// What a sample met, as a number: samples with the same one are alike but for gradual change. The sum of what is asked
-// of an intersector, so that the order of work does not show.
+// What a sample met, as a number: samples with equal ones are alike but for gradual change. It is the sum of what is
+// asked of an intersector, so that the order of work does not show.
 #pragma once
 
 #include "cistula/effects.h"
@@ -7,8 +7,8 @@
 
 namespace cistula {
 
-/// Of the ray tree under way. Branches too faint to matter leave it alone.
-struct Signature {
+/// Hash of the ray tree under way. Branches too faint to matter leave it alone.
+struct PathHash {
     uint32_t value = 0;
     bool counts = true;  // whether the branch under way matters
 
@@ -21,32 +21,33 @@ struct Signature {
     }
 };
 
-/// The faces that are hit and what arrives from lights: of what changes gradually only whether any does.
+/// Intersector that adds to a hash the faces that are hit and what arrives from lights: of what changes gradually only
+/// whether any does.
 template <class Inner>
-struct SigningIntersector {
+struct HashingIntersector {
     using Media = typename Inner::Media;
     using Scene = typename Inner::Scene;
     using Real = typename Scene::Scalar;
     const Inner& inner;
-    Signature& signature;
+    PathHash& hash;
     bool gradual;  // shades_gradually
 
     template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         const Hit<Real> hit = inner.template closest<E>(ray);
         // A ray from the camera that meets nothing tells no more than one that passes the scene by.
-        if (signature.counts && (hit.found() || ray.from_solid != no_solid))
-            signature.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
+        if (hash.counts && (hit.found() || ray.from_solid != no_solid))
+            hash.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
         return hit;
     }
 
     template <class E>
     CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
         const Share<Real, E> arrives = inner.template transmittance<E>(shadow);
-        if (signature.counts) {
+        if (hash.counts) {
             const uint32_t light = uint32_t(shadow.light - inner.scene.lights.data);
-            signature.add(told_apart(channel(arrives, 0)) + 3 * told_apart(channel(arrives, 1)),
-                          5 * told_apart(channel(arrives, 2)), light + 0x10000u);
+            hash.add(told_apart(channel(arrives, 0)) + 3 * told_apart(channel(arrives, 1)),
+                     5 * told_apart(channel(arrives, 2)), light + 0x10000u);
         }
         return arrives;
     }
@@ -61,12 +62,12 @@ struct SigningIntersector {
 /// both ways, a tree is as good as endless: then more is dropped (take_sample).
 inline constexpr uint32_t most_branches = 1u << 12;
 
-/// A stack that tells which branches matter, and ends trees that are too large.
+/// Stack that tells a hash which branches matter, and ends trees that are too large.
 template <class Inner, class Real>
-class SigningStack {
+class HashingStack {
   public:
-    CISTULA_INLINE SigningStack(Inner& inner, Signature& signature, Real significant)
-        : inner_(inner), signature_(signature), significant_(significant) {}
+    CISTULA_INLINE HashingStack(Inner& inner, PathHash& hash, Real significant)
+        : inner_(inner), hash_(hash), significant_(significant) {}
 
     template <class Entry>
     CISTULA_INLINE bool push(const Entry& branch) {
@@ -76,7 +77,7 @@ class SigningStack {
     CISTULA_INLINE bool pop(Entry& branch) {
         if (followed_ == most_branches || !inner_.pop(branch)) return false;
         ++followed_;
-        signature_.counts = largest_component(branch.weight) >= significant_;
+        hash_.counts = largest_component(branch.weight) >= significant_;
         return true;
     }
 
@@ -92,7 +93,7 @@ class SigningStack {
 
   private:
     Inner& inner_;
-    Signature& signature_;
+    PathHash& hash_;
     const Real significant_;
     uint32_t followed_ = 0;
 };
