@@ -3,6 +3,8 @@ PRESET ?= release
 PREFIX ?= /usr/local
 SCENE  ?= scenes/platonic.json
 CMAKE_ARGS ?=
+# of `make test` and `make test-quick`: the tests whose names match this regular expression, as ctest -R takes it
+TEST   ?=
 # no: take the machine as it is, install no packages
 SETUP  ?= yes
 
@@ -14,10 +16,10 @@ setup = $(if $(filter no,$(SETUP)),@true,@cmake/install-packages $(1))
 configure = @cmake/configure $(1) $(CMAKE_ARGS)
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-asan test-report bench gpu-check golden install cuda-toolkit clean
+.PHONY: help render build test test-quick test-asan test-report lint check-all bench gpu-check golden install cuda-toolkit clean
 
 help: ## this list
-	@echo 'make TARGET [PRESET=release|release-all|debug|asan] [SETUP=no] [CMAKE_ARGS=...]'
+	@echo 'make TARGET [PRESET=release|release-all|debug|asan|clang] [SETUP=no] [CMAKE_ARGS=...]'
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
 render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
@@ -32,11 +34,30 @@ build: ## build everything: libraries, programs, tests, benchmarks
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD)
 
-test: build ## build everything and run the tests
-	ctest --test-dir $(BUILD) --output-on-failure -j2
+# $(call run_tests,ARGUMENTS of ctest)
+run_tests = ctest --test-dir $(BUILD) --output-on-failure -j2 $(if $(TEST),-R '$(TEST)') $(1)
+
+test: build ## build everything and run the tests; TEST=PATTERN: those whose names match
+	$(call run_tests)
+
+test-quick: ## build and run the quick tests alone
+	$(call setup,packages.txt)
+	$(call configure,$(PRESET))
+	@cmake --build $(BUILD) --target quick_tests
+	$(call run_tests,-L quick)
 
 test-asan: ## the tests under the address and undefined-behaviour sanitizers
 	@$(MAKE) --no-print-directory test PRESET=asan
+
+lint: ## check the format of all sources, and libcore/scene, apps/common and apps/render by clang-tidy
+	$(call setup,packages.txt tests/lint-packages.txt)
+	$(call configure,$(PRESET))
+	tests/lint $(BUILD)
+
+check-all: lint ## before a release: lint, the quick tests under sanitizers and by clang, all tests
+	@$(MAKE) --no-print-directory test-quick PRESET=asan CMAKE_ARGS='$(CMAKE_ARGS) -DCISTULA_WITH_CUDA=OFF'
+	@$(MAKE) --no-print-directory test-quick PRESET=clang
+	@$(MAKE) --no-print-directory test
 
 test-report: ## measure a small report, open it in headless Chromium and look for what is wrong; screenshots into out/report
 	$(call setup,packages.txt tests/report-packages.txt)

@@ -15,7 +15,7 @@ foreach(_variable CMAKE_CXX_FLAGS CMAKE_CXX_FLAGS_${_type} CMAKE_CUDA_FLAGS CMAK
     endif()
 endforeach()
 
-# GCC 12 takes double -> float -> double roundings away where its basic-block vectorizer pairs them (tests/test_compiler.cpp).
+# GCC 12 takes double -> float -> double roundings away where its basic-block vectorizer pairs them (tests/numerics/compiler.cpp).
 set(_host -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-tree-slp-vectorize -march=x86-64-v3)
 string(REPLACE ";" "," _host_of_nvcc "${_host}")
 set(_device -fmad=false -prec-div=true -prec-sqrt=true -ftz=false)

@@ -112,7 +112,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
         if (options.resume && is_finished(job, camera))
             stats.resumed.push_back(frame);
         else
-            cameras.push_back(std::move(camera));
+            cameras.push_back(camera);
     }
     if (!options.quiet && !stats.resumed.empty())
         fmt::print(stderr, "render: {} of {} frames are complete and stay as they are\n", stats.resumed.size(),

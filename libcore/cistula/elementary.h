@@ -1,6 +1,6 @@
 // Elementary functions that are the same bits on every machine: libm differs between systems and from one glibc to the
 // next. Double only, from + - * / fma floor and integers. trigonometry.h has the rest. Worst errors below are measured
-// against __float128 and asserted by tests/test_elementary.cpp. Coefficients: Chebyshev fits made with 300-bit
+// against __float128 and asserted by tests/numerics/elementary.cpp. Coefficients: Chebyshev fits made with 300-bit
 // arithmetic.
 #pragma once
 

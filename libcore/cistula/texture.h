@@ -24,7 +24,7 @@ CISTULA_SELDOM inline uint32_t any_remainder(double i, uint32_t n) {
 template <class Real>
 CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
     constexpr Real few = sizeof(Real) == sizeof(float) ? Real(0x1p23) : Real(0x1p31);
-    return ((n & (n - 1)) == 0) & (magnitude(i) < few) ? uint32_t(int32_t(i)) & (n - 1) : any_remainder(i, n);
+    return (((n & (n - 1)) == 0) & (magnitude(i) < few)) ? uint32_t(int32_t(i)) & (n - 1) : any_remainder(i, n);
 }
 
 /// Between the four texels around (x, y); texel(i, j) are their colors.

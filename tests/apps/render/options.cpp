@@ -566,7 +566,7 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     EXPECT_NE(measured.find("7 frames of 12.5 ms"), std::string::npos) << measured;
 }
 
-TEST(DescribeFlags, EveryFlagHasItsWords) {
+TEST(RenderFlags, EveryFlagHasItsWords) {
     EXPECT_EQ(describe_flags(flag_not_finite), "a radiance was infinite or not a number");
     EXPECT_EQ(describe_flags(flag_not_finite | flag_media_overflow),
               "a radiance was infinite or not a number; a ray was inside more solids at once than it can list");

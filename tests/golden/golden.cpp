@@ -1,6 +1,6 @@
 // The CPU backend renders every golden image bit for bit, in both precisions, by the intersector that it picks (a plain
-// loop where there are few primitives) and by Embree's tree, the hard ones by our own tree too (test_device_path has it
-// for all); and the files say what the hashes say.
+// loop where there are few primitives) and by Embree's tree, the hard ones by our own tree too
+// (tests/backends/device_path.cpp has it for all); and the files say what the hashes say.
 #include <gtest/gtest.h>
 
 #include "golden.h"

@@ -1,5 +1,5 @@
 // Scene files: JSON from the top level down to cameras, textures, materials and lights; objects are in
-// test_read_objects.
+// tests/readers/objects.cpp.
 #include "scene/read_scene.h"
 
 #include <gtest/gtest.h>
