@@ -8,6 +8,7 @@
 #include "scene/read_scene.h"
 #include "scene/read_seed.h"
 #include "scene_dump.h"
+#include "scratch_directory.h"
 
 namespace cistula {
 namespace {
@@ -52,6 +53,14 @@ TEST(SeedInput, TemplateIsReadWhole) {
     ASSERT_EQ(scene.textures.size(), 1u);
     EXPECT_EQ(scene.textures[0].file, "floor.data");
     EXPECT_FALSE(scene.frame);
+}
+
+TEST(SeedInput, TheExampleIsTheTemplateForTheRepository) {
+    const SceneDescription scene = read(bytes_of((source_root() / "scenes/input.txt").string()));
+    EXPECT_TRUE(std::filesystem::exists(source_root() / scene.textures.at(0).file));
+    EXPECT_EQ(scene.film.output, "out/frames/frame%d.out");
+    const std::string same = changed("floor.data\nframes/", "scenes/floor.data\nout/frames/");
+    EXPECT_EQ(SceneDump::of(scene), SceneDump::of(read(same)));
 }
 
 TEST(SeedInput, SolidsFloorAndLights) {
