@@ -13,7 +13,21 @@
 namespace cistula {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr int most_digits = 32;
+
+/// The directory that a file goes to.
+void make_directory(const std::string& path) {
+    const fs::path directory = fs::path(path).parent_path();
+    if (directory.empty()) return;
+    std::error_code error;
+    fs::create_directories(directory, error);
+    if (error)
+        throw Error(ExitCode::file,
+                    fmt::format("{}: cannot be written: the directory {} cannot be made: {}; give another", path,
+                                directory.string(), error.message()));
+}
 
 }  // namespace
 
@@ -73,7 +87,7 @@ FileKind file_kind(const std::string& path) {
 
 std::string default_output(const SceneDescription& scene, size_t frames_given) {
     if (!scene.film.output.empty()) return scene.film.output;
-    const std::string stem = scene.source == "-" ? "stdin" : std::filesystem::path(scene.source).stem().string();
+    const std::string stem = scene.source == "-" ? "stdin" : fs::path(scene.source).stem().string();
     std::string name;
     for (const char c : stem) name += c == '%' ? "%%" : std::string(1, c == '#' ? '_' : c);
     return name + (frames_given > 1 ? ".####.exr" : ".exr");
@@ -81,7 +95,7 @@ std::string default_output(const SceneDescription& scene, size_t frames_given) {
 
 std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames) {
     if (!output.has_pattern() && given.size() > 1) {
-        std::filesystem::path better = output.text();
+        fs::path better = output.text();
         better.replace_extension(".####" + better.extension().string());
         throw Error(ExitCode::usage,
                     fmt::format("-o {} holds one frame and --frames names {}; put the frame number into "
@@ -101,8 +115,8 @@ void require_different_files(const std::string& scene, const OutputName& image, 
         if (path.empty()) return;
         std::error_code error;
         // Absolute first: weakly_canonical leaves a relative path so where its beginning does not exist.
-        const std::filesystem::path absolute = std::filesystem::absolute(path, error);
-        const std::filesystem::path real = std::filesystem::weakly_canonical(absolute, error);
+        const fs::path absolute = fs::absolute(path, error);
+        const fs::path real = fs::weakly_canonical(absolute, error);
         const auto [user, is_new] = users.emplace((error ? absolute.lexically_normal() : real).string(), what);
         if (!is_new && std::string_view(user->second) != what)
             throw Error(ExitCode::usage, fmt::format("{}: would be both {} and {}; give each a file of its own", path,
@@ -116,14 +130,16 @@ void require_different_files(const std::string& scene, const OutputName& image, 
     }
 }
 
-void require_directory(const std::string& path) {
+void make_directory_of(const std::string& path) {
+    make_directory(path);
     std::error_code error;
-    const std::filesystem::path directory = std::filesystem::path(path).parent_path();
-    if (!directory.empty() && !std::filesystem::is_directory(directory, error))
-        throw Error(ExitCode::file, fmt::format("{}: cannot be written: there is no directory {}; make it first", path,
-                                                directory.string()));
-    if (std::filesystem::is_directory(path, error))
+    if (fs::is_directory(path, error))
         throw Error(ExitCode::file, fmt::format("{}: cannot be written: it is a directory; name a file in it", path));
+}
+
+void make_directories(const OutputName& name, const std::vector<int>& frames) {
+    make_directory_of(name.for_frame(frames.front()));
+    for (const int frame : frames) make_directory(name.for_frame(frame));
 }
 
 }  // namespace cistula

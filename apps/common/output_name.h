@@ -44,9 +44,12 @@ std::string default_output(const SceneDescription& scene, size_t frames_given);
 /// where several are given for a name that holds one.
 std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames);
 
-/// Throws Error (file) where the directory that a file would go to does not exist, or the name is a directory's:
-/// better now than after an hour of rendering.
-void require_directory(const std::string& path);
+/// Makes the directories of these frames where they are missing. Throws Error (file) where that fails or the first name
+/// is a directory's: better now than after an hour of rendering.
+void make_directories(const OutputName& name, const std::vector<int>& frames);
+
+/// Makes the directory of a single file in the same way.
+void make_directory_of(const std::string& path);
 
 /// Throws Error (usage) where two of these would be one file, symbolic links followed: the scene, the stats, the images
 /// and previews of all frames. `stats` may be empty, `scene` "-"; `option` is what names the stats.

@@ -62,7 +62,7 @@ std::unique_ptr<Renderer> prepare(const SceneDescription& scene, const RenderOpt
     return renderer;
 }
 
-/// The names of the files, checked against one another and against what is there.
+/// The names of the files, checked against one another; their directories are there.
 struct Outputs {
     OutputName image, preview;
     std::vector<int> frames;
@@ -82,7 +82,6 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
         if (c.error || c.id || c.samples || c.cost || c.z || c.normal) refuse("--aov", "raw frames have no layers");
         if (options.resume) refuse("--resume", "raw frames do not say what they show");
     }
-    require_directory(outputs.image.for_frame(outputs.frames.front()));
     if (!options.preview.empty()) {
         outputs.preview = OutputName(options.preview, "--preview");
         if (std::filesystem::path(options.preview).extension() != ".png")
@@ -91,10 +90,11 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
         if (outputs.frames.size() > 1 && !outputs.preview.has_pattern())
             throw Error(ExitCode::usage, fmt::format("--preview {}: holds one frame of {}; put #### into the name",
                                                      options.preview, outputs.frames.size()));
-        require_directory(outputs.preview.for_frame(outputs.frames.front()));
     }
-    if (!options.stats.empty()) require_directory(options.stats);
     require_different_files(options.scene, outputs.image, outputs.preview, options.stats, outputs.frames);
+    make_directories(outputs.image, outputs.frames);
+    if (!options.preview.empty()) make_directories(outputs.preview, outputs.frames);
+    if (!options.stats.empty()) make_directory_of(options.stats);
     return outputs;
 }
 
@@ -221,8 +221,8 @@ void report_pixel(const RenderOptions& options) {
     const FrameSettings settings = frame_settings(options, scene);
     const CameraFrame camera = camera_at(scene.camera, options.frames.empty() ? 0 : options.frames.front());
     if (!options.json.empty() && options.json != "-") {
-        require_directory(options.json);
         require_different_files(options.scene, OutputName(), OutputName(), options.json, {}, "--json");
+        make_directory_of(options.json);
     }
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<size_t>(threads_of(options)));

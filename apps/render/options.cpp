@@ -161,7 +161,7 @@ Examples:
   render scenes/benchmark.json -o b.exr --target-error 0.004       as many samples and bounces as that takes
   render scenes/seed.json -o out/beauty.####.exr --backend cuda --device all
   render scenes/glass.json --pixel 640,300 --supersample 1 | less  why this pixel is what it is
-  render - -o frame%d.out < input.txt                              the seed's input and frames
+  render - < scenes/input.txt                                      the seed's input and frames
   render --print-template > input.txt
 
 Without -o a scene is written to SCENE.exr in the working directory (SCENE.####.exr where -f names several frames), the

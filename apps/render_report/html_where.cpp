@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "html.h"
-#include "png.h"
+#include "image.h"
 #include "svg_chart.h"
 
 namespace cistula::report {

@@ -1,7 +1,7 @@
 // The same frame by every renderer that this machine has.
 #include "backend_embree/embree_renderer.h"
 #include "measure.h"
-#include "png.h"
+#include "image.h"
 #include "scene/film_difference.h"
 #include "scene/film_picture.h"
 #include "small_frame.h"

@@ -8,7 +8,7 @@
 #include "apps/common/timing.h"
 #include "cistula/effects.h"
 #include "measure.h"
-#include "png.h"
+#include "image.h"
 #include "scene/error.h"
 #include "scene/exr.h"
 #include "scene/film_picture.h"

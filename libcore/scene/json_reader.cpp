@@ -1,5 +1,6 @@
 #include "scene/json_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -71,6 +72,14 @@ std::string JsonValue::place_of(std::string_view key) const {
     return place;
 }
 
+void JsonValue::check_comment() const {
+    const auto found = json_->find(std::string(comment_key));
+    if (found == json_->end() || found->is_string()) return;
+    if (!found->is_array() ||
+        !std::all_of(found->begin(), found->end(), [](const Json& line) { return line.is_string(); }))
+        member(std::string(comment_key)).fail_expected("a string or an array of strings");
+}
+
 void JsonValue::fail_at(const std::string& place, const std::string& message) const {
     throw Error(ExitCode::usage,
                 one_line(fmt::format("{}: {}: {}", *source_, place.empty() ? "/" : place.c_str(), message)));
@@ -133,8 +142,9 @@ glm::dvec2 JsonValue::pair(const Key& key) const {
 JsonObject::JsonObject(JsonValue value, const KeyTable& table) : value_(std::move(value)), table_(table) {
     if (table.keys.size() > 64) throw std::logic_error("a key table holds at most 64 keys");
     if (!value_.json().is_object()) value_.fail_expected("an object");
+    value_.check_comment();
     for (const auto& member : value_.json().items())
-        if (!table.find(member.key()))
+        if (member.key() != comment_key && !table.find(member.key()))
             value_.fail_at(value_.place_of(member.key()),
                            "unknown key; " + suggestion(member.key(), table.names(), "keys"));
     for (const Key& key : table.keys)

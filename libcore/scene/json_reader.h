@@ -35,6 +35,9 @@ class JsonValue {
     /// Where a key of this object stands, or would.
     std::string place_of(std::string_view key) const;
 
+    /// Throws unless this object's comment, if it has one, is a string or an array of strings.
+    void check_comment() const;
+
     /// Throws Error (usage): "source: place: message", on one line.
     [[noreturn]] void fail(const std::string& message) const { fail_at(place_, message); }
     [[noreturn]] void fail_at(const std::string& place, const std::string& message) const;
@@ -62,7 +65,8 @@ class JsonValue {
 };
 
 /// An object whose keys a table lists. The constructor throws for anything but an object, for keys that the table does
-/// not know, and for required ones that are missing. read() leaves `value` alone where the key is absent.
+/// not know, but for comments, and for required ones that are missing. read() leaves `value` alone where the key is
+/// absent.
 class JsonObject {
   public:
     JsonObject(JsonValue value, const KeyTable& table);

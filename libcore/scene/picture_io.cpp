@@ -1,14 +1,16 @@
 #include "scene/picture_io.h"
 
+#include <new>
 #include <stdexcept>
-#include <vector>
+#include <string>
 
 #include "cistula/real.h"
+#include "scene/atomic_file.h"
 #include "scene/exr.h"
 #include "scene/file_bytes.h"
 #include "scene/picture_oiio.h"
+#include "scene/png.h"
 #include "scene/seed_data.h"
-#include "scene/srgb_codes.h"
 
 namespace cistula {
 namespace {
@@ -47,11 +49,15 @@ void write_preview(const std::string& path, const ColorPicture& linear) {
         throw std::invalid_argument("write_preview: texels must number width * height, and be some");
     if (lower_extension(path) != ".png")
         throw file_error(path, "write", std::string("a preview is a PNG; give a name that ends in .png"));
-    std::vector<uint8_t> bytes;
-    bytes.reserve(3 * linear.texels.size());
-    for (const glm::vec3& texel : linear.texels)
-        for (int c = 0; c < 3; ++c) bytes.push_back(srgb8_from_linear(texel[c]));
-    oiio_write(path, linear.width, linear.height, bytes);
+    std::string bytes;
+    try {
+        bytes = encode_png(linear);
+    } catch (const std::bad_alloc&) {
+        throw file_error(path, "write", std::string("not enough memory for a picture of its size"));
+    } catch (const std::runtime_error& error) {
+        throw file_error(path, "write", std::string(error.what()));
+    }
+    write_file_atomically(path, bytes);
 }
 
 }  // namespace cistula

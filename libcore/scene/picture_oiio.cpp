@@ -1,11 +1,9 @@
 // The module that knows OpenImageIO; nothing else links it.
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <exception>
 #include <new>
 #include <string>
-#include <vector>
 
 #include "scene/file_bytes.h"
 #include "scene/picture_oiio_module.h"
@@ -76,27 +74,10 @@ bool read(const char* path, const OiioHost* host) noexcept {
     });
 }
 
-bool encode_png(uint32_t width, uint32_t height, const uint8_t* bytes, const OiioHost* host) noexcept {
-    return guarded(*host, [&] {
-        // Encoded in memory, so that only the host's own writing can meet a full disk.
-        std::vector<unsigned char> encoded;
-        OIIO::Filesystem::IOVecOutput sink(encoded);
-        OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
-        spec["oiio:ColorSpace"] = "sRGB";
-        const auto output = OIIO::ImageOutput::create("png");
-        if (!output) return fail(*host, OIIO::geterror());
-        output->set_ioproxy(&sink);
-        if (!output->open("preview.png", spec) || !output->write_image(OIIO::TypeDesc::UINT8, bytes) ||
-            !output->close())
-            return fail(*host, output->geterror());
-        return host->encoded(host->self, encoded.data(), encoded.size());
-    });
-}
-
 }  // namespace
 }  // namespace cistula
 
-extern "C" __attribute__((visibility("default"))) const cistula::OiioModule* cistula_oiio_module_1() {
-    static constexpr cistula::OiioModule module = {cistula::read, cistula::encode_png};
+extern "C" __attribute__((visibility("default"))) const cistula::OiioModule* cistula_oiio_module_2() {
+    static constexpr cistula::OiioModule module = {cistula::read};
     return &module;
 }

@@ -1,10 +1,10 @@
-// Pictures through the module: samples become linear colors and encoded files reach the disk on this side.
+// Textures through the module: samples become linear colors on this side.
 #include <exception>
 #include <new>
 #include <utility>
 #include <variant>
 
-#include "scene/atomic_file.h"
+#include "scene/file_bytes.h"
 #include "scene/picture_oiio.h"
 #include "scene/picture_oiio_load.h"
 #include "scene/srgb_codes.h"
@@ -16,11 +16,11 @@ namespace {
 struct Exchange {
     uint32_t width = 0, height = 0, channels = 0;
     std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> samples;
-    std::string encoded, reason;
+    std::string reason;
     bool out_of_memory = false;
 
-    Error error(const std::string& path, const std::string& verb) const {
-        return file_error(path, verb, out_of_memory ? "not enough memory for a picture of its size" : reason);
+    Error error(const std::string& path) const {
+        return file_error(path, "read", out_of_memory ? "not enough memory for a picture of its size" : reason);
     }
 };
 
@@ -54,13 +54,6 @@ void* room(void* self, uint32_t width, uint32_t height, uint32_t channels, OiioS
     });
 }
 
-bool take_encoded(void* self, const void* bytes, size_t count) noexcept {
-    return kept(self, [&](Exchange& exchange) {
-        exchange.encoded.assign(static_cast<const char*>(bytes), count);
-        return true;
-    });
-}
-
 void take_reason(void* self, const char* reason) noexcept {
     kept(self, [&](Exchange& exchange) {
         exchange.reason = reason;
@@ -69,7 +62,7 @@ void take_reason(void* self, const char* reason) noexcept {
 }
 
 OiioHost host_of(Exchange& exchange) {
-    return {&exchange, room, take_encoded, take_reason};
+    return {&exchange, room, take_reason};
 }
 
 float linear(uint8_t code) {
@@ -95,25 +88,17 @@ std::vector<glm::vec3> texels_of(const Exchange& exchange, const std::vector<T>&
 }  // namespace
 
 ColorPicture oiio_read(const std::string& path) {
-    const OiioModule& module = load_oiio_module(path, "read");
+    const OiioModule& module = load_oiio_module(path);
     Exchange exchange;
     const OiioHost host = host_of(exchange);
-    if (!module.read(path.c_str(), &host)) throw exchange.error(path, "read");
+    if (!module.read(path.c_str(), &host)) throw exchange.error(path);
     try {
         return {exchange.width, exchange.height,
                 std::visit([&](const auto& samples) { return texels_of(exchange, samples); }, exchange.samples)};
     } catch (const std::bad_alloc&) {
         exchange.out_of_memory = true;
-        throw exchange.error(path, "read");
+        throw exchange.error(path);
     }
-}
-
-void oiio_write(const std::string& path, uint32_t width, uint32_t height, const std::vector<uint8_t>& bytes) {
-    const OiioModule& module = load_oiio_module(path, "write");
-    Exchange exchange;
-    const OiioHost host = host_of(exchange);
-    if (!module.encode_png(width, height, bytes.data(), &host)) throw exchange.error(path, "write");
-    write_file_atomically(path, exchange.encoded);
 }
 
 }  // namespace cistula

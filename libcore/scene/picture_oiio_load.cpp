@@ -47,7 +47,7 @@ std::vector<fs::path> directories_of_program() {
     return {directory, prefix / "lib" / "cistula", prefix / "lib"};
 }
 
-const OiioModule* find_module(const std::string& path, const std::string& verb) {
+const OiioModule* find_module(const std::string& path) {
     std::string reason, places = "the library path";
     if (const OiioModule* module = open_module(module_file, reason)) return module;
     for (const fs::path& directory : directories_of_program()) {
@@ -57,15 +57,15 @@ const OiioModule* find_module(const std::string& path, const std::string& verb) 
         if (!fs::exists(file, failure)) continue;  // the reason of one that is there says more
         if (const OiioModule* module = open_module(file.string(), reason)) return module;
     }
-    throw file_error(path, verb,
+    throw file_error(path, "read",
                      std::string("formats other than EXR and .data need the module ") + module_file +
                          ", which cannot be loaded from " + places + ": " + reason);
 }
 
 }  // namespace
 
-const OiioModule& load_oiio_module(const std::string& path, const std::string& verb) {
-    static const OiioModule& module = *find_module(path, verb);  // after an exception the next call tries again
+const OiioModule& load_oiio_module(const std::string& path) {
+    static const OiioModule& module = *find_module(path);  // after an exception the next call tries again
     return module;
 }
 

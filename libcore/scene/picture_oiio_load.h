@@ -10,7 +10,7 @@ namespace cistula {
 /// The module, which stays until the program ends. It is looked for on the search path of the program's libraries (its
 /// RUNPATH among them), then in the program's own directory and in ../lib/cistula and ../lib beside it.
 /// Throws Error(ExitCode::file) about the picture `path`, with the loader's reason, where there is none that can be
-/// loaded; verb: "read" or "write".
-const OiioModule& load_oiio_module(const std::string& path, const std::string& verb);
+/// loaded.
+const OiioModule& load_oiio_module(const std::string& path);
 
 }  // namespace cistula

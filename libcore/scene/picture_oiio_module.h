@@ -1,4 +1,4 @@
-// Between the library and its module for OpenImageIO, which is loaded when the first picture needs it: plain C types,
+// Between the library and its module for OpenImageIO, which is loaded when the first texture needs it: plain C types,
 // so that each side frees what it allocated and no exception crosses.
 #pragma once
 
@@ -15,8 +15,6 @@ struct OiioHost {
     void* self;
     /// Room for width * height * channels samples, row-major from the top left; null, with a reason kept: do not go on.
     void* (*room)(void* self, uint32_t width, uint32_t height, uint32_t channels, OiioSamples type) noexcept;
-    /// The encoded file, whole; false, with a reason kept, where it cannot be taken.
-    bool (*encoded)(void* self, const void* bytes, size_t count) noexcept;
     /// Why the call fails, without the name of the file.
     void (*failed)(void* self, const char* reason) noexcept;
 };
@@ -25,12 +23,10 @@ struct OiioHost {
 struct OiioModule {
     /// Colors as stored, not multiplied by alpha: three channels, or one where the file has fewer than three.
     bool (*read)(const char* path, const OiioHost* host) noexcept;
-    /// Encodes a PNG from width * height RGB triples.
-    bool (*encode_png)(uint32_t width, uint32_t height, const uint8_t* bytes, const OiioHost* host) noexcept;
 };
 
 /// The one function that the module exports. Its number changes with this header.
 using OiioModuleEntry = const OiioModule* (*)();
-inline constexpr const char* oiio_module_entry = "cistula_oiio_module_1";
+inline constexpr const char* oiio_module_entry = "cistula_oiio_module_2";
 
 }  // namespace cistula

@@ -80,7 +80,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     if (is_object && !has_file && !has_checker) {
         const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat"};
         for (const auto& member : value.json().items())
-            if (std::find(known.begin(), known.end(), member.key()) == known.end())
+            if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
                 value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
         value.fail("expected one of the keys 'file' and 'checker'");
     }
@@ -152,11 +152,13 @@ FrameOfReference read_frame(const JsonValue& value) {
     return frame;
 }
 
-/// Calls read(name, value) for every member of an object whose keys are names.
+/// Calls read(name, value) for every member of an object whose keys are names, but for its comment.
 template <class Read>
 void for_each_name(const JsonValue& value, const std::string& kind, Read read) {
     if (!value.json().is_object()) value.fail_expected(fmt::format("an object of {}s by name", kind));
+    value.check_comment();
     for (const auto& member : value.json().items()) {
+        if (member.key() == comment_key) continue;
         if (member.key().empty()) value.fail_at(value.place_of(""), fmt::format("a {}'s name is not empty", kind));
         read(member.key(), value.member(member.key()));
     }

@@ -145,7 +145,7 @@ const Form forms[] = {
         for (const std::string_view name : form.keys.names())
             if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
     for (const auto& member : value.json().items())
-        if (std::find(known.begin(), known.end(), member.key()) == known.end())
+        if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
             value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
     value.fail("expected one of the keys 'solid', 'quad', 'triangles' and 'mesh'");
 }

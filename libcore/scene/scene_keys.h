@@ -54,6 +54,10 @@ extern const KeyTable scene_keys, film_keys, camera_keys, path_keys, cylindrical
     texture_checker_keys, material_keys, solid_keys, edge_lights_keys, quad_keys, triangles_keys, triangle_list_keys,
     mesh_keys, light_keys, frame_keys;
 
+/// Every object of a scene may have this key besides those of its table: a string or an array of strings, which only
+/// people read.
+inline constexpr std::string_view comment_key = "$comment";
+
 /// All of the tables above.
 std::span<const KeyTable* const> all_key_tables();
 

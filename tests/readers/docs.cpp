@@ -120,7 +120,8 @@ TEST(SceneSchema, HasEveryKeyWithItsTypeDefaultAndRange) {
         const Json& object = table == &scene_keys ? root : definitions.at(text_of(table->name));
         EXPECT_EQ(object.at("type"), "object") << table->name;
         EXPECT_EQ(object.at("additionalProperties"), false) << table->name;
-        EXPECT_EQ(object.at("properties").size(), table->keys.size()) << table->name;
+        EXPECT_EQ(object.at("properties").size(), table->keys.size() + 1) << table->name;
+        EXPECT_EQ(object.at("properties").at(comment_key).at("$ref"), "#/$defs/comment") << table->name;
         std::set<std::string> required;
         if (object.contains("required"))
             for (const Json& name : object.at("required")) required.insert(name.get<std::string>());
@@ -170,6 +171,15 @@ TEST(SceneSchema, HasEveryKeyWithItsTypeDefaultAndRange) {
     }
 }
 
+TEST(SceneSchema, ListsOfNamesHaveComments) {
+    const Json root = schema();
+    for (const char* list : {"textures", "materials"})
+        EXPECT_EQ(root.at("properties").at(list).at("properties").at(comment_key).at("$ref"), "#/$defs/comment");
+    const Json& forms = root.at("$defs").at("comment").at("oneOf");
+    EXPECT_EQ(forms.at(0).at("type"), "string");
+    EXPECT_EQ(forms.at(1).at("items").at("type"), "string");
+}
+
 /// {"key": default, ...} of a table, after `given`.
 std::string spelled_out(const KeyTable& table, const std::string& given) {
     std::string text = "{" + given;
@@ -198,6 +208,14 @@ TEST(SceneDefaults, AreThoseOfTheTables) {
                SceneDump::of(read_scene_text(moving, "a.json", ""));
     };
     EXPECT_EQ(scene(true), scene(false));
+}
+
+/// Every scene in JSON that comes with Cistula, the hard ones among them.
+std::vector<std::string> scene_files() {
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_root() / "scenes"))
+        if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+    return files;
 }
 
 TEST(Scenes, BenchmarkIsWhatItsFiguresWereMeasuredOn) {
@@ -241,13 +259,34 @@ TEST(Scenes, BenchmarkIsWhatItsFiguresWereMeasuredOn) {
 }
 
 TEST(Scenes, AllAreValid) {
-    int count = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_root() / "scenes")) {
-        if (entry.path().extension() != ".json") continue;
-        EXPECT_NO_THROW(read_scene(entry.path().string())) << entry.path();
-        ++count;
+    const std::vector<std::string> files = scene_files();
+    for (const std::string& file : files) EXPECT_NO_THROW(read_scene(file)) << file;
+    EXPECT_GE(files.size(), 24u);
+}
+
+TEST(Scenes, AnyJsonReaderTakesThem) {
+    for (const std::string& file : scene_files()) EXPECT_TRUE(Json::accept(bytes_of(file))) << file;
+    EXPECT_FALSE(Json::accept("{} // a comment"));
+}
+
+/// Without its comments, however deep.
+Json without_comments(Json json) {
+    if (json.is_object()) json.erase(std::string(comment_key));
+    if (json.is_structured())
+        for (Json& value : json) value = without_comments(value);
+    return json;
+}
+
+TEST(Scenes, CommentsMeanNothing) {
+    for (const std::string& file : scene_files()) {
+        const Json json = Json::parse(bytes_of(file));
+        const std::string folder = std::filesystem::path(file).parent_path().string();
+        const std::string bare = without_comments(json).dump();
+        EXPECT_NE(bare, json.dump()) << file;
+        EXPECT_EQ(SceneDump::of(read_scene_text(bare, "a.json", folder)),
+                  SceneDump::of(read_scene_text(json.dump(), "a.json", folder)))
+            << file;
     }
-    EXPECT_GE(count, 2);
 }
 
 TEST(SceneReader, RefusesToForgetAKeyOfItsTable) {

@@ -5,9 +5,12 @@
 #include <regex>
 
 #include "expect_error.h"
+#include "scene/camera_path.h"
+#include "scene/platonic.h"
 #include "scene/read_scene.h"
 #include "scene/read_seed.h"
 #include "scene_dump.h"
+#include "scratch_directory.h"
 
 namespace cistula {
 namespace {
@@ -54,6 +57,14 @@ TEST(SeedInput, TemplateIsReadWhole) {
     EXPECT_FALSE(scene.frame);
 }
 
+TEST(SeedInput, TheExampleIsTheTemplateForTheRepository) {
+    const SceneDescription scene = read(bytes_of((source_root() / "scenes/input.txt").string()));
+    EXPECT_TRUE(std::filesystem::exists(source_root() / scene.textures.at(0).file));
+    EXPECT_EQ(scene.film.output, "out/frames/frame%d.out");
+    const std::string same = changed("floor.data\nframes/", "scenes/floor.data\nout/frames/");
+    EXPECT_EQ(SceneDump::of(scene), SceneDump::of(read(same)));
+}
+
 TEST(SeedInput, SolidsFloorAndLights) {
     const SceneDescription scene = read(seed_template());
     ASSERT_EQ(scene.objects.size(), 4u);
@@ -88,11 +99,33 @@ TEST(SeedInput, SolidsFloorAndLights) {
     EXPECT_FALSE(red.falloff);
 }
 
-TEST(SeedInput, EqualsTheJsonScene) {
+TEST(SeedInput, EqualsTheJsonSceneButForItsCamera) {
     SceneDescription json = read_scene((source_root() / "scenes/seed.json").string());
     EXPECT_EQ(std::filesystem::path(json.textures.at(0).file), source_root() / "scenes/floor.data");
     json.textures[0].file = "floor.data";
-    EXPECT_EQ(SceneDump::of(read(seed_template())), SceneDump::of(json));
+    const SceneDescription text = read(seed_template());
+    json.camera = text.camera;
+    EXPECT_EQ(SceneDump::of(text), SceneDump::of(json));
+}
+
+TEST(SeedInput, TheFilmOfTheJsonSceneKeepsItsSolidsInThePicture) {
+    const SceneDescription scene = read_scene((source_root() / "scenes/seed.json").string());
+    ASSERT_EQ(scene.film.frames, 300);
+    for (int frame = 0; frame < scene.film.frames; ++frame) {
+        const Camera camera = camera_at(scene.camera, frame).camera;
+        const double tan_half_height = camera.tan_half_width * scene.film.height / scene.film.width;
+        for (size_t i = 0; i < 3; ++i) {
+            const auto& solid = std::get<SolidObject>(scene.objects.at(i).shape);
+            for (const glm::dvec3& vertex : platonic_shape(solid.solid).vertices) {
+                const glm::dvec3 point = solid.center + solid.radius * vertex;
+                const Vec3<double> to_point = Vec3<double>(point.x, point.y, point.z) - camera.position;
+                const double depth = dot(to_point, camera.forward);
+                EXPECT_GT(depth, 0) << frame;
+                EXPECT_LT(std::abs(dot(to_point, camera.right)), depth * camera.tan_half_width) << frame;
+                EXPECT_LT(std::abs(dot(to_point, camera.up)), depth * tan_half_height) << frame;
+            }
+        }
+    }
 }
 
 TEST(SeedInput, TenthNumberIsTheLightsOnEachEdge) {

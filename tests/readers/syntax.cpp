@@ -4,6 +4,7 @@
 #include <random>
 
 #include "expect_error.h"
+#include "scene/compiled_scene.h"
 #include "scene/read_scene.h"
 #include "scene/read_seed.h"
 #include "scene/suggest.h"
@@ -60,6 +61,41 @@ TEST(SceneSyntax, DuplicateKeysAreErrors) {
 
 TEST(SceneSyntax, CommentsAreAllowed) {
     EXPECT_EQ(read("{ // one\n /* two\n */ \"objects\": [] /* three */ } // four").depth, 4);
+}
+
+TEST(SceneSyntax, AnyObjectMayHoldAComment) {
+    // %: where a comment may stand.
+    const std::string text = R"({%
+        "film": {%"width": 8}, "camera": {%"path": {%"position": {%"r0": 4}, "target": {%"z0": 1}}},
+        "textures": {%"f": {%"file": "f.exr"}, "c": {%"checker": [0, 1]}},
+        "materials": {%"m": {%"color": 1}},
+        "objects": [
+            {%"solid": "cube", "material": "m", "edge_lights": {%"count": 2}},
+            {%"quad": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "material": "m"},
+            {%"triangles": {%"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "indices": [[0, 1, 2]]}, "material": "m"},
+            {%"mesh": "a.ply"}
+        ],
+        "lights": [{%"position": [0, 0, 9]}], "frame": {%"center": [0, 0, 0], "scale": 1}})";
+    const auto dump_with = [&](const std::string& comment) {
+        std::string scene;
+        for (const char c : text) scene += c == '%' ? comment : std::string(1, c);
+        return SceneDump::of(read(scene));
+    };
+    const std::string bare = dump_with("");
+    EXPECT_EQ(dump_with("\"$comment\": \"one line\", "), bare);
+    EXPECT_EQ(dump_with("\"$comment\": [\"two\", \"lines\"], "), bare);
+    EXPECT_WRONG(with("\"$comment\": 3"), "a.json: /$comment: expected a string or an array of strings, found 3");
+    EXPECT_WRONG(with("\"materials\": {\"$comment\": {}}"),
+                 "a.json: /materials/$comment: expected a string or an array of strings, found an empty object");
+    EXPECT_WRONG(with("\"film\": {\"$comment\": [\"a\", 1]}"),
+                 "a.json: /film/$comment: expected a string or an array of strings, found an array of 2");
+    EXPECT_WRONG(with("\"$comment\": \"a\", \"$comment\": \"b\""), "a.json: /$comment: duplicate key; give it once");
+}
+
+TEST(SceneSyntax, CommentsLeaveTheHash) {
+    const std::string scene = R"("objects": [{"solid": "cube", "material": "m"}], "materials": {"m": {}}})";
+    EXPECT_EQ(compile_scene<float>(read("{\"$comment\": \"a cube\", " + scene))->hash,
+              compile_scene<float>(read("{" + scene))->hash);
 }
 
 TEST(SceneSyntax, DeepNestingIsNoProblem) {

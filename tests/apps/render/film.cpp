@@ -39,10 +39,8 @@ TEST_F(RenderFilm, ResumeSkipsWhatIsCompleteAndTheSame) {
     EXPECT_TRUE(rendered_again({"--bits", "half"}));
     EXPECT_TRUE(rendered_again({"--aov", "Z"}));
     EXPECT_TRUE(rendered_again({"--crop", "20x10+0+0"}));
-#if CISTULA_WITH_OIIO
     EXPECT_TRUE(rendered_again({"--preview", "a.##.png"}));
     EXPECT_FALSE(rendered_again({"--preview", "a.##.png"}));
-#endif
     put_bytes(file("s.json"), std::string(scene_text).replace(std::string(scene_text).find("0.5, 0.1]"), 3, "0.4"));
     EXPECT_TRUE(rendered_again({}));
     EXPECT_NE(bytes_of(file("a.00.exr")), first);

@@ -98,15 +98,24 @@ TEST(OutputName, FramesToRender) {
                  "-o dir/b.####.exr");
 }
 
-TEST(OutputName, DirectoriesAreAskedForFirst) {
+TEST(OutputName, DirectoriesAreMade) {
     const ScratchDirectory scratch;
-    require_directory(scratch.file("a.exr"));
-    require_directory("a.exr");
-    EXPECT_ERROR(require_directory(scratch.file("none/a.exr")), ExitCode::file,
-                 scratch.file("none/a.exr") + ": cannot be written: there is no directory " + scratch.file("none") +
-                     "; make it first");
+    make_directory_of(scratch.file("a.exr"));
+    make_directory_of("a.exr");
+    EXPECT_TRUE(scratch.names().empty());
+    make_directory_of(scratch.file("new/er/a.exr"));
+    make_directory_of(scratch.file("new/er/a.exr"));
+    EXPECT_EQ(scratch.names(), std::vector<std::string>{"new"});
+    EXPECT_TRUE(std::filesystem::is_directory(scratch.file("new/er")));
+    EXPECT_TRUE(std::filesystem::is_empty(scratch.file("new/er")));
+    make_directories(OutputName(scratch.file("f#/a.exr"), "-o"), {3, 1});
+    for (const char* name : {"f1", "f3"}) EXPECT_TRUE(std::filesystem::is_directory(scratch.file(name))) << name;
+    put_bytes(scratch.file("file"), "");
+    EXPECT_ERROR(make_directory_of(scratch.file("file/a.exr")), ExitCode::file,
+                 scratch.file("file/a.exr") + ": cannot be written: the directory " + scratch.file("file") +
+                     " cannot be made: Not a directory; give another");
     std::filesystem::create_directory(scratch.file("d.exr"));
-    EXPECT_ERROR(require_directory(scratch.file("d.exr")), ExitCode::file,
+    EXPECT_ERROR(make_directory_of(scratch.file("d.exr")), ExitCode::file,
                  scratch.file("d.exr") + ": cannot be written: it is a directory; name a file in it");
 }
 

@@ -351,7 +351,8 @@ TEST_F(PixelReports, RefuseInOneLine) {
     expect_refused({"s.json", "--json", "a.json"}, ExitCode::usage, "--json a.json: is for --pixel X,Y");
     expect_refused({"s.json", "--pixel", "1,2", "--json", "s.json"}, ExitCode::usage,
                    "would be both the scene and --json");
-    expect_refused({"s.json", "--pixel", "1,2", "--json", "none/a.json"}, ExitCode::file, "there is no directory none");
+    expect_refused({"s.json", "--pixel", "1,2", "--json", "s.json/a.json"}, ExitCode::file,
+                   "the directory s.json cannot be made: Not a directory");
     expect_refused({"none.json", "--pixel", "1,2"}, ExitCode::file, "none.json");
     EXPECT_FALSE(exists("a.exr") || exists("a.json"));
 }

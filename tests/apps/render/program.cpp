@@ -90,9 +90,11 @@ TEST_F(RenderProgram, RefusesInOneLine) {
     expect_refused({"none.json", "-o", "a.exr"}, ExitCode::file, "none.json");
     put_bytes(file("bad.json"), R"({"film": {"widht": 3}, "objects": []})");
     expect_refused({"bad.json", "-o", "a.exr"}, ExitCode::usage, "'width'");
-    expect_refused({"s.json", "-o", "none/a.exr"}, ExitCode::file, "there is no directory none");
-    expect_refused({"s.json", "-o", "a.exr", "--stats", "none/a.json"}, ExitCode::file, "there is no directory none");
-    EXPECT_FALSE(exists("a.exr"));
+    expect_refused({"s.json", "-o", "bad.json/a.exr"}, ExitCode::file, "bad.json cannot be made: Not a directory");
+    expect_refused({"s.json", "-o", "a.exr", "--stats", "bad.json/a.json"}, ExitCode::file,
+                   "bad.json cannot be made: Not a directory");
+    expect_refused({"s.json", "-o", "none/a.exr", "--stats", "none/a.exr"}, ExitCode::usage, "would be both");
+    EXPECT_FALSE(exists("a.exr") || exists("none"));
 }
 
 TEST_F(RenderProgram, RefusesNamesThatMeet) {
@@ -181,14 +183,10 @@ TEST_F(RenderProgram, OneFrameOrAllOrSome) {
 }
 
 TEST_F(RenderProgram, Previews) {
-#if CISTULA_WITH_OIIO
     expect_done({"s.json", "-q", "-o", "a.##.exr", "--preview", "p.%d.png"});
     for (const char* name : {"p.0.png", "p.1.png", "p.2.png"})
         EXPECT_EQ(bytes_of(file(name)).substr(1, 3), "PNG") << name;
     EXPECT_FALSE(exists("p.3.png"));
-#else
-    expect_refused({"s.json", "-q", "-o", "a.exr", "--preview", "p.png"}, ExitCode::file, "OpenImageIO");
-#endif
 }
 
 TEST_F(RenderProgram, ReadsStandardInput) {
@@ -218,6 +216,22 @@ TEST_F(RenderProgram, TheSeedsInputGivesTheSeedsFrames) {
         color.texels.emplace_back(channel(image, "R")[i], channel(image, "G")[i], channel(image, "B")[i]);
     write_seed_frame(file("again.out"), color);
     EXPECT_EQ(bytes_of(file("again.out")), bytes);
+}
+
+TEST_F(RenderProgram, MakesTheFoldersOfItsFiles) {
+    expect_done(
+        {"s.json", "-q", "-f", "0", "-o", "images/a.exr", "--preview", "png/a/b.png", "--stats", "json/a.json"});
+    for (const char* name : {"images/a.exr", "png/a/b.png", "json/a.json"}) EXPECT_TRUE(exists(name)) << name;
+    expect_done({"s.json", "-q", "-o", "%d/a.exr"});
+    for (const char* name : {"0/a.exr", "1/a.exr", "2/a.exr"}) EXPECT_TRUE(exists(name)) << name;
+}
+
+TEST_F(RenderProgram, TheExampleOfTheTextInputRuns) {
+    const std::filesystem::path scenes = std::filesystem::path(CISTULA_SOURCE_DIR) / "scenes";
+    std::filesystem::create_directory_symlink(scenes, file("scenes"));
+    expect_done({"-", "-q", "--res", "16x9", "-f", "0,299"}, bytes_of(file("scenes/input.txt")));
+    for (const char* name : {"out/frames/frame0.out", "out/frames/frame299.out"})
+        EXPECT_EQ(bytes_of(file(name)).size(), 8u + 16 * 9 * 4) << name;
 }
 
 TEST_F(RenderProgram, ACropIsTheSameRegion) {

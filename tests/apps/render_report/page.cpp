@@ -6,7 +6,7 @@
 #include "apps/render_report/html.h"
 #include "apps/render_report/html_page.h"
 #include "apps/render_report/measure.h"
-#include "apps/render_report/png.h"
+#include "apps/render_report/image.h"
 #include "apps/render_report/svg_chart.h"
 #include "apps/render_report/target_table.h"
 #include "endless_scene.h"

@@ -1,42 +1,21 @@
-#include "png.h"
-
-#include <png.h>
+#include "image.h"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "scene/srgb_codes.h"
+#include "scene/png.h"
 
 namespace cistula::report {
 namespace {
 
-/// 8-bit pixels in one of libpng's formats; `colors`: the map of an indexed one, RGB.
-Image encode(int width, int height, uint32_t format, const std::vector<uint8_t>& pixels,
-             const std::vector<uint8_t>& colors = {}) {
-    png_image image = {};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = static_cast<png_uint_32>(width);
-    image.height = static_cast<png_uint_32>(height);
-    image.format = format;
-    image.colormap_entries = static_cast<png_uint_32>(colors.size() / 3);
-    const void* map = colors.empty() ? nullptr : colors.data();
-    std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
-    png_alloc_size_t size = bytes.size();
-    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, map))
-        throw std::runtime_error(std::string("libpng: ") + image.message);
-    bytes.resize(size);
-    return {width, height, base64(bytes)};
+Image image_of(uint32_t width, uint32_t height, const std::string& png) {
+    return {static_cast<int>(width), static_cast<int>(height), base64(png)};
 }
 
 }  // namespace
 
 Image to_image(const ColorPicture& linear) {
-    std::vector<uint8_t> pixels;
-    pixels.reserve(3 * linear.texels.size());
-    for (const glm::vec3& texel : linear.texels)
-        for (int c = 0; c < 3; ++c) pixels.push_back(srgb8_from_linear(texel[c]));
-    return encode(static_cast<int>(linear.width), static_cast<int>(linear.height), PNG_FORMAT_RGB, pixels);
+    return image_of(linear.width, linear.height, encode_png(linear));
 }
 
 std::array<uint8_t, 3> heat_color(double place) {
@@ -62,7 +41,8 @@ Image to_heat_image(int width, int height, const std::vector<double>& values) {
         const double place = high > low ? (std::log(std::max(value, 1.0)) - low) / (high - low) : 0;
         pixels.push_back(static_cast<uint8_t>(std::lround(place * (shades - 1))));
     }
-    return encode(width, height, PNG_FORMAT_RGB_COLORMAP, pixels, colors);
+    const uint32_t columns = static_cast<uint32_t>(width), rows = static_cast<uint32_t>(height);
+    return image_of(columns, rows, encode_indexed_png(columns, rows, pixels, colors));
 }
 
 std::string base64(const std::string& bytes) {

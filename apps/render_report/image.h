@@ -1,6 +1,7 @@
 // Small pictures for the page: PNG in memory, as base64.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>

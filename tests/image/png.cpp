@@ -1,0 +1,58 @@
+// What is in the PNGs: the very codes, as libpng reads them.
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <limits>
+
+#include "scene/png.h"
+#include "scene/srgb_codes.h"
+
+namespace cistula {
+namespace {
+
+/// Bytes of red, green and blue, row-major, after the size has been checked.
+std::vector<uint8_t> decoded(const std::string& png, uint32_t width, uint32_t height) {
+    png_image image = {};
+    image.version = PNG_IMAGE_VERSION;
+    EXPECT_TRUE(png_image_begin_read_from_memory(&image, png.data(), png.size())) << image.message;
+    EXPECT_EQ(image.width, width);
+    EXPECT_EQ(image.height, height);
+    image.format = PNG_FORMAT_RGB;
+    std::vector<uint8_t> bytes(PNG_IMAGE_SIZE(image));
+    EXPECT_TRUE(png_image_finish_read(&image, nullptr, bytes.data(), 0, nullptr)) << image.message;
+    return bytes;
+}
+
+TEST(Png, HoldsTheNearestCodes) {
+    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    const ColorPicture picture{
+        2, 2, {{0, 0.5f, 1}, {-1, 100, nan}, {0.2158605f, 0.001f, 0.9f}, {infinity, -infinity, 1e-42f}}};
+    const std::string png = encode_png(picture);
+    EXPECT_EQ(decoded(png, 2, 2), (std::vector<uint8_t>{0, 188, 255, 0, 255, 0, 128, 3, 243, 255, 0, 0}));
+    EXPECT_NE(png.find("sRGB"), std::string::npos);
+    EXPECT_EQ(png, encode_png(picture));
+}
+
+TEST(Png, HoldsEveryCode) {
+    ColorPicture picture{256, 1, {}};
+    std::vector<uint8_t> codes;
+    for (int i = 0; i < 256; ++i) {
+        for (const int code : {i, 255 - i, i ^ 85}) codes.push_back(static_cast<uint8_t>(code));
+        picture.texels.emplace_back(linear_from_srgb8(codes[codes.size() - 3]),
+                                    linear_from_srgb8(codes[codes.size() - 2]), linear_from_srgb8(codes.back()));
+    }
+    EXPECT_EQ(decoded(encode_png(picture), 256, 1), codes);
+}
+
+TEST(Png, IndexedOnesHoldTheirColors) {
+    const std::vector<uint8_t> colors{10, 20, 30, 250, 128, 7, 0, 0, 1};
+    EXPECT_EQ(decoded(encode_indexed_png(2, 2, {2, 0, 1, 1}, colors), 2, 2),
+              (std::vector<uint8_t>{0, 0, 1, 10, 20, 30, 250, 128, 7, 250, 128, 7}));
+}
+
+TEST(Png, SaysWhatLibpngSays) {
+    EXPECT_THROW(encode_png(ColorPicture{0, 0, {}}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace cistula
