@@ -4,11 +4,11 @@
 
 #include <set>
 
-#include "backend_embree/embree_renderer.h"
-#include "cistula/effects.h"
+#include "backend_embree/embree/embree_renderer.h"
+#include "cistula/model/effects.h"
 #include "effect_scenes.h"
 #include "program.h"
-#include "scene/camera_path.h"
+#include "scene/description/camera_path.h"
 
 namespace cistula::bench {
 namespace {

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "backend_embree/embree_tree.h"
+#include "backend_embree/embree/embree_tree.h"
 #include "bumpy_scene.h"
 #include "program.h"
-#include "scene/error.h"
-#include "scene/frame_view.h"
+#include "scene/base/error.h"
+#include "scene/frame/frame_view.h"
 
 namespace cistula::bench {
 namespace {

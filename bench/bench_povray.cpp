@@ -9,9 +9,9 @@
 
 #include "povray_scene.h"
 #include "program.h"
-#include "scene/error.h"
-#include "scene/exr.h"
-#include "scene/read_scene.h"
+#include "scene/base/error.h"
+#include "scene/image/exr.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::bench {
 namespace {

@@ -1,10 +1,10 @@
 // The price of double: frames of scenes/benchmark.json, 640x480, two threads.
 #include <tbb/global_control.h>
 
-#include "backend_embree/embree_renderer.h"
+#include "backend_embree/embree/embree_renderer.h"
 #include "program.h"
-#include "scene/camera_path.h"
-#include "scene/read_scene.h"
+#include "scene/description/camera_path.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::bench {
 namespace {

@@ -1,8 +1,8 @@
 // The sphere that benchmarks of rays are about.
 #pragma once
 
-#include "scene/description.h"
-#include "scene/generated_mesh.h"
+#include "scene/description/description.h"
+#include "testing/generated_mesh.h"
 
 namespace cistula::bench {
 

@@ -1,7 +1,7 @@
 #include "bench/effect_scenes.h"
 
-#include "scene/read_scene.h"
-#include "scene/without_effect.h"
+#include "scene/description/without_effect.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::bench {
 

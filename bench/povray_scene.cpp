@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "scene/error.h"
-#include "scene/frame.h"
-#include "scene/platonic.h"
-#include "scene/scene_source.h"
+#include "scene/base/error.h"
+#include "scene/compile/frame.h"
+#include "scene/compile/scene_source.h"
+#include "scene/description/platonic.h"
 
 namespace cistula::bench {
 namespace {

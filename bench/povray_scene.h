@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "scene/camera_path.h"
-#include "scene/description.h"
+#include "scene/description/camera_path.h"
+#include "scene/description/description.h"
 
 namespace cistula::bench {
 

@@ -9,7 +9,7 @@
 
 #include "apps/common/build_info.h"
 #include "apps/common/machine.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace cistula::bench {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/renderer.h"
+#include "scene/film/renderer.h"
 
 namespace cistula::bench {
 

@@ -3,7 +3,7 @@
 #include <cuda_runtime.h>
 
 #include "bench/seed_baseline_run.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace cistula::seed {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "cistula/portable.h"
+#include "cistula/numerics/portable.h"
 
 namespace cistula::seed {
 

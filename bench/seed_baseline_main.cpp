@@ -17,10 +17,10 @@
 #include "apps/common/machine.h"
 #include "bench/seed_baseline_run.h"
 #include "bench/seed_baseline_scene.h"
-#include "scene/atomic_file.h"
-#include "scene/picture_io.h"
-#include "scene/read_scene.h"
-#include "scene/seed_data.h"
+#include "scene/base/atomic_file.h"
+#include "scene/image/picture_io.h"
+#include "scene/image/seed_data.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::seed {
 namespace {

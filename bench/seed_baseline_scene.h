@@ -3,12 +3,12 @@
 #pragma once
 
 #include "bench/seed_baseline.h"
-#include "scene/camera_path.h"
-#include "scene/frame.h"
-#include "scene/picture.h"
-#include "scene/platonic.h"
-#include "scene/scene_source.h"
-#include "scene/srgb_codes.h"
+#include "scene/compile/frame.h"
+#include "scene/compile/scene_source.h"
+#include "scene/description/camera_path.h"
+#include "scene/description/platonic.h"
+#include "scene/image/picture.h"
+#include "scene/image/srgb_codes.h"
 
 namespace cistula::seed {
 

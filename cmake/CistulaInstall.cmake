@@ -19,10 +19,10 @@ foreach(_component scene embree cuda)  # cuda: whoever links it brings the langu
     endif()
 endforeach()
 if(TARGET cistula_embree)
-    install(FILES backend_embree/embree_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_embree")
+    install(FILES backend_embree/embree/embree_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_embree/embree")
 endif()
 if(TARGET cistula_cuda)
-    install(FILES backend_cuda/cuda_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_cuda")
+    install(FILES backend_cuda/host/cuda_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_cuda/host")
 endif()
 
 set(CISTULA_OIIO_MODULE "")

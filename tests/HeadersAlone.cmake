@@ -14,8 +14,8 @@ function(cistula_headers_alone target suffix)
     target_link_libraries(${target} PRIVATE cistula cistula_warnings)
 endfunction()
 
-file(GLOB core_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/cistula/*.h")
-file(GLOB scene_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/scene/*.h")
+file(GLOB_RECURSE core_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/cistula/*.h")
+file(GLOB_RECURSE scene_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/scene/*.h")
 
 cistula_headers_alone(core_headers_alone cpp ${core_headers})
 if(TARGET cistula_scene)

@@ -2,8 +2,31 @@
 # The rules of the source tree that a compiler does not see: which layer includes which, and what must not be used.
 # usage: check_layering.sh ROOT | --self-test
 set -euo pipefail
-shopt -s nullglob
+shopt -s nullglob globstar
 self=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/$(basename "${BASH_SOURCE[0]}")
+portable=libcore/cistula/numerics/portable.h
+
+# The folders of libcore, bottom to top: each includes itself and those before it.
+core_folders=(
+    numerics   # numbers: exact, portable, the same everywhere
+    model      # what scenes, cameras and pixels are, as arrays and records; which effects there are
+    geometry   # where a ray meets a solid or a triangle
+    shading    # what a point on a face looks like, and how much of a light reaches it
+    traversal  # which solids and triangles a ray meets
+    lights     # lights that are seen themselves
+    transport  # a pixel's tree of rays
+    adaptive   # how many samples a pixel needs
+)
+scene_folders=(
+    base         # errors, files, hashes, boxes
+    description  # a scene as people write it
+    image        # pictures and their files
+    readers      # scene and mesh files to descriptions
+    trees        # trees of boxes
+    film         # what a renderer fills, and its interface
+    compile      # descriptions to the arrays that shading reads
+    frame        # what a camera sees of a compiled scene
+)
 
 fail() {  # fail RULE < matches
     local line
@@ -21,30 +44,60 @@ code() {
 }
 includes() { code '^[ \t]*#[ \t]*include' "$@"; }
 
+# layers NAME FOLDER...: files of libcore/NAME lie in one of the folders and include none that comes later.
+layers() {
+    local name=$1 folder file found=() later
+    shift
+    for file in libcore/"$name"/*; do
+        [[ " $* " == *" ${file##*/} "* && -d $file ]] || echo "$file" | fail "libcore/$name has the folders $*, and nothing beside them"
+    done
+    while [ $# -gt 0 ]; do
+        folder=$1
+        shift
+        found=(libcore/"$name/$folder"/*)
+        later="$*"
+        [ -z "$later" ] || includes "${found[@]}" | { grep -E "\"$name/(${later// /|})/" || true; } |
+            fail "$name/$folder lies below ${later// /, }"
+        # A folder that is not listed, or none.
+        includes "${found[@]}" | { grep -E "\"$name/[a-z0-9_]+\.h\"" || true; } | fail "libcore/$name has no files beside its folders"
+    done
+}
+
 check() {
     cd "$1"
-    local core=(libcore/cistula/*) scene=(libcore/scene/*) embree=(backend_embree/*.{h,cpp}) cuda=(backend_cuda/*.{h,cuh,cpp,cu,cu.in})
-    local headers=({libcore/cistula,libcore/scene,backend_embree,backend_cuda,apps/*}/*.h)
-    if [ ${#core[@]} -eq 0 ] || [ ! -e libcore/cistula/portable.h ]; then
-        echo "no libcore/cistula/portable.h under $1" >&2
+    local core=(libcore/cistula/*/*) scene=(libcore/scene/*/*) embree=(backend_embree/**/*.{h,cpp})
+    local cuda=(backend_cuda/**/*.{h,cuh,cpp,cu,cu.in}) apps=(apps/**/*.{h,cpp,cu,cpp.in,cu.in}) bench=(bench/**/*.{h,cpp,cu})
+    local testing=(testing/**/*.{h,cpp,cu})
+    local headers=({libcore,backend_embree,backend_cuda,apps,testing}/**/*.h)
+    if [ ${#core[@]} -eq 0 ] || [ ! -e "$portable" ]; then
+        echo "no $portable under $1" >&2
         exit 2
     fi
 
+    layers cistula "${core_folders[@]}"
+    layers scene "${scene_folders[@]}"
+
     # Standard headers have neither a slash nor, but for C's, a suffix.
-    includes "${core[@]}" | { grep -vE '#[ \t]*include[ \t]*("cistula/[a-z0-9_]+\.h"|<glm/[a-z0-9_/]+\.hpp>|<[a-z_0-9]+>)' || true; } |
+    includes "${core[@]}" | { grep -vE '#[ \t]*include[ \t]*("cistula/[a-z0-9_/]+\.h"|<glm/[a-z0-9_/]+\.hpp>|<[a-z_0-9]+>)' || true; } |
         fail 'libcore/cistula includes "cistula/...", the standard library and GLM, nothing else'
-    includes "${scene[@]}" | { grep -E 'backend_|apps/|["<]cuda' || true; } |
+    includes "${scene[@]}" | { grep -E 'backend_|apps/|testing/|["<]cuda' || true; } |
         fail 'libcore/scene knows neither backends nor programs'
-    includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|["<]cuda' || true; } |
+    includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|testing/|["<]cuda' || true; } |
         fail 'backend_embree knows neither backend_cuda nor programs'
-    includes "${cuda[@]}" | { grep -E 'backend_embree|apps/|bench/|embree[34]/' || true; } |
+    includes "${cuda[@]}" | { grep -E 'backend_embree|apps/|bench/|testing/|embree[34]/' || true; } |
         fail 'backend_cuda knows neither backend_embree nor programs'
     # Quoted are cistula, scene and itself.
-    includes "${cuda[@]}" | { grep -E '#[ \t]*include[ \t]*"' || true; } | { grep -vE '"(cistula|scene|backend_cuda)/[a-z0-9_]+\.(h|cuh)"' || true; } |
+    includes "${cuda[@]}" | { grep -E '#[ \t]*include[ \t]*"' || true; } | { grep -vE '"(cistula|scene|backend_cuda)/[a-z0-9_/]+\.(h|cuh)"' || true; } |
         fail 'backend_cuda includes "cistula/...", "scene/...", "backend_cuda/..." and installed libraries'
+    includes "${apps[@]}" | { grep -E '"(bench|tests|testing/support)/' || true; } |
+        fail 'programs know neither benchmarks nor tests'
+    includes "${bench[@]}" | { grep -E '"(tests|testing/support)/' || true; } |
+        fail 'benchmarks know no tests'
+    includes "${testing[@]}" | { grep -E '"(bench|tests|apps/[a-z_]+)/' || true; } | { grep -v '"apps/common/' || true; } |
+        fail 'testing knows neither benchmarks nor tests, and of programs what they share'
 
     for header in "${headers[@]}"; do
-        if [ "$header" != libcore/cistula/portable.h ]; then
+        if [ "$header" != "$portable" ]; then
             { grep -HnE '__CUDACC__|__CUDA_ARCH__|__NVCC__' "$header" || true; } |
                 fail 'portable.h is the only header that asks which compiler it is in'
         fi
@@ -53,18 +106,18 @@ check() {
 
     local functions='(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|pow|exp|exp2|expm1|log|log2|log10|log1p|cbrt|hypot)'
     code "(std|glm)::${functions}f?[ \t]*[(]" "${core[@]}" "${scene[@]}" |
-        fail 'libm differs between systems: use cistula/elementary.h and cistula/trigonometry.h'
+        fail 'libm differs between systems: use elementary.h and trigonometry.h of cistula/numerics'
     code 'glm::(refract|reflect|normalize|dot|cross|length|distance|mix|clamp|min|max|inversesqrt|mod|fract)[ \t]*[(]' "${core[@]}" |
-        fail "of GLM only types and exact operations: products that round are spelled out in cistula/vec.h"
+        fail "of GLM only types and exact operations: products that round are spelled out in cistula/numerics/vec.h"
     code 'std::f?(min|max)[ \t]*[(<]' "${core[@]}" |
-        fail 'library forms of min and max differ on NaN: use least and greatest of cistula/real.h'
+        fail 'library forms of min and max differ on NaN: use least and greatest of cistula/numerics/real.h'
 
     # Files that name the flags in order to refuse them do not count, nor do records of what was measured.
     { grep -rnE --include='*' -e '-ffast-math|-Ofast|-funsafe-math|-fassociative-math|-freciprocal-math|-ffinite-math-only|-use_fast_math' \
-        $(for path in libcore backend_embree backend_cuda apps tests bench cmake CMakeLists.txt CMakePresets.json Makefile; do
+        $(for path in libcore backend_embree backend_cuda testing apps tests bench cmake CMakeLists.txt CMakePresets.json Makefile; do
             [ -e "$path" ] && echo "$path"
         done) || true; } |
-        { grep -vE '^(bench/results/[^:]*|libcore/cistula/portable\.h|cmake/CistulaContract\.cmake|tests/check_layering\.sh|bench/gpu/CMakeLists\.txt):' || true; } |
+        { grep -vE '^(bench/results/[^:]*|libcore/cistula/numerics/portable\.h|cmake/CistulaContract\.cmake|tests/check_layering\.sh|bench/gpu/CMakeLists\.txt):' || true; } |
         fail 'fast-math flags break the floating-point contract'
     # What exactness costs is measured by a program that nothing else builds, links or installs.
     local fast=bench/gpu/CMakeLists.txt
@@ -84,10 +137,10 @@ self_test() {
     trap 'rm -rf "$tree"' EXIT
     fresh() {
         rm -rf "${tree:?}/t"
-        mkdir -p "$tree"/t/{libcore/cistula,libcore/scene,backend_embree,backend_cuda,apps/render,bench/gpu,cmake}
-        printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$tree/t/libcore/cistula/portable.h"
+        mkdir -p "$tree"/t/{libcore/cistula/{numerics,model,lights},libcore/scene/{base,frame},backend_embree/host,backend_cuda/kernels,testing/support,apps/render,bench/gpu,cmake}
+        printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$tree/t/$portable"
         printf 'add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu)\ntarget_compile_options(gpu_check_fast PRIVATE --use_fast_math)\n' >"$tree/t/bench/gpu/CMakeLists.txt"
-        printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/portable.h"\n// not std::pow(x)\n' >"$tree/t/libcore/cistula/good.h"
+        printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/numerics/portable.h"\n// not std::pow(x)\n' >"$tree/t/libcore/cistula/model/good.h"
     }
     breaks() {  # breaks FILE TEXT
         fresh
@@ -100,32 +153,47 @@ self_test() {
     }
     fresh
     "$self" "$tree/t" || { echo "a good tree was refused"; failures=1; }
-    breaks libcore/cistula/a.h '#include <embree3/rtcore.h>'
-    breaks libcore/cistula/a.h '#include "scene/description.h"'
-    breaks libcore/cistula/a.h '#include <cuda_runtime.h>'
-    breaks libcore/cistula/a.h '#include <immintrin.h>'
-    breaks libcore/scene/a.cpp '#include "backend_embree/embree_renderer.h"'
-    breaks libcore/scene/a.h '#  include "apps/render/options.h"'
-    breaks backend_embree/a.cpp '#include "backend_cuda/cuda_renderer.h"'
-    breaks backend_embree/a.h '#include "apps/render/options.h"'
-    breaks backend_cuda/a.cu '#include "backend_embree/embree_renderer.h"'
-    breaks backend_cuda/a.cuh '#include "embree_renderer.h"'
-    breaks backend_cuda/a.cu.in '#include "bench/gpu/record.h"'
-    breaks backend_cuda/a.h '#include <embree3/rtcore.h>'
-    breaks libcore/cistula/a.h '#ifdef __CUDA_ARCH__'
+    breaks libcore/cistula/model/a.h '#include <embree3/rtcore.h>'
+    breaks libcore/cistula/model/a.h '#include "scene/description/description.h"'
+    breaks libcore/cistula/model/a.h '#include <cuda_runtime.h>'
+    breaks libcore/cistula/model/a.h '#include <immintrin.h>'
+    breaks libcore/scene/base/a.cpp '#include "backend_embree/embree/embree_renderer.h"'
+    breaks libcore/scene/base/a.h '#  include "apps/render/options.h"'
+    breaks backend_embree/host/a.cpp '#include "backend_cuda/host/cuda_renderer.h"'
+    breaks backend_embree/host/a.h '#include "apps/render/options.h"'
+    breaks backend_cuda/kernels/a.cu '#include "backend_embree/embree/embree_renderer.h"'
+    breaks backend_cuda/kernels/a.cuh '#include "embree_renderer.h"'
+    breaks backend_cuda/kernels/a.cu.in '#include "bench/gpu/record.h"'
+    breaks backend_cuda/kernels/a.h '#include <embree3/rtcore.h>'
+    breaks libcore/cistula/model/a.h '#include "cistula/lights/seen_light.h"'
+    breaks libcore/cistula/numerics/a.h '#  include "cistula/model/good.h"'
+    breaks libcore/cistula/model/a.h '#include "cistula/portable.h"'
+    breaks libcore/cistula/a.h '#include "cistula/numerics/portable.h"'
+    breaks libcore/scene/base/a.h '#include "scene/film/film.h"'
+    breaks libcore/scene/base/a.cpp '#include "scene/frame/frame_view.h"'
+    breaks libcore/scene/frame/a.cpp '#include "scene/film.h"'
+    breaks libcore/scene/frame/a.cpp '#include "testing/generated_scene.h"'
+    breaks backend_embree/host/a.cpp '#include "testing/generated_scene.h"'
+    breaks backend_cuda/kernels/a.h '#include "testing/draw/draw.h"'
+    breaks apps/render/a.cpp '#include "bench/gpu/record.h"'
+    breaks apps/render/a.cpp '#include "testing/support/gpu.h"'
+    breaks bench/gpu/a.cpp '#include "tests/gpu.h"'
+    breaks testing/a.cpp '#include "bench/gpu/record.h"'
+    breaks testing/support/a.h '#include "apps/render/options.h"'
+    breaks libcore/cistula/model/a.h '#ifdef __CUDA_ARCH__'
     breaks apps/render/a.h '#ifdef __CUDACC__'
-    breaks libcore/cistula/a.h 'inline float f(float x) { return std::sin(x); }'
-    breaks libcore/scene/a.cpp 'double f(double x) { return std::pow(x, 2.4); }'
-    breaks libcore/cistula/a.h 'auto f = glm::refract(d, n, eta);'
-    breaks libcore/cistula/a.h 'float f(float x) { return std::max(x, 0.0f); }'
+    breaks libcore/cistula/model/a.h 'inline float f(float x) { return std::sin(x); }'
+    breaks libcore/scene/base/a.cpp 'double f(double x) { return std::pow(x, 2.4); }'
+    breaks libcore/cistula/model/a.h 'auto f = glm::refract(d, n, eta);'
+    breaks libcore/cistula/model/a.h 'float f(float x) { return std::max(x, 0.0f); }'
     breaks cmake/a.cmake 'add_compile_options(-ffast-math)'
     breaks backend_cuda/CMakeLists.txt 'target_compile_options(x PRIVATE --use_fast_math)'
     breaks bench/gpu/CMakeLists.txt 'target_compile_options(gpu_check PRIVATE --use_fast_math)'
     breaks bench/gpu/CMakeLists.txt "add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu --use_fast_math)
 install(TARGETS gpu_check_fast)"
-    breaks backend_embree/a.cpp '__attribute__((optimize("fast-math"))) void f();'
+    breaks backend_embree/host/a.cpp '__attribute__((optimize("fast-math"))) void f();'
     fresh
-    printf 'int x;\n' >"$tree/t/libcore/scene/a.h"
+    printf 'int x;\n' >"$tree/t/libcore/scene/base/a.h"
     if "$self" "$tree/t" >/dev/null; then echo "not detected: no #pragma once"; failures=$((failures + 1)); fi
     echo "$((rule + 1)) broken trees tried, $failures failures"
     [ "$failures" -eq 0 ]

@@ -3,10 +3,10 @@
 
 #include <iostream>
 
-#include "golden.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
-#include "scene/exr.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/image/exr.h"
+#include "testing/support/golden.h"
 
 using namespace cistula;
 namespace fs = std::filesystem;

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "apps/common/command_line.h"
-#include "backend_embree/embree_renderer.h"
-#include "scene/error.h"
-#include "scene/suggest.h"
+#include "backend_embree/embree/embree_renderer.h"
+#include "scene/base/error.h"
+#include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {

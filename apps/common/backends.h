@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "backend_cuda/cuda_renderer.h"
-#include "scene/compiled_scene.h"
-#include "scene/renderer.h"
+#include "backend_cuda/host/cuda_renderer.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <new>
 
-#include "scene/error.h"
-#include "scene/suggest.h"
+#include "scene/base/error.h"
+#include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "cistula/pixel_record.h"
+#include "cistula/model/pixel_record.h"
 
 namespace cistula {
 

@@ -14,8 +14,8 @@
 #include "apps/common/film_progress.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/timing.h"
-#include "scene/error.h"
-#include "scene/exr.h"
+#include "scene/base/error.h"
+#include "scene/image/exr.h"
 
 namespace cistula {
 namespace {

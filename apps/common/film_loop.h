@@ -8,8 +8,8 @@
 #include "apps/common/frame_writer.h"
 #include "apps/common/output_name.h"
 #include "apps/common/stats.h"
-#include "scene/description.h"
-#include "scene/renderer.h"
+#include "scene/description/description.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 

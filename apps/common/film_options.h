@@ -5,8 +5,8 @@
 
 #include "apps/common/backends.h"
 #include "apps/common/status_line.h"
-#include "scene/film_picture.h"
-#include "scene/renderer.h"
+#include "scene/film/film_picture.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 

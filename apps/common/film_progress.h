@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/common/status_line.h"
-#include "scene/renderer.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <unordered_set>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace cistula {
 namespace {

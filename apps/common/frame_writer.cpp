@@ -4,9 +4,9 @@
 
 #include "apps/common/output_name.h"
 #include "apps/common/timing.h"
-#include "scene/exr.h"
-#include "scene/picture_io.h"
-#include "scene/seed_data.h"
+#include "scene/image/exr.h"
+#include "scene/image/picture_io.h"
+#include "scene/image/seed_data.h"
 
 namespace cistula {
 namespace {

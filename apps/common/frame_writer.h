@@ -14,8 +14,8 @@
 
 #include "apps/common/header_attributes.h"
 #include "apps/common/stats.h"
-#include "scene/film.h"
-#include "scene/film_picture.h"
+#include "scene/film/film.h"
+#include "scene/film/film_picture.h"
 
 namespace cistula {
 

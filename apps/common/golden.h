@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "scene/camera_path.h"
-#include "scene/description.h"
-#include "scene/film_picture.h"
-#include "scene/renderer.h"
+#include "scene/description/camera_path.h"
+#include "scene/description/description.h"
+#include "scene/film/film_picture.h"
+#include "scene/film/renderer.h"
 
 namespace cistula::golden {
 

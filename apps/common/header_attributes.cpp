@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "scene/fnv128.h"
+#include "scene/base/fnv128.h"
 
 namespace cistula {
 namespace {

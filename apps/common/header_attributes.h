@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "scene/camera_path.h"
-#include "scene/picture.h"
-#include "scene/renderer.h"
+#include "scene/description/camera_path.h"
+#include "scene/film/renderer.h"
+#include "scene/image/picture.h"
 
 namespace cistula {
 

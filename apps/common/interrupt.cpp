@@ -3,7 +3,7 @@
 #include <unistd.h>
 #include <csignal>
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace cistula {
 namespace {

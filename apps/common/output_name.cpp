@@ -7,8 +7,8 @@
 #include <map>
 #include <numeric>
 
-#include "scene/error.h"
-#include "scene/file_bytes.h"
+#include "scene/base/error.h"
+#include "scene/base/file_bytes.h"
 
 namespace cistula {
 namespace {

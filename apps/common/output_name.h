@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/description.h"
+#include "scene/description/description.h"
 
 namespace cistula {
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "scene/film.h"
+#include "scene/film/film.h"
 
 namespace cistula {
 

@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "apps/common/run_context.h"
-#include "scene/required_effects.h"
+#include "scene/compile/required_effects.h"
 
 namespace cistula {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "apps/common/film_options.h"
 #include "apps/common/target.h"
-#include "scene/film.h"
-#include "scene/renderer.h"
+#include "scene/film/film.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "apps/common/stats.h"
-#include "cistula/lattice_settings.h"
-#include "cistula/path_hash.h"
+#include "cistula/adaptive/path_hash.h"
+#include "cistula/model/lattice_settings.h"
 
 namespace cistula {
 

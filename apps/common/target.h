@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/film.h"
-#include "scene/renderer.h"
+#include "scene/film/film.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 

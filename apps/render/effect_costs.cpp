@@ -3,8 +3,8 @@
 #include <bit>
 
 #include "apps/common/timing.h"
-#include "scene/error.h"
-#include "scene/without_effect.h"
+#include "scene/base/error.h"
+#include "scene/description/without_effect.h"
 
 namespace cistula {
 namespace {

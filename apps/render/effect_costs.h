@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "apps/common/step_progress.h"
-#include "scene/description.h"
-#include "scene/renderer.h"
-#include "scene/required_effects.h"
+#include "scene/compile/required_effects.h"
+#include "scene/description/description.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 

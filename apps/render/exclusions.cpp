@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/common/command_line.h"
-#include "scene/suggest.h"
+#include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "effect_costs.h"
-#include "scene/required_effects.h"
+#include "scene/compile/required_effects.h"
 
 namespace cistula {
 

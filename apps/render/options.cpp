@@ -8,11 +8,11 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/frame_list.h"
-#include "cistula/effects.h"
-#include "cistula/lattice_settings.h"
-#include "cistula/ray_tree.h"
+#include "cistula/model/effects.h"
+#include "cistula/model/lattice_settings.h"
+#include "cistula/transport/ray_tree.h"
 #include "exclusions.h"
-#include "scene/suggest.h"
+#include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {

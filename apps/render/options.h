@@ -8,8 +8,8 @@
 
 #include "apps/common/film_options.h"
 #include "apps/common/picture_size.h"
-#include "scene/film_picture.h"
-#include "scene/renderer.h"
+#include "scene/film/film_picture.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "options.h"
-#include "scene/pixel_tree.h"
-#include "scene/scene_names.h"
+#include "scene/compile/scene_names.h"
+#include "scene/film/pixel_tree.h"
 
 namespace cistula {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/picture.h"
+#include "scene/image/picture.h"
 
 namespace cistula {
 

@@ -9,11 +9,11 @@
 #include "apps/common/command_line.h"
 #include "apps/common/golden.h"
 #include "report.h"
-#include "scene/atomic_file.h"
-#include "scene/exr.h"
-#include "scene/file_bytes.h"
-#include "scene/read_scene.h"
-#include "scene/suggest.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/file_bytes.h"
+#include "scene/base/suggest.h"
+#include "scene/image/exr.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula {
 namespace {

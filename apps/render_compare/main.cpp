@@ -4,9 +4,9 @@
 #include "golden_run.h"
 #include "options.h"
 #include "report.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
-#include "scene/exr.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/image/exr.h"
 
 namespace cistula {
 namespace {

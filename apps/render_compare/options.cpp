@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
-#include "scene/file_bytes.h"
+#include "scene/base/file_bytes.h"
 
 namespace cistula {
 namespace {

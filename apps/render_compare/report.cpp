@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "scene/suggest.h"
+#include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "apps/common/describe_flags.h"
 #include "apps/common/timing.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace cistula::report {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "apps/common/step_progress.h"
 #include "renderers.h"
-#include "scene/camera_path.h"
-#include "scene/film.h"
+#include "scene/description/camera_path.h"
+#include "scene/film/film.h"
 
 namespace cistula::report {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/png.h"
+#include "scene/image/png.h"
 
 namespace cistula::report {
 namespace {

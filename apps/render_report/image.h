@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "record.h"
-#include "scene/picture.h"
+#include "scene/image/picture.h"
 
 namespace cistula::report {
 

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "scene/compiled_scene.h"
-#include "scene/read_scene.h"
-#include "scene/required_effects.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/required_effects.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::report {
 namespace {

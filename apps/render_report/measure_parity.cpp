@@ -1,9 +1,9 @@
 // The same frame by every renderer that this machine has.
-#include "backend_embree/embree_renderer.h"
-#include "measure.h"
+#include "backend_embree/embree/embree_renderer.h"
 #include "image.h"
-#include "scene/film_difference.h"
-#include "scene/film_picture.h"
+#include "measure.h"
+#include "scene/film/film_difference.h"
+#include "scene/film/film_picture.h"
 #include "small_frame.h"
 
 namespace cistula::report {

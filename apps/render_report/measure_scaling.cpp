@@ -5,10 +5,10 @@
 #include <filesystem>
 
 #include "measure.h"
-#include "scene/error.h"
-#include "scene/generated_mesh.h"
-#include "scene/platonic.h"
-#include "scene/read_scene.h"
+#include "scene/base/error.h"
+#include "scene/description/platonic.h"
+#include "scene/readers/read_scene.h"
+#include "testing/generated_mesh.h"
 
 namespace cistula::report {
 namespace {

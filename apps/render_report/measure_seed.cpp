@@ -5,10 +5,10 @@
 #include <filesystem>
 
 #include "measure.h"
-#include "scene/error.h"
-#include "scene/file_bytes.h"
-#include "scene/read_scene.h"
-#include "scene/suggest.h"
+#include "scene/base/error.h"
+#include "scene/base/file_bytes.h"
+#include "scene/base/suggest.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::report {
 namespace {

@@ -9,8 +9,8 @@
 #include "apps/common/target.h"
 #include "measure.h"
 #include "reference.h"
-#include "scene/error.h"
-#include "scene/film_picture.h"
+#include "scene/base/error.h"
+#include "scene/film/film_picture.h"
 #include "sweep_plan.h"
 
 namespace cistula::report {

@@ -6,13 +6,13 @@
 
 #include "apps/common/header_attributes.h"
 #include "apps/common/timing.h"
-#include "cistula/effects.h"
-#include "measure.h"
+#include "cistula/model/effects.h"
 #include "image.h"
-#include "scene/error.h"
-#include "scene/exr.h"
-#include "scene/film_picture.h"
-#include "scene/required_effects.h"
+#include "measure.h"
+#include "scene/base/error.h"
+#include "scene/compile/required_effects.h"
+#include "scene/film/film_picture.h"
+#include "scene/image/exr.h"
 #include "small_frame.h"
 
 namespace cistula::report {

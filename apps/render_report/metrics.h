@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "record_json.h"
-#include "scene/film.h"
+#include "scene/film/film.h"
 
 namespace cistula::report {
 

@@ -9,7 +9,7 @@
 #include "apps/common/command_line.h"
 #include "apps/common/picture_size.h"
 #include "reference.h"
-#include "scene/suggest.h"
+#include "scene/base/suggest.h"
 
 namespace cistula::report {
 namespace {

@@ -12,10 +12,10 @@
 #include "html_page.h"
 #include "measure.h"
 #include "options.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
-#include "scene/file_bytes.h"
-#include "scene/suggest.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/base/file_bytes.h"
+#include "scene/base/suggest.h"
 
 namespace cistula::report {
 namespace {

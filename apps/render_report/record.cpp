@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "apps/common/run_context.h"
-#include "scene/error.h"
-#include "scene/suggest.h"
+#include "scene/base/error.h"
+#include "scene/base/suggest.h"
 #include "target_table.h"
 
 namespace cistula {

@@ -9,11 +9,11 @@
 #include "apps/common/build_info.h"
 #include "apps/common/header_attributes.h"
 #include "apps/common/timing.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
-#include "scene/file_bytes.h"
-#include "scene/fnv128.h"
-#include "scene/suggest.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/base/file_bytes.h"
+#include "scene/base/fnv128.h"
+#include "scene/base/suggest.h"
 
 namespace cistula::report {
 namespace {

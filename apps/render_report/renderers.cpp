@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "apps/common/timing.h"
-#include "scene/compiled_scene.h"
+#include "scene/compile/compiled_scene.h"
 
 namespace cistula::report {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "apps/common/backends.h"
 #include "record.h"
-#include "scene/description.h"
+#include "scene/description/description.h"
 
 namespace cistula::report {
 

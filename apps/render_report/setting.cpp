@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cistula/ray_tree.h"
+#include "cistula/transport/ray_tree.h"
 
 namespace cistula::report {
 

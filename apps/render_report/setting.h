@@ -5,7 +5,7 @@
 #include <string>
 
 #include "record_json.h"
-#include "scene/renderer.h"
+#include "scene/film/renderer.h"
 
 namespace cistula::report {
 

@@ -3,7 +3,7 @@
 // CMake finds the groups and compiles each once a precision for the host, and where there is nvcc for devices.
 #pragma once
 
-#include "backend_embree/embree_api.h"
+#include "backend_embree/embree/embree_api.h"
 
 #include <vector>
 

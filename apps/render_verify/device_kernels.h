@@ -5,7 +5,7 @@
 
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/device_run.h"
-#include "backend_cuda/cuda_check.h"
+#include "backend_cuda/host/cuda_check.h"
 
 namespace cistula::verify {
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "backend_cuda/cuda_resources.h"
-#include "scene/compiled_scene.h"
-#include "scene/scene_arena.h"
+#include "backend_cuda/host/cuda_resources.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/scene_arena.h"
 
 namespace cistula::verify {
 namespace {

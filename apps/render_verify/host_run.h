@@ -9,8 +9,8 @@
 #include <cstring>
 
 #include "apps/render_verify/case_table.h"
-#include "backend_embree/embree_intersector.h"
-#include "backend_embree/frame_loop.h"
+#include "backend_embree/embree/embree_intersector.h"
+#include "backend_embree/host/frame_loop.h"
 
 namespace cistula::verify {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "apps/common/command_line.h"
-#include "scene/suggest.h"
+#include "scene/base/suggest.h"
 
 namespace cistula::verify {
 namespace {

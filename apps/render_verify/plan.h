@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "scene/compiled_scene.h"
-#include "scene/description.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/description/description.h"
 
 namespace cistula::verify {
 

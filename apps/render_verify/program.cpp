@@ -6,8 +6,8 @@
 #include "apps/common/command_line.h"
 #include "apps/common/step_progress.h"
 #include "apps/render_verify/report.h"
-#include "scene/atomic_file.h"
-#include "scene/error.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
 
 namespace cistula::verify {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "apps/render_verify/plan.h"
 #include "apps/render_verify/setup.h"
-#include "backend_embree/embree_tree.h"
+#include "backend_embree/embree/embree_tree.h"
 
 namespace cistula::verify {
 

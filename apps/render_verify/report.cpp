@@ -8,7 +8,7 @@
 
 #include "apps/common/build_info.h"
 #include "apps/common/machine.h"
-#include "scene/suggest.h"
+#include "scene/base/suggest.h"
 
 namespace cistula::verify {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "apps/common/backends.h"
 #include "apps/render_verify/ready_part.h"
-#include "backend_embree/embree_renderer.h"
+#include "backend_embree/embree/embree_renderer.h"
 
 namespace cistula::verify {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "apps/common/step_progress.h"
 #include "apps/render_verify/case_table.h"
-#include "scene/renderer.h"
+#include "scene/film/renderer.h"
 
 namespace cistula::verify {
 

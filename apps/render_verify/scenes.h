@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "apps/render_verify/plan.h"
-#include "scene/generated_mesh.h"
-#include "scene/platonic.h"
-#include "scene/rotation.h"
+#include "scene/description/platonic.h"
+#include "scene/description/rotation.h"
+#include "testing/generated_mesh.h"
 
 namespace cistula::verify {
 

@@ -2,8 +2,8 @@
 // draws.
 #pragma once
 
-#include "bench/gpu/function_draw.h"
-#include "cistula/bvh.h"
+#include "cistula/traversal/bvh.h"
+#include "testing/draw/draw.h"
 
 namespace cistula::verify {
 

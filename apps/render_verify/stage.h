@@ -3,10 +3,10 @@
 
 #include <functional>
 
-#include "scene/compiled_scene.h"
-#include "scene/description.h"
-#include "scene/film.h"
-#include "scene/renderer.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/description/description.h"
+#include "scene/film/film.h"
+#include "scene/film/renderer.h"
 
 namespace cistula::verify {
 

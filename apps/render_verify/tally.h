@@ -2,7 +2,7 @@
 // order.
 #pragma once
 
-#include "cistula/real.h"
+#include "cistula/numerics/real.h"
 
 namespace cistula::verify {
 

@@ -4,13 +4,13 @@
 
 #include <array>
 
-#include "backend_cuda/cuda_renderer.h"
+#include "backend_cuda/host/cuda_renderer.h"
 #include "bench/effect_scenes.h"
-#include "cistula/effects.h"
-#include "cistula/real.h"
-#include "scene/camera_path.h"
-#include "scene/compiled_scene.h"
-#include "scene/film_picture.h"
+#include "cistula/model/effects.h"
+#include "cistula/numerics/real.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/description/camera_path.h"
+#include "scene/film/film_picture.h"
 
 namespace cistula::bench {
 namespace {

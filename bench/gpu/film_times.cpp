@@ -11,8 +11,8 @@
 #include "apps/common/film_loop.h"
 #include "apps/common/frame_writer.h"
 #include "apps/common/timing.h"
-#include "backend_cuda/cuda_renderer.h"
-#include "scene/read_scene.h"
+#include "backend_cuda/host/cuda_renderer.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::bench {
 namespace {

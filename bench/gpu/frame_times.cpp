@@ -4,10 +4,10 @@
 
 #include <chrono>
 
-#include "backend_cuda/cuda_renderer.h"
-#include "scene/camera_path.h"
-#include "scene/film_picture.h"
-#include "scene/read_scene.h"
+#include "backend_cuda/host/cuda_renderer.h"
+#include "scene/description/camera_path.h"
+#include "scene/film/film_picture.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::bench {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "bench/gpu/record.h"
+#include "testing/parity/record.h"
 
 namespace cistula::bench {
 

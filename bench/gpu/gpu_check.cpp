@@ -4,15 +4,15 @@
 
 #include <cstdio>
 
-#include "backend_cuda/cuda_renderer.h"
+#include "backend_cuda/host/cuda_renderer.h"
 #include "bench/gpu/effect_times.h"
 #include "bench/gpu/film_times.h"
 #include "bench/gpu/frame_times.h"
-#include "bench/gpu/function_parity.h"
-#include "bench/gpu/image_parity.h"
 #include "bench/gpu/ray_times.h"
-#include "bench/gpu/record.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
+#include "testing/parity/function_parity.h"
+#include "testing/parity/image_parity.h"
+#include "testing/parity/record.h"
 
 namespace cistula::bench {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "backend_cuda/cuda_renderer.h"
+#include "backend_cuda/host/cuda_renderer.h"
 #include "bench/gpu/frame_times.h"
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 int main(int argc, char** argv) {
     using namespace cistula;

@@ -3,7 +3,7 @@
 
 #include <driver_types.h>
 
-#include "bench/gpu/ray_work.h"
+#include "testing/parity/ray_work.h"
 
 namespace cistula::bench {
 

@@ -6,12 +6,12 @@
 #include <chrono>
 #include <memory>
 
-#include "backend_cuda/cuda_resources.h"
+#include "backend_cuda/host/cuda_resources.h"
 #include "bench/bumpy_scene.h"
-#include "bench/gpu/ray_compare.h"
 #include "bench/gpu/ray_kernels.h"
-#include "scene/frame_view.h"
-#include "scene/scene_arena.h"
+#include "scene/compile/scene_arena.h"
+#include "scene/frame/frame_view.h"
+#include "testing/parity/ray_compare.h"
 
 namespace cistula::bench {
 namespace {

@@ -1,6 +1,6 @@
 // The ray benchmark's kernels: those that are timed read a ray, trace it and write what it found.
-#include "backend_cuda/cuda_check.h"
-#include "backend_cuda/kernel_parts.cuh"
+#include "backend_cuda/host/cuda_check.h"
+#include "backend_cuda/kernels/kernel_parts.cuh"
 #include "bench/gpu/ray_kernels.h"
 
 namespace cistula::bench {

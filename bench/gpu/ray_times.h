@@ -1,7 +1,7 @@
 // How fast rays are traced through a large mesh, and whether they find what the host finds.
 #pragma once
 
-#include "bench/gpu/record.h"
+#include "testing/parity/record.h"
 
 namespace cistula::bench {
 

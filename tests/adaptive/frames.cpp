@@ -2,14 +2,14 @@
 // is reached.
 #include <gtest/gtest.h>
 
-#include "cistula/adaptive_pixel.h"
-#include "golden.h"
-#include "scene/film_difference.h"
-#include "scene/frame_view.h"
-#include "scene/generated_scene.h"
-#include "scene/put_pixels.h"
-#include "scene/without_effect.h"
-#include "support_scene.h"
+#include "cistula/adaptive/adaptive_pixel.h"
+#include "scene/description/without_effect.h"
+#include "scene/film/film_difference.h"
+#include "scene/film/put_pixels.h"
+#include "scene/frame/frame_view.h"
+#include "testing/generated_scene.h"
+#include "testing/support/golden.h"
+#include "testing/support/scene.h"
 
 using namespace cistula;
 

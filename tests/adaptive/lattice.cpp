@@ -4,8 +4,8 @@
 #include <array>
 #include <set>
 
-#include "cistula/lattice.h"
-#include "support_scene.h"
+#include "cistula/adaptive/lattice.h"
+#include "testing/support/scene.h"
 
 using namespace cistula;
 

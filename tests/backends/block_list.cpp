@@ -5,10 +5,10 @@
 #include <bit>
 #include <set>
 
-#include "backend_cuda/block_list.h"
-#include "cistula/constant_scene.h"
-#include "support_camera.h"
-#include "support_scene.h"
+#include "backend_cuda/host/block_list.h"
+#include "cistula/model/constant_scene.h"
+#include "testing/support/camera.h"
+#include "testing/support/scene.h"
 
 using namespace cistula;
 

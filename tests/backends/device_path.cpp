@@ -5,14 +5,14 @@
 #include <type_traits>
 #include <utility>
 
-#include "cistula/bvh.h"
-#include "cistula/constant_scene.h"
-#include "golden.h"
-#include "scene/constant_scene.h"
-#include "scene/frame_view.h"
-#include "scene/generated_scene.h"
-#include "scene/put_pixels.h"
-#include "scene/without_effect.h"
+#include "cistula/model/constant_scene.h"
+#include "cistula/traversal/bvh.h"
+#include "scene/compile/constant_scene.h"
+#include "scene/description/without_effect.h"
+#include "scene/film/put_pixels.h"
+#include "scene/frame/frame_view.h"
+#include "testing/generated_scene.h"
+#include "testing/support/golden.h"
 
 using namespace cistula;
 

@@ -5,12 +5,12 @@
 #include <map>
 #include <set>
 
-#include "golden.h"
-#include "scene/compiled_scene.h"
-#include "scene/generated_scene.h"
-#include "scene/required_effects.h"
-#include "scene/without_effect.h"
-#include "support_scene.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/required_effects.h"
+#include "scene/description/without_effect.h"
+#include "testing/generated_scene.h"
+#include "testing/support/golden.h"
+#include "testing/support/scene.h"
 
 using namespace cistula;
 

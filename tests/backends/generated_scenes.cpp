@@ -8,16 +8,16 @@
 #include <set>
 #include <string>
 
-#include "backend_embree/embree_renderer.h"
-#include "cistula/brute.h"
-#include "scene/camera_path.h"
-#include "scene/film_picture.h"
-#include "scene/frame.h"
-#include "scene/frame_view.h"
-#include "scene/generated_scene.h"
-#include "scene/platonic.h"
-#include "scene/rotation.h"
-#include "scene/scene_hash.h"
+#include "backend_embree/embree/embree_renderer.h"
+#include "cistula/traversal/brute.h"
+#include "scene/compile/frame.h"
+#include "scene/compile/scene_hash.h"
+#include "scene/description/camera_path.h"
+#include "scene/description/platonic.h"
+#include "scene/description/rotation.h"
+#include "scene/film/film_picture.h"
+#include "scene/frame/frame_view.h"
+#include "testing/generated_scene.h"
 
 using namespace cistula;
 using glm::dvec3;

@@ -10,13 +10,13 @@
 #include <atomic>
 #include <iostream>
 
-#include "backend_embree/embree_api.h"
-#include "cistula/effects.h"
-#include "cistula/fixed_sum.h"
-#include "golden.h"
-#include "scene/compiled_scene.h"
-#include "scene/generated_mesh.h"
-#include "scene/platonic.h"
+#include "backend_embree/embree/embree_api.h"
+#include "cistula/model/effects.h"
+#include "cistula/numerics/fixed_sum.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/description/platonic.h"
+#include "testing/generated_mesh.h"
+#include "testing/support/golden.h"
 
 using namespace cistula;
 

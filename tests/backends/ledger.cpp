@@ -4,9 +4,9 @@
 
 #include <iostream>
 
-#include "golden.h"
-#include "scene/generated_scene.h"
-#include "support_scene.h"
+#include "testing/generated_scene.h"
+#include "testing/support/golden.h"
+#include "testing/support/scene.h"
 
 using namespace cistula;
 using glm::dvec3;

@@ -7,11 +7,11 @@
 
 #include "apps/common/header_attributes.h"
 #include "apps/render/options.h"
-#include "backend_embree/native_triangles.h"
-#include "cistula/trigonometry.h"
-#include "expect_error.h"
-#include "golden.h"
-#include "support_scene.h"
+#include "backend_embree/native/native_triangles.h"
+#include "cistula/numerics/trigonometry.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/golden.h"
+#include "testing/support/scene.h"
 
 using namespace cistula;
 using glm::dvec3;

@@ -1,11 +1,11 @@
 // A render that is stopped ends soon, however large the trees of its pixels, and the next one is not touched by it.
 #include <gtest/gtest.h>
 
-#include "backend_embree/embree_renderer.h"
-#include "endless_scene.h"
-#include "scene/compiled_scene.h"
-#include "scene/film_picture.h"
-#include "stopping.h"
+#include "backend_embree/embree/embree_renderer.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/film/film_picture.h"
+#include "testing/support/endless_scene.h"
+#include "testing/support/stopping.h"
 
 namespace cistula {
 namespace {

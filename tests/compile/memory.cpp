@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/compiled_scene.h"
-#include "scene_samples.h"
+#include "scene/compile/compiled_scene.h"
+#include "testing/support/scene_samples.h"
 
 namespace cistula {
 namespace {

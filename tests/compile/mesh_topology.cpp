@@ -1,14 +1,14 @@
-#include "scene/mesh_topology.h"
+#include "scene/compile/mesh_topology.h"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "scene/clusters.h"
-#include "scene/compiled_scene.h"
-#include "scene/mesh_apex.h"
-#include "scene_samples.h"
+#include "scene/compile/clusters.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/mesh_apex.h"
+#include "testing/support/scene_samples.h"
 
 namespace cistula {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/platonic.h"
+#include "scene/description/platonic.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "cistula/vec.h"
-#include "scene/rotation.h"
+#include "cistula/numerics/vec.h"
+#include "scene/description/rotation.h"
 
 namespace cistula {
 namespace {

@@ -1,11 +1,11 @@
-#include "scene/required_effects.h"
+#include "scene/compile/required_effects.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "scene/compiled_scene.h"
-#include "scene_samples.h"
+#include "scene/compile/compiled_scene.h"
+#include "testing/support/scene_samples.h"
 
 namespace cistula {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/compiled_scene.h"
+#include "scene/compile/compiled_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "cistula/transmittance.h"
-#include "scene/error.h"
-#include "scene_samples.h"
+#include "cistula/numerics/transmittance.h"
+#include "scene/base/error.h"
+#include "testing/support/scene_samples.h"
 
 namespace cistula {
 namespace {

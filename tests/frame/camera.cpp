@@ -1,9 +1,9 @@
-#include "cistula/camera.h"
+#include "cistula/model/camera.h"
 
 #include <gtest/gtest.h>
 
-#include "cistula/pixel.h"
-#include "support_scene.h"
+#include "cistula/transport/pixel.h"
+#include "testing/support/scene.h"
 
 namespace cistula {
 namespace {

@@ -1,10 +1,10 @@
-#include "scene/camera_path.h"
+#include "scene/description/camera_path.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "scene_samples.h"
+#include "testing/support/scene_samples.h"
 
 namespace cistula {
 namespace {

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "cistula/adaptive_pixel.h"
-#include "cistula/bvh.h"
-#include "golden.h"
-#include "scene/frame_hints.h"
-#include "scene/frame_view.h"
-#include "scene/generated_scene.h"
-#include "support_camera.h"
-#include "support_scene.h"
+#include "cistula/adaptive/adaptive_pixel.h"
+#include "cistula/traversal/bvh.h"
+#include "scene/frame/frame_hints.h"
+#include "scene/frame/frame_view.h"
+#include "testing/generated_scene.h"
+#include "testing/support/camera.h"
+#include "testing/support/golden.h"
+#include "testing/support/scene.h"
 
 using namespace cistula;
 

@@ -4,11 +4,11 @@
 #include <bit>
 #include <random>
 
-#include "cistula/brute.h"
-#include "cistula/lighting.h"
-#include "scene/compiled_scene.h"
-#include "scene/constant_scene.h"
-#include "scene/read_scene.h"
+#include "cistula/shading/lighting.h"
+#include "cistula/traversal/brute.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/constant_scene.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "cistula/bvh.h"
-#include "cistula/ray_tree.h"
-#include "cistula/snell.h"
-#include "cistula/surface.h"
-#include "scene/generated_mesh.h"
-#include "support_scene.h"
+#include "cistula/shading/snell.h"
+#include "cistula/shading/surface.h"
+#include "cistula/transport/ray_tree.h"
+#include "cistula/traversal/bvh.h"
+#include "testing/generated_mesh.h"
+#include "testing/support/scene.h"
 
 namespace cistula {
 namespace {

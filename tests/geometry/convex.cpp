@@ -1,11 +1,11 @@
 // convex.h: one way in, one way out, whatever rounding says at edges, corners and in planes; and from far away.
-#include "cistula/convex.h"
+#include "cistula/geometry/convex.h"
 
 #include <gtest/gtest.h>
 #include <quadmath.h>
 
-#include "cistula/pixel.h"
-#include "support_scene.h"
+#include "cistula/transport/pixel.h"
+#include "testing/support/scene.h"
 
 namespace cistula {
 namespace {

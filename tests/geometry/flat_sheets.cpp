@@ -1,10 +1,10 @@
 // misses_flat spares rays the triangles of flat sheets: it never hides a hit, and leaves out most that have none.
 #include <gtest/gtest.h>
 
-#include "cistula/brute.h"
-#include "scene/constant_scene.h"
-#include "support_scene.h"
-#include "tests/scene_samples.h"
+#include "cistula/traversal/brute.h"
+#include "scene/compile/constant_scene.h"
+#include "testing/support/scene.h"
+#include "testing/support/scene_samples.h"
 
 namespace cistula {
 namespace {

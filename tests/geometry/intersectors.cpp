@@ -3,11 +3,11 @@
 
 #include <functional>
 
-#include "backend_embree/embree_tree.h"
-#include "cistula/snell.h"
-#include "cistula/surface.h"
-#include "scene/generated_mesh.h"
-#include "support_scene.h"
+#include "backend_embree/embree/embree_tree.h"
+#include "cistula/shading/snell.h"
+#include "cistula/shading/surface.h"
+#include "testing/generated_mesh.h"
+#include "testing/support/scene.h"
 
 namespace cistula {
 namespace {

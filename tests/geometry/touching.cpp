@@ -2,8 +2,8 @@
 // whichever comes first in the file, as planes and as meshes whose shared faces are cut along different diagonals.
 #include <gtest/gtest.h>
 
-#include "golden.h"
-#include "support_scene.h"
+#include "testing/support/golden.h"
+#include "testing/support/scene.h"
 
 using namespace cistula;
 using test::dvec3;

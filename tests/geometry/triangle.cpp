@@ -1,9 +1,9 @@
 // triangle.h: every ray meets a closed mesh exactly once going in and once going out, edges and vertices included.
-#include "cistula/triangle.h"
+#include "cistula/geometry/triangle.h"
 
 #include <gtest/gtest.h>
 
-#include "support_scene.h"
+#include "testing/support/scene.h"
 
 namespace cistula {
 namespace {

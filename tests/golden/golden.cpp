@@ -3,8 +3,8 @@
 // (tests/backends/device_path.cpp has it for all); and the files say what the hashes say.
 #include <gtest/gtest.h>
 
-#include "golden.h"
-#include "scene/exr.h"
+#include "scene/image/exr.h"
+#include "testing/support/golden.h"
 
 using namespace cistula;
 

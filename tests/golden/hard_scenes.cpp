@@ -2,7 +2,7 @@
 // is the same looks the same, and pictures that can be known are those.
 #include <gtest/gtest.h>
 
-#include "golden.h"
+#include "testing/support/golden.h"
 
 using namespace cistula;
 

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "golden.h"
-#include "scene/seed_data.h"
-#include "scratch_directory.h"
+#include "scene/image/seed_data.h"
+#include "testing/support/golden.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

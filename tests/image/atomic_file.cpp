@@ -1,12 +1,12 @@
 // Files are whole or untouched, whatever goes wrong while they are written, and errors say what to do.
-#include "scene/atomic_file.h"
+#include "scene/base/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "expect_error.h"
-#include "file_size_limit.h"
-#include "scratch_directory.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/file_size_limit.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

@@ -1,5 +1,5 @@
 // OpenEXR files come back bit for bit, equal pictures are equal files, and damaged files are errors, never crashes.
-#include "scene/exr.h"
+#include "scene/image/exr.h"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -18,10 +18,10 @@
 #include <limits>
 #include <random>
 
-#include "cistula/portable.h"
-#include "expect_error.h"
-#include "file_size_limit.h"
-#include "scratch_directory.h"
+#include "cistula/numerics/portable.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/file_size_limit.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

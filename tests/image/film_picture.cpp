@@ -1,5 +1,5 @@
 // The integers of a film as channels: exact values, a ledger that stays a bound, a hash that sees every field.
-#include "scene/film_picture.h"
+#include "scene/film/film_picture.h"
 
 #include <Imath/half.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "cistula/fixed_sum.h"
+#include "cistula/numerics/fixed_sum.h"
 
 namespace cistula {
 namespace {

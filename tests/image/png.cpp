@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "scene/png.h"
-#include "scene/srgb_codes.h"
+#include "scene/image/png.h"
+#include "scene/image/srgb_codes.h"
 
 namespace cistula {
 namespace {

@@ -1,15 +1,15 @@
 // The raw pictures of the course work, byte by byte, and every way in which such a file can be wrong.
-#include "scene/seed_data.h"
+#include "scene/image/seed_data.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "cistula/elementary.h"
-#include "expect_error.h"
-#include "scene/srgb_codes.h"
-#include "scratch_directory.h"
+#include "cistula/numerics/elementary.h"
+#include "scene/image/srgb_codes.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

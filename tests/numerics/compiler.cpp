@@ -1,7 +1,7 @@
 // What the code takes for granted of its compiler and flags, where a compiler is known to break it.
 #include <gtest/gtest.h>
 
-#include "cistula/vec.h"
+#include "cistula/numerics/vec.h"
 
 #ifdef __clang__
 #define OPAQUE __attribute__((noinline))

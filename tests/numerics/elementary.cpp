@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "cistula/trigonometry.h"
+#include "cistula/numerics/trigonometry.h"
 
 namespace cistula {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "cistula/fixed_sum.h"
+#include "cistula/numerics/fixed_sum.h"
 
 namespace cistula {
 namespace {

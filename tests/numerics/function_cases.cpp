@@ -1,6 +1,6 @@
-// bench/gpu/function_cases.h on the host alone: the inputs of the function parity check cover what they claim, results
-// repeat, and a planted difference is found.
-#include "bench/gpu/function_cases.h"
+// testing/parity/function_cases.h on the host alone: the inputs of the function parity check cover what they claim,
+// results repeat, and a planted difference is found.
+#include "testing/parity/function_cases.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "bench/gpu/function_compare.h"
+#include "testing/parity/function_compare.h"
 
 namespace cistula::parity {
 namespace {

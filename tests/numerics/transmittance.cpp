@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "cistula/transmittance.h"
+#include "cistula/numerics/transmittance.h"
 
 namespace cistula {
 namespace {

@@ -1,7 +1,7 @@
 // The headers come with the contract: C++20, the baseline's instructions, GLM without its SIMD types, no contraction.
 #include <cstdio>
 
-#include "cistula/vec.h"
+#include "cistula/numerics/vec.h"
 
 #if !defined(__FMA__) || !defined(__AVX2__) || !defined(GLM_FORCE_PURE) || __cplusplus < 202002L
 #error "the floating-point contract did not come with the package"

@@ -4,10 +4,10 @@
 #include <exception>
 #include <memory>
 
-#include "backend_embree/embree_renderer.h"
-#include "scene/camera_path.h"
-#include "scene/compiled_scene.h"
-#include "scene/picture_io.h"
+#include "backend_embree/embree/embree_renderer.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/description/camera_path.h"
+#include "scene/image/picture_io.h"
 
 int main(int argc, char** argv) try {
     cistula::SceneDescription description;

@@ -6,12 +6,12 @@
 #include <set>
 #include <sstream>
 
-#include "scene/json_reader.h"
-#include "scene/read_scene.h"
-#include "scene/read_seed.h"
-#include "scene/scene_keys.h"
-#include "scene_dump.h"
-#include "scratch_directory.h"
+#include "scene/readers/json_reader.h"
+#include "scene/readers/read_scene.h"
+#include "scene/readers/read_seed.h"
+#include "scene/readers/scene_keys.h"
+#include "testing/support/scene_dump.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

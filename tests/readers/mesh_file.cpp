@@ -1,15 +1,15 @@
-#include "scene/mesh_file.h"
+#include "scene/readers/mesh_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "cistula/effects.h"
-#include "scene/compiled_scene.h"
-#include "scene/generated_mesh.h"
-#include "scene/mesh_topology.h"
-#include "scene/polygon.h"
-#include "scene_samples.h"
-#include "scratch_directory.h"
+#include "cistula/model/effects.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/mesh_topology.h"
+#include "scene/readers/polygon.h"
+#include "testing/generated_mesh.h"
+#include "testing/support/scene_samples.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

@@ -1,8 +1,8 @@
 // The elements of "objects" in scene files.
 #include <gtest/gtest.h>
 
-#include "expect_error.h"
-#include "scene/read_scene.h"
+#include "scene/readers/read_scene.h"
+#include "testing/support/expect_error.h"
 
 namespace cistula {
 namespace {

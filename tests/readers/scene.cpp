@@ -1,6 +1,6 @@
 // Scene files: JSON from the top level down to cameras, textures, materials and lights; objects are in
 // tests/readers/objects.cpp.
-#include "scene/read_scene.h"
+#include "scene/readers/read_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <iostream>
 #include <sstream>
 
-#include "expect_error.h"
-#include "scene/read_seed.h"
-#include "scene_dump.h"
-#include "scratch_directory.h"
+#include "scene/readers/read_seed.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/scene_dump.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

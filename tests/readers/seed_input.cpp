@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <regex>
 
-#include "expect_error.h"
-#include "scene/camera_path.h"
-#include "scene/platonic.h"
-#include "scene/read_scene.h"
-#include "scene/read_seed.h"
-#include "scene_dump.h"
-#include "scratch_directory.h"
+#include "scene/description/camera_path.h"
+#include "scene/description/platonic.h"
+#include "scene/readers/read_scene.h"
+#include "scene/readers/read_seed.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/scene_dump.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

@@ -3,13 +3,13 @@
 
 #include <random>
 
-#include "expect_error.h"
-#include "scene/compiled_scene.h"
-#include "scene/read_scene.h"
-#include "scene/read_seed.h"
-#include "scene/suggest.h"
-#include "scene_dump.h"
-#include "scratch_directory.h"
+#include "scene/base/suggest.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/readers/read_scene.h"
+#include "scene/readers/read_seed.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/scene_dump.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

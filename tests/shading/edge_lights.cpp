@@ -4,10 +4,10 @@
 #include <random>
 #include <set>
 
-#include "cistula/seen_light.h"
-#include "scene/compiled_scene.h"
-#include "scene/constant_scene.h"
-#include "scene/read_scene.h"
+#include "cistula/lights/seen_light.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/constant_scene.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula {
 namespace {

@@ -2,12 +2,12 @@
 // none of them, exactly.
 #include <gtest/gtest.h>
 
-#include "cistula/fixed_sum.h"
-#include "golden.h"
-#include "scene/compiled_scene.h"
-#include "scene/platonic.h"
-#include "scene_samples.h"
-#include "support_scene.h"
+#include "cistula/numerics/fixed_sum.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/description/platonic.h"
+#include "testing/support/golden.h"
+#include "testing/support/scene.h"
+#include "testing/support/scene_samples.h"
 
 using namespace cistula;
 

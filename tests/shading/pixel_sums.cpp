@@ -1,7 +1,7 @@
 // pixel_sums.h: what is added, what is left out, and what counts as a fault.
 #include <gtest/gtest.h>
 
-#include "cistula/pixel_sums.h"
+#include "cistula/transport/pixel_sums.h"
 
 namespace cistula {
 namespace {

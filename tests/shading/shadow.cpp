@@ -1,14 +1,14 @@
 // shadow.h: light through faces is an exact product, lights on edges light the right half-space, absorption is
 // exponential.
-#include "cistula/shadow.h"
+#include "cistula/shading/shadow.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "cistula/brute.h"
-#include "cistula/surface.h"
-#include "support_scene.h"
+#include "cistula/shading/surface.h"
+#include "cistula/traversal/brute.h"
+#include "testing/support/scene.h"
 
 namespace cistula {
 namespace {

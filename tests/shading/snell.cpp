@@ -1,5 +1,5 @@
 // snell.h and double_double.h against libquadmath's 113 bits. Worst errors are measured here and bind the stated ones.
-#include "cistula/snell.h"
+#include "cistula/shading/snell.h"
 
 #include <gtest/gtest.h>
 #include <quadmath.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "support_scene.h"
+#include "testing/support/scene.h"
 
 namespace cistula {
 namespace {

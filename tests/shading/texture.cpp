@@ -1,4 +1,4 @@
-#include "cistula/texture.h"
+#include "cistula/model/texture.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/crossings.h"
 #include "apps/render_verify/scenes.h"
-#include "cistula/vec.h"
+#include "cistula/numerics/vec.h"
 
 namespace cistula::verify::geometry {
 

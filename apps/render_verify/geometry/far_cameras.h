@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/render_verify/geometry/upright_solids.h"
-#include "cistula/pixel.h"
+#include "cistula/transport/pixel.h"
 
 namespace cistula::verify::geometry {
 

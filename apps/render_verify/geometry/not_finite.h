@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/render_verify/geometry/upright_solids.h"
-#include "cistula/shadow.h"
+#include "cistula/shading/shadow.h"
 
 namespace cistula::verify::geometry {
 

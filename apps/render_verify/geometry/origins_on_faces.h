@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/render_verify/geometry/edges_from_outside.h"
-#include "cistula/surface.h"
+#include "cistula/shading/surface.h"
 
 namespace cistula::verify::geometry {
 

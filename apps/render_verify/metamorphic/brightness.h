@@ -5,9 +5,9 @@
 
 #include "apps/render_verify/metamorphic/films.h"
 #include "apps/render_verify/metamorphic/samples.h"
-#include "cistula/fixed_sum.h"
-#include "scene/compiled_scene.h"
-#include "scene/error.h"
+#include "cistula/numerics/fixed_sum.h"
+#include "scene/base/error.h"
+#include "scene/compile/compiled_scene.h"
 
 namespace cistula::verify::metamorphic {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/render_verify/metamorphic/films.h"
-#include "scene/compiled_scene.h"
+#include "scene/compile/compiled_scene.h"
 
 namespace cistula::verify::metamorphic {
 

@@ -7,9 +7,9 @@
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/scenes.h"
 #include "apps/render_verify/stage.h"
-#include "cistula/effects.h"
-#include "scene/camera_path.h"
-#include "scene/generated_scene.h"
+#include "cistula/model/effects.h"
+#include "scene/description/camera_path.h"
+#include "testing/generated_scene.h"
 
 namespace cistula::verify::metamorphic {
 

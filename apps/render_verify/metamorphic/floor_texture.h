@@ -3,7 +3,7 @@
 
 #include "apps/render_verify/crossings.h"
 #include "apps/render_verify/scenes.h"
-#include "cistula/surface.h"
+#include "cistula/shading/surface.h"
 
 namespace cistula::verify::metamorphic {
 

@@ -10,9 +10,9 @@
 
 #include "apps/common/backends.h"
 #include "apps/render_verify/metamorphic/films.h"
-#include "backend_embree/embree_renderer.h"
-#include "scene/compiled_scene.h"
-#include "scene/film_picture.h"
+#include "backend_embree/embree/embree_renderer.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/film/film_picture.h"
 
 namespace cistula::verify::metamorphic {
 

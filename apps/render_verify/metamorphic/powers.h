@@ -4,8 +4,8 @@
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/crossings.h"
 #include "apps/render_verify/scenes.h"
-#include "cistula/double_double.h"
-#include "cistula/phong.h"
+#include "cistula/numerics/double_double.h"
+#include "cistula/shading/phong.h"
 
 namespace cistula::verify::metamorphic {
 

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "apps/render_verify/metamorphic/films.h"
-#include "cistula/fixed_sum.h"
+#include "cistula/numerics/fixed_sum.h"
 
 namespace cistula::verify::metamorphic {
 

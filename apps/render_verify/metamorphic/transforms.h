@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/render_verify/metamorphic/films.h"
-#include "scene/compiled_scene.h"
+#include "scene/compile/compiled_scene.h"
 
 namespace cistula::verify::metamorphic {
 

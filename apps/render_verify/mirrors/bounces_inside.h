@@ -5,8 +5,8 @@
 #include "apps/render_verify/crossings.h"
 #include "apps/render_verify/mirrors/closed_meshes.h"
 #include "apps/render_verify/scenes.h"
-#include "cistula/snell.h"
-#include "cistula/surface.h"
+#include "cistula/shading/snell.h"
+#include "cistula/shading/surface.h"
 
 namespace cistula::verify::mirrors {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scene/generated_mesh.h"
+#include "testing/generated_mesh.h"
 
 namespace cistula::verify::mirrors {
 

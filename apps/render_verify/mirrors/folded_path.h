@@ -5,9 +5,9 @@
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/crossings.h"
 #include "apps/render_verify/scenes.h"
-#include "cistula/double_double.h"
-#include "cistula/snell.h"
-#include "cistula/surface.h"
+#include "cistula/numerics/double_double.h"
+#include "cistula/shading/snell.h"
+#include "cistula/shading/surface.h"
 
 namespace cistula::verify::mirrors {
 

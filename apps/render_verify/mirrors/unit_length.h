@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/render_verify/mirrors/bounces_inside.h"
-#include "cistula/double_double.h"
+#include "cistula/numerics/double_double.h"
 
 namespace cistula::verify::mirrors {
 

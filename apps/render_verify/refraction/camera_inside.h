@@ -5,7 +5,7 @@
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/refraction/lines.h"
 #include "apps/render_verify/scenes.h"
-#include "cistula/pixel.h"
+#include "cistula/transport/pixel.h"
 
 namespace cistula::verify::refraction {
 

@@ -5,7 +5,7 @@
 #include "apps/render_verify/crossings.h"
 #include "apps/render_verify/refraction/quad.h"
 #include "apps/render_verify/scenes.h"
-#include "cistula/interface.h"
+#include "cistula/shading/interface.h"
 
 namespace cistula::verify::refraction {
 

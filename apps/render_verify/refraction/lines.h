@@ -3,7 +3,7 @@
 #pragma once
 
 #include "apps/render_verify/crossings.h"
-#include "cistula/ray_tree.h"
+#include "cistula/transport/ray_tree.h"
 
 namespace cistula::verify::refraction {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/render_verify/shadows/local_light.h"
-#include "cistula/double_double.h"
+#include "cistula/numerics/double_double.h"
 
 namespace cistula::verify::shadows {
 

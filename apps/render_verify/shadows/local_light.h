@@ -4,8 +4,8 @@
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/crossings.h"
 #include "apps/render_verify/scenes.h"
-#include "cistula/lighting.h"
-#include "cistula/pixel_sums.h"
+#include "cistula/shading/lighting.h"
+#include "cistula/transport/pixel_sums.h"
 
 namespace cistula::verify::shadows {
 

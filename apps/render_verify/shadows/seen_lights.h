@@ -3,7 +3,7 @@
 
 #include "apps/render_verify/shadows/local_light.h"
 #include "apps/render_verify/stage.h"
-#include "cistula/seen_light.h"
+#include "cistula/lights/seen_light.h"
 
 namespace cistula::verify::shadows {
 

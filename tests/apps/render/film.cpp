@@ -1,8 +1,8 @@
 // Films of the built `render` that are resumed, interrupted, or cannot be written.
 #include <chrono>
 
-#include "render_program.h"
-#include "scene/exr.h"
+#include "scene/image/exr.h"
+#include "testing/support/render_program.h"
 
 namespace cistula {
 namespace {

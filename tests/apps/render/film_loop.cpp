@@ -8,9 +8,9 @@
 
 #include <filesystem>
 
-#include "render_program.h"
-#include "scene/exr.h"
-#include "scene/read_scene.h"
+#include "scene/image/exr.h"
+#include "scene/readers/read_scene.h"
+#include "testing/support/render_program.h"
 
 namespace cistula {
 namespace {

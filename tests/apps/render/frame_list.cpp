@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "expect_error.h"
+#include "testing/support/expect_error.h"
 
 namespace cistula {
 namespace {

@@ -8,10 +8,10 @@
 #include <random>
 #include <thread>
 
-#include "cistula/fixed_sum.h"
-#include "scene/error.h"
-#include "scene/exr.h"
-#include "scratch_directory.h"
+#include "cistula/numerics/fixed_sum.h"
+#include "scene/base/error.h"
+#include "scene/image/exr.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

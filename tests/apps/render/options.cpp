@@ -20,8 +20,8 @@
 #include "apps/common/stats.h"
 #include "apps/common/step_progress.h"
 #include "apps/render/explain.h"
-#include "cistula/ray_tree.h"
-#include "expect_error.h"
+#include "cistula/transport/ray_tree.h"
+#include "testing/support/expect_error.h"
 
 namespace cistula {
 namespace {

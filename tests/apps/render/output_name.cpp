@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "expect_error.h"
-#include "scratch_directory.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

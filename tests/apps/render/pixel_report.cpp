@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "apps/render/pixel_report.h"
-#include "backend_embree/embree_pixel_tree.h"
-#include "golden.h"
-#include "render_program.h"
-#include "scene/exr.h"
-#include "scene/scene_names.h"
+#include "backend_embree/pixel_tree/embree_pixel_tree.h"
+#include "scene/compile/scene_names.h"
+#include "scene/image/exr.h"
+#include "testing/support/golden.h"
+#include "testing/support/render_program.h"
 
 namespace cistula {
 namespace {

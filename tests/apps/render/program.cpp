@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/common/backends.h"
-#include "gpu.h"
-#include "render_program.h"
-#include "scene/exr.h"
-#include "scene/seed_data.h"
+#include "scene/image/exr.h"
+#include "scene/image/seed_data.h"
+#include "testing/support/gpu.h"
+#include "testing/support/render_program.h"
 
 namespace cistula {
 namespace {

@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/common/backends.h"
-#include "gpu.h"
-#include "run_program.h"
-#include "scene/error.h"
-#include "scene/exr.h"
+#include "scene/base/error.h"
+#include "scene/image/exr.h"
+#include "testing/support/gpu.h"
+#include "testing/support/run_program.h"
 
 namespace cistula {
 namespace {

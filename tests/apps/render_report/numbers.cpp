@@ -11,7 +11,7 @@
 #include "apps/render_report/reference.h"
 #include "apps/render_report/sweep_plan.h"
 #include "apps/render_report/target_table.h"
-#include "expect_error.h"
+#include "testing/support/expect_error.h"
 
 namespace cistula::report {
 namespace {

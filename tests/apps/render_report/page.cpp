@@ -5,12 +5,12 @@
 
 #include "apps/render_report/html.h"
 #include "apps/render_report/html_page.h"
-#include "apps/render_report/measure.h"
 #include "apps/render_report/image.h"
+#include "apps/render_report/measure.h"
 #include "apps/render_report/svg_chart.h"
 #include "apps/render_report/target_table.h"
-#include "endless_scene.h"
-#include "run_program.h"
+#include "testing/support/endless_scene.h"
+#include "testing/support/run_program.h"
 
 namespace cistula::report {
 namespace {

@@ -10,8 +10,8 @@
 #include "apps/render_verify/host_run.h"
 #include "apps/render_verify/program.h"
 #include "apps/render_verify/scenes.h"
-#include "gpu.h"
-#include "run_program.h"
+#include "testing/support/gpu.h"
+#include "testing/support/run_program.h"
 
 namespace cistula::verify {
 namespace {

@@ -5,15 +5,15 @@
 #include <cstring>
 #include <thread>
 
-#include "backend_cuda/cuda_renderer.h"
-#include "endless_scene.h"
-#include "expect_error.h"
-#include "golden.h"
-#include "gpu.h"
-#include "scene/generated_scene.h"
-#include "scene/without_effect.h"
-#include "stopping.h"
-#include "support_scene.h"
+#include "backend_cuda/host/cuda_renderer.h"
+#include "scene/description/without_effect.h"
+#include "testing/generated_scene.h"
+#include "testing/support/endless_scene.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/golden.h"
+#include "testing/support/gpu.h"
+#include "testing/support/scene.h"
+#include "testing/support/stopping.h"
 
 using namespace cistula;
 

@@ -1,17 +1,17 @@
 // Textures of every kind become the same linear values; previews are exact 8-bit sRGB.
-#include "scene/picture_io.h"
+#include "scene/image/picture_io.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "expect_error.h"
-#include "scene/exr.h"
-#include "scene/picture_oiio.h"
-#include "scene/seed_data.h"
-#include "scene/srgb_codes.h"
-#include "scratch_directory.h"
+#include "scene/image/exr.h"
+#include "scene/image/picture_oiio.h"
+#include "scene/image/seed_data.h"
+#include "scene/image/srgb_codes.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {

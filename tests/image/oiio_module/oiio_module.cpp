@@ -1,10 +1,10 @@
 // OpenImageIO is a module: loaded when the first texture needs it, found where it lies, and missed with a clear error.
 #include <sstream>
 
-#include "expect_error.h"
-#include "render_program.h"
-#include "scene/picture_io.h"
-#include "scene/srgb_codes.h"
+#include "scene/image/picture_io.h"
+#include "scene/image/srgb_codes.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/render_program.h"
 
 namespace cistula {
 namespace {

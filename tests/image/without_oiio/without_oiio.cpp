@@ -1,13 +1,13 @@
 // What a build without OpenImageIO (CISTULA_WITH_OIIO=OFF) still reads and writes, and what it says about the rest.
 #include <gtest/gtest.h>
 
-#include "expect_error.h"
-#include "scene/picture_io.h"
-#include "scene/seed_data.h"
-#include "scratch_directory.h"
+#include "scene/image/picture_io.h"
+#include "scene/image/seed_data.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/scratch_directory.h"
 
 // Compiled into this test, it stands in for the library's own variant, whichever that is.
-#include "scene/picture_oiio_none.cpp"
+#include "scene/image/picture_oiio_none.cpp"
 
 namespace cistula {
 namespace {

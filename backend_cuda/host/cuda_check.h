@@ -1,0 +1,24 @@
+// Every call of the CUDA runtime is checked; errors carry the call and CUDA's own words.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <string>
+
+#include "scene/base/error.h"
+
+namespace cistula {
+
+[[noreturn]] inline void fail_cuda(cudaError_t error, const std::string& call) {
+    throw Error(ExitCode::device,
+                "CUDA: " + call + ": " + cudaGetErrorString(error) + " (" + cudaGetErrorName(error) + ")");
+}
+
+inline void check_cuda(cudaError_t error, const char* call) {
+    if (error != cudaSuccess) fail_cuda(error, call);
+}
+
+}  // namespace cistula
+
+/// Throws Error (device) where a call does not return cudaSuccess.
+#define CISTULA_CUDA_CHECK(call) ::cistula::check_cuda((call), #call)

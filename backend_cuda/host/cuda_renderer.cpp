@@ -1,0 +1,221 @@
+#include "backend_cuda/host/cuda_renderer.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <type_traits>
+
+#include "backend_cuda/host/device_worker.h"
+#include "scene/frame/frame_view.h"
+
+namespace cistula {
+namespace {
+
+/// Samples of a part: what is copied while the next is in the kernels.
+constexpr size_t part_samples = size_t{1} << 25;
+
+bool same(const CameraFrame& a, const CameraFrame& b) {
+    const Camera &p = a.camera, &q = b.camera;
+    return p.position == q.position && p.forward == q.forward && p.right == q.right && p.up == q.up &&
+           p.tan_half_width == q.tan_half_width;
+}
+
+template <class Real>
+class CudaRenderer : public Renderer {
+  public:
+    CudaRenderer(std::shared_ptr<const CompiledScene<Real>> scene, const CudaOptions& options)
+        : scene_(std::move(scene)), options_(options), view_(scene_->view()) {
+        const std::vector<CudaDevice> known = list_cuda_devices();
+        for (const int index : options_.devices) require(known, index);
+        path_ = options_.always_tree ? DevicePath::tree : path_for(view_);
+        if (path_ == DevicePath::tree) {
+            tree_ = facet_tree(view_);
+            tree_.put_into(view_);
+        }
+        const SceneArena<Real> arena(view_);
+        bytes_ = arena.bytes().size();
+        for (const int index : options_.devices) {
+            use_device(index);
+            workers_.push_back(std::make_unique<DeviceWorker<Real>>(index, arena, view_, path_));
+        }
+    }
+
+    ~CudaRenderer() override {
+        try {
+            drop();  // or freeing memory would wait for a frame that nobody wants
+        } catch (...) {
+        }
+    }
+
+    bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
+                RenderProgress& progress) override {
+        notes_.clear();
+        times_ = {};
+        prepare_film(film, settings, *scene_, camera);
+        if (!begun_ || !same(begun_->camera, camera) || begun_->settings != settings) {
+            if (begun_) drop();
+            begun_ = begin(camera, settings);
+        }
+        const FramePlan plan = *begun_;
+        begun_.reset();
+        if (!plan.fits) film.flags |= flag_media_overflow;
+        for (auto& worker : workers_) worker->totals = {};
+        for (int part = 0; part < plan.parts; ++part) {
+            if (progress.stop || !finish(plan, part, film, progress)) {
+                drop();
+                return false;
+            }
+        }
+        expected_.reset();
+        for (const auto& worker : workers_) {
+            film.flags |= worker->totals.flags;
+            times_.kernel = std::max(times_.kernel, worker->totals.kernel_seconds);
+            times_.transfer = std::max(times_.transfer, worker->totals.transfer_seconds);
+        }
+        return !progress.stop;
+    }
+
+    void expect(const CameraFrame& camera, const FrameSettings& settings) override { expected_ = {camera, settings}; }
+    uint32_t effects() const override { return effects_; }
+    std::string intersector() const override { return "cuda"; }
+    RenderTimes times() const override { return times_; }
+    std::vector<std::string> notes() const override { return notes_; }
+    size_t memory() const override { return bytes_; }
+
+  private:
+    struct Request {
+        CameraFrame camera;
+        FrameSettings settings;
+    };
+    static void require(const std::vector<CudaDevice>& known, int index) {
+        if (index < 0 || size_t(index) >= known.size())
+            throw Error(ExitCode::device, fmt::format("--device {}: there is no such GPU; this machine has 0 to {}",
+                                                      index, known.size() - 1));
+        if (!known[size_t(index)].obstacle.empty())
+            throw Error(ExitCode::device, fmt::format("--device {}: {}: {}", index, known[size_t(index)].name,
+                                                      known[size_t(index)].obstacle));
+    }
+
+    /// Plans a frame and sets its first part on its way.
+    FramePlan begin(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) {
+        FramePlan plan;
+        plan.camera = camera;
+        plan.settings = settings;
+        plan.view = frame_view(*scene_, camera, settings);
+        const Vec3<double> position = plan.view.camera.position;
+        plan.fits = path_ == DevicePath::tree
+                        ? camera_solids(view_, BvhIntersector<Real>{view_}, position, plan.view.camera_media)
+                        : camera_solids(view_, BruteIntersector<Real>{view_}, position, plan.view.camera_media);
+        plan.mask = mask_to_run(scene_->effects, settings, plan.view);
+        effects_ = effect_masks[plan.mask];
+        plan.sampling = settings.adaptive() ? Sampling::adaptive : Sampling::uniform;
+        plan.blocks = {plan.view.supersample > 1 ? PixelMapping::shared_tile : PixelMapping::own_tiles,
+                       kernel_shapes[plan.mask].warps};
+        plan.hints = std::make_shared<const FrameHints>(frame_hints(*scene_, plan.view, settings));
+        plan.devices = int(workers_.size());
+        plan.first_slot = slot % DeviceWorker<Real>::slots;
+        divide(plan);
+        start(plan, 0);
+        return plan;
+    }
+
+    /// Divides a frame into parts for which there is memory.
+    void divide(FramePlan& plan) {
+        const PixelRect& rect = plan.settings.crop;
+        constexpr int width = BlockPlan::width;
+        plan.strips = (rect.height + strip_rows - 1) / strip_rows;
+        plan.strip_pixels = size_t((rect.width + width - 1) / width * width) * strip_rows;
+        const int most = plan.strips_per_device();
+        int wanted = int(std::clamp<size_t>(part_samples / (plan.strip_pixels * plan.samples()), 1, size_t(most)));
+        if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / plan.strip_pixels, 1, size_t(wanted)));
+        plan.part_strips = reserve(wanted, plan);
+        plan.parts = (most + plan.part_strips - 1) / plan.part_strips;
+    }
+
+    /// Takes memory for parts of `strips`, or of half as many until it is enough: of how many.
+    int reserve(int strips, const FramePlan& plan) {
+        const int wanted = strips;
+        const auto has_room = [&] {
+            return std::all_of(workers_.begin(), workers_.end(), [&](const auto& worker) {
+                return worker->reserve(size_t(strips) * plan.strip_pixels, options_.memory_limit, plan.sampling,
+                                       plan.mask);
+            });
+        };
+        for (; !has_room(); strips = (strips + 1) / 2)
+            if (strips == 1)
+                throw Error(
+                    ExitCode::device,
+                    fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or --crop needs "
+                                "less, or free memory that other programs hold",
+                                plan.strip_pixels));
+        if (strips < wanted) {
+            largest_part_ = size_t(strips) * plan.strip_pixels;
+            notes_.push_back(fmt::format("the GPU's memory is short: {} pixels at a time instead of {}",
+                                         size_t(strips) * plan.strip_pixels, size_t(wanted) * plan.strip_pixels));
+        }
+        return strips;
+    }
+
+    void start(const FramePlan& plan, int part) {
+        for (size_t d = 0; d < workers_.size(); ++d)
+            if (const Strips strips = plan.strips_of(part, int(d)); strips.count > 0)
+                workers_[d]->start(plan, strips, (plan.first_slot + part) % DeviceWorker<Real>::slots);
+    }
+
+    /// Starts what comes after a part and puts the part into the film; false if that was stopped.
+    bool finish(const FramePlan& plan, int part, Film& film, RenderProgress& progress) {
+        if (part + 1 < plan.parts)
+            start(plan, part + 1);
+        else if (expected_ && expected_->settings == plan.settings)  // others may need memory that this one still has
+            begun_ = begin(expected_->camera, expected_->settings, plan.first_slot + part + 1);
+        const int slot = (plan.first_slot + part) % DeviceWorker<Real>::slots;
+        std::atomic<bool> stopped{false};
+        tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
+            if (plan.strips_of(part, int(d)).count > 0 && !workers_[d]->fetch(slot, film, progress.stop))
+                stopped = true;
+        });
+        if (stopped) return false;
+        const uint64_t before = film.rays.total();
+        film.rays = RayCounts();
+        for (const auto& worker : workers_) film.rays.add(worker->totals.rays);
+        progress.rays += film.rays.total() - before;
+        progress.pixels_done += plan.pixels_of(part);
+        return true;
+    }
+
+    /// Ends all that was begun and forgets it. All workers first: one GPU may have several.
+    void drop() {
+        for (auto& worker : workers_) worker->stop();
+        for (auto& worker : workers_) worker->wait();
+        begun_.reset();
+    }
+
+    std::shared_ptr<const CompiledScene<Real>> scene_;
+    const CudaOptions options_;
+    SceneView<Real> view_;
+    FacetTree<Real> tree_;
+    DevicePath path_;
+    std::vector<std::unique_ptr<DeviceWorker<Real>>> workers_;
+    std::optional<Request> expected_;
+    std::optional<FramePlan> begun_;
+    RenderTimes times_;
+    std::vector<std::string> notes_;
+    size_t bytes_ = 0, largest_part_ = 0;
+    uint32_t effects_ = 0;
+};
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<Renderer> make_cuda_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
+                                             const CudaOptions& options) {
+    return std::make_unique<CudaRenderer<Real>>(std::move(scene), options);
+}
+
+template std::unique_ptr<Renderer> make_cuda_renderer(std::shared_ptr<const CompiledScene<float>>, const CudaOptions&);
+template std::unique_ptr<Renderer> make_cuda_renderer(std::shared_ptr<const CompiledScene<double>>, const CudaOptions&);
+
+}  // namespace cistula

@@ -1,0 +1,210 @@
+#include "backend_cuda/host/device_worker.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "scene/film/put_pixels.h"
+
+namespace cistula {
+namespace {
+
+/// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
+constexpr int most_blocks = 6;
+/// Bytes of FrameJob::next.
+constexpr size_t next_bytes = 16;
+/// So long the host asks again and again whether a part is done, then every hundredth of the time that it has waited.
+constexpr double patience = 5e-3, longest_nap = 1e-3;  // seconds
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Waits for an event; false once `stop` is set, which no call of CUDA's would look at.
+bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
+    const auto start = std::chrono::steady_clock::now();
+    while (!done.happened()) {
+        if (stop.load(std::memory_order_relaxed)) return false;
+        const double waited = seconds_since(start);
+        if (waited < patience)
+            std::this_thread::yield();
+        else
+            std::this_thread::sleep_for(std::chrono::duration<double>(std::min(waited / 100, longest_nap)));
+    }
+    return true;
+}
+
+}  // namespace
+
+void use_device(int device) {
+    CISTULA_CUDA_CHECK(cudaSetDevice(device));
+}
+
+template <class Real>
+DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here,
+                                 DevicePath path)
+    : device_(device), path_(path), upload_(scene, here, path, compute_), stop_(compute_) {
+    next_.reserve(next_bytes);
+    for (PartSlot& slot : slots_) {
+        slot.tally.reserve(sizeof(DeviceTally));
+        slot.tally_copy.reserve(sizeof(DeviceTally));
+    }
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+}
+
+/// Takes memory for as many blocks as the device can have at work, or half as many until there is some.
+template <class Real>
+void DeviceWorker<Real>::reserve_storage() {
+    if (storage_blocks_ != 0) return;
+    int multiprocessors = 0;
+    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
+    constexpr size_t block = pixels_at_work * sizeof(LatticeStorage);
+    unsigned int blocks = unsigned(multiprocessors * most_blocks);
+    while (blocks > 1 && !storage_.try_reserve(blocks * block)) blocks /= 2;
+    storage_.reserve(blocks * block);
+    storage_blocks_ = blocks;
+}
+
+/// A job without pixels, with all that belongs to the worker.
+template <class Real>
+FrameJob DeviceWorker<Real>::job_for(const PartSlot& slot) const {
+    FrameJob job;
+    job.records = slot.records.template as<PixelRecord>();
+    job.tally = slot.tally.template as<DeviceTally>();
+    job.next = next_.as<unsigned int>();
+    job.stop = stop_.on_device();
+    job.storage = storage_.as<LatticeStorage>();
+    job.storage_blocks = storage_blocks_;
+    return job;
+}
+
+/// Runs a kernel on nothing. Its first launch takes memory for its threads' stacks, over a gigabyte on a large device,
+/// which must come before the pixels', which can do with less. It may also wait for other kernels, which must not be
+/// endless then.
+template <class Real>
+void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
+    const int kernel = 2 * mask + int(sampling);
+    if (primed_ >> kernel & 1u) return;
+    if (sampling == Sampling::adaptive) reserve_storage();
+    PartSlot& slot = slots_[0];
+    slot.records.reserve(most_warps * warp_threads * sizeof(PixelRecord));
+    FrameJob job = job_for(slot);  // of a rectangle without height: no pixel of its block is rendered
+    job.blocks = next_.as<BlockPlace>();
+    job.block_count = 1;
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(next_.as<void>(), 0, next_bytes, compute_));
+    launch(sampling, mask, path_, upload_.scene(), job, compute_);
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+    primed_ |= 1u << kernel;
+}
+
+template <class Real>
+bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, Sampling sampling, int mask) {
+    use_device(device_);
+    prime(sampling, mask);
+    const size_t bytes = pixels * sizeof(PixelRecord);
+    if (memory_limit != 0 && slots * bytes > memory_limit) return false;
+    bool room = true;
+    // A block a tile at the most.
+    const size_t list_bytes = pixels / (tile_width * tile_height) * sizeof(BlockPlace);
+    for (PartSlot& slot : slots_) {
+        room = room && slot.records.try_reserve(bytes) && slot.blocks.try_reserve(list_bytes);
+        slot.blocks_copy.reserve(list_bytes);
+    }
+    if (room) return true;
+    // What one has got would be missing when the others ask for less.
+    for (PartSlot& slot : slots_) slot.records.free();
+    return false;
+}
+
+template <class Real>
+void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips, int index) {
+    use_device(device_);
+    PartSlot& slot = slots_[index];
+    slot.hints = plan.hints;
+    slot.list = BlockList(plan.hints->cover, upload_.primitives(), strips, plan.blocks);
+    const std::vector<BlockPlace>& places = slot.list.places();
+    std::copy(places.begin(), places.end(), slot.blocks_copy.template as<BlockPlace>());
+    const PixelRect& rect = plan.hints->cover.rect();
+    FrameJob job = job_for(slot);
+    job.frame = plan.view;
+    job.x = rect.x;
+    job.y = rect.y;
+    job.width = rect.width;
+    job.height = rect.height;
+    job.blocks = slot.blocks.template as<BlockPlace>();
+    job.block_count = static_cast<unsigned int>(places.size());
+    job.mapping = plan.blocks.mapping;
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(job.next, 0, next_bytes, compute_));
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.template as<void>(), slot.blocks_copy.template as<void>(),
+                                       places.size() * sizeof(BlockPlace), cudaMemcpyHostToDevice, compute_));
+    CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
+    if (!places.empty()) launch(plan.sampling, plan.mask, path_, upload_.scene(), job, compute_);
+    CISTULA_CUDA_CHECK(cudaEventRecord(slot.end, compute_));
+    CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.tally_copy.template as<void>(), job.tally, sizeof(DeviceTally),
+                                       cudaMemcpyDeviceToHost, compute_));
+    CISTULA_CUDA_CHECK(cudaEventRecord(slot.done, compute_));
+}
+
+template <class Real>
+bool DeviceWorker<Real>::fetch(int index, Film& film, const std::atomic<bool>& stop) {
+    use_device(device_);
+    PartSlot& slot = slots_[index];
+    fill_gaps(slot, film);  // while the kernels are at work
+    if (!await(slot.done, stop)) return false;
+    const auto start = std::chrono::steady_clock::now();
+    if (!slot.list.places().empty()) {
+        totals.kernel_seconds += slot.end.since(slot.begin) * 1e-3;
+        readback_.copy(slot.records.template as<PixelRecord>(), slot.list, film);
+    }
+    const DeviceTally& tally = *slot.tally_copy.template as<DeviceTally>();
+    for (const auto& counts : tally.rays) {
+        totals.rays.primary += counts[0];
+        totals.rays.reflected += counts[1];
+        totals.rays.transmitted += counts[2];
+        totals.rays.shadow += counts[3];
+    }
+    totals.flags |= tally.flags;
+    totals.transfer_seconds += seconds_since(start);
+    return true;
+}
+
+template <class Real>
+void DeviceWorker<Real>::stop() {
+    use_device(device_);
+    stop_.raise(readback_.stream());
+}
+
+template <class Real>
+void DeviceWorker<Real>::wait() {
+    use_device(device_);
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+    if (!stop_.is_raised()) return;
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(readback_.stream()));
+    stop_.lower(compute_);
+}
+
+/// Fills what no block renders with background.
+template <class Real>
+void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
+    const BackgroundPixel& background = slot.hints->background;
+    std::atomic<uint64_t> pixels{0};
+    tbb::parallel_for(0, slot.list.rows(), [&](int i) {
+        const PixelWriter writer;
+        uint64_t count = 0;
+        slot.list.for_each_gap(i, [&](int row, int begin, int end) {
+            writer.fill(&film.pixels[size_t(row) * size_t(film.rect.width) + size_t(begin)], size_t(end - begin),
+                        background.record);
+            count += uint64_t(end - begin);
+        });
+        pixels += count;
+    });
+    background.count(pixels, totals.rays, totals.flags);
+}
+
+template class DeviceWorker<float>;
+template class DeviceWorker<double>;
+
+}  // namespace cistula

@@ -1,0 +1,25 @@
+// Records of blocks from a GPU's memory into a film.
+#pragma once
+
+#include "backend_cuda/host/block_list.h"
+#include "backend_cuda/host/cuda_resources.h"
+#include "scene/film/film.h"
+
+namespace cistula {
+
+/// Belongs to the device that is current when it is made.
+class Readback {
+  public:
+    /// Copies the records of all blocks of a list, which lie at `records` on the device, to where they belong in the
+    /// film. Through two page-locked buffers: one is filled while threads spread the other over the film.
+    void copy(const PixelRecord* records, const BlockList& list, Film& film);
+
+    cudaStream_t stream() const { return stream_; }
+
+  private:
+    CudaStream stream_;
+    PinnedMemory staging_[2];
+    CudaEvent staged_[2];
+};
+
+}  // namespace cistula

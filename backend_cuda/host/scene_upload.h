@@ -1,0 +1,32 @@
+// A scene in a GPU's memory, and the forms in which kernels take it.
+#pragma once
+
+#include <vector>
+
+#include "backend_cuda/host/cuda_resources.h"
+#include "backend_cuda/kernels/frame_job.h"
+#include "scene/compile/scene_arena.h"
+
+namespace cistula {
+
+/// The path for a scene: up to 16 primitives a plain loop is faster than any tree.
+template <class Real>
+DevicePath path_for(const SceneView<Real>& scene);
+
+template <class Real>
+class SceneUpload {
+  public:
+    /// Copies to the current device. `here`: the scene of the arena, where this program can read it.
+    SceneUpload(const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path, cudaStream_t stream);
+
+    const DeviceScene<Real>& scene() const { return scene_; }
+    /// The primitives of each solid, as in BlockPlace::in_view; empty where kernels do not ask.
+    const std::vector<uint32_t>& primitives() const { return primitives_; }
+
+  private:
+    DeviceMemory arena_;
+    DeviceScene<Real> scene_;
+    std::vector<uint32_t> primitives_;
+};
+
+}  // namespace cistula

@@ -1,0 +1,148 @@
+// The device's launcher: render_pixel over the pixels of a job, a thread a pixel.
+#pragma once
+
+#include "backend_cuda/host/cuda_check.h"
+#include "backend_cuda/kernels/adaptive_kernel.cuh"
+
+namespace cistula {
+
+/// Copies a block's first records from shared memory to where they belong.
+template <int count, int threads>
+__device__ void write_records(const PixelRecord* staged, PixelRecord* to) {
+    constexpr int words = count * int(sizeof(PixelRecord)) / int(sizeof(uint4));
+    static_assert(count * sizeof(PixelRecord) % sizeof(uint4) == 0);
+#pragma unroll
+    for (int i = 0; i < words; i += threads)
+        if (i + threads <= words || i + int(threadIdx.x) < words)
+            reinterpret_cast<uint4*>(to)[i + int(threadIdx.x)] =
+                reinterpret_cast<const uint4*>(staged)[i + int(threadIdx.x)];
+}
+
+template <class Real, int mask, DevicePath path>
+__global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Real>(kernel_shapes[mask], path))
+    render_pixels(const __grid_constant__ FrameJob job,
+                  const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
+    using E = Effects<effect_masks[mask]>;
+    using Stack = DeviceStack<Real, E, path>;
+    constexpr int warps = kernel_shapes[mask].warps, threads = kernel_shapes[mask].threads();
+    __shared__ Unset<BlockStorage<threads>> memory;
+    BlockStorage<threads>& block_storage = memory.get();
+    const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
+    const bool shares = job.mapping == PixelMapping::shared_tile;
+    const BlockPlace block = job.blocks[blockIdx.x];
+    const BlockPlan plan{job.mapping, warps};
+    const BlockShape shape = plan.shape();
+    const PixelPlace place = plan.place_of(shares ? lane : int(threadIdx.x));
+    const int column = block.column * shape.width + place.column, row = block.row * shape.height + place.row;
+    PixelWork& own = block_storage.work[threadIdx.x] = PixelWork();
+    PixelRecord& record = block_storage.records[threadIdx.x];
+    typename Stack::Storage branches;
+    Stack stack(branches, JobStop{job.stop});
+    const auto intersector = PathTraits<Real, path>::intersector(scene, block.in_view);
+    const bool is_inside = column < job.width && row < job.height;
+    const int samples = job.frame.supersample * job.frame.supersample;
+    if (is_inside) begin_pixel(record);
+    for (int round = 0; round < samples; round += warps) {
+        // Samples begin together: the warps of a block then do much the same at a time and share the instructions and
+        // constants that are fetched.
+        if (round != 0) __syncthreads();
+        const int i = round + (shares ? warp : 0);
+        if (is_inside && i < samples)
+            add_sample<Real, E>(scene, job.frame, intersector, job.x + column, job.y + row, i, record, own, stack);
+    }
+    if (is_inside) end_pixel(record, own);
+    __syncthreads();
+    if (shares) {
+        if (warp == 0)
+            for (int other = 1; other < warps; ++other) record.add(block_storage.records[other * warp_threads + lane]);
+        __syncthreads();
+    }
+    if (warp == 0) add_block_to_tally(*job.tally, block_storage.work);
+    PixelRecord* to = job.records + blockIdx.x * unsigned(shape.pixels());
+    if (shares)
+        write_records<BlockPlan::shared_shape.pixels(), threads>(block_storage.records, to);
+    else
+        write_records<threads, threads>(block_storage.records, to);
+}
+
+/// An attribute of this thread's current device.
+inline int device_attribute(cudaDeviceAttr attribute) {
+    int device = 0, value = 0;
+    CISTULA_CUDA_CHECK(cudaGetDevice(&device));
+    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&value, attribute, device));
+    return value;
+}
+
+/// Blocks of a kernel that share a multiprocessor.
+template <class Kernel>
+int sharing_blocks(const Kernel& kernel, int threads) {
+    int blocks = 0;
+    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, 0));
+    return blocks;
+}
+
+/// Blocks of a kernel that fill the device.
+template <class Kernel>
+unsigned int filling_blocks(const Kernel& kernel, int threads) {
+    return unsigned(device_attribute(cudaDevAttrMultiProcessorCount)) *
+           unsigned(greatest(sharing_blocks(kernel, threads), 1));
+}
+
+template <class Kernel>
+KernelResources resources_of(const char* name, const Kernel& kernel, int threads) {
+    cudaFuncAttributes attributes;
+    CISTULA_CUDA_CHECK(cudaFuncGetAttributes(&attributes, kernel));
+    KernelResources r{};
+    r.name = name;
+    r.registers = attributes.numRegs;
+    r.local_bytes = attributes.localSizeBytes;
+    r.blocks = sharing_blocks(kernel, threads);
+    r.occupancy = double(r.blocks) * threads / device_attribute(cudaDevAttrMaxThreadsPerMultiProcessor);
+    return r;
+}
+
+/// Whether adaptive sampling runs with this mask: with all effects.
+constexpr bool samples_adaptively(int mask) {
+    return mask == effect_mask_count - 1;
+}
+
+template <class Real, int mask, DevicePath path>
+void list_resources(std::vector<KernelResources>& list) {
+    const auto add = [&](KernelResources r) {
+        r.precision = RealTraits<Real>::name;
+        r.path = path == DevicePath::plain_loop ? "loop" : "tree";
+        r.mask = effect_masks[mask];
+        list.push_back(r);
+    };
+    add(resources_of("render_pixels", render_pixels<Real, mask, path>, kernel_shapes[mask].threads()));
+    if constexpr (samples_adaptively(mask))
+        add(resources_of("render_adaptive", render_adaptive<Real, path>, adaptive_shape.threads()));
+}
+
+template <class Real, int mask>
+void list_resources_of_mask(std::vector<KernelResources>& list) {
+    list_resources<Real, mask, DevicePath::plain_loop>(list);
+    list_resources<Real, mask, DevicePath::tree>(list);
+}
+
+template <class Real, int mask>
+void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
+                 cudaStream_t stream) {
+    const auto launch = [&]<DevicePath here>(const auto& own) {
+        if (sampling == Sampling::uniform) {
+            render_pixels<Real, mask, here><<<job.block_count, kernel_shapes[mask].threads(), 0, stream>>>(job, own);
+            check_cuda(cudaGetLastError(), "launch of render_pixels");
+        } else if constexpr (samples_adaptively(mask)) {
+            constexpr int threads = adaptive_shape.threads();
+            const auto kernel = render_adaptive<Real, here>;
+            kernel<<<least(filling_blocks(kernel, threads), job.storage_blocks), threads, 0, stream>>>(job, own);
+            check_cuda(cudaGetLastError(), "launch of render_adaptive");
+        }
+    };
+    if (path == DevicePath::tree)
+        launch.template operator()<DevicePath::tree>(scene.view);
+    else
+        launch.template operator()<DevicePath::plain_loop>(scene.constant);
+}
+
+}  // namespace cistula

@@ -1,0 +1,105 @@
+// What the kernels share: the shape of blocks, the intersectors of a path, counting.
+#pragma once
+
+#include <algorithm>
+
+#include "backend_cuda/kernels/frame_job.h"
+#include "cistula/traversal/bvh.h"
+
+namespace cistula {
+
+/// What a block keeps of its pixels while it renders them: registers are dearer.
+template <int threads>
+struct alignas(16) BlockStorage {
+    PixelRecord records[threads];
+    PixelWork work[threads];
+};
+
+/// Shared memory, unset: what it holds would be set by its constructors, of which the language allows none there.
+template <class T>
+struct alignas(T) Unset {
+    unsigned char bytes[sizeof(T)];
+    __device__ T& get() { return reinterpret_cast<T&>(bytes); }
+};
+
+/// Threads that a multiprocessor has room for: 1,024 of capability 7.5, later ones 1,536 and more.
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
+inline constexpr int most_threads = 1024;
+#else
+inline constexpr int most_threads = 1536;
+#endif
+/// Blocks that a multiprocessor is to hold at least, for __launch_bounds__.
+template <class Real>
+constexpr int least_blocks(const KernelShape& shape, DevicePath path) {
+    return std::min(shape.blocks(path, sizeof(Real) == sizeof(float)), most_threads / shape.threads());
+}
+
+/// The form of the scene that a path's kernels read, and their intersector.
+template <class Real, DevicePath path>
+struct PathTraits;
+template <class Real>
+struct PathTraits<Real, DevicePath::plain_loop> {
+    using Scene = ConstantScene<Real>;
+    using Intersector = BruteIntersector<Real, OneMedium, Scene>;
+    __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
+};
+template <class Real>
+struct PathTraits<Real, DevicePath::tree> {
+    using Scene = SceneView<Real>;
+    using Intersector = BvhIntersector<Real, MediaList, Scene>;
+    __device__ static Intersector intersector(const Scene& scene, uint32_t) { return {scene}; }
+};
+
+/// Ends trees once the host wants the kernel to end. Read past the caches, which would keep what was there first.
+struct JobStop {
+    const unsigned int* flag;  // FrameJob::stop
+
+    CISTULA_INLINE bool operator()() const { return *static_cast<const volatile unsigned int*>(flag) != 0; }
+};
+
+/// The stack of a kernel's trees.
+template <class Real, class E, DevicePath path>
+using DeviceStack = StoppableStack<StackOf<Real, E, typename PathTraits<Real, path>::Intersector::Media>, JobStop>;
+
+/// Over all lanes, for every one.
+__device__ inline unsigned int warp_sum(unsigned int value) {
+#if __CUDA_ARCH__ >= 800
+    return __reduce_add_sync(0xffffffffu, value);
+#else
+    for (int step = warp_threads / 2; step > 0; step /= 2) value += __shfl_xor_sync(0xffffffffu, value, step);
+    return value;
+#endif
+}
+
+/// Sums over the warp first, two in a word; where they could overflow, each lane by itself.
+__device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, unsigned int flags) {
+    constexpr int half = 16;
+    const unsigned int counts[4] = {rays.primary, rays.reflected, rays.transmitted, rays.shadow};
+    unsigned long long* to = tally.rays[blockIdx.x % DeviceTally::slots];
+    if (__any_sync(0xffffffffu, (counts[0] | counts[1] | counts[2] | counts[3]) >= (1u << half) / warp_threads)) {
+        for (int i = 0; i < 4; ++i) atomicAdd(to + i, (unsigned long long)counts[i]);
+    } else {
+        const unsigned int lane = threadIdx.x % warp_threads;
+        const unsigned int first = warp_sum(counts[0] | counts[1] << half),
+                           last = warp_sum(counts[2] | counts[3] << half);
+        const unsigned int sum = (lane < 2 ? first : last) >> (lane % 2 * half) & ((1u << half) - 1);
+        if (lane < 4 && sum != 0) atomicAdd(to + lane, (unsigned long long)sum);
+    }
+    if (flags != 0) atomicOr(&tally.flags, flags);
+}
+
+/// What a block noted down, by one warp of it, after all are done.
+template <int threads>
+__device__ void add_block_to_tally(DeviceTally& tally, const PixelWork (&work)[threads]) {
+    PixelRays rays;
+    unsigned int flags = 0;
+#pragma unroll
+    for (int i = 0; i < threads / warp_threads; ++i) {
+        const PixelWork& own = work[i * warp_threads + int(threadIdx.x) % warp_threads];
+        rays.add(own.rays);
+        flags |= own.flags;
+    }
+    add_to_tally(tally, rays, flags);
+}
+
+}  // namespace cistula

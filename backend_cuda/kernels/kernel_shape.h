@@ -1,0 +1,45 @@
+// The shapes of kernels: one row for each mask of effects, as measured on an H200 (docs/modules/backend_cuda.md).
+#pragma once
+
+#include "cistula/model/effects.h"
+
+namespace cistula {
+
+inline constexpr int warp_threads = 32;
+
+/// Which intersector and which form of media the kernels use. Never changes the image.
+enum class DevicePath {
+    plain_loop,  // a ConstantScene of few primitives, closed solids all convex and apart
+    tree,        // any scene
+};
+
+/// The blocks in which a mask's pixels are rendered. Warps that begin together share the instructions that are fetched,
+/// so large blocks pay where the code is much more than the instruction caches hold. The number of blocks that a
+/// multiprocessor is to hold bounds the registers of a thread.
+struct KernelShape {
+    int warps;
+    int loop_blocks[2];  // blocks a multiprocessor, plain loop: in float, in double
+    int tree_blocks[2];
+
+    CISTULA_HD constexpr int threads() const { return warps * warp_threads; }
+    CISTULA_HD constexpr int blocks(DevicePath path, bool in_float) const {
+        return (path == DevicePath::plain_loop ? loop_blocks : tree_blocks)[in_float ? 0 : 1];
+    }
+};
+
+inline constexpr KernelShape kernel_shapes[] = {
+    {4, {8, 5}, {6, 4}},  // opaque bodies
+    {4, {7, 4}, {6, 4}},  // mirrors
+    {4, {6, 4}, {6, 4}},  // clear bodies
+    {4, {6, 4}, {6, 4}},  // colors and visible lights
+    {8, {3, 2}, {3, 2}},  // everything
+    {8, {3, 2}, {3, 2}},  // everything but shadows
+};
+static_assert(sizeof kernel_shapes / sizeof kernel_shapes[0] == compiled_mask_count, "a row for each mask");
+
+inline constexpr int most_warps = 8;  // of a block
+
+/// The shape of adaptive sampling's kernel.
+inline constexpr KernelShape adaptive_shape = {4, {6, 4}, {6, 4}};
+
+}  // namespace cistula

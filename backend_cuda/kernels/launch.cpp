@@ -1,0 +1,33 @@
+// From a mask's index to its kernels, which are compiled apart.
+#include <array>
+#include <utility>
+
+#include "backend_cuda/kernels/frame_job.h"
+
+namespace cistula {
+
+template <class Real>
+void launch(Sampling sampling, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
+            cudaStream_t stream) {
+    using Launch = void (*)(Sampling, DevicePath, const DeviceScene<Real>&, const FrameJob&, cudaStream_t);
+    static constexpr auto table = []<int... m>(std::integer_sequence<int, m...>) {
+        return std::array<Launch, sizeof...(m)>{&launch_mask<Real, m>...};
+    }
+    (std::make_integer_sequence<int, compiled_mask_count>());
+    table[size_t(mask)](sampling, path, scene, job, stream);
+}
+
+std::vector<KernelResources> kernel_resources() {
+    std::vector<KernelResources> list;
+    [&]<int... m>(std::integer_sequence<int, m...>) {
+        (list_resources_of_mask<float, m>(list), ...);
+        (list_resources_of_mask<double, m>(list), ...);
+    }
+    (std::make_integer_sequence<int, compiled_mask_count>());
+    return list;
+}
+
+template void launch(Sampling, int, DevicePath, const DeviceScene<float>&, const FrameJob&, cudaStream_t);
+template void launch(Sampling, int, DevicePath, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
+
+}  // namespace cistula

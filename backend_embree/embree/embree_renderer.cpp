@@ -1,0 +1,64 @@
+#include "backend_embree/embree/embree_renderer.h"
+
+#include "backend_embree/embree/embree_tree.h"
+#include "backend_embree/host/frame_loop.h"
+
+namespace cistula {
+
+namespace {
+
+template <class Real>
+class EmbreeRenderer : public Renderer {
+  public:
+    EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, std::shared_ptr<const EmbreeTree<Real>> tree)
+        : scene_(std::move(scene)), view_(scene_->view()), tree_(std::move(tree)) {
+        if (tree_) return;
+        plain_ = make_constant_renderer<Real>(scene_);
+        if (!plain_) plain_ = make_host_renderer<Real>(scene_, HostIntersector::brute);
+    }
+
+    bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
+                RenderProgress& progress) override {
+        if (plain_) return plain_->render(camera, settings, film, progress);
+        const EmbreeIntersector<Real> intersector{view_, tree_->scene()};
+        FrameTask task(*scene_, intersector, camera, settings, film, progress);
+        effects_ = task.effects();
+        return task.run();
+    }
+    uint32_t effects() const override { return plain_ ? plain_->effects() : effects_; }
+    std::string intersector() const override { return "embree"; }
+    size_t memory() const override { return plain_ ? plain_->memory() : scene_->memory() + tree_->memory(); }
+
+  private:
+    std::shared_ptr<const CompiledScene<Real>> scene_;
+    SceneView<Real> view_;
+    std::shared_ptr<const EmbreeTree<Real>> tree_;
+    std::unique_ptr<Renderer> plain_;  // where a loop over the few primitives there are does without a tree
+    uint32_t effects_ = 0;
+};
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
+                                               const EmbreeOptions& options) {
+    std::shared_ptr<const EmbreeTree<Real>> tree = embree_tree(scene->view(), options);
+    return make_embree_renderer(std::move(scene), std::move(tree));
+}
+
+template <class Real>
+std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
+                                               std::shared_ptr<const EmbreeTree<Real>> tree) {
+    return std::make_unique<EmbreeRenderer<Real>>(std::move(scene), std::move(tree));
+}
+
+template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<float>>,
+                                                        const EmbreeOptions&);
+template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<double>>,
+                                                        const EmbreeOptions&);
+template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<float>>,
+                                                        std::shared_ptr<const EmbreeTree<float>>);
+template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<double>>,
+                                                        std::shared_ptr<const EmbreeTree<double>>);
+
+}  // namespace cistula

@@ -1,0 +1,66 @@
+#include "backend_embree/embree/embree_tree.h"
+
+#include <vector>
+
+#include "backend_embree/host/frame_loop.h"
+
+namespace cistula {
+
+namespace {
+
+/// Up to this many primitives a plain loop is faster than any tree.
+constexpr uint32_t plain_loop_primitives = 16;
+
+}  // namespace
+
+template <class Real>
+EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options)
+    : device_(options.device_config) {
+    // Boxes are made here, before the commit, whose threads may run with flush-to-zero.
+    const uint32_t primitives = scene.convex.size + scene.clusters.size;
+    std::vector<PaddedBox> boxes(primitives);
+    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, primitives), [&](const auto& range) {
+        use_default_rounding();
+        for (uint32_t p = range.begin(); p != range.end(); ++p) boxes[p] = primitive_box(scene, p);
+    });
+    const GeometryPointer owner(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
+    const RTCGeometry geometry = owner.get();
+    const RTCBuildQuality quality = options.tree_quality > 0 ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW;
+    rtcSetGeometryBuildQuality(geometry, quality);
+    rtcSetGeometryUserPrimitiveCount(geometry, primitives);
+    rtcSetGeometryUserData(geometry, boxes.data());
+    rtcSetGeometryBoundsFunction(
+        geometry,
+        [](const RTCBoundsFunctionArguments* arguments) {
+            const PaddedBox& box = static_cast<const PaddedBox*>(arguments->geometryUserPtr)[arguments->primID];
+            RTCBounds& out = *arguments->bounds_o;
+            out.lower_x = box.low[0];
+            out.lower_y = box.low[1];
+            out.lower_z = box.low[2];
+            out.upper_x = box.high[0];
+            out.upper_y = box.high[1];
+            out.upper_z = box.high[2];
+        },
+        nullptr);
+    rtcSetGeometryIntersectFunction(geometry, &EmbreeIntersector<Real>::on_intersect);
+    rtcSetGeometryOccludedFunction(geometry, &EmbreeIntersector<Real>::on_occluded);
+    rtcCommitGeometry(geometry);
+    scene_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneBuildQuality(scene_.get(), quality);
+    rtcAttachGeometry(scene_.get(), geometry);
+    rtcCommitScene(scene_.get());
+    device_.check("building the tree");
+}
+
+template <class Real>
+std::shared_ptr<const EmbreeTree<Real>> embree_tree(const SceneView<Real>& scene, const EmbreeOptions& options) {
+    if (!options.always_tree && scene.convex.size + scene.clusters.size <= plain_loop_primitives) return nullptr;
+    return std::make_shared<const EmbreeTree<Real>>(scene, options);
+}
+
+template class EmbreeTree<float>;
+template class EmbreeTree<double>;
+template std::shared_ptr<const EmbreeTree<float>> embree_tree(const SceneView<float>&, const EmbreeOptions&);
+template std::shared_ptr<const EmbreeTree<double>> embree_tree(const SceneView<double>&, const EmbreeOptions&);
+
+}  // namespace cistula

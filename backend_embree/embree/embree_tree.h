@@ -1,0 +1,37 @@
+// Embree's device and its tree over a scene's primitives.
+#pragma once
+
+#include <memory>
+
+#include "backend_embree/embree/embree_device.h"
+#include "backend_embree/embree/embree_intersector.h"
+#include "backend_embree/embree/embree_renderer.h"
+
+namespace cistula {
+
+/// Owns the device and the scene. Throws Error (device) with Embree's words.
+template <class Real>
+class EmbreeTree {
+  public:
+    EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options);
+    EmbreeTree(const EmbreeTree&) = delete;
+    EmbreeTree& operator=(const EmbreeTree&) = delete;
+
+    RTCScene scene() const { return scene_.get(); }
+    size_t memory() const { return device_.memory(); }
+
+  private:
+    EmbreeDevice device_;
+    ScenePointer scene_;
+};
+
+/// The tree that a renderer of the scene walks; null where a plain loop does.
+template <class Real>
+std::shared_ptr<const EmbreeTree<Real>> embree_tree(const SceneView<Real>& scene, const EmbreeOptions& options);
+
+/// A renderer over a tree of the scene, which it shares.
+template <class Real>
+std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
+                                               std::shared_ptr<const EmbreeTree<Real>> tree);
+
+}  // namespace cistula

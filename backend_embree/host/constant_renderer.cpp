@@ -1,0 +1,17 @@
+#include "backend_embree/host/host_renderer.h"
+#include "scene/compile/constant_scene.h"
+
+namespace cistula {
+
+template <class Real>
+std::unique_ptr<Renderer> make_constant_renderer(std::shared_ptr<const CompiledScene<Real>> scene) {
+    std::unique_ptr<const ConstantScene<Real>> form = constant_scene(scene->view());
+    if (!form) return nullptr;
+    using Loop = BruteIntersector<Real, OneMedium, ConstantScene<Real>>;
+    return std::make_unique<HostRenderer<Real, Loop>>(std::move(scene), std::move(form), "embree");
+}
+
+template std::unique_ptr<Renderer> make_constant_renderer(std::shared_ptr<const CompiledScene<float>>);
+template std::unique_ptr<Renderer> make_constant_renderer(std::shared_ptr<const CompiledScene<double>>);
+
+}  // namespace cistula

@@ -1,0 +1,171 @@
+// The host's launcher: render_pixel for any intersector, over tiles that TBB spreads.
+#pragma once
+
+#include <immintrin.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <atomic>
+#include <mutex>
+#include <utility>
+
+#include "cistula/adaptive/adaptive_pixel.h"
+#include "cistula/traversal/bvh.h"
+#include "scene/film/put_pixels.h"
+#include "scene/frame/frame_hints.h"
+#include "scene/frame/frame_view.h"
+
+namespace cistula {
+
+/// Rounds to nearest, no flush to zero: other libraries' threads may have left these set otherwise.
+inline void use_default_rounding() {
+    _mm_setcsr(0x1f80);
+}
+
+/// Ends trees once a render is stopped.
+struct RenderStop {
+    const std::atomic<bool>& flag;  // RenderProgress::stop
+
+    bool operator()() const { return flag.load(std::memory_order_relaxed); }
+};
+
+/// Whether an intersector runs with the mask that the scene calls for. The device's traversal runs here to be tested
+/// only: with all effects, which spares the compiler the other masks.
+template <class Intersector>
+inline constexpr bool runs_every_mask = true;
+template <class Real>
+inline constexpr bool runs_every_mask<BvhIntersector<Real>> = false;
+
+/// One frame on the host.
+template <class Real, class Intersector>
+class FrameTask {
+  public:
+    using Scene = typename Intersector::Scene;
+    using Media = typename Intersector::Media;
+
+    /// Sets up the film; all that is given must outlive the task. The intersector's scene is a form of `compiled`.
+    FrameTask(const CompiledScene<Real>& compiled, const Intersector& intersector, const CameraFrame& camera,
+              const FrameSettings& settings, Film& film, RenderProgress& progress)
+        : scene_(intersector.scene),
+          intersector_(intersector),
+          settings_(settings),
+          film_(film),
+          progress_(progress),
+          frame_(frame_view(compiled, camera, settings)),
+          hints_(frame_hints(compiled, frame_, settings)) {
+        use_default_rounding();
+        prepare_film(film, settings, compiled, camera);
+        if (!camera_solids(scene_, intersector, frame_.camera.position, frame_.camera_media))
+            film.flags |= flag_media_overflow;
+        mask_ = runs_every_mask<Intersector> ? mask_to_run(compiled.effects, settings, frame_) : effect_mask_count - 1;
+    }
+
+    /// The effects that run: the least mask that contains what the scene and the settings ask for.
+    uint32_t effects() const { return effect_masks[mask_]; }
+
+    /// Renders the frame; false if it was stopped.
+    bool run() {
+        if (settings_.adaptive()) return render_adaptive();
+        if constexpr (!runs_every_mask<Intersector>) {
+            return render_uniform<effect_mask_count - 1>();
+        } else {
+            using Render = bool (FrameTask::*)();
+            static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
+                return std::array<Render, sizeof...(I)>{&FrameTask::render_uniform<int(I)>...};
+            }
+            (std::make_index_sequence<compiled_mask_count>());
+            return (this->*table[size_t(mask_)])();
+        }
+    }
+
+  private:
+    template <class E>
+    using Stack = StoppableStack<StackOf<Real, E, Media>, RenderStop>;
+
+    bool stopped() const { return progress_.stop.load(std::memory_order_relaxed); }
+
+    template <int mask>
+    bool render_uniform() {
+        using E = Effects<effect_masks[mask]>;
+        return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+            typename Stack<E>::Storage storage;
+            Stack<E> stack(storage, RenderStop{progress_.stop});
+            render_pixel<Real, E>(scene_, frame_, intersector_, x, y, SampleRange(), pixel, own, stack);
+        });
+    }
+
+    bool render_adaptive() {
+        using E = Effects<all_effects>;
+        const bool gradual = shades_gradually(scene_);
+        return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+            typename Stack<E>::Storage storage;
+            Stack<E> stack(storage, RenderStop{progress_.stop});
+            render_adaptive_pixel<Real, E>(scene_, frame_, intersector_, x, y, gradual, pixel, own, stack);
+        });
+    }
+
+    /// What a tile adds to the film's counts.
+    struct Counts {
+        RayCounts rays;
+        uint32_t flags = 0;
+    };
+
+    /// Calls render(x, y, record, work) for each pixel of the film that may show something, in tiles.
+    template <class Render>
+    bool for_each_pixel(const Render& render) {
+        const PixelRect rect = film_.rect;
+        const int tile = settings_.tile;
+        const int columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
+        std::mutex totals;
+        tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
+            use_default_rounding();
+            for (int64_t t = range.begin(); t != range.end(); ++t) {
+                const int x = int(t % columns) * tile, y = int(t / columns) * tile;
+                const PixelRect pixels{x, y, std::min(tile, rect.width - x), std::min(tile, rect.height - y)};
+                const Counts counts = render_tile(pixels, render);
+                if (stopped()) return;
+                progress_.pixels_done += uint64_t(pixels.width) * uint64_t(pixels.height);
+                progress_.rays += counts.rays.total();
+                const std::lock_guard<std::mutex> lock(totals);
+                film_.rays.add(counts.rays);
+                film_.flags |= counts.flags;
+            }
+        });
+        return !progress_.stop.load();
+    }
+
+    /// `tile` counts from the film's first pixel.
+    template <class Render>
+    Counts render_tile(const PixelRect& tile, const Render& render) {
+        Counts counts;
+        const PixelWriter writer;
+        for (int y = tile.y; y < tile.y + tile.height; ++y)
+            hints_.cover.for_each_part(y, tile.x, tile.x + tile.width, [&](int begin, int end, bool covered) {
+                PixelRecord* pixels = &film_.pixels[size_t(y) * size_t(film_.rect.width) + size_t(begin)];
+                if (!covered) {
+                    writer.fill(pixels, size_t(end - begin), hints_.background.record);
+                    hints_.background.count(uint64_t(end - begin), counts.rays, counts.flags);
+                    return;
+                }
+                for (int x = begin; x < end && !stopped(); ++x) {
+                    PixelWork own;
+                    render(film_.rect.x + x, film_.rect.y + y, pixels[x - begin], own);
+                    counts.rays.add(own.rays);
+                    counts.flags |= own.flags;
+                }
+            });
+        return counts;
+    }
+
+    const Scene& scene_;
+    const Intersector& intersector_;
+    const FrameSettings& settings_;
+    Film& film_;
+    RenderProgress& progress_;
+    FrameView frame_;
+    const FrameHints hints_;
+    int mask_ = 0;
+};
+
+}  // namespace cistula

@@ -1,0 +1,35 @@
+// The Renderer over an intersector that needs nothing but a form of the scene: a SceneView, or a ConstantScene.
+#pragma once
+
+#include "backend_embree/embree/embree_renderer.h"
+#include "backend_embree/host/frame_loop.h"
+
+namespace cistula {
+
+template <class Real, class Intersector>
+class HostRenderer : public Renderer {
+  public:
+    using Form = typename Intersector::Scene;
+
+    HostRenderer(std::shared_ptr<const CompiledScene<Real>> scene, std::unique_ptr<const Form> form, const char* name)
+        : scene_(std::move(scene)), form_(std::move(form)), name_(name) {}
+
+    bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
+                RenderProgress& progress) override {
+        const Intersector intersector{*form_};
+        FrameTask task(*scene_, intersector, camera, settings, film, progress);
+        effects_ = task.effects();
+        return task.run();
+    }
+    uint32_t effects() const override { return effects_; }
+    std::string intersector() const override { return name_; }
+    size_t memory() const override { return scene_->memory() + sizeof(Form); }
+
+  private:
+    std::shared_ptr<const CompiledScene<Real>> scene_;
+    std::unique_ptr<const Form> form_;  // of *scene_
+    const char* name_;
+    uint32_t effects_ = 0;
+};
+
+}  // namespace cistula

@@ -1,0 +1,381 @@
+// From what a branch of a ray tree asked and was answered to what it met: libcore's own functions, called once more on
+// the same numbers.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cistula/transport/pixel.h"
+#include "scene/film/pixel_tree.h"
+#include "scene/frame/frame_view.h"
+
+namespace cistula {
+
+using BranchEffects = Effects<all_effects>;
+
+inline FixedColor colors_of(const int64_t (&sums)[3]) {
+    return {sums[0], sums[1], sums[2]};
+}
+inline FixedColor less(const FixedColor& a, const FixedColor& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+/// A pixel's sums at some moment.
+struct Sums {
+    FixedColor radiance{}, pruned{}, cut{};
+
+    static Sums of(const PixelRecord& r) { return {colors_of(r.radiance), colors_of(r.pruned), colors_of(r.cut)}; }
+};
+
+/// All that one branch asked of its intersector and of its stack, in order.
+template <class Real>
+struct BranchSeen {
+    struct Look {
+        Ray<Real> ray;
+        Hit<Real> hit;
+    };
+    struct Shadow {
+        ShadowRay<Real> shadow;
+        Vec3<Real> arrives;
+        FixedColor before;  // the radiance until then
+    };
+    struct Push {
+        Branch<Real> branch;
+        bool fits;
+    };
+    std::vector<Look> looks;
+    std::vector<Shadow> shadows;
+    std::vector<Push> pushed;
+    Vec3<Real> weight{Real(1)};
+    Sums begin, end;
+    uint32_t flags = 0;
+    double start = 0;  // primary rays: how far from the camera they begin
+};
+
+/// Gives the answers once more, in their order.
+template <class Real>
+struct ReplayedIntersector {
+    const std::vector<typename BranchSeen<Real>::Look>& looks;
+    size_t& next;
+
+    Hit<Real> closest(const Ray<Real>&) const { return next < looks.size() ? looks[next++].hit : Hit<Real>(); }
+};
+
+/// Gives the shadows once more, in their order; `agrees` becomes false where others are asked for.
+template <class Real>
+struct ReplayedShadows {
+    const std::vector<typename BranchSeen<Real>::Shadow>& shadows;
+    size_t& next;
+    bool& agrees;
+
+    template <class E>
+    Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
+        if (next == shadows.size() || shadows[next].shadow.light != shadow.light) {
+            agrees = false;
+            return Vec3<Real>(Real(0));
+        }
+        return shadows[next++].arrives;
+    }
+};
+
+/// Sums that were added before.
+struct DiscardedSums {
+    template <class Radiance>
+    void add(const Radiance&) const {}
+};
+
+template <class Real, class Intersector>
+class BranchReader {
+  public:
+    using E = BranchEffects;
+    using Seen = BranchSeen<Real>;
+
+    BranchReader(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, const Intersector& intersector,
+                 const FrameView& frame)
+        : compiled_(compiled), scene_(scene), intersector_(intersector), frame_(frame) {}
+
+    /// Fills the branch's node and adds those of its children; `waiting` gets those that the stack has.
+    void read(const Seen& seen, SampleTree& tree, uint32_t node, std::vector<uint32_t>& waiting) const {
+        PixelBranch branch = std::move(tree.branches[node]);
+        if (seen.looks.empty()) {
+            branch.end = BranchEnd::pruned;
+            branch.ledger = less(seen.end.pruned, seen.begin.pruned);
+        } else {
+            Walk walk{seen,    branch,      tree,
+                      waiting, seen.weight, seen.start - greatest(seen.looks[0].ray.after.t, Real(0))};
+            read_way(walk);
+        }
+        tree.branches[node] = std::move(branch);
+    }
+
+  private:
+    struct Walk {
+        const Seen& seen;
+        PixelBranch& branch;
+        SampleTree& tree;
+        std::vector<uint32_t>& waiting;
+        Vec3<Real> weight;
+        double ahead;  // what a distance on the line is to be lengthened by, in the frame
+    };
+
+    /// What is read has to agree with what was seen; where the pixel is flagged all the same, it is read as far as it
+    /// goes.
+    void require(const Seen& seen, bool holds, const char* what) const {
+        if (!holds && seen.flags == 0)
+            throw std::logic_error(std::string("internal error: the ray tree does not add up: ") + what);
+    }
+
+    void read_way(Walk& walk) const {
+        const auto& looks = walk.seen.looks;
+        Ray<Real> ray = looks[0].ray;
+        walk.branch.origin = to_scene(along(ray.origin, greatest(ray.after.t, Real(0)), ray.direction));
+        walk.branch.direction = Vec3<double>(ray.direction);
+        Absorption<true> absorption;
+        absorption.begin(scene_, ray.media, ray.after.t);
+        for (size_t at = 0;;) {
+            ray = looks[at].ray;
+            const Hit<Real> hit = looks[at].hit;
+            const SeenHit<Real> seen = closest_seen_light(scene_, ray, hit.t);
+            if (seen.light != no_light || !hit.found()) {
+                const bool light = seen.light != no_light;
+                absorption.dim(scene_, ray.media, light ? seen.t : hit.t, walk.weight);
+                walk.branch.end = light ? BranchEnd::light : BranchEnd::background;
+                walk.branch.seen_light = seen.light;
+                walk.branch.distance = length_of(walk, light ? seen.t : hit.t);
+                break;
+            }
+            size_t next = at + 1;
+            Meeting<Real> meeting;
+            meet(scene_, ReplayedIntersector<Real>{looks, next}, ray, hit, meeting);
+            const size_t after = next_on_line(looks, next, meeting.last());
+            if (after == looks.size()) {
+                absorption.dim(scene_, ray.media, meeting.hit.t, walk.weight);
+                walk.branch.end = BranchEnd::surface;
+                walk.branch.distance = length_of(walk, meeting.hit.t);
+                read_surface(walk, ray, meeting);
+                break;
+            }
+            note_passed(walk, ray, meeting);
+            for (int i = 0; i < meeting.count; ++i) absorption.cross(scene_, meeting.taken[i].key, meeting.taken[i].t);
+            for (; next < after; ++next) {  // those before it that count from here on (RayTree::count_passed_over)
+                const Hit<Real>& over = looks[next].hit;
+                if (!Crossing<Real>{over.t, over.key}.before(meeting.taken[0].t, meeting.taken[0].key)) break;
+                if (!lies_at_start(scene_, ray, over)) absorption.cross(scene_, over.key, over.t);
+            }
+            at = after;
+        }
+        walk.branch.arriving = Vec3<double>(walk.weight);
+        walk.branch.adds = less(walk.seen.end.radiance, walk.seen.begin.radiance);
+    }
+
+    /// The question that goes on from a crossing, if there is one: nothing was shaded there then.
+    static size_t next_on_line(const std::vector<typename Seen::Look>& looks, size_t from, const Crossing<Real>& last) {
+        while (from < looks.size() && !(looks[from].ray.after.t == last.t && looks[from].ray.after.key == last.key))
+            ++from;
+        return from;
+    }
+
+    void note_passed(Walk& walk, const Ray<Real>& ray, const Meeting<Real>& meeting) const {
+        const uint32_t medium = ray.media.medium();
+        for (int i = 0; i < meeting.count; ++i) {
+            FacePassed face;
+            fill(walk, face, meeting.taken[i].key, meeting.taken[i].t);
+            face.inside = face.crossing != CrossingKind::sheet && medium != no_solid && medium > face.solid;
+            walk.branch.passed.push_back(face);
+        }
+    }
+
+    void read_surface(Walk& walk, const Ray<Real>& ray, const Meeting<Real>& meeting) const {
+        PixelSurface& out = walk.branch.surface;
+        fill(walk, out, meeting.hit.key, meeting.hit.t);
+        for (int i = 0; i < meeting.count; ++i)
+            if (meeting.taken[i].key != meeting.hit.key)
+                fill(walk, out.also.emplace_back(), meeting.taken[i].key, meeting.taken[i].t);
+        const Surface<Real> s = surface_at<Real, E>(scene_, ray, meeting.hit);
+        const Material<Real>& m = scene_.materials[s.material];
+        out.material = s.material;
+        out.t = double(meeting.hit.t) * frame_.unit_length;
+        out.point = to_scene(s.point);
+        out.normal = Vec3<double>(s.normal);
+        out.color = Vec3<double>(s.color);
+        out.before = solids_of(ray.media);
+        out.beyond = solids_of(meeting.beyond);
+        out.index_before = index_of(scene_, ray.media);
+        out.index_beyond = index_of(scene_, meeting.beyond);
+        out.cosine = -double(dot(ray.direction, s.normal));
+        const bool sheet = out.crossing == CrossingKind::sheet;
+        const Shares<Real> shares =
+            split_at<Real, E>(scene_, m, ray.direction, s.normal, ray.media, meeting.beyond, sheet);
+        out.local = double(m.local);
+        out.mirrored = double(shares.reflection);
+        out.through = Vec3<double>(shares.filter);
+        out.bends = shares.bends;
+        if (shares.bends) {
+            const Refraction<Real> refraction =
+                refracted<Real>(ray.direction, s.normal, out.index_before, out.index_beyond);
+            out.total = refraction.total;
+            if (!refraction.total) out.bent_cosine = -double(dot(refraction.direction, s.normal));
+            if (m.fresnel != 0 && !sheet) out.fresnel = double(refraction.reflectance);
+        } else if (m.fresnel != 0 && !sheet) {
+            out.fresnel = 0;
+        }
+        read_children(walk, shares);
+        if (m.local > Real(0)) read_light(walk, ray, meeting.hit, s);
+    }
+
+    void read_children(Walk& walk, const Shares<Real>& shares) const {
+        const Vec3<Real> weights[2] = {walk.weight * shares.reflection, walk.weight * shares.filter};
+        const bool last = walk.branch.depth + 1 >= frame_.tree.depth;
+        uint32_t number[2] = {0, 0};
+        FixedColor cut{};
+        for (int through = 0; through < 2; ++through) {
+            const Vec3<Real>& weight = weights[through];
+            if (!(weight.x + weight.y + weight.z > Real(0))) continue;
+            PixelBranch child;
+            child.kind = through ? BranchKind::transmitted : BranchKind::mirrored;
+            child.depth = walk.branch.depth + 1;
+            child.weight = child.arriving = Vec3<double>(weight);
+            child.end = BranchEnd::cut;
+            if (last) {
+                for (int c = 0; c < 3; ++c) {
+                    to_fixed_up(weight[c] * scene_.bound[c], frame_.tree.fixed_scale, child.ledger[size_t(c)]);
+                    cut[size_t(c)] += child.ledger[size_t(c)];
+                }
+            }
+            number[through] = uint32_t(walk.tree.branches.size());
+            walk.branch.children.push_back(number[through]);
+            walk.tree.branches.push_back(std::move(child));
+        }
+        require(walk.seen, cut == less(walk.seen.end.cut, walk.seen.begin.cut), "what the depth cuts");
+        require(walk.seen, walk.seen.pushed.size() == (last ? 0 : walk.branch.children.size()),
+                "the number of children");
+        for (const typename Seen::Push& push : walk.seen.pushed) {
+            const int through = push.branch.mirrored ? 0 : 1;
+            require(walk.seen, number[through] != 0 && push.branch.weight == weights[through], "the weight of a child");
+            if (push.fits) walk.waiting.push_back(number[through]);
+            if (!push.fits && number[through] != 0) walk.tree.branches[number[through]].end = BranchEnd::dropped;
+        }
+    }
+
+    /// Lights the surface once more, with the shadows that were seen.
+    void read_light(Walk& walk, const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s) const {
+        PixelSurface& out = walk.branch.surface;
+        const auto& shadows = walk.seen.shadows;
+        out.ambient = Vec3<double>(s.color * scene_.materials[s.material].ambient) * radiance_unit();
+        out.ambient_adds = less(shadows.empty() ? walk.seen.end.radiance : shadows[0].before, walk.seen.begin.radiance);
+        out.lights.resize(scene_.lights.size);
+        size_t next = 0;
+        bool agrees = true;
+        const ReplayedShadows<Real> replayed{shadows, next, agrees};
+        const Local local{*this, walk, s, next};
+        DiscardedSums sums;
+        PixelRays rays;
+        add_local_light<Real, E>(scene_, replayed, ray, hit, s, walk.weight * scene_.materials[s.material].local, sums,
+                                 rays, local);
+        require(walk.seen, agrees, "which lights cast shadows");
+        require(walk.seen, next == shadows.size(), "the number of shadow rays");
+    }
+
+    /// Notes down what each light adds to a surface. `next`: of the shadows seen, the one that is asked for next.
+    struct Local {
+        const BranchReader& reader;
+        Walk& walk;
+        const Surface<Real>& s;
+        const size_t& next;
+
+        LightShare& share(uint32_t i) const {
+            LightShare& share = walk.branch.surface.lights[i];
+            share.light = i;
+            return share;
+        }
+        void aim(LightShare& share, const LightAim<Real>& aim) const {
+            share.distance = double(aim.distance) * reader.frame_.unit_length;
+            share.cosine = double(aim.cosine);
+        }
+        void behind(uint32_t i, const Light<Real>& light) const {
+            aim(share(i), LightAim<Real>::of(light, s));
+            share(i).fate = LightFate::behind;
+        }
+        void unshadowed(uint32_t i, const LightAim<Real>& to_light, const Vec3<Real>& lit) const {
+            aim(share(i), to_light);
+            share(i).unshadowed = Vec3<double>(lit) * reader.radiance_unit();
+            share(i).fate = LightFate::nothing;
+        }
+        void arrives(uint32_t i, const ShadowRay<Real>& shadow, const Vec3<Real>& arrives) const {
+            const auto& shadows = walk.seen.shadows;
+            if (next == 0) return;  // it was never asked for
+            LightShare& to = share(i);
+            to.arrives = Vec3<double>(arrives);
+            to.adds =
+                less(next < shadows.size() ? shadows[next].before : walk.seen.end.radiance, shadows[next - 1].before);
+            to.fate = arrives == Vec3<Real>(Real(0)) ? LightFate::shadow : LightFate::adds;
+            if (arrives != Vec3<Real>(Real(1))) to.through = reader.solids_on_the_way(shadow);
+        }
+    };
+
+    double radiance_unit() const { return elementary::power_of_two(compiled_.radiance_exponent); }
+
+    /// Which solids take light from a shadow ray, in the order in which it meets them; the first eight.
+    std::vector<uint32_t> solids_on_the_way(const ShadowRay<Real>& shadow) const {
+        std::vector<uint32_t> solids;
+        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
+        const auto note = [&](uint32_t solid, uint32_t slot) {
+            if (std::find(solids.begin(), solids.end(), solid) != solids.end()) return;
+            ShadowSum<E> sum;
+            if (scene_.solids[solid].kind == SolidKind::convex)
+                shadow_convex<Real, E>(scene_, solid, shadow, sum);
+            else
+                shadow_cluster<Real, E>(scene_, slot / cluster_lanes, shadow, triangle_ray, sum);
+            bool takes = sum.opaque != 0;
+            for (int c = 0; c < 3; ++c) takes = takes || sum.loss[c] != 0 || sum.path[c].sum != 0;
+            if (takes) solids.push_back(solid);
+        };
+        shadow.ray.media.for_each([&](uint32_t solid, int count) {
+            if (count > 0 && scene_.solids[solid].kind == SolidKind::convex) note(solid, 0);
+        });
+        Ray<Real> ray = shadow.ray;
+        ray.meet_all();
+        for (int crossings = 0; crossings < 256 && solids.size() < 8; ++crossings) {
+            const Hit<Real> hit = intersector_.closest(ray);
+            if (!(hit.t < shadow.distance)) break;
+            note(key_solid(hit.key), hit.slot);
+            if (const int change = media_change(key_kind(hit.key)); change != 0)
+                ray.media.add(key_solid(hit.key), change);
+            ray.after = {hit.t, hit.key};
+        }
+        return solids;
+    }
+
+    void fill(const Walk& walk, FaceMet& face, uint64_t key, Real t) const {
+        const Solid& solid = scene_.solids[key_solid(key)];
+        face.solid = key_solid(key);
+        face.triangle = solid.kind != SolidKind::convex;
+        face.face = key_face(key) - (face.triangle ? solid.first_triangle : 0);
+        face.crossing = key_kind(key);
+        face.distance = length_of(walk, t);
+    }
+
+    double length_of(const Walk& walk, Real t) const { return (double(t) + walk.ahead) * frame_.unit_length; }
+
+    glm::dvec3 to_scene(const Vec3<Real>& point) const {
+        return Vec3<double>(point) * frame_.unit_length + compiled_.center;
+    }
+
+    static std::vector<uint32_t> solids_of(const MediaList& media) {
+        std::vector<uint32_t> solids;
+        media.for_each([&](uint32_t solid, int count) {
+            if (count > 0) solids.push_back(solid);
+        });
+        std::sort(solids.rbegin(), solids.rend());
+        return solids;
+    }
+
+    const CompiledScene<Real>& compiled_;
+    const SceneView<Real>& scene_;
+    const Intersector& intersector_;
+    const FrameView& frame_;
+};
+
+}  // namespace cistula

@@ -1,0 +1,71 @@
+#include "backend_embree/pixel_tree/embree_pixel_tree.h"
+
+#include <cstring>
+
+#include "backend_embree/embree/embree_tree.h"
+#include "backend_embree/host/frame_loop.h"
+#include "backend_embree/pixel_tree/pixel_recorder.h"
+#include "scene/film/film_picture.h"
+
+namespace cistula {
+namespace {
+
+/// Whether the samples add up to the film's one pixel.
+bool same_pixel(const PixelTree& tree) {
+    Film sum;
+    sum.pixels.push_back(PixelRecord());
+    PixelRecord& pixel = sum.pixels.front();
+    pixel.z = RealTraits<float>::infinity;
+    for (const SampleTree& sample : tree.samples) {
+        pixel.add(sample.record);
+        sum.rays.add(sample.rays);
+    }
+    const RayCounts &rays = sum.rays, &counted = tree.film.rays;
+    return film_hash(sum) == film_hash(tree.film) && rays.primary == counted.primary &&
+           rays.reflected == counted.reflected && rays.transmitted == counted.transmitted &&
+           rays.shadow == counted.shadow;
+}
+
+/// Whether the branches of each sample add up to its sums.
+bool adds_up(const PixelTree& tree) {
+    for (const SampleTree& sample : tree.samples) {
+        const PixelBranch& all = sample.branches.front();
+        const Sums sums = Sums::of(sample.record);
+        for (size_t c = 0; c < 3; ++c)
+            if (all.adds[c] + all.adds_below[c] != sums.radiance[c] ||
+                all.ledger[c] + all.ledger_below[c] != sums.pruned[c] + sums.cut[c])
+                return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+template <class Real>
+PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<Real>> scene, const CameraFrame& camera,
+                            const FrameSettings& settings, int x, int y) {
+    use_default_rounding();
+    const SceneView<Real> view = scene->view();
+    const std::shared_ptr<const EmbreeTree<Real>> tree = embree_tree(view, EmbreeOptions());
+    uint32_t flags = 0;
+    PixelTree pixel =
+        tree ? record_pixel(*scene, view, EmbreeIntersector<Real>{view, tree->scene()}, camera, settings, x, y, flags)
+             : record_pixel(*scene, view, BruteIntersector<Real>{view}, camera, settings, x, y, flags);
+
+    FrameSettings alone = settings;
+    alone.crop = {x, y, 1, 1};
+    RenderProgress progress;
+    make_embree_renderer<Real>(scene, tree)->render(camera, alone, pixel.film, progress);
+    if (!same_pixel(pixel) || flags != pixel.film.flags)
+        throw std::logic_error("internal error: the ray tree is not what the renderer gives for this pixel");
+    if (flags == 0 && !adds_up(pixel))
+        throw std::logic_error("internal error: the branches of the ray tree do not add up to the pixel");
+    return pixel;
+}
+
+template PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<float>>, const CameraFrame&,
+                                     const FrameSettings&, int, int);
+template PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<double>>, const CameraFrame&,
+                                     const FrameSettings&, int, int);
+
+}  // namespace cistula

@@ -1,0 +1,150 @@
+// Watches render_pixel at work: what it asks of its intersector and of its stack tells the whole ray tree, and the sums
+// between two questions tell what each part of it adds.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "backend_embree/pixel_tree/branch_reader.h"
+
+namespace cistula {
+
+/// Notes down one sample. A branch lasts from one pop to the next; its node is made when that ends.
+template <class Real, class Intersector>
+class SampleRecorder {
+  public:
+    SampleRecorder(const BranchReader<Real, Intersector>& reader, const PixelRecord& record, const PixelWork& work,
+                   SampleTree& tree)
+        : reader_(reader), record_(record), work_(work), tree_(tree) {
+        tree_.branches.emplace_back();
+    }
+
+    void looked(const Ray<Real>& ray, const Hit<Real>& hit) { seen_.looks.push_back({ray, hit}); }
+    void shadowed(const ShadowRay<Real>& shadow, const Vec3<Real>& arrives) {
+        seen_.shadows.push_back({shadow, arrives, colors_of(record_.radiance)});
+    }
+    void pushed(const Branch<Real>& branch, bool fits) { seen_.pushed.push_back({branch, fits}); }
+
+    /// The branch under way is done.
+    void finish() {
+        seen_.end = Sums::of(record_);
+        seen_.flags = work_.flags;
+        seen_.start = current_ == 0 ? work_.start : 0;
+        if (current_ != none) reader_.read(seen_, tree_, current_, waiting_);
+        seen_ = {};
+        current_ = none;
+    }
+    void popped(const Branch<Real>& branch) {
+        current_ = waiting_.back();
+        waiting_.pop_back();
+        seen_.weight = branch.weight;
+        seen_.begin = Sums::of(record_);
+    }
+
+  private:
+    static constexpr uint32_t none = ~0u;
+
+    const BranchReader<Real, Intersector>& reader_;
+    const PixelRecord& record_;
+    const PixelWork& work_;
+    SampleTree& tree_;
+    BranchSeen<Real> seen_;
+    std::vector<uint32_t> waiting_;  // the nodes of what is in the stack
+    uint32_t current_ = 0;
+};
+
+template <class Real, class Inner>
+struct ObservedIntersector {
+    using Media = typename Inner::Media;
+    using Scene = typename Inner::Scene;
+    const Inner& inner;
+    SampleRecorder<Real, Inner>& recorder;
+
+    template <class E = Effects<all_effects>>
+    Hit<Real> closest(const Ray<Real>& ray) const {
+        const Hit<Real> hit = inner.template closest<E>(ray);
+        recorder.looked(ray, hit);
+        return hit;
+    }
+    template <class E>
+    Share<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        const Share<Real, E> arrives = inner.template transmittance<E>(shadow);
+        recorder.shadowed(shadow, arrives);
+        return arrives;
+    }
+};
+
+template <class Real, class Inner>
+class ObservedStack {
+  public:
+    explicit ObservedStack(SampleRecorder<Real, Inner>& recorder) : recorder_(recorder), inner_(storage_) {}
+
+    bool push(const Branch<Real>& branch) {
+        const bool fits = inner_.push(branch);
+        recorder_.pushed(branch, fits);
+        return fits;
+    }
+    bool pop(Branch<Real>& branch) {
+        recorder_.finish();
+        if (!inner_.pop(branch)) return false;
+        recorder_.popped(branch);
+        return true;
+    }
+
+    void clear() { inner_.clear(); }
+    bool stopped() const { return false; }
+
+  private:
+    SampleRecorder<Real, Inner>& recorder_;
+    typename BranchStack<Branch<Real>>::Storage storage_;
+    BranchStack<Branch<Real>> inner_;
+};
+
+/// What is below each branch, from what each is by itself.
+inline void sum_up(std::vector<PixelBranch>& branches) {
+    for (size_t i = branches.size(); i-- > 0;)
+        for (const uint32_t child : branches[i].children)
+            for (size_t c = 0; c < 3; ++c) {
+                branches[i].adds_below[c] += branches[child].adds[c] + branches[child].adds_below[c];
+                branches[i].ledger_below[c] += branches[child].ledger[c] + branches[child].ledger_below[c];
+            }
+}
+
+/// The trees of pixel (x, y), sample by sample. `flags` and the records are those of render_pixel.
+template <class Real, class Intersector>
+PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real>& scene,
+                       const Intersector& intersector, const CameraFrame& camera, const FrameSettings& settings, int x,
+                       int y, uint32_t& flags) {
+    FrameView frame = frame_view(compiled, camera, settings);
+    if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media)) flags |= flag_media_overflow;
+    const BranchReader<Real, Intersector> reader(compiled, scene, intersector, frame);
+    const int k = settings.supersample;
+    PixelTree pixel;
+    for (int sample = 0; sample < k * k; ++sample) {
+        SampleTree& tree = pixel.samples.emplace_back();
+        tree.row = sample / k;
+        tree.column = sample % k;
+        PixelWork work;
+        SampleRecorder<Real, Intersector> recorder(reader, tree.record, work, tree);
+        const ObservedIntersector<Real, Intersector> observed{intersector, recorder};
+        ObservedStack<Real, Intersector> stack(recorder);
+        render_pixel<Real, BranchEffects>(scene, frame, observed, x, y, SampleRange{sample, k * k}, tree.record, work,
+                                          stack);
+        tree.rays = work.rays;
+        PixelBranch& primary = tree.branches.front();
+        const Vec3<double> direction =
+            camera_direction(frame.camera, double(2 * (x * k + tree.column) + 1 - frame.width * k),
+                             double(2 * (y * k + tree.row) + 1 - frame.height * k), frame.half_sample);
+        primary.origin = camera.camera.position;
+        primary.direction = direction;
+        if (tree.rays.total() == 1 && primary.end == BranchEnd::background) {  // it may pass the scene by
+            primary.distance = RealTraits<double>::infinity;
+            primary.adds = colors_of(tree.record.radiance);
+        }
+        sum_up(tree.branches);
+        flags |= work.flags;
+    }
+    return pixel;
+}
+
+}  // namespace cistula

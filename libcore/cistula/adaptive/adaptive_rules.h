@@ -1,0 +1,180 @@
+// The rules of adaptive sampling: each says whether a cell of the lattice is split rather than left to its corners.
+// What each earns, and which were given up: docs/decisions/0007-adaptive-rules.md.
+#pragma once
+
+#include "cistula/adaptive/lattice_cell.h"
+
+namespace cistula {
+
+/// What the corners of a cell show, and the middle of a whole pixel where that was taken. Differences of colors are the
+/// greatest of any channel.
+struct CornerFindings {
+    bool differs = false;          // whether the samples met different things
+    uint32_t most_rays = 0;        // of the largest tree
+    int64_t range = 0;             // between the darkest and the brightest
+    int64_t bend = 0;              // of the diagonals' means from each other, times two; with a middle, from it
+    int64_t across = 0, down = 0;  // along the upper or lower side; along the left or right one
+
+    CISTULA_INLINE static CornerFindings of(const LatticeSample* samples, const LatticeCell& cell, bool has_middle) {
+        const LatticeSample* at[4];
+        for (int c = 0; c < 4; ++c) at[c] = samples + cell.corner(c);
+        CornerFindings found;
+        found.most_rays = at[0]->rays;
+        for (int c = 1; c < 4; ++c) found.add(*at[c], *at[0]);
+        if (has_middle) found.add(samples[lattice_middle], *at[0]);
+        for (int c = 0; c < 3; ++c) {
+            const int64_t a = at[0]->color(c), b = at[1]->color(c), d = at[2]->color(c), e = at[3]->color(c);
+            int64_t low = least(least(a, b), least(d, e)), high = greatest(greatest(a, b), greatest(d, e));
+            if (has_middle) {
+                const int64_t m = samples[lattice_middle].color(c);
+                low = least(low, m);
+                high = greatest(high, m);
+                // Beside the mean of the corners; four times that, of which half as much counts as without it.
+                found.bend = greatest(found.bend, magnitude(4 * m - a - b - d - e) / 2);
+            } else {
+                found.bend = greatest(found.bend, magnitude(a + e - b - d));
+            }
+            found.range = greatest(found.range, high - low);
+            found.across = greatest(found.across, greatest(magnitude(a - b), magnitude(d - e)));
+            found.down = greatest(found.down, greatest(magnitude(a - d), magnitude(b - e)));
+        }
+        return found;
+    }
+
+  private:
+    CISTULA_INLINE void add(const LatticeSample& sample, const LatticeSample& first) {
+        differs |= sample.path_hash != first.path_hash;
+        most_rays = greatest(most_rays, sample.rays);
+    }
+};
+
+/// What a pixel shows so far: the greatest of what its cells do.
+struct PixelFindings {
+    uint32_t rays = 0, first_rays = 0;  // of the largest tree; of the largest of its first samples
+    int64_t range = 0;                  // of colors in a cell
+    int64_t jump = 0;                   // between corners of a small cell that met the same
+
+    CISTULA_INLINE void add(const LatticeCell& cell) {
+        rays = greatest(rays, cell.rays);
+        if (cell.is_whole()) first_rays = cell.rays;
+        range = greatest(range, cell.range);
+        jump = greatest(jump, cell.jump);
+    }
+};
+
+/// The corners disagree: the range of their colors, times the cell's area, is what a border through it can be worth.
+/// Where they met different things, that may be an eighth of the target, in a whole pixel and for coarse targets a
+/// quarter. Where they met the same, shading is gradual unless a texture makes it otherwise, and three eighths are left
+/// to it, for coarse targets three quarters. The diagonals may bend from each other by the target itself.
+struct CornersDisagree {
+    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeCell& cell,
+                                      const CornerFindings& found) {
+        const int64_t area = cell.area(), of_borders = settings.fine && !cell.is_whole() ? 8 : 4;
+        return (found.differs && settings.exceeded_by(of_borders * found.range, area)) ||
+               settings.exceeded_by(found.bend, area) ||
+               (settings.fine ? 8 : 4) * found.range * area > 3 * settings.target * lattice_samples;
+    }
+};
+
+/// For small targets: the pixel's first five samples met different things. They say too little of it, however alike
+/// they are in color.
+struct FirstSamplesDiffer {
+    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeCell& cell,
+                                      const CornerFindings& found) {
+        return settings.fine && cell.is_whole() && found.differs;
+    }
+};
+
+/// A sample taken right beside the cell, between the corners of one of its sides, is brighter or darker than both by so
+/// much that two thirds of the cell would be worth the target. What comes in through that side, such as the tip of a
+/// mirrored edge or a texture's stripe, may end before it meets a corner.
+struct SideCrossed {
+    /// `rows`: the samples to look at, by row, a bit a column.
+    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeSample* samples,
+                                      const LatticeCell& cell, const uint16_t* rows) {
+        for (int side = 0; side < 4; ++side) {  // left, right, upper, lower
+            const bool upright = side < 2, far = side % 2 != 0;
+            const int size = upright ? cell.width : cell.height, length = upright ? cell.height : cell.width;
+            const int beside = (upright ? cell.x : cell.y) + (far ? size : -1);
+            if (beside < 0 || beside >= lattice_side) continue;
+            const LatticeSample& a = samples[cell.corner(far ? (upright ? 1 : 2) : 0)];
+            const LatticeSample& b = samples[cell.corner(far ? 3 : upright ? 2 : 1)];
+            for (int k = 1; k < length - 1; ++k) {
+                const int x = upright ? beside : cell.x + k, y = upright ? cell.y + k : beside;
+                if ((rows[y] >> x & 1) != 0 && stands_out(settings, a, b, samples[y * lattice_side + x], cell.area()))
+                    return true;
+            }
+        }
+        return false;
+    }
+
+  private:
+    CISTULA_INLINE static bool stands_out(const LatticeSettings& settings, const LatticeSample& a,
+                                          const LatticeSample& b, const LatticeSample& beside, int64_t area) {
+        for (int c = 0; c < 3; ++c) {
+            const int64_t one = a.color(c), other = b.color(c), there = beside.color(c);
+            const int64_t beyond = greatest(least(one, other) - there, there - greatest(one, other));
+            if (3 * beyond * area > 2 * settings.target * lattice_samples) return true;
+        }
+        return false;
+    }
+};
+
+/// The pixel shows a jump of color between near samples that met the same, which three eighths of the cell, that much
+/// brighter or darker, would bring beyond the target. So near to each other gradual shading differs little, a texture's
+/// border as much as ever, and its stripes, seen through curved glass or from afar, fall between corners that agree.
+struct TextureJumps {
+    static constexpr int eighths = 3;
+    static constexpr int near_area = 8;  // samples of the largest cell whose corners are near each other
+
+    /// The greatest difference of colors between corners that met the same and are near, 0 if none are.
+    CISTULA_INLINE static int64_t jump_in(const LatticeSample* samples, const LatticeCell& cell) {
+        int64_t jump = 0;
+        if (cell.area() > near_area) return jump;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < i; ++j) {
+                const LatticeSample &a = samples[cell.corner(i)], &b = samples[cell.corner(j)];
+                for (int c = 0; c < 3 && a.path_hash == b.path_hash; ++c)
+                    jump = greatest(jump, magnitude(a.color(c) - b.color(c)));
+            }
+        return jump;
+    }
+
+    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const PixelFindings& pixel, int64_t area) {
+        return eighths * pixel.jump * area > 8 * settings.target * lattice_samples;
+    }
+};
+
+/// For small targets: the pixel met a large tree, and something unseen in the cell, brighter or darker by 1/192 of the
+/// bound, would be worth the target. Large trees see so much that some of it lies between samples that agree, be their
+/// own trees large or not: the image of a light ends a tree early, and hides between others.
+struct LargeTrees {
+    static constexpr uint32_t large_tree = 96;  // rays
+    static constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
+
+    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const PixelFindings& pixel, int64_t area) {
+        return settings.fine && pixel.rays >= large_tree && settings.exceeded_by(unseen_range, area);
+    }
+};
+
+/// For small targets: one of the pixel's first five trees has some rays, colors in it span many targets, and the cell
+/// is no small one. A highlight may lie between its corners.
+struct WideColors {
+    static constexpr uint32_t some_rays = 5;
+    static constexpr int wide_range = 16;  // targets
+    static constexpr int wide_area = lattice_samples / 16;
+
+    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const PixelFindings& pixel, int64_t area) {
+        return settings.fine && pixel.first_rays >= some_rays && area > wide_area &&
+               pixel.range >= wide_range * settings.target;
+    }
+};
+
+/// Whether what the pixel shows elsewhere makes it doubtful that corners stand for a cell of `area` samples, however
+/// alike they are.
+CISTULA_INLINE bool splits_by_pixel(const LatticeSettings& settings, const PixelFindings& pixel, int64_t area) {
+    return LargeTrees::splits(settings, pixel, area) || WideColors::splits(settings, pixel, area) ||
+           TextureJumps::splits(settings, pixel, area);
+}
+
+}  // namespace cistula

@@ -1,0 +1,80 @@
+// The lattice of 16 x 16 samples a pixel that adaptive sampling draws from: its samples, and rectangles of them
+// (NUMERICS, 10).
+#pragma once
+
+#include "cistula/model/lattice_settings.h"
+#include "cistula/model/pixel_record.h"
+#include "cistula/numerics/real.h"
+
+namespace cistula {
+
+/// Sample (column, row) is slot 16 row + column; the middle of the pixel is the corner of all quadrants.
+inline constexpr int lattice_middle = lattice_side / 2 * (lattice_side + 1);
+/// What one sample of a pixel adds, in units of 2^-54 (fixed_sum.h, 256 samples), and what it met.
+struct LatticeSample {
+    int64_t radiance[3], pruned[3], cut[3];
+    uint32_t hits, rays;
+    uint32_t path_hash;  // of its ray tree (path_hash.h)
+
+    /// In units of 2^-color_bits.
+    CISTULA_INLINE int64_t color(int channel) const { return radiance[channel] >> color_shift; }
+
+    CISTULA_INLINE void keep(const PixelRecord& record, uint32_t hash) {
+        for (int c = 0; c < 3; ++c) {
+            radiance[c] = record.radiance[c];
+            pruned[c] = record.pruned[c];
+            cut[c] = record.cut[c];
+        }
+        hits = record.hits;
+        rays = record.rays;
+        path_hash = hash;
+    }
+
+    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice.
+    template <class Add>
+    CISTULA_INLINE void give(PixelRecord& record, int weight, const Add& add) const {
+        for (int c = 0; c < 3; ++c) {
+            add(record.radiance[c], weight * radiance[c]);
+            add(record.pruned[c], weight * pruned[c]);
+            add(record.cut[c], weight * cut[c]);
+        }
+        add(record.hits, uint32_t(weight) * hits);
+    }
+};
+
+/// Rectangle of samples, known by its four corners, the whole pixel by its middle too for small targets.
+struct LatticeCell {
+    uint8_t x, y, width, height;
+    bool is_new, wants_split;
+    bool across;          // to be split into a left and a right half, not an upper and a lower
+    bool differs;         // whether the samples met different things
+    uint32_t rays;        // of the largest tree
+    int64_t range, jump;  // of colors: of all corners; in a small cell, of those that met the same
+
+    CISTULA_INLINE static LatticeCell whole_pixel() {
+        LatticeCell cell = LatticeCell();
+        cell.width = cell.height = lattice_side;
+        cell.is_new = true;
+        return cell;
+    }
+
+    CISTULA_INLINE int area() const { return width * height; }
+    CISTULA_INLINE bool is_whole() const { return width == lattice_side && height == lattice_side; }
+    /// The slot of corner c. Bit 0 of c: right; bit 1: lower.
+    CISTULA_INLINE int corner(int c) const {
+        return (y + (c & 2 ? height - 1 : 0)) * lattice_side + x + (c & 1 ? width - 1 : 0);
+    }
+
+    /// The left or right half (-1, 1; 0: both) of the upper or lower half, not yet judged.
+    CISTULA_INLINE LatticeCell part(int right, int lower) const {
+        LatticeCell child = *this;
+        child.is_new = true;
+        if (right != 0) child.width /= 2;
+        if (lower != 0) child.height /= 2;
+        if (right > 0) child.x = uint8_t(child.x + child.width);
+        if (lower > 0) child.y = uint8_t(child.y + child.height);
+        return child;
+    }
+};
+
+}  // namespace cistula

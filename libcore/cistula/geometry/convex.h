@@ -1,0 +1,115 @@
+// Convex solids as slabs (Kay and Kajiya 1986), with state instead of epsilons: a ray that is inside leaves through the
+// least leaving plane, one that left does not come back, whatever rounding says about where it stands.
+#pragma once
+
+#include "cistula/geometry/convex_device.h"
+#include "cistula/geometry/convex_host.h"
+
+namespace cistula {
+
+#if CISTULA_ON_DEVICE
+namespace convex_here = convex_device;
+#else
+namespace convex_here = convex_host;
+#endif
+
+/// Whether a ray that starts outside surely misses, or meets the solid only beyond `limit`: spares most rays the slabs,
+/// decides no hit.
+template <class Real>
+CISTULA_INLINE bool passes_by(const Ball<Real>& ball, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                              Real limit) {
+    const Vec3<Real> to_center = ball.center - origin;
+    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - ball.padded_square;
+    const Real beyond = limit * (Real(2) * ahead - limit), beside = ahead < Real(0) ? Real(0) : ahead * ahead;
+    return rest > (ahead > limit ? beyond : beside);
+}
+
+/// The way out of a convex solid that the ray is inside, if that is less than `best`: before the face is looked up,
+/// what the time alone decides.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
+    const Solid& solid = scene.solids[index];
+    const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
+    const auto exit = convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped);
+    const Real t = greatest(exit.t, Real(0));
+    if (!(t <= best.t && t < RealTraits<Real>::infinity)) return;
+    const uint64_t key = make_key(CrossingKind::leave, index,
+                                  convex_here::face_of(scene, solid, ray.origin, ray.direction, exit, skipped));
+    if (best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, false);
+}
+
+/// Whether a line from within the planes of a solid that it is not inside goes toward a face that it starts on, give or
+/// take rounding: at a slant it would go far in the film before it is out. Asked where solids touch. By value, as it is
+/// called.
+template <class Real, class Scene>
+CISTULA_SELDOM bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real> origin, Vec3<Real> direction) {
+    const Solid& solid = scene.solids[index];
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
+        const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin);
+        const Real depth = nd > Real(0) ? slab.high - no : no - slab.low;
+        if (nd != Real(0) && depth <= incidence<Real> * scene.extent) return true;
+    }
+    return false;
+}
+
+/// Whether a line from outside meets the solid. One that ends where the line starts, give or take the rounding of a
+/// point on a shared face, is behind it.
+template <class Interval, class Real>
+CISTULA_INLINE bool is_met(const Interval& interval, Real extent) {
+    return interval.enter <= interval.leave && interval.leave > incidence<Real> * extent;
+}
+
+/// The way into a convex solid that the ray neither is inside nor left, nor passes by.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Solid& solid, const Ray<Real, Media>& ray,
+                                  Hit<Real>& best) {
+    const auto interval = convex_here::interval_of(scene, solid, ray.origin, ray.direction, true);
+    if (!is_met(interval, scene.extent)) return;
+    const Real t = greatest(interval.enter, Real(0));
+    if (!(t <= best.t && t < RealTraits<Real>::infinity) || t < ray.after.t) return;
+    if constexpr (Media::contacts)
+        if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction)) return;
+    const uint64_t key =
+        make_key(CrossingKind::enter, index, convex_here::face_of(scene, solid, ray.origin, ray.direction, interval));
+    if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);
+}
+
+/// The ray's next crossing of a convex solid, if it is less than `best`.
+template <class Real, class Media, class Scene>
+CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
+    if (ray.media.contains(index))
+        closest_exit(scene, index, ray, best);
+    else if (ray.from_solid != index &&
+             !passes_by(Ball<Real>::of(scene.solids[index]), ray.origin, ray.direction, best.t))
+        closest_entry(scene, index, scene.solids[index], ray, best);
+}
+
+/// The solid around a ray that meets its own way out next, since it stands alone; no_solid for any other ray.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE uint32_t enclosing(const Scene& scene, const Ray<Real, Media>& ray) {
+    const uint32_t solid = ray.media.only();
+    return solid != no_solid && scene.solids[solid].alone ? solid : no_solid;
+}
+
+/// The next crossing of a ray inside such a solid; false for any other ray.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool closest_enclosed(const Scene& scene, const Ray<Real, Media>& ray, Hit<Real>& best) {
+    const uint32_t solid = enclosing(scene, ray);
+    if (solid == no_solid) return false;
+    closest_convex(scene, solid, ray, best);
+    return true;
+}
+
+/// Strictly inside all planes.
+template <class Real, class Scene>
+CISTULA_HD inline bool inside_convex(const Scene& scene, const Solid& solid, const Vec3<Real>& point) {
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
+        const Real n = dot(slab.normal, point);
+        if (!(n > slab.low && n < slab.high)) return false;
+    }
+    return true;
+}
+
+}  // namespace cistula

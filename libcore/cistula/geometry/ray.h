@@ -1,0 +1,132 @@
+// A ray and what it knows about where it is: the solids around it, the face it left, the crossings it has behind it.
+#pragma once
+
+#include "cistula/geometry/hit.h"
+
+namespace cistula {
+
+inline constexpr uint32_t no_solid = 0xffffffu;
+
+/// The solids that contain a point, each with a signed count of entries less exits. Straight rays take every crossing
+/// of a mesh in the order of their t, which rounding may turn round at a grazed edge, so that -1 is legal.
+struct MediaList {
+    static constexpr bool contacts = true;  // a point may be in several solids at once
+    static constexpr bool meshes = true;    // some may be meshes
+    static constexpr int capacity =
+        8;  // solids inside one another; going over it fails the render (flag_media_overflow)
+
+    uint32_t entries[capacity];  // solid << 8 | (count + 128)
+    uint32_t size = 0;
+
+    CISTULA_INLINE static uint32_t solid_of(uint32_t entry) { return entry >> 8; }
+    CISTULA_INLINE static int count_of(uint32_t entry) { return int(entry & 0xffu) - 128; }
+
+    CISTULA_INLINE int count(uint32_t solid) const {
+        for (uint32_t i = 0; i < size; ++i)
+            if (solid_of(entries[i]) == solid) return count_of(entries[i]);
+        return 0;
+    }
+
+    CISTULA_INLINE bool contains(uint32_t solid) const { return size != 0 && count(solid) > 0; }
+    CISTULA_INLINE bool empty() const { return size == 0; }
+
+    /// The one solid in the list, if it contains the point and nothing else is listed; else no_solid.
+    CISTULA_INLINE uint32_t only() const {
+        return size == 1 && count_of(entries[0]) > 0 ? solid_of(entries[0]) : no_solid;
+    }
+
+    /// Calls visit(solid, count) for all that is listed.
+    template <class Visit>
+    CISTULA_INLINE void for_each(const Visit& visit) const {
+        for (uint32_t i = 0; i < size; ++i) visit(solid_of(entries[i]), count_of(entries[i]));
+    }
+
+    /// Adds +-1 to the solid's count. False if the list is full (it is then unchanged).
+    CISTULA_INLINE bool add(uint32_t solid, int change) {
+        for (uint32_t i = 0; i < size; ++i) {
+            if (solid_of(entries[i]) != solid) continue;
+            const int count = count_of(entries[i]) + change;
+            if (count < -128 || count > 127) return false;
+            if (count == 0)
+                entries[i] = entries[--size];
+            else
+                entries[i] = solid << 8 | uint32_t(count + 128);
+            return true;
+        }
+        if (size == capacity) return false;
+        entries[size++] = solid << 8 | uint32_t(change + 128);
+        return true;
+    }
+
+    /// The solid of highest priority that contains the point, or no_solid.
+    CISTULA_INLINE uint32_t medium() const {
+        uint32_t best = no_solid;
+        for (uint32_t i = 0; i < size; ++i)
+            if (count_of(entries[i]) > 0 && (best == no_solid || solid_of(entries[i]) > best))
+                best = solid_of(entries[i]);
+        return best;
+    }
+};
+
+/// The same where all closed solids are convex and none touches another: a ray is inside one at most, and its state
+/// lets it enter only from outside and leave only from inside.
+struct OneMedium {
+    static constexpr bool contacts = false, meshes = false;
+
+    uint32_t solid = no_solid;
+
+    CISTULA_INLINE bool contains(uint32_t index) const { return solid == index; }
+    CISTULA_INLINE bool empty() const { return solid == no_solid; }
+    CISTULA_INLINE uint32_t only() const { return solid; }
+    CISTULA_INLINE uint32_t medium() const { return solid; }
+
+    /// False, and nothing done, where the solids touch after all.
+    CISTULA_INLINE bool add(uint32_t index, int change) {
+        if (solid != (change > 0 ? no_solid : index)) return false;
+        solid = change > 0 ? index : no_solid;
+        return true;
+    }
+
+    template <class Visit>
+    CISTULA_INLINE void for_each(const Visit& visit) const {
+        if (solid != no_solid) visit(solid, 1);
+    }
+};
+
+/// The same solids in another form.
+CISTULA_INLINE void assign(MediaList& to, const MediaList& from) {
+    to = from;
+}
+CISTULA_INLINE void assign(OneMedium& to, const MediaList& from) {
+    to.solid = from.medium();
+}
+
+/// A straight line of light. Where it passes a face without bending it keeps origin and direction, and `after` moves
+/// on.
+template <class Real, class Media = MediaList>
+struct Ray {
+    Vec3<Real> origin;
+    Vec3<Real> direction;            // unit to within a few u
+    uint32_t from_solid = no_solid;  // where the line starts on a face: its solid
+    uint32_t from_face = 0;          // ... and the face: 2 slab + side, or the scene-wide triangle number
+    Crossing<Real> after;            // crossings up to and including this one are behind
+    Media media;                     // around the point `after`
+
+    CISTULA_INLINE bool fresh() const { return after.t < Real(0); }
+    /// Whether the line's first crossing of a mesh has to come from the side on which the line starts.
+    CISTULA_INLINE bool by_side() const { return after.t <= Real(-1); }
+    /// The line is to meet all crossings, from whichever side: for those who count.
+    CISTULA_INLINE void meet_all() { after.t = Real(-0.5); }
+};
+
+/// A line that is not finite meets nothing.
+template <class Real>
+CISTULA_INLINE bool is_finite(const Vec3<Real>& origin, const Vec3<Real>& direction) {
+    return nothing_of(origin) + nothing_of(direction) == Real(0);
+}
+template <class Real, class Media>
+CISTULA_INLINE bool is_finite(const Ray<Real, Media>& ray) {
+    return is_finite(ray.origin, ray.direction);
+}
+
+}  // namespace cistula

@@ -1,0 +1,37 @@
+// Where a line crosses a slab, the space between two parallel planes (Kay and Kajiya 1986).
+#pragma once
+
+#include "cistula/geometry/ray.h"
+#include "cistula/model/scene_view.h"
+
+namespace cistula {
+
+inline constexpr uint32_t no_face = 0xffffffffu;
+
+/// A line at less of a slope counts as parallel to a slab: times stay finite.
+template <class Real>
+inline constexpr Real least_slope = Real(0x1p-100);
+
+/// The times at which a line enters and leaves one slab. A line that is parallel to the slab leaves it at infinity; it
+/// enters at infinity if it runs beside the slab, else at -infinity. Selects only, since which slab decides is
+/// unpredictable; all callers use these operations, so that the face of a value can be looked up afterwards.
+template <class Real>
+CISTULA_INLINE void cross_slab(const Vec3<Real>& normal, Real low, Real high, const Vec3<Real>& origin,
+                               const Vec3<Real>& direction, Real& enter, Real& leave) {
+    const Real nd = dot(normal, direction), no = dot(normal, origin);
+    const bool parallel = magnitude(nd) < least_slope<Real>;
+    const Real inverse = reciprocal(parallel ? Real(1) : nd);
+    const Real at_low = (low - no) * inverse, at_high = (high - no) * inverse;
+    const Real beside = no >= high || no <= low ? RealTraits<Real>::infinity : -RealTraits<Real>::infinity;
+    const Real first = lesser(at_low, at_high), last = greater(at_low, at_high);
+    enter = parallel ? beside : first;
+    leave = parallel ? RealTraits<Real>::infinity : last;
+}
+
+/// The face of a convex solid by which a line of this slope leaves its slab.
+template <class Real>
+CISTULA_INLINE uint32_t leaving_face(uint32_t slab, Real slope) {
+    return 2 * slab + (slope > Real(0) ? 1 : 0);
+}
+
+}  // namespace cistula

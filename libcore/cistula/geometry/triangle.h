@@ -1,0 +1,313 @@
+// Triangles, hit exactly once: shear to the ray (Woop, Benthin, Wald 2013, JCGT 2(1)), edge functions whose signs are
+// exact, and zero edges owned by one of the two triangles beside them (the top-left rule of rasterizers).
+#pragma once
+
+#include "cistula/geometry/ray.h"
+#include "cistula/model/scene_view.h"
+
+namespace cistula {
+
+/// a[k] by selects: an index would put `a` into memory.
+template <class Real>
+CISTULA_INLINE Real component(const Vec3<Real>& a, int k) {
+    return k == 0 ? a.x : k == 1 ? a.y : a.z;
+}
+
+/// A ray's shear. Axes are permuted so that the direction is longest along kz and winding is kept: det > 0 enters.
+template <class Real>
+struct TriangleRay {
+    int kx, ky, kz;
+    Real sx, sy, sz;
+    Real ox, oy, oz;  // origin along kx, ky, kz
+
+    CISTULA_INLINE static TriangleRay of(const Vec3<Real>& origin, const Vec3<Real>& direction) {
+        const Real x = magnitude(direction.x), y = magnitude(direction.y), z = magnitude(direction.z);
+        TriangleRay r;
+        r.kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+        r.kx = r.kz == 2 ? 0 : r.kz + 1;
+        r.ky = r.kx == 2 ? 0 : r.kx + 1;
+        const Real along_z = component(direction, r.kz);
+        if (along_z < Real(0)) {
+            const int k = r.kx;
+            r.kx = r.ky;
+            r.ky = k;
+        }
+        r.sz = Real(1) / along_z;  // of any size: functions are compared beyond what renders ask
+        r.sx = component(direction, r.kx) * r.sz;
+        r.sy = component(direction, r.ky) * r.sz;
+        r.ox = component(origin, r.kx);
+        r.oy = component(origin, r.ky);
+        r.oz = component(origin, r.kz);
+        return r;
+    }
+};
+
+/// Coordinates whose products could lose digits to underflow, and with them their sign, count as 0, for all triangles
+/// alike: below 2^-51 in float the last digit of a product is below 2^-149.
+template <class Real>
+inline constexpr Real least_sheared = sizeof(Real) == sizeof(float) ? Real(0x1p-51) : Real(0x1p-60);
+
+template <class Real>
+CISTULA_INLINE Real sheared(Real across, Real shear, Real depth) {
+    const Real s = across - shear * depth;
+    return magnitude(s) < least_sheared<Real> ? Real(0) : s;
+}
+
+/// An accepted crossing of one triangle. The weights of the corners are edge functions over their sum.
+template <class Real>
+struct TriangleCrossing {
+    Real t, edge_u, edge_v, det;
+
+    CISTULA_INLINE bool enters() const { return det > Real(0); }  // against the normal
+    CISTULA_INLINE Real u() const { return edge_u / det; }
+    CISTULA_INLINE Real v() const { return edge_v / det; }
+};
+
+/// Corners relative to the ray and sheared along it, and edge functions opposite to each.
+template <class Real>
+struct ShearedTriangle {
+    Real x[3], y[3], z[3], edge[3];
+
+    CISTULA_INLINE static ShearedTriangle of(const Cluster<Real>& cluster, int lane, const TriangleRay<Real>& ray) {
+        ShearedTriangle s;
+        for (int c = 0; c < 3; ++c)
+            s.shear(c, cluster.corner[c][ray.kx][lane], cluster.corner[c][ray.ky][lane],
+                    cluster.corner[c][ray.kz][lane], ray);
+        s.find_edges();
+        return s;
+    }
+    CISTULA_INLINE static ShearedTriangle of(const Facet<Real>& facet, const TriangleRay<Real>& ray) {
+        ShearedTriangle s;
+        for (int c = 0; c < 3; ++c) {
+            const Vec3<Real> p(facet.corner[c][0], facet.corner[c][1], facet.corner[c][2]);
+            s.shear(c, component(p, ray.kx), component(p, ray.ky), component(p, ray.kz), ray);
+        }
+        s.find_edges();
+        return s;
+    }
+
+    CISTULA_INLINE void shear(int c, Real along_x, Real along_y, Real along_z, const TriangleRay<Real>& ray) {
+        z[c] = along_z - ray.oz;
+        x[c] = sheared(along_x - ray.ox, ray.sx, z[c]);
+        y[c] = sheared(along_y - ray.oy, ray.sy, z[c]);
+    }
+    CISTULA_INLINE void find_edges() {
+        for (int c = 0; c < 3; ++c) {
+            const int a = c == 2 ? 0 : c + 1, b = a == 2 ? 0 : a + 1;
+            edge[c] = difference_of_products(x[b], y[a], y[b], x[a]);
+        }
+    }
+
+    CISTULA_INLINE bool within() const {
+        return (edge[0] >= Real(0) && edge[1] >= Real(0) && edge[2] >= Real(0)) ||
+               (edge[0] <= Real(0) && edge[1] <= Real(0) && edge[2] <= Real(0));
+    }
+
+    /// Whether every edge that the ray meets belongs to this triangle. `sign` is det's.
+    CISTULA_INLINE bool owns_zero_edges(Real sign) const {
+        for (int c = 0; c < 3; ++c) {
+            if (edge[c] != Real(0)) continue;
+            const int a = c == 2 ? 0 : c + 1, b = a == 2 ? 0 : a + 1;
+            const Real dx = (x[b] - x[a]) * sign, dy = (y[b] - y[a]) * sign;
+            if (!(dy > Real(0) || (dy == Real(0) && dx > Real(0)))) return false;
+        }
+        return true;
+    }
+};
+
+/// What the eight-lane test leaves for the lanes that it names: edge functions and corners' distances along kz.
+template <class Real>
+struct alignas(32) CandidateLanes {
+    Real edge[3][cluster_lanes], z[3][cluster_lanes];
+};
+
+/// The lanes that a ray may hit, as bits: the inclusive edge tests only, eight at once.
+template <class Real>
+CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const TriangleRay<Real>& ray,
+                                           CandidateLanes<Real>& lanes) {
+    uint32_t mask = 0;
+#if CISTULA_ON_DEVICE
+    for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+        const ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, int(lane), ray);
+        for (int c = 0; c < 3; ++c) lanes.edge[c][lane] = s.edge[c], lanes.z[c][lane] = s.z[c];
+        mask |= uint32_t(s.within()) << lane;
+    }
+#else
+    // Straight code over lanes, so that the compiler fills vectors with it: same operations, same bits.
+    const Real *px[3], *py[3], *pz[3];
+    for (int c = 0; c < 3; ++c) {
+        px[c] = cluster.corner[c][ray.kx];
+        py[c] = cluster.corner[c][ray.ky];
+        pz[c] = cluster.corner[c][ray.kz];
+    }
+    alignas(32) int32_t within[cluster_lanes];
+    const Real ox = ray.ox, oy = ray.oy, oz = ray.oz, sx = ray.sx, sy = ray.sy;
+#pragma GCC ivdep
+    for (int lane = 0; lane < cluster_lanes; ++lane) {
+        const Real az = pz[0][lane] - oz, bz = pz[1][lane] - oz, cz = pz[2][lane] - oz;
+        const Real ax = sheared(px[0][lane] - ox, sx, az), ay = sheared(py[0][lane] - oy, sy, az);
+        const Real bx = sheared(px[1][lane] - ox, sx, bz), by = sheared(py[1][lane] - oy, sy, bz);
+        const Real cx = sheared(px[2][lane] - ox, sx, cz), cy = sheared(py[2][lane] - oy, sy, cz);
+        const Real u = difference_of_products(cx, by, cy, bx);
+        const Real v = difference_of_products(ax, cy, ay, cx);
+        const Real w = difference_of_products(bx, ay, by, ax);
+        const int32_t up = int32_t(u >= Real(0)) & int32_t(v >= Real(0)) & int32_t(w >= Real(0));
+        const int32_t down = int32_t(u <= Real(0)) & int32_t(v <= Real(0)) & int32_t(w <= Real(0));
+        within[lane] = -(up | down);
+        lanes.edge[0][lane] = u, lanes.edge[1][lane] = v, lanes.edge[2][lane] = w;
+        lanes.z[0][lane] = az, lanes.z[1][lane] = bz, lanes.z[2][lane] = cz;
+    }
+    mask = sign_bits(within) & ((1u << cluster.count) - 1u);
+#endif
+    return mask;
+}
+
+/// The exact test of one candidate, given its edge functions and its corners' distances along kz; t is not yet compared
+/// with anything. shear() gives the whole of it, which zero edges need.
+template <class Real, class Shear>
+CISTULA_INLINE bool cross_triangle(const TriangleRay<Real>& ray, const Real (&edge)[3], const Real (&z)[3],
+                                   const Shear& shear, TriangleCrossing<Real>& crossing) {
+    const Real u = edge[0], v = edge[1], w = edge[2], det = u + v + w;
+    if (u == Real(0) || v == Real(0) || w == Real(0))
+        if (det == Real(0) || !shear().owns_zero_edges(det > Real(0) ? Real(1) : Real(-1))) return false;
+    const Real depth = u * (ray.sz * z[0]) + v * (ray.sz * z[1]) + w * (ray.sz * z[2]);
+    crossing = {depth / det, v, w, det};
+    return true;
+}
+
+template <class Real>
+CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, const CandidateLanes<Real>& lanes, uint32_t lane,
+                                   const TriangleRay<Real>& ray, TriangleCrossing<Real>& crossing) {
+    const Real edge[3] = {lanes.edge[0][lane], lanes.edge[1][lane], lanes.edge[2][lane]};
+    const Real z[3] = {lanes.z[0][lane], lanes.z[1][lane], lanes.z[2][lane]};
+    return cross_triangle(
+        ray, edge, z, [&] { return ShearedTriangle<Real>::of(cluster, int(lane), ray); }, crossing);
+}
+
+template <class Real>
+CISTULA_INLINE bool cross_triangle(const ShearedTriangle<Real>& s, const TriangleRay<Real>& ray,
+                                   TriangleCrossing<Real>& crossing) {
+    return s.within() && cross_triangle(
+                             ray, s.edge, s.z, [&]() -> const ShearedTriangle<Real>& { return s; }, crossing);
+}
+
+/// Calls visit(lane, crossing) for every triangle of a cluster that the ray's line crosses, wherever.
+template <class Real, class Visit>
+CISTULA_INLINE void for_each_crossing(const Cluster<Real>& cluster, const TriangleRay<Real>& ray, const Visit& visit) {
+#if CISTULA_ON_DEVICE
+    // One after the other in registers: a buffer of lanes would be memory here.
+    for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+        TriangleCrossing<Real> c;
+        if (cross_triangle(ShearedTriangle<Real>::of(cluster, int(lane), ray), ray, c)) visit(lane, c);
+    }
+#else
+    CandidateLanes<Real> lanes;
+    for (uint32_t mask = cluster_candidates(cluster, ray, lanes); mask != 0; mask &= mask - 1) {
+        const uint32_t lane = lowest_bit(mask);
+        TriangleCrossing<Real> c;
+        if (cross_triangle(cluster, lanes, lane, ray, c)) visit(lane, c);
+    }
+#endif
+}
+
+/// Whether a line starts on the flat sheet to which a cluster belongs.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool leaves_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray) {
+    const uint32_t solid = scene.clusters[cluster].solid;
+    return solid == ray.from_solid && scene.solids[solid].flat != 0;
+}
+
+/// Whether a line from a place well off the plane of a flat sheet surely stays off it up to `limit`: spares most rays
+/// the triangles, decides no hit. Lines that stay so far off at a slant below plane_padding / 4 M have all of the sheet
+/// far beside them. `off`: of the origin from the plane; `slant`: of the direction.
+template <class Real>
+CISTULA_INLINE bool stays_off(Real off, Real slant, Real limit) {
+    const Real ahead = off < Real(0) ? -slant : slant, far_off = magnitude(off);
+    return (far_off > Real(plane_padding)) & (far_off + ahead * limit > Real(plane_padding));
+}
+
+/// A line at less of a slant to a sheet's plane may cross it far from where rounding says.
+template <class Real>
+inline constexpr Real least_slant = Real(0x1p-6);
+
+/// Whether a line surely crosses the plane of a flat sheet beside the sheet. Where it crosses is off by the rounding of
+/// a few u M over the slant, 2^-13 M at most, and the box is padded by more.
+template <class Real>
+CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                                   Real off, Real slant) {
+    const Vec3<Real> at = along(origin, -off * reciprocal(slant), direction) - plane.center;
+    return (magnitude(slant) > least_slant<Real>)&((magnitude(at.x) > plane.half.x) | (magnitude(at.y) > plane.half.y) |
+                                                   (magnitude(at.z) > plane.half.z));
+}
+
+/// Whether a line surely meets nothing of a flat sheet up to `limit`. `from`: the solid that it leaves.
+template <class Real>
+CISTULA_INLINE bool misses_flat(const SheetPlane<Real>& plane, uint32_t from, const Vec3<Real>& origin,
+                                const Vec3<Real>& direction, Real limit) {
+    const Real off = dot(plane.normal, origin) - plane.offset, slant = dot(plane.normal, direction);
+    // Two questions without branches of their own: what each asks is there at once.
+    if ((plane.flat != 0) & ((from == plane.solid) | stays_off(off, slant, limit))) return true;
+    return (plane.flat != 0) & crosses_beside(plane, origin, direction, off, slant);
+}
+
+/// The same of a cluster, if that belongs to a flat sheet.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
+    return misses_flat(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
+}
+
+/// Takes an accepted crossing if it is the ray's next.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_t triangle, uint32_t slot,
+                                     const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray, Hit<Real>& best) {
+    const bool own = ray.from_solid == solid;
+    if (!(c.t >= Real(0)) || (own && ray.from_face == triangle)) return;
+    CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
+    if constexpr (!Media::meshes) {
+        kind = CrossingKind::sheet;
+    } else if (scene.solids[solid].kind == SolidKind::sheet) {
+        kind = CrossingKind::sheet;
+    } else if (ray.by_side() && c.enters() == ray.media.contains(solid)) {
+        // A line first crosses a mesh from the side on which it starts.
+        best.passed_over = lesser(c.t, best.passed_over);
+        return;
+    }
+    const uint64_t key = make_key(kind, solid, triangle);
+    if (ray.after.before(c.t, key) && best.improves(c.t, key)) best.take(c.t, key, c.u(), c.v(), slot, c.enters());
+}
+
+/// The ray's next crossing of a cluster's triangles, if it is less than `best`. For a ray that does not start on the
+/// cluster's flat sheet.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_triangles(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
+                                      const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
+    const Cluster<Real>& cluster = scene.clusters[index];
+    for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
+        closest_crossing(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, ray,
+                         best);
+    });
+}
+
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_cluster(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
+                                    const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
+    if (!leaves_flat(scene, index, ray)) closest_triangles(scene, index, ray, triangle_ray, best);
+}
+
+/// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_facet(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
+                                  const TriangleRay<Real>& triangle_ray, uint32_t left, Hit<Real>& best) {
+    const Facet<Real>& facet = scene.facets[index];
+    TriangleCrossing<Real> c;
+    if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
+        closest_crossing(scene, facet.solid, facet.triangle, facet.slot, c, ray, best);
+}
+
+/// The flat sheet on which a line starts, or no_solid.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE uint32_t flat_start(const Scene& scene, const Ray<Real, Media>& ray) {
+    return ray.from_solid != no_solid && scene.solids[ray.from_solid].flat != 0 ? ray.from_solid : no_solid;
+}
+
+}  // namespace cistula

@@ -1,0 +1,125 @@
+// Seen lights along the edges of convex solids, of which there may be hundreds: a line that is near two faces of no
+// solid at a time meets none of them, and looks for none. For the host, which tests eight slabs at once; a thread of a
+// device takes as long for that as for the tree over the lights.
+#pragma once
+
+#include "cistula/geometry/convex.h"
+
+namespace cistula {
+
+/// Up to this many solids are asked, of up to so many slabs.
+inline constexpr uint32_t most_solids_of_edge_lights = 16, most_slabs_of_edge_lights = 32;  // a bit each
+
+/// Whether the line between `from` and `to` passes the sphere around a solid's lights by.
+template <class Real>
+CISTULA_INLINE bool passes_edge_lights(const Solid& solid, Real square, const Vec3<Real>& origin,
+                                       const Vec3<Real>& direction, Real from, Real to) {
+    const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
+    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - square;
+    const Real nearest = clamped(ahead, from, to);
+    return rest > nearest * (Real(2) * ahead - nearest);
+}
+
+/// Bit i: whether a[i] >= limit, or a[i] <= limit.
+CISTULA_INLINE uint32_t lanes_from(const float (&a)[slab_lanes], float limit) {
+    alignas(32) int32_t is[slab_lanes];
+    CISTULA_VECTORS
+    for (int i = 0; i < slab_lanes; ++i) is[i] = a[i] >= limit ? -1 : 0;
+    return sign_bits(is);
+}
+CISTULA_INLINE uint32_t lanes_to(const float (&a)[slab_lanes], float limit) {
+    alignas(32) int32_t is[slab_lanes];
+    CISTULA_VECTORS
+    for (int i = 0; i < slab_lanes; ++i) is[i] = a[i] <= limit ? -1 : 0;
+    return sign_bits(is);
+}
+
+/// Whether a line is within `reach` of two faces of a solid at once, somewhere between `from` and `to`, which come
+/// closer to where. Of an entering plane a line is near up to some time, of a leaving one from some time on. In single
+/// precision for either: `reach` is 2^-14 M beyond the lights, and what is rounded here is under 2^-19 M.
+template <class Real>
+CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, float reach, const Vec3<float>& origin,
+                               const Vec3<float>& direction, float& from, float& to) {
+    constexpr int most_groups = most_slabs_of_edge_lights / slab_lanes;
+    alignas(32) float past[most_groups][slab_lanes], soon[most_groups][slab_lanes];
+    const int count = int(slabs + slab_lanes - 1) / slab_lanes;
+    for (int g = 0; g < count; ++g) {
+        alignas(32) float enter[slab_lanes], leave[slab_lanes];
+        const SlabGroup<Real>& group = groups[g];
+#pragma GCC ivdep
+        for (int i = 0; i < slab_lanes; ++i) {
+            const Vec3<float> normal(float(group.nx[i]), float(group.ny[i]), float(group.nz[i]));
+            const float nd = dot(normal, direction), no = dot(normal, origin);
+            // Of a slab that it is parallel to, a line is near from very early to very late or not at all.
+            const float inverse = 1.0f / (magnitude(nd) < 0x1p-60f ? 0x1p-60f : nd);
+            const float at_low = (float(group.low[i]) - no) * inverse, at_high = (float(group.high[i]) - no) * inverse;
+            const float half = reach * magnitude(inverse), in = lesser(at_low, at_high), out = greater(at_low, at_high);
+            enter[i] = in - half;
+            past[g][i] = in + half;
+            soon[g][i] = out - half;
+            leave[i] = out + half;
+        }
+        from = greatest(convex_host::greatest_lane(enter), from);
+        to = least(convex_host::least_lane(leave), to);
+    }
+    if (!(from <= to)) return false;
+    uint32_t entering = 0, leaving = 0;  // planes
+    float first = to, last = from;
+    for (int g = 0; g < count; ++g) {
+        entering |= lanes_from(past[g], from) << g * slab_lanes;
+        leaving |= lanes_to(soon[g], to) << g * slab_lanes;
+        first = least(convex_host::least_lane(soon[g]), first);
+        last = greatest(convex_host::greatest_lane(past[g]), last);
+    }
+    const bool two_at_first = (entering & (entering - 1)) != 0, two_at_last = (leaving & (leaving - 1)) != 0;
+    if (!two_at_first && !two_at_last && (entering == 0 || leaving == 0)) return false;
+    if (!two_at_first) from = greatest(first, from);
+    if (!two_at_last) to = least(last, to);
+    return from <= to;
+}
+
+/// A solid of a list of convex ones, which holds copies or numbers.
+template <class Real, class Scene>
+CISTULA_INLINE const Solid& listed(const Scene&, const NumberedSolid<Real>& copy) {
+    return copy.solid;
+}
+template <class Scene>
+CISTULA_INLINE const Solid& listed(const Scene& scene, uint32_t index) {
+    return scene.solids[index];
+}
+
+/// Whether a ray may meet a seen light between `from` and `to`, which come closer to where.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& ray, Real& from, Real& to) {
+    if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return true;
+    const Vec3<float> origin(ray.origin), direction(ray.direction);
+    const auto near = [&](const Solid& solid, const SlabGroup<Real>& first, Real& near_from, Real& near_to) {
+        float first_near = float(near_from), last_near = float(near_to);
+        const bool nears =
+            nears_edge(&first, solid.slab_count, float(first.light_reach), origin, direction, first_near, last_near);
+        near_from = first_near;
+        near_to = last_near;
+        return nears;
+    };
+    const bool ends = to < RealTraits<Real>::infinity;  // at the face by which the ray leaves, or before
+    if (const uint32_t around = ends ? enclosing(scene, ray) : no_solid; around != no_solid) {
+        const SlabGroup<Real>& first = scene.slab_groups[scene.solids[around].first_group];
+        if (first.lights_apart) return near(scene.solids[around], first, from, to);
+    }
+    Real earliest = to, latest = from;
+    for (const auto& entry : scene.convex) {
+        const Solid& solid = listed(scene, entry);
+        const SlabGroup<Real>& first = scene.slab_groups[solid.first_group];
+        Real near_from = from, near_to = to;
+        if (passes_edge_lights(solid, first.light_square, ray.origin, ray.direction, from, to) ||
+            !near(solid, first, near_from, near_to))
+            continue;
+        earliest = least(near_from, earliest);
+        latest = greatest(near_to, latest);
+    }
+    from = earliest;
+    to = latest;
+    return earliest <= latest;
+}
+
+}  // namespace cistula

@@ -1,0 +1,63 @@
+// Lights that are seen: spheres of constant radiance that end a ray and cast no shadow.
+#pragma once
+
+#include "cistula/lights/edge_lights.h"
+#include "cistula/lights/light_tree.h"
+
+namespace cistula {
+
+inline constexpr uint32_t no_light = 0xffffffffu;
+
+template <class Real>
+struct SeenHit {
+    Real t = RealTraits<Real>::infinity;
+    uint32_t light = no_light;
+};
+
+/// The front of one sphere, by the ray's closest approach (Haines et al., Ray Tracing Gems, ch. 7). From inside:
+/// nothing.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, SeenHit<Real>& best) {
+    const SeenLight<Real>& light = scene.seen_lights[index];
+    const Vec3<Real> to_center = light.center - ray.origin;
+    const Real b = dot(to_center, ray.direction);
+    const Vec3<Real> across = to_center - b * ray.direction;
+    const Real square = light.radius * light.radius;
+    const Real discriminant = square - dot(across, across), c = dot(to_center, to_center) - square;
+    if (!(discriminant > Real(0)) || !(c > Real(0)) || !(b > Real(0))) return;
+    const Real t = c / (b + square_root(discriminant));
+    if (t >= ray.after.t && (t < best.t || (t == best.t && index < best.light))) best = {t, index};
+}
+
+/// The nearest seen light at or after ray.after and before t_limit.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit) {
+    SeenHit<Real> best;
+    best.t = t_limit;
+    if (!is_finite(ray)) return best;
+    // Lights that have no tree are looked at by the code that walks one.
+    static_assert(fewest_in_light_tree <= LightStack::capacity);
+    LightStack::Room room;
+    LightStack stack(room);
+    Real from = ray.after.t;
+    if (scene.seen_tree.empty()) {
+        CISTULA_NOT_UNROLLED
+        for (uint32_t i = 0; i < scene.seen_lights.size; ++i) stack.push(~int32_t(i));
+    } else {
+        stack.push(LightStack::root);
+#if !CISTULA_ON_DEVICE
+        from = greatest(from, Real(0));
+        if (!may_see_lights(scene, ray, from, t_limit)) return best;
+#endif
+    }
+    BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
+    box_ray.near_limit = tree_near(from);
+    box_ray.far_limit = tree_far(t_limit);
+    walk_lights(scene.seen_tree, box_ray, stack, [&](uint32_t light) {
+        see_light(scene, light, ray, best);
+        return tree_far(best.t);
+    });
+    return best;
+}
+
+}  // namespace cistula

@@ -1,0 +1,90 @@
+// A scene small enough to travel with a kernel's parameters: its arrays lie in constant memory, which all threads of a
+// warp read at once. The same names as in SceneView, so that the same code reads either.
+#pragma once
+
+#include "cistula/model/triangle_sides.h"
+#include "cistula/numerics/transmittance.h"
+
+namespace cistula {
+
+/// Bytes of a line of the cache of constants, which holds few of them.
+inline constexpr int constant_line = 64;
+
+/// Up to `capacity` elements in place.
+template <class T, uint32_t capacity>
+struct InlineSpan {
+    alignas(constant_line) T data[capacity];
+    uint32_t size;
+
+    CISTULA_INLINE const T& operator[](uint32_t i) const { return data[i]; }
+    CISTULA_INLINE const T* begin() const { return data; }
+    CISTULA_INLINE const T* end() const { return data + size; }
+    CISTULA_INLINE bool empty() const { return size == 0; }
+
+    /// False if they do not fit. `from` must be readable here.
+    bool assign(const Span<T>& from) {
+        return assign(from.size, [&](uint32_t i) { return from[i]; });
+    }
+    template <class Get>
+    bool assign(uint32_t count, const Get& get) {
+        if (count > capacity) return false;
+        size = count;
+        for (uint32_t i = 0; i < size; ++i) data[i] = get(i);
+        return true;
+    }
+};
+
+/// What is known of shadow rays before they are shot (libcore/scene, plan_shadows).
+struct ShadowPlan {
+    static constexpr uint32_t solids = 24, lights = 8, convex = 16, clusters = 4;
+    static constexpr uint32_t first_cluster = convex;
+    static_assert(solids <= 32 && first_cluster + clusters <= 32);
+
+    uint32_t all_convex, all_clusters;  // bit p: convex[p]; bit first_cluster + p: clusters[p]
+    uint32_t beyond[lights];            // bit i: the light is well outside of convex solid i
+    uint32_t near[solids][lights];      // the primitives that may lie between that solid's surface and that light
+
+    /// Nothing is known.
+    void clear(uint32_t convex_count, uint32_t cluster_count) {
+        all_convex = (1u << convex_count) - 1;
+        all_clusters = ((1u << cluster_count) - 1) << first_cluster;
+        for (uint32_t& of_light : beyond) of_light = 0;
+        for (auto& of_solid : near)
+            for (uint32_t& primitives : of_solid) primitives = ~0u;
+    }
+};
+
+template <class Real>
+struct ConstantScene {
+    using Scalar = Real;
+    static constexpr uint32_t most_slabs = 96, most_materials = 16;
+
+    InlineSpan<Solid, ShadowPlan::solids> solids;
+    InlineSpan<Slab<Real>, most_slabs> slabs;
+    InlineSpan<NumberedSolid<Real>, ShadowPlan::convex> convex;  // copies: a look at one needs no other first
+    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;   // of the clusters: such copies too
+    InlineSpan<Cluster<Real>, ShadowPlan::clusters> clusters;
+    InlineSpan<TriangleSides<Real>, ShadowPlan::clusters * cluster_lanes> sides;  // by slot
+    InlineSpan<Material<Real>, most_materials> materials;
+    InlineSpan<Light<Real>, ShadowPlan::lights> lights;
+    KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
+    ShadowPlan plan;
+    uint32_t clear_solids, transmitting_solids;  // bit i: solid i is of a clear material, or of one that transmits
+    InlineSpan<Texture, 8> textures;
+    // Elsewhere, as in the view that it was made of:
+    Span<SlabGroup<Real>> slab_groups;
+    Span<Facet<Real>> facets;
+    Span<Vec2<Real>> uvs;
+    Span<Incident> incidents;
+    Span<SeenLight<Real>> seen_lights;
+    Span<Vec3<float>> texels;
+    Span<TreeNode> tree;
+    Span<uint32_t> tree_items;
+    Span<LightNode> seen_tree;
+    Vec3<Real> background;
+    Vec3<Real> bound;
+    Real largest_bound;
+    Real extent;
+};
+
+}  // namespace cistula

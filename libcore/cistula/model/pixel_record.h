@@ -1,0 +1,98 @@
+// What one pixel leaves behind: integer sums, so that the order of work never shows, and the first sample's data.
+#pragma once
+
+#include "cistula/numerics/portable.h"
+
+namespace cistula {
+
+/// Reasons to distrust a render; any bit set in a film fails it with a message.
+enum RenderFlag : uint32_t {
+    flag_not_finite = 1u << 0,          // a radiance was infinite or NaN
+    flag_media_overflow = 1u << 1,      // more solids inside one another than a ray can list
+    flag_stack_overflow = 1u << 2,      // a ray tree needed more pending branches than there is room for
+    flag_too_many_crossings = 1u << 3,  // a straight ray crossed more faces than the limit
+};
+
+/// Rays of one pixel, of which 2^32 would take hours.
+struct PixelRays {
+    uint32_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
+
+    CISTULA_INLINE void add(const PixelRays& o) {
+        primary += o.primary;
+        reflected += o.reflected;
+        transmitted += o.transmitted;
+        shadow += o.shadow;
+    }
+    CISTULA_INLINE uint32_t total() const { return primary + reflected + transmitted + shadow; }
+};
+
+/// What is noted down while a pixel is rendered; a device keeps it where it costs no registers.
+struct PixelWork {
+    PixelRays rays;
+    uint32_t flags = 0;  // RenderFlag bits
+    double start = 0,
+           facing = 0;  // of the sample under way: from the camera to its ray's origin; cosine to the view axis
+};
+
+struct RayCounts {
+    uint64_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
+
+    CISTULA_INLINE void add(const RayCounts& o) {
+        primary += o.primary;
+        reflected += o.reflected;
+        transmitted += o.transmitted;
+        shadow += o.shadow;
+    }
+    CISTULA_INLINE void add(const PixelRays& o) {
+        primary += o.primary;
+        reflected += o.reflected;
+        transmitted += o.transmitted;
+        shadow += o.shadow;
+    }
+    CISTULA_INLINE uint64_t total() const { return primary + reflected + transmitted + shadow; }
+};
+
+struct Plus {
+    template <class T>
+    CISTULA_INLINE void operator()(T& to, T value) const {
+        to += value;
+    }
+};
+
+/// Sums over the pixel's samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
+struct PixelRecord {
+    int64_t radiance[3];
+    uint32_t hits;          // samples whose primary ray hit anything (a seen light too)
+    uint32_t rays;          // rays of all kinds
+    int32_t id;             // 1 + solid under the sample nearest the pixel's center; 0: none
+    float z;                // that sample's distance along the view axis in scene units; infinity: none
+    float normal[3];        // that sample's unit normal, toward the viewer, in world axes; 0: none
+    uint32_t samples : 31;  // that were rendered
+    uint32_t unmet : 1;     // adaptive sampling wanted more than it may have
+    int64_t pruned[3];      // upper bound on what the cutoff took away
+    int64_t cut[3];         // upper bound on what the depth limit took away
+
+    /// Calls add(to, value) for the sums; not for the counts of rays and samples.
+    template <class Add>
+    CISTULA_INLINE void give(PixelRecord& to, const Add& add) const {
+        for (int c = 0; c < 3; ++c) {
+            add(to.radiance[c], radiance[c]);
+            add(to.pruned[c], pruned[c]);
+            add(to.cut[c], cut[c]);
+        }
+        add(to.hits, hits);
+    }
+
+    /// Takes other samples of the same pixel in.
+    CISTULA_INLINE void add(const PixelRecord& o) {
+        o.give(*this, Plus());
+        rays += o.rays;
+        samples += o.samples;
+        if (o.id == 0) return;
+        id = o.id;
+        z = o.z;
+        for (int c = 0; c < 3; ++c) normal[c] = o.normal[c];
+    }
+};
+
+}  // namespace cistula

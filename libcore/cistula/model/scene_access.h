@@ -1,0 +1,82 @@
+// The questions that shading asks of a scene and that its forms answer differently: a SceneView computes what a
+// ConstantScene has ready.
+#pragma once
+
+#include "cistula/model/constant_scene.h"
+
+namespace cistula {
+
+/// Whether a solid's material is clear: kr 0, kt 1, white tint.
+template <class Real>
+CISTULA_INLINE bool is_clear(const SceneView<Real>& scene, uint32_t solid) {
+    return scene.materials[scene.solids[solid].material].clear != 0;
+}
+template <class Real>
+CISTULA_INLINE bool is_clear(const ConstantScene<Real>& scene, uint32_t solid) {
+    return (scene.clear_solids >> solid & 1u) != 0;
+}
+
+/// Whether a solid's material transmits: kt > 0.
+template <class Real>
+CISTULA_INLINE bool transmits(const SceneView<Real>& scene, uint32_t solid) {
+    return scene.materials[scene.solids[solid].material].transmission > 0;
+}
+template <class Real>
+CISTULA_INLINE bool transmits(const ConstantScene<Real>& scene, uint32_t solid) {
+    return (scene.transmitting_solids >> solid & 1u) != 0;
+}
+
+/// 2^-loss, the share of light that is left after a loss.
+template <class Real>
+CISTULA_INLINE Real transmitted_share(const SceneView<Real>&, uint64_t loss) {
+    return share_of<Real>(loss);
+}
+/// 2^-loss for a loss that a scene has not ready.
+template <class Real>
+CISTULA_SELDOM Real unknown_share(uint64_t loss) {
+    return share_of<Real>(loss);
+}
+template <class Real>
+CISTULA_INLINE Real transmitted_share(const ConstantScene<Real>& scene, uint64_t loss) {
+    Real share = Real(-1);
+    for (const KnownShare<Real>& known : scene.known_shares)
+        if (known.loss == loss) share = known.share;
+    return share >= Real(0) ? share : unknown_share<Real>(loss);
+}
+
+/// The unit normal of a triangle on its outside.
+template <class Real>
+CISTULA_INLINE Vec3<Real> outward_normal(const SceneView<Real>& scene, uint32_t slot) {
+    Vec3<Real> corner[3];
+    triangle_corners(scene, slot, corner);
+    return triangle_normal(corner[1] - corner[0], corner[2] - corner[0]);
+}
+template <class Real>
+CISTULA_INLINE Vec3<Real> outward_normal(const ConstantScene<Real>& scene, uint32_t slot) {
+    return scene.sides[slot].normal;
+}
+
+/// The apex on one side of a triangle; `corner` and `normal`, on that side, are the triangle's.
+template <class Real>
+CISTULA_INLINE Apex<Real> apex_at(const SceneView<Real>& scene, uint32_t slot, const Vec3<Real> (&corner)[3],
+                                  const Vec3<Real>& normal, bool outside) {
+    return apex_of(scene, slot, corner, normal, outside);
+}
+template <class Real>
+CISTULA_INLINE const Apex<Real>& apex_at(const ConstantScene<Real>& scene, uint32_t slot, const Vec3<Real> (&)[3],
+                                         const Vec3<Real>&, bool outside) {
+    return scene.sides[slot].apex[outside];
+}
+
+/// The plane of a cluster's flat sheet, if it belongs to one.
+template <class Real>
+CISTULA_INLINE SheetPlane<Real> plane_of(const SceneView<Real>& scene, uint32_t cluster) {
+    const uint32_t solid = scene.clusters[cluster].solid;
+    return SheetPlane<Real>::of(scene.solids[solid], solid);
+}
+template <class Real>
+CISTULA_INLINE const SheetPlane<Real>& plane_of(const ConstantScene<Real>& scene, uint32_t cluster) {
+    return scene.planes[cluster];
+}
+
+}  // namespace cistula

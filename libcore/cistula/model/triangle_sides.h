@@ -1,0 +1,78 @@
+// The normal of a triangle, and the points toward which lines leave its two sides.
+#pragma once
+
+#include "cistula/model/scene_view.h"
+
+namespace cistula {
+
+/// The point over a triangle's centroid toward which lines leave it.
+template <class Real>
+struct Apex {
+    Vec3<Real> place;
+    Real share;  // of the way there that a line starts at: about 8 u M
+
+    CISTULA_INLINE static Apex of(const Vec3<Real>& centroid, const Vec3<Real>& normal, Real height, Real extent) {
+        const Real step = Real(8) * RealTraits<Real>::unit * extent;
+        return {along(centroid, height, normal), step < height * Real(0.125) ? step / height : Real(0.125)};
+    }
+    /// From a point on the triangle: the segment crosses no other triangle (NUMERICS, 2), so that the new origin is on
+    /// the right side of all of them.
+    CISTULA_INLINE Vec3<Real> from(const Vec3<Real>& point) const { return along(point, share, place - point); }
+};
+
+template <class Real>
+CISTULA_INLINE Real largest_magnitude(const Vec3<Real>& a) {
+    return greatest(magnitude(a.x), greatest(magnitude(a.y), magnitude(a.z)));
+}
+
+/// The unit normal of a small triangle, the square of whose area underflows: it is scaled first. Arguments by value,
+/// as it is called.
+template <class Real>
+CISTULA_SELDOM Vec3<Real> small_triangle_normal(Vec3<Real> ab, Vec3<Real> ac) {
+    const Real scale = Real(1) / greatest(largest_magnitude(ab), largest_magnitude(ac));
+    const Vec3<Real> scaled = cross(ab * scale, ac * scale);
+    return normalized(scaled / largest_magnitude(scaled));
+}
+
+/// The unit normal of a triangle from two of its edges; not finite for one without area.
+template <class Real>
+CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>& ac) {
+    const Vec3<Real> n = cross(ab, ac);
+    const Real square = dot(n, n);
+    return square > Real(0x1p-80) ? n / square_root(square) : small_triangle_normal(ab, ac);
+}
+
+/// The corners of the triangle that was hit.
+template <class Real, class Scene>
+CISTULA_INLINE void triangle_corners(const Scene& scene, uint32_t slot, Vec3<Real> (&corner)[3]) {
+    const Cluster<Real>& cluster = scene.clusters[slot / cluster_lanes];
+    const uint32_t lane = slot % cluster_lanes;
+    for (int c = 0; c < 3; ++c)
+        corner[c] = {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
+}
+
+/// The apex on one side of a triangle, along `normal`; outside: on the side its corners turn counter-clockwise on.
+template <class Real, class Scene>
+CISTULA_INLINE Apex<Real> apex_of(const Scene& scene, uint32_t slot, const Vec3<Real> (&corner)[3],
+                                  const Vec3<Real>& normal, bool outside) {
+    const Vec3<Real> centroid = (corner[0] + corner[1] + corner[2]) * Real(1.0 / 3.0);
+    return Apex<Real>::of(centroid, normal, scene.clusters[slot / cluster_lanes].height[outside][slot % cluster_lanes],
+                          scene.extent);
+}
+
+/// The normal and the apexes of a triangle, as hits on it need them.
+template <class Real>
+struct TriangleSides {
+    Vec3<Real> normal;   // on the outside
+    Apex<Real> apex[2];  // inside, outside
+
+    template <class Scene>
+    static TriangleSides of(const Scene& scene, uint32_t slot) {
+        Vec3<Real> corner[3];
+        triangle_corners(scene, slot, corner);
+        const Vec3<Real> normal = triangle_normal(corner[1] - corner[0], corner[2] - corner[0]);
+        return {normal, {apex_of(scene, slot, corner, -normal, false), apex_of(scene, slot, corner, normal, true)}};
+    }
+};
+
+}  // namespace cistula

@@ -1,0 +1,72 @@
+// What the shared code needs to know about float and double, and the operations whose library forms differ between
+// them.
+#pragma once
+
+#include "cistula/numerics/portable.h"
+
+namespace cistula {
+
+struct DoubleDouble;
+
+template <class Real>
+struct RealTraits;
+
+template <>
+struct RealTraits<float> {
+    using Up = double;                       // one precision up, for decisions (Snell)
+    static constexpr float unit = 0x1p-24f;  // u, half an ulp of 1
+    static constexpr float least_normal = 0x1p-126f;
+    static constexpr float largest = 0x1.fffffep127f;
+    static constexpr float infinity = std::numeric_limits<float>::infinity();
+    static constexpr const char* name = "float";
+};
+
+template <>
+struct RealTraits<double> {
+    using Up = DoubleDouble;  // double_double.h
+    static constexpr double unit = 0x1p-53;
+    static constexpr double least_normal = 0x1p-1022;
+    static constexpr double largest = 0x1.fffffffffffffp1023;
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+    static constexpr const char* name = "double";
+};
+
+/// Selects, not library calls: fmin and fmax differ from one another on NaN and on signed zeros. NaN in a gives b.
+template <class T>
+CISTULA_INLINE T least(T a, T b) {
+    return a < b ? a : b;
+}
+template <class T>
+CISTULA_INLINE T greatest(T a, T b) {
+    return a > b ? a : b;
+}
+template <class T>
+CISTULA_INLINE T clamped(T a, T low, T high) {
+    return a > low ? (a < high ? a : high) : low;
+}
+template <class T>
+CISTULA_INLINE T magnitude(T a) {
+    return a < T(0) ? -a : a;
+}
+CISTULA_INLINE float magnitude(float a) {
+    return fabsf(a);
+}
+CISTULA_INLINE double magnitude(double a) {
+    return ::fabs(a);
+}
+
+/// False for NaN and both infinities.
+template <class Real>
+CISTULA_INLINE bool is_finite(Real a) {
+    return magnitude(a) <= RealTraits<Real>::largest;
+}
+
+/// a * b - c * d to within 2 u relative (Kahan; Jeannerod, Louvet, Muller 2013): the sign is exact, and so is zero.
+template <class Real>
+CISTULA_INLINE Real difference_of_products(Real a, Real b, Real c, Real d) {
+    const Real cd = c * d;
+    const Real error = fused(-c, d, cd);
+    return fused(a, b, -cd) + error;
+}
+
+}  // namespace cistula

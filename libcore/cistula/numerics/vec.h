@@ -1,0 +1,94 @@
+// Vectors: GLM's types and its exact componentwise operations; products that round are spelled out here.
+#pragma once
+
+#ifndef GLM_FORCE_PURE
+#define GLM_FORCE_PURE
+#endif
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <type_traits>
+
+#include "cistula/numerics/real.h"
+
+namespace cistula {
+
+template <class Real>
+using Vec2 = glm::vec<2, Real, glm::defaultp>;
+template <class Real>
+using Vec3 = glm::vec<3, Real, glm::defaultp>;
+
+/// Symmetric in x and y, so that flips and the x-y swap of a scene change no bit.
+template <class Real>
+CISTULA_INLINE Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
+    return fused(a.z, b.z, a.x * b.x + a.y * b.y);
+}
+
+template <class Real>
+CISTULA_INLINE Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
+    return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+            difference_of_products(a.x, b.y, a.y, b.x)};
+}
+
+/// o + t d, each component with one rounding.
+template <class Real>
+CISTULA_INLINE Vec3<Real> along(const Vec3<Real>& origin, Real t, const Vec3<Real>& direction) {
+    return {fused(t, direction.x, origin.x), fused(t, direction.y, origin.y), fused(t, direction.z, origin.z)};
+}
+
+template <class Real>
+CISTULA_INLINE Real length(const Vec3<Real>& a) {
+    return square_root(dot(a, a));
+}
+
+/// a / |a|; the zero vector gives NaN.
+template <class Real>
+CISTULA_INLINE Vec3<Real> normalized(const Vec3<Real>& a) {
+    return a / length(a);
+}
+
+/// 0, or NaN where a component is not finite: 0 times infinity or NaN is NaN, which a sum keeps.
+template <class Real>
+CISTULA_INLINE Real nothing_of(const Vec3<Real>& a) {
+    return fused(a.x, Real(0), fused(a.y, Real(0), a.z * Real(0)));
+}
+template <class Real>
+CISTULA_INLINE bool is_finite(const Vec3<Real>& a) {
+    return nothing_of(a) == Real(0);
+}
+
+template <class Real>
+CISTULA_INLINE Real channel(const Vec3<Real>& a, int c) {
+    return a[c];
+}
+/// A number stands for three that are alike.
+CISTULA_INLINE float channel(float a, int) {
+    return a;
+}
+CISTULA_INLINE double channel(double a, int) {
+    return a;
+}
+template <class To, class Real>
+CISTULA_INLINE To share_as(const Vec3<Real>& a) {
+    if constexpr (std::is_same_v<To, Real>)
+        return a.x;
+    else
+        return a;
+}
+template <class Share>
+CISTULA_INLINE auto total(const Share& a) {
+    return channel(a, 0) + channel(a, 1) + channel(a, 2);
+}
+
+CISTULA_INLINE float largest_component(float a) {
+    return a;
+}
+CISTULA_INLINE double largest_component(double a) {
+    return a;
+}
+template <class Real>
+CISTULA_INLINE Real largest_component(const Vec3<Real>& a) {
+    return greatest(a.x, greatest(a.y, a.z));
+}
+
+}  // namespace cistula

@@ -1,0 +1,62 @@
+// What the solids along a straight line absorb: signed sums of integers over its crossings, so that faces at which
+// nothing changes leave every bit alone (Beer-Lambert; NUMERICS, 6).
+#pragma once
+
+#include "cistula/geometry/ray.h"
+#include "cistula/model/scene_view.h"
+#include "cistula/numerics/transmittance.h"
+
+namespace cistula {
+
+/// Absorption from a place on a ray, `begin`, to another, `dim`. The false one is for scenes without any.
+template <bool>
+struct Absorption {
+    PathSum sum[3];
+
+    /// The solids of `media` contain the ray from t on (sign -1) or up to t (sign 1).
+    template <class Real, class Media, class Scene>
+    CISTULA_INLINE void add_all(const Scene& scene, const Media& media, Real t, int sign) {
+        media.for_each([&](uint32_t solid, int count) { add(scene, solid, count, t, sign); });
+    }
+
+    template <class Real, class Scene>
+    CISTULA_INLINE void add(const Scene& scene, uint32_t solid, int count, Real t, int sign) {
+        const Vec3<Real>& sigma = scene.materials[scene.solids[solid].material].absorption;
+        for (int c = 0; c < 3; ++c)
+            sum[c].add(count < 0 ? -sign : sign, double(sigma[c]) * (count < 0 ? -count : count), double(t),
+                       4 * double(scene.extent));
+    }
+
+    template <class Real, class Media, class Scene>
+    CISTULA_INLINE void begin(const Scene& scene, const Media& media, Real t) {
+        for (PathSum& s : sum) s = PathSum();
+        if (t > Real(0)) add_all(scene, media, t, -1);
+    }
+
+    /// A face that is passed without shading.
+    template <class Real, class Scene>
+    CISTULA_INLINE void cross(const Scene& scene, uint64_t key, Real t) {
+        const int change = media_change(key_kind(key));
+        if (change != 0) add(scene, key_solid(key), 1, t, -change);
+    }
+
+    /// Multiplies a weight by what is left at t.
+    template <class Real, class Media, class Scene>
+    CISTULA_INLINE void dim(const Scene& scene, const Media& media, Real t, Vec3<Real>& weight) {
+        add_all(scene, media, t, 1);
+        for (int c = 0; c < 3; ++c)
+            if (const uint64_t loss = sum[c].loss(); loss != 0) weight[c] *= share_of<Real>(loss);
+    }
+};
+
+template <>
+struct Absorption<false> {
+    template <class Real, class Media, class Scene>
+    CISTULA_INLINE void begin(const Scene&, const Media&, Real) {}
+    template <class Real, class Scene>
+    CISTULA_INLINE void cross(const Scene&, uint64_t, Real) {}
+    template <class Real, class Media, class Weight, class Scene>
+    CISTULA_INLINE void dim(const Scene&, const Media&, Real, Weight&) {}
+};
+
+}  // namespace cistula

@@ -1,0 +1,232 @@
+// Transmittance toward a light: sums of integers over the faces crossed, the same in any order (NUMERICS, 5 and 6).
+#pragma once
+
+#include "cistula/geometry/convex.h"
+#include "cistula/geometry/triangle.h"
+#include "cistula/numerics/transmittance.h"
+#include "cistula/shading/surface.h"
+
+namespace cistula {
+
+/// A straight line to a light; refraction does not bend it. ray.after plays no part.
+template <class Real, class Media = MediaList>
+struct ShadowRay {
+    Ray<Real, Media> ray;
+    Real distance;
+    const Light<Real>* light;
+};
+
+/// What has been met so far on the way to a light, for every color or for all at once (Share).
+template <class E = Effects<all_effects>>
+struct ShadowSum {
+    static constexpr int channels = std::is_same_v<Share<float, E>, float> ? 1 : 3;
+    uint64_t loss[channels] = {};
+    PathSum path[channels];  // absorption inside meshes
+    uint32_t opaque = 0;     // bit c: color c is stopped
+
+    CISTULA_INLINE bool dark() const { return opaque == 7u; }
+
+    template <class Real>
+    CISTULA_INLINE void cross(const Material<Real>& material) {
+        if constexpr (!E::has(effect_transparent_shadows)) {
+            opaque = 7u;
+        } else {
+            opaque |= material.opaque;
+            for (int c = 0; c < channels; ++c) loss[c] = saturating_add(loss[c], material.filter_loss[c]);
+        }
+    }
+
+    /// A stretch of length >= 0 inside a convex solid.
+    template <class Real>
+    CISTULA_INLINE void absorb(const Material<Real>& material, Real length) {
+        for (int c = 0; c < channels; ++c)
+            if (material.absorption[c] > Real(0))
+                loss[c] = saturating_add(loss[c], absorption_loss(double(material.absorption[c]) * double(length)));
+    }
+
+    /// A mesh whose inside begins (sign 1) or ends (sign -1) at `remaining` before the light: the signed sum over all
+    /// its crossings is the length inside.
+    template <class Real>
+    CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real remaining, int sign, Real extent) {
+        for (int c = 0; c < channels; ++c)
+            path[c].add(sign, double(material.absorption[c]), double(remaining), 4 * double(extent));
+    }
+
+    template <class Real, class Scene>
+    CISTULA_INLINE Share<Real, E> share(const Scene& scene) const {
+        Real shares[channels];
+        uint64_t known = 0;  // a loss and its share, as gray materials have one for all colors
+        Real known_share = 1;
+        for (int c = 0; c < channels; ++c) {
+            if constexpr (E::has(effect_transparent_shadows)) {
+                uint64_t total = loss[c];
+                if constexpr (E::has(effect_absorption)) total = saturating_add(total, path[c].loss());
+                if (total != known) known = total, known_share = transmitted_share(scene, total);
+            }
+            shares[c] = opaque >> c & 1u ? Real(0) : known_share;
+        }
+        if constexpr (channels == 1)
+            return shares[0];
+        else
+            return {shares[0], shares[1], shares[2]};
+    }
+};
+
+/// Where a line to a light starts that lies on faces of a solid.
+enum class LightSide { none, inside, outside };  // on no face of it; inside all of their planes, or outside one
+
+/// By value: a reference would put the ray into memory.
+template <class Real, class Scene>
+CISTULA_SELDOM LightSide light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index,
+                                         Vec3<Real> point) {
+    LightSide side = LightSide::none;
+    for (uint32_t i = 0; i < light.incident_count; ++i) {
+        const Incident& face = scene.incidents[light.first_incident + i];
+        if (face.solid != index) continue;
+        const Slab<Real>& slab = scene.slabs[scene.solids[index].first_slab + face.face / 2];
+        const Real n = dot(slab.normal, point);
+        if (face.face & 1u ? n > slab.high : n < slab.low) return LightSide::outside;
+        side = LightSide::inside;
+    }
+    return side;
+}
+
+template <class E, class Real, class Media, class Scene>
+CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow) {
+    if constexpr (E::has(effect_lights_on_faces))
+        if (shadow.light->incident_count != 0) return light_on_convex(scene, *shadow.light, index, shadow.ray.origin);
+    return LightSide::none;
+}
+
+/// A convex solid that the ray starts in. A light on its own face is never beyond that, whatever the rounding of two
+/// nearly equal distances says.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                ShadowSum<E>& sum) {
+    const Ray<Real, Media>& ray = shadow.ray;
+    const Solid& solid = scene.solids[index];
+    const Material<Real>& material = scene.materials[solid.material];
+    Real leave = shadow.distance;
+    if (light_side<E>(scene, index, shadow) == LightSide::none) {
+        const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
+        leave = greatest(convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
+        if (leave < shadow.distance) sum.cross(material);
+    }
+    if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance), Real(0)));
+}
+
+/// One that it neither starts in nor left, nor passes by. With a light on its face half-spaces decide.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid& solid,
+                                 const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
+    const Ray<Real, Media>& ray = shadow.ray;
+    const LightSide side = light_side<E>(scene, index, shadow);
+    if (side == LightSide::outside) return;
+    const auto interval = convex_here::interval_of(scene, solid, ray.origin, ray.direction, side == LightSide::none);
+    const Real enter = greatest(interval.enter, Real(0));
+    Real leave = shadow.distance;
+    const Material<Real>& material = scene.materials[solid.material];
+    if (side == LightSide::none) {
+        if (!is_met(interval, scene.extent) || !(enter < shadow.distance)) return;
+        if constexpr (Media::contacts)
+            if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
+                return;
+        leave = greatest(interval.leave, Real(0));
+        if (leave < shadow.distance) sum.cross(material);
+    }
+    sum.cross(material);
+    if constexpr (E::has(effect_absorption))
+        sum.absorb(material, greatest(least(leave, shadow.distance) - enter, Real(0)));
+}
+
+template <class Real, class E, class Media, class Scene>
+CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                  ShadowSum<E>& sum) {
+    if (shadow.ray.media.contains(index))
+        shadow_exit<Real, E>(scene, index, shadow, sum);
+    else if (shadow.ray.from_solid != index &&
+             !passes_by(Ball<Real>::of(scene.solids[index]), shadow.ray.origin, shadow.ray.direction, shadow.distance))
+        shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
+}
+
+/// Whether a mesh that touches others is crossed where the ray starts on one of them, and from the side on which the
+/// ray is not: it is behind the ray.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool behind_shadow(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
+                                  const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray) {
+    if (!scene.solids[index].touched || !(c.t <= Real(1024) * incidence<Real> * scene.extent)) return false;
+    if (c.enters() != ray.media.contains(index)) return false;
+    const CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
+    return lies_at_start(scene, ray, Hit<Real>{c.t, make_key(kind, index, triangle), c.u(), c.v(), slot, c.enters()});
+}
+
+/// Whether a light lies on a face of a solid.
+template <class Real, class Scene>
+CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32_t solid, uint32_t face) {
+    bool lies = false;
+    for (uint32_t i = 0; i < light.incident_count; ++i) {
+        const Incident& incident = scene.incidents[light.first_incident + i];
+        lies |= incident.solid == solid && incident.face == face;
+    }
+    return lies;
+}
+
+/// Takes an accepted crossing of a triangle into the sum if it lies before the light.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
+                                    const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow,
+                                    ShadowSum<E>& sum) {
+    if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
+    if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
+    if constexpr (E::has(effect_lights_on_faces))
+        if (lies_on(scene, *shadow.light, index, triangle)) return;
+    if constexpr (Media::meshes)
+        if (behind_shadow(scene, index, triangle, slot, c, shadow.ray)) return;
+    const Solid& solid = scene.solids[index];
+    const Material<Real>& material = scene.materials[solid.material];
+    sum.cross(material);
+    if constexpr (E::has(effect_absorption))
+        if (solid.kind == SolidKind::mesh)
+            sum.absorb_rest(material, shadow.distance - c.t, c.enters() ? 1 : -1, scene.extent);
+}
+
+/// For a ray that does not start on the cluster's flat sheet.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                     const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
+    const Cluster<Real>& cluster = scene.clusters[index];
+    for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
+        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane,
+                                 c, shadow, sum);
+    });
+}
+
+template <class Real, class E, class Media, class Scene>
+CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                   const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
+    if (!leaves_flat(scene, index, shadow.ray)) shadow_triangles<Real, E>(scene, index, shadow, triangle_ray, sum);
+}
+
+/// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                 const TriangleRay<Real>& triangle_ray, uint32_t left, ShadowSum<E>& sum) {
+    const Facet<Real>& facet = scene.facets[index];
+    TriangleCrossing<Real> c;
+    if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
+        shadow_crossing<Real, E>(scene, facet.solid, facet.triangle, facet.slot, c, shadow, sum);
+}
+
+/// What meshes that contain the start of the ray add.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
+    if constexpr (E::has(effect_absorption)) {
+        shadow.ray.media.for_each([&](uint32_t index, int count) {
+            const Solid& solid = scene.solids[index];
+            for (int n = 0; solid.kind == SolidKind::mesh && n != count; n += count > 0 ? 1 : -1)
+                sum.absorb_rest(scene.materials[solid.material], shadow.distance, count > 0 ? 1 : -1, scene.extent);
+        });
+    }
+}
+
+}  // namespace cistula

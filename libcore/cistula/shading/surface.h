@@ -1,0 +1,91 @@
+// What is at a hit: computed from its ids, not from the ray's rounding where that can be helped.
+#pragma once
+
+#include "cistula/geometry/ray.h"
+#include "cistula/model/effects.h"
+#include "cistula/model/scene_access.h"
+#include "cistula/model/texture.h"
+
+namespace cistula {
+
+template <class Real>
+struct Surface {
+    Vec3<Real> point;
+    Vec3<Real> normal;       // geometric, unit, toward the viewer
+    Vec3<Real> viewer_side;  // where rays that stay on the viewer's side start
+    Vec3<Real> color;        // the material's, times its texture
+    uint32_t material;
+};
+
+/// No question where one kind alone is compiled in.
+template <class E>
+CISTULA_INLINE bool is_convex(const Solid& solid) {
+    return E::solids && (!E::triangles || solid.kind == SolidKind::convex);
+}
+/// Where rays that bend into the other side of a face start.
+template <class E, class Real, class Scene>
+CISTULA_INLINE Vec3<Real> far_side(const Scene& scene, const Hit<Real>& hit, const Vec3<Real>& point,
+                                   const Vec3<Real>& normal) {
+    if (is_convex<E>(scene.solids[key_solid(hit.key)])) return point;
+    Vec3<Real> corner[3];
+    triangle_corners(scene, hit.slot, corner);
+    return apex_at(scene, hit.slot, corner, -normal, !hit.enters).from(point);
+}
+
+/// The unit normal on the viewer's side.
+template <class E = Effects<all_effects>, class Real, class Scene>
+CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
+    const Solid& solid = scene.solids[key_solid(hit.key)];
+    const uint32_t face = key_face(hit.key);
+    if (is_convex<E>(solid)) {
+        const Vec3<Real>& normal = scene.slabs[solid.first_slab + face / 2].normal;
+        const bool outward = (face & 1u) != 0;  // the high side's outward normal is the slab's
+        return outward == hit.enters ? normal : -normal;
+    }
+    if constexpr (E::triangles) {
+        const Vec3<Real> normal = outward_normal(scene, hit.slot);
+        return hit.enters ? normal : -normal;
+    } else {
+        return Vec3<Real>();
+    }
+}
+
+/// Whether a crossing of a mesh lies where a line starts on a face of another solid, give or take rounding.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE bool lies_at_start(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
+    if (ray.from_solid == no_solid || ray.from_solid == key_solid(hit.key)) return false;
+    return hit.t * magnitude(dot(normal_at(scene, hit), ray.direction)) <= incidence<Real> * scene.extent;
+}
+
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
+    const Solid& solid = scene.solids[key_solid(hit.key)];
+    Surface<Real> s;
+    s.material = solid.material;
+    const Material<Real>& material = scene.materials[s.material];
+    s.color = material.color;
+    s.normal = normal_at<E>(scene, hit);
+    if (is_convex<E>(solid)) {
+        const Vec3<Real> point = along(ray.origin, hit.t, ray.direction);
+        s.point = Vec3<Real>(point.x, point.y, point.z);  // number by number, as in WaitingBranch
+        s.viewer_side = Vec3<Real>(point.x, point.y, point.z);
+        return s;
+    }
+    if constexpr (E::triangles) {
+        Vec3<Real> corner[3];
+        triangle_corners(scene, hit.slot, corner);
+        s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
+        s.viewer_side = apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
+    }
+    if constexpr (E::has(effect_texture)) {
+        if (material.texture >= 0) {
+            const uint32_t face = key_face(hit.key);
+            const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (face - solid.first_triangle);
+            const Vec2<Real> at = uv[0] * (Real(1) - hit.u - hit.v) + uv[1] * hit.u + uv[2] * hit.v;
+            s.color *= texture_at(scene, scene.textures[uint32_t(material.texture)], at);
+        }
+    }
+    return s;
+}
+
+}  // namespace cistula

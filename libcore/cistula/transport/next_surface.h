@@ -1,0 +1,134 @@
+// From a branch's origin along its line to the next face that has anything to shade.
+#pragma once
+
+#include "cistula/lights/seen_light.h"
+#include "cistula/shading/absorption.h"
+#include "cistula/shading/interface.h"
+#include "cistula/shading/meeting.h"
+#include "cistula/transport/branch.h"
+#include "cistula/transport/pixel_sums.h"
+
+namespace cistula {
+
+/// Faces that one ray may pass without shading or bending; more fail the render (flag_too_many_crossings).
+inline constexpr int largest_crossings = 1 << 20;
+
+/// Whether rays pass faces without bending, all of them.
+template <class E>
+inline constexpr bool lines_go_on = E::has(effect_transmission) && !E::has(effect_refraction);
+
+/// Follows the lines of a tree's branches.
+template <class Real, class E, class Intersector>
+class NextSurface {
+  public:
+    using Media = typename Intersector::Media;
+    using Scene = typename Intersector::Scene;
+    using Entry = BranchOf<Real, E, Media>;
+
+    /// `depth`: surfaces that a path may have.
+    CISTULA_INLINE NextSurface(const Scene& scene, const Intersector& intersector, int depth, PixelSums<Real>& sums)
+        : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums) {}
+
+    /// Finds the branch's next surface. False where there is none: the light or background on which the ray ends is
+    /// added then, and `light` tells which of them it is.
+    CISTULA_INLINE bool find(Entry& branch, Meeting<Real, Media>& meeting, bool& light) {
+        Absorption<E::has(effect_absorption)> absorption;
+        absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
+        for (int crossings = 0;; ++crossings) {
+            const Hit<Real> hit = intersector_.template closest<E>(branch.ray);
+            SeenHit<Real> seen;
+            if constexpr (E::has(effect_visible_lights)) {
+                seen = light_before(hit, branch);
+                light = seen.light != no_light;
+            }
+            if (light || !hit.found()) {
+                absorption.dim(scene_, branch.ray.media, light ? seen.t : hit.t, branch.weight);
+                sums_.add(branch.weight * light_or_background(seen));
+                return false;
+            }
+            meet(scene_, intersector_, branch.ray, hit, meeting);
+            if (!meeting.fits) sums_.flag(flag_media_overflow);
+            if (!invisible(branch.ray, meeting)) {
+                absorption.dim(scene_, branch.ray.media, meeting.hit.t, branch.weight);
+                return true;
+            }
+            for (int i = 0; i < meeting.count; ++i) absorption.cross(scene_, meeting.taken[i].key, meeting.taken[i].t);
+            pass(branch.ray, meeting, absorption);
+            if (crossings == largest_crossings) {
+                sums_.flag(flag_too_many_crossings);
+                return false;
+            }
+        }
+    }
+
+    /// Moves a ray straight on through a face.
+    template <class Absorbed>
+    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting, Absorbed& absorption) {
+        Media media = meeting.beyond;
+        if constexpr (Media::meshes)
+            if (meeting.passed_over) count_passed_over(ray, meeting.taken[0], media, absorption);
+        ray.media = media;
+        ray.after = meeting.last();
+    }
+
+  private:
+    /// A line's first crossing of a mesh is from the right side. Others of that mesh that rounding puts before it, at
+    /// an edge that the line grazes, count all the same once it goes on straight.
+    template <class Absorbed>
+    CISTULA_INLINE void count_passed_over(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media,
+                                          Absorbed& absorption) {
+        Ray<Real, Media> probe = ray;
+        probe.meet_all();
+        for (;;) {
+            const Hit<Real> next = intersector_.closest(probe);
+            if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
+            // From the wrong side where the line starts: that mesh is behind it.
+            if (!lies_at_start(scene_, ray, next)) {
+                if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) sums_.flag(flag_media_overflow);
+                absorption.cross(scene_, next.key, next.t);
+            }
+            probe.after = {next.t, next.key};
+        }
+    }
+
+    /// Whether a crossing has nothing to shade: inside a medium of higher priority, or of a clear face between equal
+    /// media.
+    CISTULA_INLINE bool invisible(const Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting) const {
+        if constexpr (!E::has(effect_transmission | effect_insides)) {
+            return false;
+        } else {
+            const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
+            if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
+            if (!is_clear(scene_, solid)) return false;
+            if constexpr (E::has(effect_refraction))
+                return index_of(scene_, ray.media) == index_of(scene_, meeting.beyond);
+            return true;
+        }
+    }
+
+    /// What a ray sees that meets no face before `seen`.
+    CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const SeenHit<Real>& seen) const {
+        if constexpr (E::has(effect_visible_lights))
+            if (seen.light != no_light) return scene_.seen_lights[seen.light].radiance;
+        return scene_.background;
+    }
+
+    /// The seen light that the ray meets before `hit`. A line that may go straight on from there is searched to its
+    /// end.
+    CISTULA_INLINE SeenHit<Real> light_before(const Hit<Real>& hit, Entry& branch) const {
+        if constexpr (lines_go_on<E>)
+            if (branch.no_light_ahead) return SeenHit<Real>();
+        const bool goes_on =
+            lines_go_on<E> && hit.found() && int(branch.depth) + 1 < depth_ && transmits(scene_, key_solid(hit.key));
+        const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t);
+        if (seen.light == no_light) branch.no_light_ahead = goes_on;
+        return seen.t <= hit.t ? seen : SeenHit<Real>();
+    }
+
+    const Scene& scene_;
+    const Intersector& intersector_;
+    const int depth_;
+    PixelSums<Real>& sums_;
+};
+
+}  // namespace cistula

@@ -1,0 +1,186 @@
+// One pixel: the body of both backends' loops.
+#pragma once
+
+#include "cistula/model/camera.h"
+#include "cistula/model/lattice_settings.h"
+#include "cistula/transport/ray_tree.h"
+
+namespace cistula {
+
+/// What a frame asks of every pixel. The camera is in the scene's frame.
+struct FrameView {
+    Camera camera;
+    MediaList camera_media;  // the solids that contain the camera (camera_solids)
+    double unit_length = 1;  // scene units per unit of the frame
+    double half_sample = 0;  // tangent between the middle of the picture and half a sample beside it
+    bool is_far = false;     // the camera is outside the sphere of radius 2 M
+    int width = 0, height = 0;
+    int supersample = 1;
+    TreeSettings tree;
+    LatticeSettings lattice;  // with a target, of a grid of 16 x 16
+};
+
+/// Whether rays begin at the sphere of radius 2 M, not at the camera.
+CISTULA_HD inline bool is_far(const Camera& camera, double extent) {
+    return dot(camera.position, camera.position) > 4 * extent * extent;
+}
+
+/// The ray from the camera, from where it enters the sphere of radius 2 M (NUMERICS, 1), in double for either Real.
+/// `start` is how far from the camera that is. False: it passes the scene by.
+template <class Real, class Media, class Scene>
+CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, const Vec3<double>& direction,
+                                   Ray<Real, Media>& ray, double& start) {
+    Vec3<double> origin = frame.camera.position;
+    start = 0;
+    if (frame.is_far) {
+        // By the closest approach: a camera 1e9 away loses no more than its own rounding.
+        const double radius = 2 * double(scene.extent), square = radius * radius;
+        const double along_view = dot(origin, direction);
+        const Vec3<double> closest = along(origin, -along_view, direction);
+        const double rest = square - dot(closest, closest);
+        if (!(rest > 0) || along_view > 0) return false;
+        const double half = rest > 0x1p-100 ? rest * inverse_root(rest) : 0;
+        start = -along_view - half;
+        origin = along(closest, -half, direction);
+    }
+    ray.origin = Vec3<Real>(origin);
+    ray.direction = Vec3<Real>(direction);
+    for (int axis = 0; axis < 3; ++axis) settle(ray.origin[axis]), settle(ray.direction[axis]);
+    assign(ray.media, frame.camera_media);
+    return true;
+}
+
+/// The same through the point (x, y) of the picture, whose direction it gives too.
+template <class Real, class Media, class Scene>
+CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, double x, double y,
+                                   Ray<Real, Media>& ray, Vec3<double>& direction, double& start) {
+    direction = camera_direction(frame.camera, x, y, frame.width, frame.height);
+    return primary_ray(scene, frame, direction, ray, start);
+}
+
+/// The meshes that contain a point, by the crossings of a straight ray from outside.
+template <class Scene, class Intersector>
+CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
+                                     MediaList& media) {
+    using Real = typename Scene::Scalar;
+    // Through no axis, edge or symmetry that a scene is likely to have.
+    const Vec3<double> direction = normalized(Vec3<double>(0.36, 0.48, 0.8112));
+    // From the sphere of radius 2 M, as all rays (NUMERICS, 1).
+    const double ahead = dot(point, direction);
+    const double rest = 4 * double(scene.extent) * double(scene.extent) - (dot(point, point) - ahead * ahead);
+    const double distance = ahead + square_root(greatest(rest, 0.0));
+    Ray<Real> ray;
+    ray.origin = Vec3<Real>(along(point, -distance, direction));
+    ray.direction = Vec3<Real>(direction);
+    ray.meet_all();
+    bool fits = true;
+    for (;;) {
+        const Hit<Real> hit = intersector.closest(ray);
+        if (!(double(hit.t) < distance)) return fits;
+        const uint32_t solid = key_solid(hit.key);
+        const int change = media_change(key_kind(hit.key));
+        if (change != 0) ray.media.add(solid, change);
+        if (scene.solids[solid].kind == SolidKind::mesh) fits &= media.add(solid, change);
+        ray.after = {hit.t, hit.key};
+    }
+}
+
+/// The solids that contain a point.
+template <class Scene, class Intersector>
+CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
+                                     MediaList& media) {
+    using Real = typename Scene::Scalar;
+    media = MediaList();
+    if (dot(point, point) > 4 * double(scene.extent) * double(scene.extent)) return true;
+    bool fits = true;
+    bool meshes = false;
+    for (uint32_t i = 0; i < scene.solids.size; ++i) {
+        meshes |= scene.solids[i].kind == SolidKind::mesh;
+        if (scene.solids[i].kind == SolidKind::convex && inside_convex(scene, scene.solids[i], Vec3<Real>(point)))
+            fits &= media.add(i, 1);
+    }
+    if constexpr (Intersector::Media::meshes)
+        if (meshes) fits &= camera_meshes(scene, intersector, point, media);
+    return fits;
+}
+
+/// Notes down what a sample sees first.
+template <class Real>
+struct FirstSeen {
+    const FrameView& frame;
+    const PixelWork& work;
+    PixelRecord& record;
+    bool middle;  // the sample that stands for the pixel where no mean makes sense
+
+    CISTULA_INLINE void nothing(bool light) const { record.hits += light ? 1 : 0; }
+    CISTULA_INLINE void surface(const Hit<Real>& hit, const Vec3<Real>& normal) const {
+        ++record.hits;
+        if (!middle) return;
+        record.id = int32_t(key_solid(hit.key)) + 1;
+        record.z = float((work.start + double(hit.t)) * work.facing * frame.unit_length);
+        for (int c = 0; c < 3; ++c) record.normal[c] = float(normal[c]);
+    }
+};
+
+/// Which of a pixel's samples are rendered: all, or every step-th where several threads share a pixel.
+struct SampleRange {
+    int first = 0, step = 1;
+};
+
+/// Sample (column, row) of the k x k grid of pixel (px, py), added to the record. `settings`: frame.tree, or a budget
+/// of the sample's own.
+template <class Real, class E, class Intersector, class Stack, class Scene>
+CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, const TreeSettings& settings,
+                                  const Intersector& intersector, int px, int py, int column, int row, bool middle,
+                                  PixelRecord& record, PixelWork& work, Stack& stack) {
+    const int k = frame.supersample;
+    Ray<Real, typename Intersector::Media> ray;
+    // In half samples from the middle of the picture.
+    const int across = 2 * (px * k + column) + 1 - frame.width * k;
+    const int down = 2 * (py * k + row) + 1 - frame.height * k;
+    const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
+    PixelSums<Real> sums(settings, scene, record, work.flags);
+    ++work.rays.primary;
+    double start;
+    if (!primary_ray(scene, frame, direction, ray, start)) {
+        sums.add(scene.background);
+        return;
+    }
+    if (middle) {
+        work.start = start;
+        work.facing = dot(direction, frame.camera.forward);
+    }
+    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, settings.depth, sums, work.rays, stack);
+    tree.trace(ray, FirstSeen<Real>{frame, work, record, middle});
+}
+
+/// A pixel's record before its first sample, and after its last.
+CISTULA_INLINE void begin_pixel(PixelRecord& record) {
+    record = PixelRecord();
+    record.z = RealTraits<float>::infinity;
+}
+CISTULA_INLINE void end_pixel(PixelRecord& record, const PixelWork& work) {
+    record.rays = work.rays.total();
+    record.samples = work.rays.primary;
+}
+
+/// Sample i of pixel (px, py), row by row of its k x k grid.
+template <class Real, class E, class Intersector, class Stack, class Scene>
+CISTULA_INLINE void add_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
+                               int py, int i, PixelRecord& record, PixelWork& work, Stack& stack) {
+    const int k = frame.supersample, row = k == 1 ? 0 : i / k, column = i - row * k;
+    render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row, column == k / 2 && row == k / 2,
+                           record, work, stack);
+}
+
+/// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own.
+template <class Real, class E, class Intersector, class Stack, class Scene>
+CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
+                                 int py, SampleRange samples, PixelRecord& record, PixelWork& work, Stack& stack) {
+    begin_pixel(record);
+    for (int i = samples.first; i < frame.supersample * frame.supersample; i += samples.step)
+        add_sample<Real, E>(scene, frame, intersector, px, py, i, record, work, stack);
+    end_pixel(record, work);
+}
+
+}  // namespace cistula

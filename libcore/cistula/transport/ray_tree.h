@@ -1,0 +1,148 @@
+// One ray's tree (Whitted 1980), without recursion: the lighter child is followed and the heavier one waits. Whatever
+// is not followed goes into the ledger.
+#pragma once
+
+#include "cistula/shading/lighting.h"
+#include "cistula/transport/branch_stack.h"
+#include "cistula/transport/next_surface.h"
+#include "cistula/transport/pixel_sums.h"
+
+namespace cistula {
+
+inline constexpr int largest_depth = 1024;
+/// Surfaces between two questions to a stack whether the tree is to end.
+inline constexpr uint32_t turns_between_stops = 64;
+
+template <class Real, class E, class Intersector, class Stack>
+class RayTree {
+  public:
+    using Sums = PixelSums<Real>;
+    using Media = typename Intersector::Media;
+    using Scene = typename Intersector::Scene;
+    using Weight = Share<Real, E>;
+    using Entry = BranchOf<Real, E, Media>;
+
+    /// `depth`: surfaces that a path may have.
+    CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth, Sums& sums, PixelRays& rays,
+                           Stack& stack)
+        : scene_(scene),
+          intersector_(intersector),
+          line_(scene, intersector, depth, sums),
+          depth_(depth),
+          sums_(sums),
+          rays_(rays),
+          stack_(stack) {}
+
+    /// Adds all that the primary ray sees to the sums, and tells what it meets first: first.surface(hit, normal), or
+    /// first.nothing(light) where that is no surface but perhaps a seen light.
+    template <class First>
+    CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
+        Entry branch;
+        branch.ray = primary;
+        bool at_first = true;
+        uint32_t turns = 0;
+        do {
+            // The lanes of a warp ask in the same turn: a question that a few ask alone would part them for long.
+            if (++turns % turns_between_stops == 0 && stack_.stopped()) return stack_.clear();
+            if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
+            // Within the loop, as all that only some rays have: it holds no registers elsewhere.
+            Meeting<Real, Media> meeting;
+            bool light = false;
+            if (line_.find(branch, meeting, light)) {
+                const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, meeting.hit);
+                if (at_first) first.surface(meeting.hit, s.normal);
+                shade(branch, meeting, s);
+            } else if (at_first) {
+                first.nothing(light);
+            }
+            at_first = false;
+        } while (next(branch));
+    }
+
+  private:
+    /// Takes the latest of the branches that wait and are worth it; false if there is none.
+    CISTULA_INLINE bool next(Entry& branch) {
+        if constexpr (E::has(effect_reflection | effect_transmission)) {
+            do {
+                if (!stack_.pop(branch)) return false;
+            } while (!sums_.afford(branch.weight));
+            rays_.reflected += branch.mirrored;
+            rays_.transmitted += 1 - branch.mirrored;
+            return true;
+        } else {
+            return false;
+        }
+    }
+
+    /// Adds a face's local light. What the face sends on waits before the lights are looked at, so that nothing of the
+    /// branch has to be kept for later.
+    CISTULA_INLINE void shade(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
+        if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
+        if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, meeting, s);
+        const Real local = scene_.materials[s.material].local;
+        if (local > Real(0))
+            add_local_light<Real, E>(scene_, intersector_, branch.ray, meeting.hit, s, branch.weight * local, sums_,
+                                     rays_);
+    }
+
+    /// Pushes the heavier of the branch's children and then the lighter, which is next.
+    CISTULA_INLINE void send_on(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
+        const bool sheet = key_kind(meeting.hit.key) == CrossingKind::sheet;
+        const Shares<Real, Weight> shares =
+            split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal, branch.ray.media,
+                              meeting.beyond, sheet);
+        const Weight mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
+        // Sums over colors, so that a child that is not the heavier is at most half its parent.
+        const Real mirrored_size = total(mirrored),
+                   through_size = E::has(effect_transmission) ? total(through) : Real(0);
+        if (int(branch.depth) + 1 >= depth_) {
+            CISTULA_NOT_UNROLLED
+            for (int i = 0; i < (E::has(effect_transmission) ? 2 : 1); ++i)
+                if ((i == 0 ? mirrored_size : through_size) > Real(0)) sums_.cut(i == 0 ? mirrored : through);
+            return;
+        }
+        if constexpr (!E::has(effect_transmission)) {
+            // The one child has the room that its parent left.
+            if (mirrored_size > Real(0)) stack_.push(child_of(branch, meeting, s, shares, false, mirrored));
+        } else {
+            bool goes_through = through_size >= mirrored_size;
+            CISTULA_NOT_UNROLLED
+            for (int i = 0; i < 2; ++i, goes_through = !goes_through) {
+                if (!((goes_through ? through_size : mirrored_size) > Real(0))) continue;
+                if (!stack_.push(child_of(branch, meeting, s, shares, goes_through, goes_through ? through : mirrored)))
+                    sums_.flag(flag_stack_overflow);
+            }
+        }
+    }
+
+    /// The branch that goes through, or the mirrored one.
+    CISTULA_INLINE Entry child_of(const Entry& parent, const Meeting<Real, Media>& meeting, const Surface<Real>& s,
+                                  const Shares<Real, Weight>& shares, bool goes_through, const Weight& weight) {
+        Entry child;
+        child.depth = parent.depth + 1;
+        child.weight = weight;
+        child.mirrored = !goes_through;
+        if (!goes_through) {
+            spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
+        } else if (shares.bends) {
+            spawn(child.ray, far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit,
+                  meeting.beyond);
+        } else {
+            child.ray = parent.ray;
+            if constexpr (lines_go_on<E>) child.no_light_ahead = parent.no_light_ahead;
+            Absorption<false> later;  // counted from there on
+            line_.pass(child.ray, meeting, later);
+        }
+        return child;
+    }
+
+    const Scene& scene_;
+    const Intersector& intersector_;
+    NextSurface<Real, E, Intersector> line_;
+    const int depth_;
+    Sums& sums_;
+    PixelRays& rays_;
+    Stack& stack_;
+};
+
+}  // namespace cistula

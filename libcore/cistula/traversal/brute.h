@@ -1,0 +1,159 @@
+// The plain loop over all primitives: the oracle, and the fastest way where there are few.
+#pragma once
+
+#include "cistula/shading/shadow.h"
+
+namespace cistula {
+
+/// No question where one kind alone is compiled in.
+template <class E, class Scene>
+CISTULA_INLINE bool is_solid(const Scene& scene, uint32_t primitive) {
+    return E::solids && (!E::triangles || primitive < scene.convex.size);
+}
+
+/// The exact test of one primitive against one ray; trees and Embree only choose which ones to call it on.
+template <class E = Effects<all_effects>, class Real, class Media, class Scene>
+CISTULA_INLINE void closest_primitive(const Scene& scene, uint32_t primitive, const Ray<Real, Media>& ray,
+                                      const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
+    if (is_solid<E>(scene, primitive))
+        closest_convex(scene, scene.convex[primitive], ray, best);
+    else
+        closest_cluster(scene, primitive - scene.convex.size, ray, triangle_ray, best);
+}
+
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_primitive(const Scene& scene, uint32_t primitive, const ShadowRay<Real, Media>& shadow,
+                                     const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
+    if (is_solid<E>(scene, primitive))
+        shadow_convex<Real, E>(scene, scene.convex[primitive], shadow, sum);
+    else
+        shadow_cluster<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, sum);
+}
+
+template <class Real, class MediaKind = MediaList, class SceneKind = SceneView<Real>>
+struct BruteIntersector {
+    using Media = MediaKind;
+    using Scene = SceneKind;
+    const Scene& scene;
+    /// The primitives of a ConstantScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of
+    /// the picture, as long as they go straight on.
+    uint32_t in_view = ~0u;
+
+    /// The least (t, key) after ray.after that the primitive tests accept.
+    template <class E = Effects<all_effects>>
+    CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
+        Hit<Real> best;
+        // Nothing is nearer than that to a ray that is not finite: no question of its own, which would part a warp's
+        // lanes.
+        best.t = is_finite(ray) ? RealTraits<Real>::infinity : Real(-1);
+        find_closest<E>(ray, best);
+        if (!best.found()) best.t = RealTraits<Real>::infinity;
+        return best;
+    }
+
+    /// The share of the light's intensity that reaches the ray's origin.
+    template <class E>
+    CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
+        ShadowSum<E> sum;
+        sum.opaque = is_finite(shadow.ray) ? 0u : 7u;
+        shadow_start<Real, E>(scene, shadow, sum);
+        if constexpr (Media::contacts) {
+            for (uint32_t i = 0; E::solids && i < scene.convex.size && !sum.dark(); ++i)
+                shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
+            for (uint32_t i = 0; E::triangles && i < scene.clusters.size && !sum.dark(); ++i)
+                if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
+        } else {
+            const uint32_t light = uint32_t(shadow.light - scene.lights.data), from = shadow.ray.from_solid;
+            const uint32_t near = from == no_solid ? ~0u : scene.plan.near[from][light];
+            if constexpr (E::solids) add_planned_solids(near, light, shadow, sum);
+            if constexpr (E::triangles) add_planned_clusters(near, shadow, sum);
+        }
+        return sum.template share<Real>(scene);
+    }
+
+  private:
+    template <class E>
+    CISTULA_INLINE void find_closest(const Ray<Real, Media>& ray, Hit<Real>& best) const {
+        if constexpr (E::solids)
+            if (closest_solid<E>(ray, best)) return;
+        if constexpr (!E::triangles) {
+        } else if constexpr (Media::contacts) {
+            for (uint32_t i = 0; i < scene.clusters.size; ++i) closest_in_cluster(i, ray, best);
+        } else {
+            for (uint32_t left = ahead_of(ray) & scene.plan.all_clusters; left != 0; left &= left - 1)
+                closest_in_cluster(lowest_bit(left) - scene.plan.first_cluster, ray, best);
+        }
+    }
+
+    /// The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
+    CISTULA_INLINE void closest_in_cluster(uint32_t i, const Ray<Real, Media>& ray, Hit<Real>& best) const {
+        if (!misses_flat(scene, i, ray, best.t))
+            closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
+    }
+
+    CISTULA_INLINE uint32_t ahead_of(const Ray<Real, Media>& ray) const {
+        return ray.from_solid == no_solid ? in_view : ~0u;
+    }
+
+    /// True if the ray's own way out comes first, since that solid stands alone.
+    template <class E>
+    CISTULA_INLINE bool closest_solid(const Ray<Real, Media>& ray, Hit<Real>& best) const {
+        if constexpr (Media::contacts) {
+            if (closest_enclosed(scene, ray, best)) return true;
+            for (const uint32_t index : scene.convex) closest_convex(scene, index, ray, best);
+        } else {
+            const uint32_t around = E::has(effect_insides) ? ray.media.only() : no_solid;
+            if constexpr (E::has(effect_insides)) {
+                if (around != no_solid) closest_exit(scene, around, ray, best);
+                if (around != no_solid && scene.solids[around].alone) return true;
+            }
+            for (uint32_t left = ahead_of(ray) & scene.plan.all_convex; left != 0; left &= left - 1) {
+                const auto& next = scene.convex[lowest_bit(left)];
+                // All conditions in one, so that their values are waited for but once.
+                if ((next.index != around) & (next.index != ray.from_solid) &
+                    !passes_by(next.ball, ray.origin, ray.direction, best.t))
+                    closest_entry(scene, next.index, next.solid, ray, best);
+            }
+        }
+        return false;
+    }
+
+    template <class E>
+    CISTULA_INLINE void add_planned_clusters(uint32_t near, const ShadowRay<Real, Media>& shadow,
+                                             ShadowSum<E>& sum) const {
+        for (uint32_t left = near & scene.plan.all_clusters; left != 0 && !sum.dark(); left &= left - 1) {
+            const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
+            if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
+        }
+    }
+
+    /// Those among `near`, and the one around the ray.
+    template <class E>
+    CISTULA_INLINE void add_planned_solids(uint32_t near, uint32_t light, const ShadowRay<Real, Media>& shadow,
+                                           ShadowSum<E>& sum) const {
+        const uint32_t around = E::has(effect_insides) ? shadow.ray.media.only() : no_solid,
+                       from = shadow.ray.from_solid;
+        if constexpr (E::has(effect_insides))
+            if (around != no_solid) {
+                // From its own face, as lines from other faces may start a little off theirs.
+                if (!E::has(effect_absorption) && from == around && (scene.plan.beyond[light] >> around & 1u) != 0)
+                    sum.cross(scene.materials[scene.solids[around].material]);
+                else
+                    shadow_exit<Real, E>(scene, around, shadow, sum);
+            }
+        for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.dark(); left &= left - 1) {
+            const auto& next = scene.convex[lowest_bit(left)];
+            if ((next.index != around) & (next.index != from) &
+                !passes_by(next.ball, shadow.ray.origin, shadow.ray.direction, shadow.distance))
+                shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);
+        }
+    }
+
+    template <class E>
+    CISTULA_INLINE void add_cluster(uint32_t i, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) const {
+        shadow_triangles<Real, E>(scene, i, shadow, TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction),
+                                  sum);
+    }
+};
+
+}  // namespace cistula

@@ -1,0 +1,46 @@
+// 128-bit FNV-1a: of films, scenes and cameras.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "cistula/numerics/portable.h"
+
+namespace cistula {
+
+/// Published constants (offset basis 0x6c62272e07bb0142 62b821756295c58d, prime 2^88 + 0x13b). Numbers go in as their
+/// bytes, the lowest first; floating-point numbers as their bits, so -0 is not 0.
+class Fnv128 {
+  public:
+    void add_bytes(const void* data, size_t size) {
+        const auto* bytes = static_cast<const unsigned char*>(data);
+        for (size_t i = 0; i < size; ++i) add_byte(bytes[i]);
+    }
+    template <std::integral T>
+    void add(T value) {
+        const auto bits = static_cast<uint64_t>(value);
+        for (size_t i = 0; i < sizeof(T); ++i) add_byte(static_cast<unsigned char>(bits >> (8 * i)));
+    }
+    void add(float value) { add(bits_as<uint32_t>(value)); }
+    void add(double value) { add(bits_as<uint64_t>(value)); }
+
+    /// 32 lower-case digits.
+    std::string hex() const {
+        std::string text;
+        for (int shift = 124; shift >= 0; shift -= 4)
+            text += "0123456789abcdef"[static_cast<int>(state_ >> shift) & 15];
+        return text;
+    }
+
+  private:
+    __extension__ typedef unsigned __int128 Wide;
+    static constexpr Wide prime = (static_cast<Wide>(1) << 88) + 0x13b;
+
+    void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * prime; }
+
+    Wide state_ = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) + 0x62b821756295c58du;
+};
+
+}  // namespace cistula

@@ -1,0 +1,63 @@
+#include "scene/base/suggest.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace cistula {
+
+size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+    for (size_t j = 0; j <= b.size(); ++j) above[j] = j;
+    for (size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (size_t j = 1; j <= b.size(); ++j) {
+            row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (a[i - 1] != b[j - 1])});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
+        }
+        std::swap(before, above);
+        std::swap(above, row);
+    }
+    return above[b.size()];
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural) {
+    if (known.empty()) return fmt::format("there are no {}", plural);
+    constexpr size_t longest_compared = 64;  // distances take time that grows with the square of the length
+    std::string_view nearest;
+    size_t least = std::max<size_t>(2, name.size() / 3) + 1;
+    if (name.size() <= longest_compared) {
+        for (const std::string_view candidate : known) {
+            if (candidate.size() > longest_compared) continue;
+            const size_t distance = edit_distance(name, candidate);
+            if (distance < least && distance < candidate.size()) {
+                least = distance;
+                nearest = candidate;
+            }
+        }
+    }
+    if (!nearest.empty()) return fmt::format("did you mean '{}'?", one_line(nearest));
+    constexpr size_t most_listed = 16;
+    std::string list;
+    for (size_t i = 0; i < known.size() && i < most_listed; ++i) list += (i ? ", " : "") + one_line(known[i]);
+    return fmt::format("known {}: {}{}", plural, list, known.size() > most_listed ? ", ..." : "");
+}
+
+std::string one_line(std::string_view text) {
+    std::string line;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '\n')
+            line += "\\n";
+        else if (c == '\t')
+            line += "\\t";
+        else if (code < 0x20 || code == 0x7f)
+            line += fmt::format("\\x{:02x}", code);
+        else
+            line += c;
+    }
+    return line;
+}
+
+}  // namespace cistula

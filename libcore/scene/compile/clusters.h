@@ -1,0 +1,21 @@
+// Triangles to clusters of up to eight neighbors. Inside libcore/scene.
+#pragma once
+
+#include "cistula/model/scene_view.h"
+#include "scene/compile/mesh_apex.h"
+#include "scene/compile/mesh_topology.h"
+#include "scene/trees/tree_build.h"
+
+namespace cistula {
+
+Groups group_triangles(const FramedMesh& mesh);
+
+/// A tree over groups' boxes, for queries while compiling; its items are numbers of groups.
+Tree group_tree(const FramedMesh& mesh, const Groups& groups);
+
+/// Appends one cluster per group. Unused lanes hold a corner of lane 0 three times.
+template <class Real>
+void append_clusters(const FramedMesh& mesh, const Groups& groups, const ApexHeights& heights, uint32_t solid,
+                     uint32_t first_triangle, std::vector<Cluster<Real>>& clusters);
+
+}  // namespace cistula

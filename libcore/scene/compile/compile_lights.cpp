@@ -1,0 +1,154 @@
+#include "scene/compile/compile_lights.h"
+
+#include <algorithm>
+
+#include "cistula/numerics/vec.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+template <class Real>
+dvec3 rounded(const dvec3& v) {
+    return dvec3(Vec3<Real>(v));
+}
+
+void add_edge_lights(std::vector<FramedLight>& lights, const SolidObject& object, const std::string& place,
+                     const ConvexSolid& solid, int convex, const Frame& frame) {
+    const EdgeLights& on_edges = object.edge_lights;
+    for (const auto& edge : platonic_shape(object.solid).edges) {
+        const dvec3 &a = solid.vertices[edge.vertices[0]], &b = solid.vertices[edge.vertices[1]];
+        for (int i = 0; i < on_edges.count; ++i) {
+            const double s = (i + 1.0) / (on_edges.count + 1.0);
+            lights.push_back({a + s * (b - a), on_edges.color, on_edges.glow.value_or(on_edges.color),
+                              on_edges.radius * frame.factor, on_edges.falloff, place, convex, edge.faces});
+        }
+    }
+}
+
+template <class Real>
+bool within(const ConvexSolid& solid, const dvec3& p, double tolerance) {
+    return std::all_of(solid.planes.begin(), solid.planes.end(), [&](const PlanePair& planes) {
+        const double n = dot(rounded<Real>(planes.normal), p);
+        return n >= static_cast<Real>(planes.low) - tolerance && n <= static_cast<Real>(planes.high) + tolerance;
+    });
+}
+
+bool near_triangle(const std::array<dvec3, 3>& corner, const dvec3& p, double tolerance) {
+    const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double size = length(normal);
+    if (!(size > 0) || magnitude(dot(normal, p - corner[0])) > tolerance * size) return false;
+    for (int e = 0; e < 3; ++e) {
+        const dvec3 edge = corner[(e + 1) % 3] - corner[e];
+        if (dot(cross(edge, p - corner[e]), normal) < -tolerance * length(edge) * size) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::vector<FramedLight> frame_lights(const SceneSource& source, const Frame& frame,
+                                      const std::vector<ConvexSolid>& convex) {
+    std::vector<FramedLight> lights;
+    for (const LightDescription& light : source.description->lights)
+        lights.push_back({frame.point(light.position), light.color, light.glow.value_or(light.color),
+                          light.radius * frame.factor, light.falloff, light.place});
+    for (size_t i = 0; i < convex.size(); ++i) {
+        const SourceSolid& solid = source.solids[convex[i].solid];
+        add_edge_lights(lights, *solid.platonic, solid.place, convex[i], static_cast<int>(i), frame);
+    }
+    // I / r^2 in scene units is I 4^scale over the square of the frame's distance.
+    for (FramedLight& light : lights)
+        if (light.falloff) light.color *= frame.factor * frame.factor;
+    return lights;
+}
+
+template <class Real>
+void find_convex_incidents(const std::vector<FramedLight>& lights, const std::vector<ConvexSolid>& convex,
+                           double extent, IncidentLists& incidents) {
+    const double tolerance = static_cast<double>(incidence<Real>) * extent;
+    const double reach = 4 * tolerance;  // beyond a solid's box by more than this, nothing can be incident
+    for (size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].lights()) continue;
+        const dvec3 p = rounded<Real>(lights[i].position);
+        for (size_t k = 0; k < convex.size(); ++k) {
+            const ConvexSolid& solid = convex[k];
+            const bool own = lights[i].convex == static_cast<int>(k);
+            if (!own &&
+                (p.x < solid.box.low.x - reach || p.x > solid.box.high.x + reach || p.y < solid.box.low.y - reach ||
+                 p.y > solid.box.high.y + reach || p.z < solid.box.low.z - reach || p.z > solid.box.high.z + reach))
+                continue;
+            const bool inside = within<Real>(solid, p, tolerance);
+            for (uint32_t slab = 0; slab < solid.planes.size(); ++slab) {
+                const PlanePair& planes = solid.planes[slab];
+                const double n = dot(rounded<Real>(planes.normal), p);
+                for (uint32_t side = 0; side < 2; ++side) {
+                    const uint32_t face = 2 * slab + side;
+                    const double h = static_cast<Real>(side ? planes.high : planes.low);
+                    const bool by_place = inside && magnitude(n - h) <= tolerance;
+                    const bool by_edge = own && (planes.face(lights[i].edge_faces[0]) == face ||
+                                                 planes.face(lights[i].edge_faces[1]) == face);
+                    if (by_place || by_edge) incidents[i].push_back({solid.solid, face});
+                }
+            }
+        }
+    }
+}
+
+template <class Real>
+void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, const Groups& groups,
+                             const Tree& tree, uint32_t solid, uint32_t first_triangle, double extent,
+                             IncidentLists& incidents) {
+    const double tolerance = static_cast<double>(incidence<Real>) * extent;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].lights()) continue;
+        const dvec3 p = rounded<Real>(lights[i].position);
+        const size_t first = incidents[i].size();
+        Box around;
+        around.add(p - dvec3{8 * tolerance});
+        around.add(p + dvec3{8 * tolerance});
+        for_each_in_box(tree, around, [&](uint32_t group) {
+            for (uint32_t k = groups.first[group]; k < groups.first[group + 1]; ++k)
+                if (near_triangle(mesh.triangle(groups.order[k]), p, tolerance))
+                    incidents[i].push_back({solid, first_triangle + groups.order[k]});
+        });
+        std::sort(incidents[i].begin() + static_cast<ptrdiff_t>(first), incidents[i].end(),
+                  [](const Incident& a, const Incident& b) { return a.face < b.face; });
+    }
+}
+
+template <class Real>
+void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid,
+                             double extent, IncidentLists& incidents) {
+    const double tolerance = static_cast<double>(incidence<Real>) * extent;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].lights()) continue;
+        const dvec3 p = rounded<Real>(lights[i].position);
+        for (uint32_t triangle = 0; triangle < mesh.size(); ++triangle)
+            if (near_triangle(mesh.triangle(triangle), p, tolerance)) incidents[i].push_back({solid, triangle});
+    }
+}
+
+std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights,
+                         const IncidentLists& incidents) {
+    for (size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].lights() || incidents[i].empty()) continue;
+        if (lights[i].convex >= 0) return "the lights on the edges of " + lights[i].place + " lie on its faces";
+        return "the light " + lights[i].place + " lies on a face of " + source.solids[incidents[i][0].solid].place;
+    }
+    return "";
+}
+
+#define CISTULA_INSTANTIATE(Real)                                                                                     \
+    template void find_convex_incidents<Real>(const std::vector<FramedLight>&, const std::vector<ConvexSolid>&,       \
+                                              double, IncidentLists&);                                                \
+    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, const Groups&,    \
+                                                const Tree&, uint32_t, uint32_t, double, IncidentLists&);             \
+    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, uint32_t, double, \
+                                                IncidentLists&);
+CISTULA_INSTANTIATE(float)
+CISTULA_INSTANTIATE(double)
+#undef CISTULA_INSTANTIATE
+
+}  // namespace cistula

@@ -1,0 +1,130 @@
+#include "scene/compile/compile_materials.h"
+
+#include <cmath>
+
+#include "cistula/numerics/transmittance.h"
+#include "scene/image/picture_io.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+constexpr double largest_absorption = 0x1p20;  // sigma M (NUMERICS, 6)
+constexpr double largest_integer_exponent = 1024;
+
+/// 1 - kr - kt of the rounded shares, rounded down: the three never add up to more than 1.
+template <class Real>
+Real local_rounded_down(Real reflection, Real transmission) {
+    const auto exact = static_cast<__float128>(1) - reflection - transmission;
+    if (!(exact > 0)) return 0;
+    const auto rounded = static_cast<Real>(exact);
+    return rounded > exact ? std::nextafter(rounded, Real(0)) : rounded;
+}
+
+ColorPicture checker_picture(const TextureDescription& texture) {
+    ColorPicture picture;
+    picture.width = picture.height = 2;
+    const glm::vec3 a(texture.checker[0]), b(texture.checker[1]);
+    picture.texels = {a, b, b, a};
+    return picture;
+}
+
+void append_texture(TextureSet& set, const TextureDescription& description, const SceneDescription& scene,
+                    size_t number) {
+    const std::string place = "/textures/" + std::to_string(number);
+    const bool checker = description.file.empty();
+    const ColorPicture picture = checker ? checker_picture(description) : read_texture(description.file);
+    if (picture.width == 0 || picture.height == 0) throw scene_error(scene, place, "the picture is empty");
+    if (!is_finite(description.repeat.x) || !is_finite(description.repeat.y))
+        throw scene_error(scene, place, "the repeat must be finite");
+    dvec3 largest{0};
+    for (const glm::vec3& texel : picture.texels) {
+        for (int c = 0; c < 3; ++c) {
+            if (!is_finite(texel[c]) || texel[c] < 0)
+                throw scene_error(scene, place, "a texel is negative or not finite");
+            largest[c] = greatest(largest[c], static_cast<double>(texel[c]));
+        }
+    }
+    Texture texture;
+    texture.width = picture.width;
+    texture.height = picture.height;
+    texture.first_texel = static_cast<uint32_t>(set.texels.size());
+    texture.filter = checker || !description.bilinear ? TextureFilter::nearest : TextureFilter::bilinear;
+    texture.repeat[0] = description.repeat.x;
+    texture.repeat[1] = description.repeat.y;
+    set.number[number] = static_cast<int>(set.textures.size());
+    set.textures.push_back(texture);
+    set.largest.push_back(largest);
+    set.texels.insert(set.texels.end(), picture.texels.begin(), picture.texels.end());
+}
+
+}  // namespace
+
+double local_share(const MaterialDescription& material) {
+    const double share = 1 - material.reflection - material.transmission;
+    return share > 1e-12 ? share : 0;
+}
+
+TextureSet read_textures(const SceneSource& source) {
+    const SceneDescription& scene = *source.description;
+    TextureSet set;
+    set.number.assign(scene.textures.size(), -1);
+    for (const SourceSolid& solid : source.solids) {
+        const int texture = source.materials[solid.material].texture;
+        if (texture < 0 || set.number[static_cast<size_t>(texture)] >= 0) continue;
+        append_texture(set, scene.textures[static_cast<size_t>(texture)], scene, static_cast<size_t>(texture));
+    }
+    return set;
+}
+
+template <class Real>
+Material<Real> compile_material(const MaterialDescription& material, const dvec3& ambient, int texture,
+                                const Frame& frame, const SceneDescription& scene) {
+    Material<Real> m;
+    m.color = Vec3<Real>(material.color);
+    m.ambient = Vec3<Real>(material.ambient * ambient);
+    m.specular = Vec3<Real>(material.specular * material.specular_color);
+    m.diffuse = static_cast<Real>(material.diffuse);
+    m.exponent = static_cast<Real>(material.exponent);
+    const bool integer =
+        material.exponent <= largest_integer_exponent && material.exponent == floor_of(material.exponent);
+    m.integer_exponent = integer ? static_cast<int32_t>(material.exponent) : -1;
+    // What a scene may exceed 1 by must not grow from bounce to bounce.
+    const double whole = greatest(material.reflection + material.transmission, 1.0);
+    const double transmission = material.transmission / whole;
+    m.reflection = static_cast<Real>(material.reflection / whole);
+    m.transmission = static_cast<Real>(transmission);
+    m.local = local_share(material) > 0 ? local_rounded_down(m.reflection, m.transmission) : 0;
+    m.filter = Vec3<Real>(transmission * material.tint);
+    m.tint = Vec3<Real>(material.tint);
+    const dvec3 absorption = material.absorption / frame.factor;
+    if (largest_component(absorption) * frame.extent > largest_absorption)
+        throw scene_error(scene, "",
+                          "material " + material.name + " has an absorption above 2^20 per largest coordinate; " +
+                              "such a solid is opaque: give it transmission 0");
+    m.absorption = Vec3<Real>(absorption);
+    m.index = material.index;
+    m.opaque = 0;
+    for (int c = 0; c < 3; ++c) {
+        const double share = transmission * material.tint[c];
+        const bool opaque = !(m.filter[c] > 0);
+        m.opaque |= static_cast<uint32_t>(opaque) << c;
+        m.filter_loss[c] = opaque ? 0 : loss_of(share);
+    }
+    m.texture = texture;
+    m.fresnel = material.fresnel ? 1 : 0;
+    m.clear = material.reflection == 0 && material.transmission == 1 && material.tint == dvec3{1} ? 1 : 0;
+    if (!is_finite(m.color) || !is_finite(m.ambient) || !is_finite(m.specular) || !is_finite(m.diffuse) ||
+        !is_finite(m.exponent))
+        throw scene_error(scene, "",
+                          "material " + material.name + " has a value beyond the range of " + RealTraits<Real>::name);
+    return m;
+}
+
+template Material<float> compile_material(const MaterialDescription&, const dvec3&, int, const Frame&,
+                                          const SceneDescription&);
+template Material<double> compile_material(const MaterialDescription&, const dvec3&, int, const Frame&,
+                                           const SceneDescription&);
+
+}  // namespace cistula

@@ -1,0 +1,382 @@
+#include <algorithm>
+#include <cmath>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include "cistula/geometry/ray.h"
+#include "cistula/lights/light_tree.h"
+#include "scene/base/error.h"
+#include "scene/compile/clusters.h"
+#include "scene/compile/compile_lights.h"
+#include "scene/compile/compile_materials.h"
+#include "scene/compile/compile_solids.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/edge_light_reach.h"
+#include "scene/compile/radiance_bound.h"
+#include "scene/compile/required_effects.h"
+#include "scene/compile/scene_hash.h"
+#include "scene/trees/light_tree.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+template <class Real>
+Real rounded_up(double x) {
+    const auto r = static_cast<Real>(x);
+    return r < x ? std::nextafter(r, RealTraits<Real>::infinity) : r;
+}
+
+/// The builder leaves freed blocks with the allocator, which would keep them while the largest arrays are filled.
+void return_free_memory() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
+constexpr size_t most_pairs = 10'000'000;
+constexpr uint32_t most_outlined = 16;  // triangles: of larger meshes the box is outlined
+constexpr double touching = 0x1p-17;    // far above the reach of a meeting
+
+/// One compilation: the parts in the order in which they need one another.
+template <class Real>
+class Compiler {
+  public:
+    explicit Compiler(const SceneDescription& description)
+        : description_(description), source_(gather_scene(description)), frame_(find_frame(source_)) {}
+
+    std::unique_ptr<CompiledScene<Real>> compile() {
+        if (source_.solids.size() >= no_solid)
+            throw scene_error(
+                description_, "/objects",
+                std::to_string(source_.solids.size()) + " solids: at most " + std::to_string(no_solid - 1));
+        scene_.center = frame_.center;
+        scene_.scale = frame_.scale;
+        scene_.extent = rounded_up<Real>(frame_.extent);
+        scene_.solids.resize(source_.solids.size());
+        scene_.hulls.resize(source_.solids.size());
+        boxes_.resize(source_.solids.size());
+        closed_.assign(source_.solids.size(), true);
+        hash_.add(frame_.center);
+        hash_.add(static_cast<uint32_t>(frame_.scale));
+
+        compile_convex();
+        lights_ = frame_lights(source_, frame_, convex_);
+        incidents_.resize(lights_.size());
+        find_convex_incidents<Real>(lights_, convex_, frame_.extent, incidents_);
+        for (uint32_t i = 0; i < source_.solids.size(); ++i) {
+            scene_.solid_names.push_back(source_.solids[i].name);
+            scene_.solids[i].material = source_.solids[i].material;
+            if (!source_.solids[i].platonic) compile_mesh(i);
+        }
+        compile_shading();
+        compile_lights();
+        add_hulls();
+        find_touched();
+        find_solids_alone();
+        explain();
+        scene_.hash = hash_.hex();
+        return std::make_unique<CompiledScene<Real>>(std::move(scene_));
+    }
+
+  private:
+    void compile_convex() {
+        for (uint32_t i = 0; i < source_.solids.size(); ++i)
+            if (source_.solids[i].platonic) convex_.push_back(convex_solid(*source_.solids[i].platonic, i, frame_));
+        share_planes(convex_, frame_.extent);
+        for (const ConvexSolid& convex : convex_) {
+            Solid& solid = scene_.solids[convex.solid];
+            solid = {};
+            solid.kind = SolidKind::convex;
+            solid.first_slab = static_cast<uint32_t>(scene_.slabs.size());
+            solid.slab_count = static_cast<uint32_t>(convex.planes.size());
+            for (const PlanePair& p : convex.planes) {
+                scene_.slabs.push_back({Vec3<Real>(p.normal), static_cast<Real>(p.low), static_cast<Real>(p.high)});
+                hash_.add(p.normal);
+                hash_.add(p.low);
+                hash_.add(p.high);
+            }
+            group_slabs(solid);
+            bound_sphere(convex, solid);
+            hash_.add(convex.solid);
+            scene_.convex.push_back(convex.solid);
+            boxes_[convex.solid] = convex.box;
+        }
+    }
+
+    /// Solids with an inside that may share a face with another one (meeting.h).
+    void find_touched() {
+        std::vector<uint32_t> order;
+        for (uint32_t i = 0; i < scene_.solids.size(); ++i)
+            if (scene_.solids[i].kind != SolidKind::sheet && !boxes_[i].empty()) order.push_back(i);
+        std::sort(order.begin(), order.end(),
+                  [&](uint32_t a, uint32_t b) { return boxes_[a].low.x < boxes_[b].low.x; });
+        const auto near = [&](const Box& a, const Box& b, int axis) {
+            return a.low[axis] <= b.high[axis] + touching && b.low[axis] <= a.high[axis] + touching;
+        };
+        for (size_t i = 0; i < order.size(); ++i)
+            for (size_t j = i + 1; j < order.size() && near(boxes_[order[i]], boxes_[order[j]], 0); ++j) {
+                if (near(boxes_[order[i]], boxes_[order[j]], 1) && near(boxes_[order[i]], boxes_[order[j]], 2))
+                    scene_.solids[order[i]].touched = scene_.solids[order[j]].touched = 1;
+            }
+    }
+
+    /// Only spares work, so that scenes of very many pairs may do without.
+    void find_solids_alone() {
+        const SceneView<Real> view = scene_.view();
+        const size_t primitives = view.convex.size + view.clusters.size;
+        if (view.convex.empty() || view.convex.size * primitives > most_pairs) return;
+        std::vector<PaddedBox> boxes;
+        for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
+        for (uint32_t a = 0; a < view.convex.size; ++a) {
+            bool alone = true;
+            for (uint32_t b = 0; b < primitives && alone; ++b) {
+                bool apart = a == b;
+                for (int k = 0; k < 3; ++k)
+                    apart |= boxes[a].high[k] < boxes[b].low[k] || boxes[b].high[k] < boxes[a].low[k];
+                alone = apart;
+            }
+            scene_.solids[view.convex[a]].alone = alone ? 1 : 0;
+        }
+    }
+
+    void group_slabs(Solid& solid) {
+        solid.first_group = static_cast<uint32_t>(scene_.slab_groups.size());
+        for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
+            SlabGroup<Real> group{};
+            for (uint32_t i = 0; i < slab_lanes; ++i) {
+                const bool used = first + i < solid.slab_count;
+                const Slab<Real> slab = used ? scene_.slabs[solid.first_slab + first + i] : Slab<Real>{};
+                group.nx[i] = slab.normal.x, group.ny[i] = slab.normal.y, group.nz[i] = slab.normal.z;
+                group.low[i] = used ? slab.low : -RealTraits<Real>::infinity;
+                group.high[i] = used ? slab.high : RealTraits<Real>::infinity;
+            }
+            scene_.slab_groups.push_back(group);
+        }
+    }
+
+    static void bound_sphere(const ConvexSolid& convex, Solid& solid) {
+        dvec3 sum(0);
+        for (const dvec3& p : convex.vertices) sum += p;
+        solid.center = Vec3<float>(sum / double(convex.vertices.size()));
+        double square = 0;
+        for (const dvec3& p : convex.vertices) {
+            const dvec3 out = p - dvec3(solid.center);
+            square = greatest(square, dot(out, out));
+        }
+        solid.padded_square = rounded_up<float>(square) + sphere_padding;
+    }
+
+    void compile_mesh(uint32_t number) {
+        SourceSolid& from = source_.solids[number];
+        hash_mesh(number);
+        MeshTopology topology = find_topology(from.mesh);
+        warn(from, topology);
+        const FramedMesh mesh(from.mesh, topology, frame_, sizeof(Real) == sizeof(float));
+        ApexHeights heights = apex_heights(mesh);
+        topology.next_along_edge = {};
+        const Groups groups = group_triangles(mesh);
+        prepare(number, mesh, groups, heights);
+        return_free_memory();
+
+        Solid& solid = scene_.solids[number];
+        solid.kind = topology.closed ? SolidKind::mesh : SolidKind::sheet;
+        closed_[number] = topology.closed;
+        solid.first_slab = solid.slab_count = 0;
+        solid.flat = !topology.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * frame_.extent, solid) ? 1 : 0;
+        solid.first_triangle = triangle_count_;
+        solid.first_uv = static_cast<uint32_t>(scene_.uvs.size());
+        append_clusters(mesh, groups, heights, number, triangle_count_, scene_.clusters);
+        const bool textured = source_.materials[from.material].texture >= 0;
+        for (uint32_t t = 0; t < mesh.size(); ++t)
+            for (const uint32_t corner : mesh.corners(t)) {
+                boxes_[number].add(mesh.vertex(corner));
+                if (mesh.size() <= most_outlined) scene_.hulls[number].points.push_back(mesh.vertex(corner));
+                if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
+            }
+        triangle_count_ += mesh.size();
+        from.mesh = {};  // its triangles are in the clusters now
+    }
+
+    /// Whether all corners lie within `tolerance` of the plane of the largest triangle, which the solid then gets.
+    static bool is_flat(const FramedMesh& mesh, double tolerance, Solid& solid) {
+        dvec3 normal(0), on(0);
+        for (uint32_t t = 0; t < mesh.size(); ++t) {
+            const auto corners = mesh.corners(t);
+            const dvec3 a = mesh.vertex(corners[0]);
+            const dvec3 n = cross(mesh.vertex(corners[1]) - a, mesh.vertex(corners[2]) - a);
+            if (dot(n, n) > dot(normal, normal)) normal = n, on = a;
+        }
+        if (!(dot(normal, normal) > 0)) return false;
+        normal = normalized(normal);
+        for (uint32_t t = 0; t < mesh.size(); ++t)
+            for (const uint32_t corner : mesh.corners(t))
+                if (magnitude(dot(normal, mesh.vertex(corner) - on)) > tolerance) return false;
+        solid.plane_normal = Vec3<float>(normal);
+        solid.plane_offset = float(dot(normal, on));
+        return true;
+    }
+
+    /// What needs the tree over groups, which is gone before the clusters come.
+    void prepare(uint32_t number, const FramedMesh& mesh, const Groups& groups, ApexHeights& heights) {
+        const Tree tree = group_tree(mesh, groups);
+        const SourceSolid& from = source_.solids[number];
+        const uint32_t crossed = check_apexes(mesh, groups, tree, heights);
+        if (crossed > 0 && mesh.topology().closed)
+            scene_.warnings.push_back(from.place + ": " + from.name + ": the mesh passes through itself at " +
+                                      std::to_string(crossed) + " sides of triangles; rays may leak there");
+        find_triangle_incidents<Real>(lights_, mesh, groups, tree, number, triangle_count_, frame_.extent, incidents_);
+    }
+
+    void hash_mesh(uint32_t number) {
+        const MeshSource& mesh = source_.solids[number].mesh;
+        hash_.add(number);
+        for (const dvec3& p : mesh.vertices) hash_.add(frame_.point(p));
+        hash_.add_bytes(mesh.triangles.data(), mesh.triangles.size_bytes());
+        if (source_.materials[source_.solids[number].material].texture < 0) return;
+        for (const auto& uv : mesh.uvs) hash_.add(uv.x), hash_.add(uv.y);
+    }
+
+    void warn(const SourceSolid& solid, const MeshTopology& topology) {
+        const std::string place = solid.place + ": " + solid.name + ": ";
+        if (const std::string left_out = topology.left_out(); !left_out.empty())
+            scene_.warnings.push_back(place + left_out);
+        const double index = source_.materials[solid.material].index;
+        const dvec3 absorption = source_.materials[solid.material].absorption;
+        if (!topology.closed && (index != 1 || largest_component(absorption) > 0))
+            scene_.warnings.push_back(place + "is not closed (" + std::to_string(topology.open_edges) +
+                                      " open edges): its index and absorption have no effect");
+    }
+
+    void compile_shading() {
+        TextureSet textures = read_textures(source_);
+        scale_ = radiance_scale(description_, radiance_bound(source_, textures, lights_, boxes_),
+                                sizeof(Real) == sizeof(float));
+        scene_.radiance_exponent = scale_.exponent;
+        for (int c = 0; c < 3; ++c) scene_.bound[c] = rounded_up<Real>(scale_.bound[c]);
+        scene_.background = Vec3<Real>(scaled(description_.background));
+        for (const MaterialDescription& material : source_.materials) {
+            const int texture = material.texture < 0 ? -1 : textures.number[static_cast<size_t>(material.texture)];
+            scene_.materials.push_back(
+                compile_material<Real>(material, scaled(description_.ambient), texture, frame_, description_));
+        }
+        for (const SourceSolid& solid : source_.solids) {
+            const MaterialDescription& material = source_.materials[solid.material];
+            hash_.add(material);
+            hash_.add(static_cast<uint32_t>(scene_.materials[solid.material].texture));
+        }
+        for (const Texture& t : textures.textures) {
+            hash_.add(t.width);
+            hash_.add(t.height);
+            hash_.add(static_cast<uint32_t>(t.filter));
+            hash_.add(t.repeat[0]);
+            hash_.add(t.repeat[1]);
+        }
+        hash_.add_bytes(textures.texels.data(), textures.texels.size() * sizeof(textures.texels[0]));
+        hash_.add(description_.ambient);
+        hash_.add(description_.background);
+        hash_.add(scale_.bound);
+        hash_.add(static_cast<uint32_t>(scale_.exponent));
+        scene_.textures = std::move(textures.textures);
+        scene_.texels = std::move(textures.texels);
+    }
+
+    void compile_lights() {
+        std::vector<uint32_t> owners;  // of seen lights
+        for (size_t i = 0; i < lights_.size(); ++i) {
+            const FramedLight& light = lights_[i];
+            hash_.add(light.position);
+            hash_.add(light.color);
+            hash_.add(light.radiance);
+            hash_.add(light.radius);
+            hash_.add(static_cast<uint32_t>(light.falloff));
+            const Vec3<Real> position(light.position), intensity(scaled(light.color));
+            if (!is_finite(position) || !is_finite(intensity))
+                throw scene_error(description_, light.place,
+                                  std::string("the light is beyond the range of ") + RealTraits<Real>::name);
+            if (light.radius > 0) {
+                const Vec3<Real> radiance(scaled(light.radiance));
+                scene_.seen_lights.push_back({position, static_cast<Real>(light.radius), radiance});
+                owners.push_back(light.convex < 0 ? no_solid : convex_[static_cast<size_t>(light.convex)].solid);
+            }
+            if (!light.lights()) continue;
+            auto& faces = incidents_[i];
+            std::sort(faces.begin(), faces.end(), [](const Incident& a, const Incident& b) {
+                return a.solid != b.solid ? a.solid < b.solid : a.face < b.face;
+            });
+            const auto first = static_cast<uint32_t>(scene_.incidents.size());
+            scene_.lights.push_back({position, intensity, static_cast<Real>(light.falloff ? light.radius : 0.0), first,
+                                     static_cast<uint32_t>(faces.size())});
+            scene_.incidents.insert(scene_.incidents.end(), faces.begin(), faces.end());
+        }
+        if (scene_.seen_lights.size() < fewest_in_light_tree) return;
+        std::vector<RTCBuildPrimitive> primitives;
+        for (const auto& light : scene_.seen_lights) {
+            const dvec3 center(light.center), radius{light.radius};
+            Box box{center - radius, center + radius};
+            primitives.push_back(padded_primitive(box, 0x1p-18 * static_cast<double>(scene_.extent),
+                                                  static_cast<uint32_t>(primitives.size())));
+        }
+        scene_.seen_tree = light_tree(build_tree(primitives, 1));
+        reach_edge_lights(scene_, owners);
+    }
+
+    /// Of every solid, with the seen lights on its edges, and of every other seen light.
+    void add_hulls() {
+        for (const ConvexSolid& convex : convex_) scene_.hulls[convex.solid].points = convex.vertices;
+        for (uint32_t i = 0; i < source_.solids.size(); ++i)
+            if (scene_.hulls[i].points.empty() && !boxes_[i].empty())
+                for (const dvec3& corner : boxes_[i].corners()) scene_.hulls[i].points.push_back(corner);
+        for (const FramedLight& light : lights_) {
+            if (!(light.radius > 0)) continue;
+            if (light.convex < 0) {
+                scene_.hulls.push_back({{light.position}, light.radius});
+            } else {
+                Hull& hull = scene_.hulls[convex_[static_cast<size_t>(light.convex)].solid];
+                hull.reach = greatest(hull.reach, light.radius);
+            }
+        }
+    }
+
+    void explain() {
+        std::vector<MaterialUse> uses;
+        for (size_t i = 0; i < source_.solids.size(); ++i)
+            uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place, closed_[i],
+                            source_.solids[i].platonic != nullptr});
+        scene_.effect_reasons = explain_effects(description_, uses, lamp_on_face(source_, lights_, incidents_));
+        scene_.effects = required_effects(scene_.effect_reasons);
+    }
+
+    dvec3 scaled(const dvec3& radiance) const {
+        return {std::ldexp(radiance.x, -scale_.exponent), std::ldexp(radiance.y, -scale_.exponent),
+                std::ldexp(radiance.z, -scale_.exponent)};
+    }
+
+    const SceneDescription& description_;
+    SceneSource source_;
+    Frame frame_;
+    CompiledScene<Real> scene_;
+    std::vector<ConvexSolid> convex_;
+    std::vector<FramedLight> lights_;
+    IncidentLists incidents_;
+    std::vector<Box> boxes_;    // of each solid
+    std::vector<bool> closed_;  // each solid has an inside
+    uint32_t triangle_count_ = 0;
+    RadianceScale scale_;
+    SceneHash hash_;
+};
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description) {
+    return Compiler<Real>(description).compile();
+}
+
+template std::unique_ptr<CompiledScene<float>> compile_scene(const SceneDescription&);
+template std::unique_ptr<CompiledScene<double>> compile_scene(const SceneDescription&);
+
+}  // namespace cistula

@@ -1,0 +1,103 @@
+#include "scene/compile/compile_solids.h"
+
+#include <algorithm>
+
+#include "cistula/numerics/vec.h"
+#include "scene/description/rotation.h"
+
+namespace cistula {
+namespace {
+
+constexpr double coplanar = 1e-12;
+
+bool close(const glm::dvec3& a, const glm::dvec3& b) {
+    return magnitude(a.x - b.x) <= coplanar && magnitude(a.y - b.y) <= coplanar && magnitude(a.z - b.z) <= coplanar;
+}
+
+/// Gives parallel pairs one normal. Returns, for each direction, its pairs.
+std::vector<std::vector<PlanePair*>> share_normals(std::vector<PlanePair*>& pairs) {
+    // By |n.x|, so that opposite normals meet; only representatives in a window of that are compared.
+    std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair* a, const PlanePair* b) {
+        return magnitude(a->normal.x) < magnitude(b->normal.x);
+    });
+    std::vector<std::vector<PlanePair*>> directions;
+    size_t window = 0;
+    for (PlanePair* pair : pairs) {
+        const double x = magnitude(pair->normal.x);
+        while (window < directions.size() && magnitude(directions[window][0]->normal.x) < x - 2 * coplanar) ++window;
+        bool found = false;
+        for (size_t d = window; d < directions.size() && !found; ++d) {
+            const glm::dvec3 normal = directions[d][0]->normal;
+            const bool same = close(normal, pair->normal), opposite = close(normal, -pair->normal);
+            if (!same && !opposite) continue;
+            found = true;
+            if (same) {
+                pair->normal = normal;
+            } else if (pair->low == -INFINITY) {
+                pair->normal = -normal;
+            } else {
+                pair->normal = normal;
+                const double low = pair->low;
+                pair->low = -pair->high;
+                pair->high = -low;
+                pair->turned = !pair->turned;
+            }
+            directions[d].push_back(pair);
+        }
+        if (!found) directions.push_back({pair});
+    }
+    return directions;
+}
+
+/// An offset of a plane along a direction; `negated` where its pair's normal is the direction's negative.
+struct Offset {
+    double value;
+    double* stored;
+    bool negated;
+};
+
+void share_offsets(const std::vector<PlanePair*>& pairs, double tolerance) {
+    std::vector<Offset> offsets;
+    for (PlanePair* pair : pairs) {
+        const bool negated = pair->normal != pairs[0]->normal;
+        for (double* stored : {&pair->low, &pair->high})
+            if (*stored != -INFINITY) offsets.push_back({negated ? -*stored : *stored, stored, negated});
+    }
+    std::stable_sort(offsets.begin(), offsets.end(),
+                     [](const Offset& a, const Offset& b) { return a.value < b.value; });
+    double shared = -INFINITY;
+    for (const Offset& offset : offsets) {
+        if (offset.value - shared > tolerance) shared = offset.value;
+        *offset.stored = offset.negated ? -shared : shared;
+    }
+}
+
+}  // namespace
+
+ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Frame& frame) {
+    const PlatonicShape& shape = platonic_shape(object.solid);
+    const Rotation rotation(object.rotation);
+    const glm::dvec3 center = frame.point(object.center);
+    const double radius = object.radius * frame.factor;
+    ConvexSolid solid;
+    solid.solid = number;
+    for (const glm::dvec3& p : shape.vertices) {
+        solid.vertices.push_back(center + rotation(radius * p));
+        solid.box.add(solid.vertices.back());
+    }
+    for (const auto& planes : shape.planes) {
+        const glm::dvec3 normal = rotation(planes.normal);
+        const double middle = dot(normal, center), half = radius * shape.inradius;
+        solid.planes.push_back({normal, planes.single ? -INFINITY : middle - half, middle + half, false});
+    }
+    return solid;
+}
+
+void share_planes(std::vector<ConvexSolid>& solids, double extent) {
+    std::vector<PlanePair*> pairs;
+    for (ConvexSolid& solid : solids)
+        for (PlanePair& pair : solid.planes) pairs.push_back(&pair);
+    for (const auto& direction : share_normals(pairs)) share_offsets(direction, coplanar * extent);
+}
+
+}  // namespace cistula

@@ -1,0 +1,182 @@
+#include "scene/compile/compiled_scene.h"
+
+#include "scene/trees/tree_build.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+template <class T>
+Span<T> span_of(const std::vector<T>& v) {
+    return {v.data(), static_cast<uint32_t>(v.size())};
+}
+template <class T>
+size_t bytes_of(const std::vector<T>& v) {
+    return v.size() * sizeof(T);
+}
+
+struct Plane {
+    dvec3 normal;
+    double distance;
+};
+
+// Rounding of a corner's distance from its planes is far below this, and planes that nearly meet the corner only grow
+// the box by as much.
+constexpr double corner_slack = 0x1p-30;
+
+/// The box of the corners of a convex solid whose planes are pushed out by 64 u M, u that of float.
+template <class Real>
+Box convex_box(const SceneView<Real>& scene, const Solid& solid) {
+    const double extent = static_cast<double>(scene.extent), push = 64 * 0x1p-24 * extent;
+    std::vector<Plane> planes;
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
+        const dvec3 normal(slab.normal);
+        planes.push_back({normal, static_cast<double>(slab.high) + push});
+        if (slab.low > -RealTraits<Real>::infinity) planes.push_back({-normal, push - static_cast<double>(slab.low)});
+    }
+    Box box;
+    for (size_t i = 0; i < planes.size(); ++i) {
+        for (size_t j = i + 1; j < planes.size(); ++j) {
+            const dvec3 across = cross(planes[i].normal, planes[j].normal);
+            for (size_t k = j + 1; k < planes.size(); ++k) {
+                const double determinant = dot(across, planes[k].normal);
+                if (magnitude(determinant) < 1e-6) continue;
+                const dvec3 corner =
+                    (planes[i].distance * cross(planes[j].normal, planes[k].normal) +
+                     planes[j].distance * cross(planes[k].normal, planes[i].normal) + planes[k].distance * across) /
+                    determinant;
+                bool inside = true;
+                for (const Plane& p : planes) inside &= dot(p.normal, corner) <= p.distance + corner_slack * extent;
+                if (inside) box.add(corner);
+            }
+        }
+    }
+    return box;
+}
+
+template <class Real>
+Box cluster_box(const Cluster<Real>& cluster) {
+    Box box;
+    for (uint32_t lane = 0; lane < cluster.count; ++lane)
+        for (int c = 0; c < 3; ++c)
+            box.add({cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]});
+    return box;
+}
+
+template <class Real>
+RTCBuildPrimitive boxed_primitive(const SceneView<Real>& scene, uint32_t primitive) {
+    const bool convex = primitive < scene.convex.size;
+    const Box box = convex ? convex_box(scene, scene.solids[scene.convex[primitive]])
+                           : cluster_box(scene.clusters[primitive - scene.convex.size]);
+    return padded_primitive(box, 0x1p-18 * static_cast<double>(scene.extent), primitive);
+}
+
+}  // namespace
+
+template <class Real>
+SceneView<Real> CompiledScene<Real>::view() const {
+    SceneView<Real> v;
+    v.solids = span_of(solids);
+    v.slabs = span_of(slabs);
+    v.slab_groups = span_of(slab_groups);
+    v.convex = span_of(convex);
+    v.clusters = span_of(clusters);
+    v.uvs = span_of(uvs);
+    v.materials = span_of(materials);
+    v.lights = span_of(lights);
+    v.incidents = span_of(incidents);
+    v.seen_lights = span_of(seen_lights);
+    v.textures = span_of(textures);
+    v.texels = span_of(texels);
+    v.tree = span_of(tree);
+    v.tree_items = span_of(tree_items);
+    v.seen_tree = span_of(seen_tree);
+    v.background = background;
+    v.bound = bound;
+    v.largest_bound = largest_component(bound);
+    v.extent = extent;
+    return v;
+}
+
+template <class Real>
+size_t CompiledScene<Real>::memory() const {
+    size_t outlined = bytes_of(hulls);
+    for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
+    return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) +
+           bytes_of(clusters) + bytes_of(uvs) + bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) +
+           bytes_of(seen_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
+           bytes_of(seen_tree);
+}
+
+template <class Real>
+PaddedBox primitive_box(const SceneView<Real>& scene, uint32_t primitive) {
+    const RTCBuildPrimitive p = boxed_primitive(scene, primitive);
+    return {{p.lower_x, p.lower_y, p.lower_z}, {p.upper_x, p.upper_y, p.upper_z}};
+}
+
+template <class Real>
+PrimitiveTree primitive_tree(const SceneView<Real>& scene, int quality) {
+    std::vector<RTCBuildPrimitive> primitives;
+    primitives.reserve(scene.convex.size + scene.clusters.size);
+    for (uint32_t i = 0; i < scene.convex.size + scene.clusters.size; ++i)
+        primitives.push_back(boxed_primitive(scene, i));
+    Tree tree = build_tree(primitives, quality);
+    return {std::move(tree.nodes), std::move(tree.items)};
+}
+
+template <class Real>
+FacetTree<Real> facet_tree(const SceneView<Real>& scene, int quality) {
+    const double pad = 0x1p-18 * static_cast<double>(scene.extent);
+    std::vector<RTCBuildPrimitive> primitives;
+    std::vector<Facet<Real>> facets;
+    for (uint32_t i = 0; i < scene.convex.size; ++i) primitives.push_back(boxed_primitive(scene, i));
+    for (uint32_t i = 0; i < scene.clusters.size; ++i) {
+        const Cluster<Real>& cluster = scene.clusters[i];
+        for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+            Facet<Real> facet{};
+            Box box;
+            for (int c = 0; c < 3; ++c) {
+                for (int axis = 0; axis < 3; ++axis) facet.corner[c][axis] = cluster.corner[c][axis][lane];
+                box.add({facet.corner[c][0], facet.corner[c][1], facet.corner[c][2]});
+            }
+            facet.solid = cluster.solid;
+            facet.triangle = cluster.triangle[lane];
+            facet.slot = i * uint32_t(cluster_lanes) + lane;
+            primitives.push_back(padded_primitive(box, pad, scene.convex.size + uint32_t(facets.size())));
+            facets.push_back(facet);
+        }
+    }
+    Tree built = build_tree(primitives, quality);
+    FacetTree<Real> tree;
+    tree.nodes = std::move(built.nodes);
+    tree.items = std::move(built.items);
+    tree.facets.reserve(facets.size());
+    for (uint32_t& item : tree.items) {
+        if (item < scene.convex.size) continue;
+        tree.facets.push_back(facets[item - scene.convex.size]);
+        item = scene.convex.size + uint32_t(tree.facets.size()) - 1;
+    }
+    return tree;
+}
+
+template <class Real>
+void build_primitive_tree(CompiledScene<Real>& scene, int quality) {
+    PrimitiveTree tree = primitive_tree(scene.view(), quality);
+    scene.tree = std::move(tree.nodes);
+    scene.tree_items = std::move(tree.items);
+}
+
+template struct CompiledScene<float>;
+template struct CompiledScene<double>;
+template PaddedBox primitive_box(const SceneView<float>&, uint32_t);
+template PaddedBox primitive_box(const SceneView<double>&, uint32_t);
+template FacetTree<float> facet_tree(const SceneView<float>&, int);
+template FacetTree<double> facet_tree(const SceneView<double>&, int);
+template PrimitiveTree primitive_tree(const SceneView<float>&, int);
+template PrimitiveTree primitive_tree(const SceneView<double>&, int);
+template void build_primitive_tree(CompiledScene<float>&, int);
+template void build_primitive_tree(CompiledScene<double>&, int);
+
+}  // namespace cistula

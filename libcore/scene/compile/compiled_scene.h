@@ -1,0 +1,88 @@
+// From a description to the flat arrays that the shading code reads.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cistula/model/scene_view.h"
+#include "scene/compile/effect_reason.h"
+#include "scene/compile/hull.h"
+#include "scene/description/description.h"
+
+namespace cistula {
+
+/// A scene in its frame of reference, in one precision. Owns what view() points to; immutable once compiled.
+template <class Real>
+struct CompiledScene {
+    std::vector<Solid> solids;
+    std::vector<Slab<Real>> slabs;
+    std::vector<SlabGroup<Real>> slab_groups;
+    std::vector<uint32_t> convex;
+    std::vector<Cluster<Real>> clusters;
+    std::vector<Vec2<Real>> uvs;
+    std::vector<Material<Real>> materials;
+    std::vector<Light<Real>> lights;
+    std::vector<Incident> incidents;
+    std::vector<SeenLight<Real>> seen_lights;
+    std::vector<Texture> textures;
+    std::vector<Vec3<float>> texels;
+    std::vector<TreeNode> tree;  // filled by build_primitive_tree only
+    std::vector<uint32_t> tree_items;
+    std::vector<LightNode> seen_tree;
+    std::vector<Hull> hulls;  // around all that is seen
+    Vec3<Real> background, bound;
+    Real extent = 1;
+
+    Vec3<double> center{0};  // frame: coordinates are (world - center) * 2^scale
+    int scale = 0;
+    int radiance_exponent = 0;                 // radiances are world's * 2^-radiance_exponent
+    uint32_t effects = 0;                      // exactly what the scene requires (effects.h)
+    std::vector<EffectReason> effect_reasons;  // one per effect: needed or not, and because of what
+    std::string hash;  // of all that the image depends on but for camera and settings; the same in both precisions
+    std::vector<std::string> solid_names;  // a name per solid, for messages and the id layer
+    std::vector<std::string> warnings;     // degenerate triangles left out, open meshes taken as sheets, ...
+
+    SceneView<Real> view() const;
+    size_t memory() const;  // bytes of all arrays
+};
+
+/// Reads the meshes and textures that the description names and compiles. Throws Error with the place.
+template <class Real>
+std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description);
+
+/// The tree over primitives that bvh.h walks (Embree's builder). quality: 0 quick, 1 the builder's best.
+struct PrimitiveTree {
+    std::vector<TreeNode> nodes;
+    std::vector<uint32_t> items;
+};
+template <class Real>
+PrimitiveTree primitive_tree(const SceneView<Real>& scene, int quality = 1);
+
+/// The tree that devices walk: over convex solids and single triangles, which lie in the order of its leaves.
+template <class Real>
+struct FacetTree : PrimitiveTree {
+    std::vector<Facet<Real>> facets;
+
+    /// Makes the scene's tree this one.
+    void put_into(SceneView<Real>& scene) const {
+        scene.facets = {facets.data(), static_cast<uint32_t>(facets.size())};
+        scene.tree = {nodes.data(), static_cast<uint32_t>(nodes.size())};
+        scene.tree_items = {items.data(), static_cast<uint32_t>(items.size())};
+    }
+};
+template <class Real>
+FacetTree<Real> facet_tree(const SceneView<Real>& scene, int quality = 1);
+
+/// Adds primitive_tree to the scene.
+template <class Real>
+void build_primitive_tree(CompiledScene<Real>& scene, int quality = 1);
+
+/// Box of a primitive in the frame, rounded outward and padded by 2^-18 M (NUMERICS, 1).
+struct PaddedBox {
+    float low[3], high[3];
+};
+template <class Real>
+PaddedBox primitive_box(const SceneView<Real>& scene, uint32_t primitive);
+
+}  // namespace cistula

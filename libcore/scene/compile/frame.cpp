@@ -1,0 +1,102 @@
+#include "scene/compile/frame.h"
+
+#include <cmath>
+
+#include "cistula/numerics/vec.h"
+#include "scene/base/box.h"
+#include "scene/description/platonic.h"
+#include "scene/description/rotation.h"
+
+namespace cistula {
+namespace {
+
+// M rounded up to float must stay under 2.
+constexpr double largest_extent = 2 - 0x1p-20;
+
+void add_sphere(Box& box, const glm::dvec3& center, double radius) {
+    box.add(center - glm::dvec3{radius});
+    box.add(center + glm::dvec3{radius});
+}
+
+void add_solid(Box& box, const SolidObject& solid) {
+    const std::vector<glm::dvec3> vertices = world_vertices(solid);
+    for (const glm::dvec3& p : vertices) box.add(p);
+    const EdgeLights& lights = solid.edge_lights;
+    if (lights.count == 0 || !(lights.radius > 0)) return;
+    for (const auto& edge : platonic_shape(solid.solid).edges) {
+        for (int i = 0; i < lights.count; ++i) {
+            const double s = (i + 1.0) / (lights.count + 1.0);
+            const glm::dvec3 &a = vertices[edge.vertices[0]], &b = vertices[edge.vertices[1]];
+            add_sphere(box, a + s * (b - a), lights.radius);
+        }
+    }
+}
+
+Box world_box(const SceneSource& source) {
+    Box box;
+    for (const SourceSolid& solid : source.solids) {
+        if (solid.platonic) {
+            add_solid(box, *solid.platonic);
+        } else {
+            for (const glm::dvec3& p : solid.mesh.vertices)
+                if (is_finite(p)) box.add(p);
+        }
+    }
+    for (const LightDescription& light : source.description->lights)
+        if (light.radius > 0) add_sphere(box, light.position, light.radius);
+    return box;
+}
+
+double largest_coordinate(const Box& box, const glm::dvec3& center) {
+    double largest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        largest = greatest(largest, magnitude(box.high[axis] - center[axis]));
+        largest = greatest(largest, magnitude(box.low[axis] - center[axis]));
+    }
+    return largest;
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> world_vertices(const SolidObject& solid) {
+    const Rotation rotation(solid.rotation);
+    std::vector<glm::dvec3> vertices;
+    for (const glm::dvec3& p : platonic_shape(solid.solid).vertices)
+        vertices.push_back(solid.center + rotation(solid.radius * p));
+    return vertices;
+}
+
+Frame find_frame(const SceneSource& source) {
+    const SceneDescription& description = *source.description;
+    const Box box = world_box(source);
+    Frame frame;
+    if (description.frame) {
+        frame.center = description.frame->center;
+        frame.scale = description.frame->scale;
+        if (!is_finite(frame.center) || frame.scale < -1000 || frame.scale > 1000)
+            throw scene_error(description, "/frame", "the center must be finite and the scale in [-1000, 1000]");
+    } else if (!box.empty()) {
+        frame.center = 0.5 * box.low + 0.5 * box.high;
+    }
+    const double largest = box.empty() ? 0 : largest_coordinate(box, frame.center);
+    if (!is_finite(largest) || (largest > 0 && (largest < 0x1p-900 || largest > 0x1p900)))
+        throw scene_error(description, "", "the scene's size is outside what doubles can hold (2^-900 to 2^900)");
+    if (!description.frame && largest > 0) {
+        int exponent;
+        std::frexp(largest, &exponent);
+        frame.scale = 1 - exponent;
+        if (std::ldexp(largest, frame.scale) > largest_extent) --frame.scale;
+    }
+    frame.factor = std::ldexp(1.0, frame.scale);
+    const double extent = largest * frame.factor;
+    if (description.frame && extent > largest_extent)
+        throw scene_error(description, "/frame",
+                          "the largest coordinate is " + std::to_string(extent) +
+                              " in the pinned frame; it must stay under 2: choose a lesser scale or another center");
+    // Unpinned, M may lie just under 1 (see largest_extent); what is derived from it is then a little larger than need
+    // be.
+    frame.extent = description.frame ? (extent > 0 ? extent : 1) : greatest(extent, 1.0);
+    return frame;
+}
+
+}  // namespace cistula

@@ -1,0 +1,27 @@
+// The frame of reference (NUMERICS, 1): centered, and scaled by a power of two so that coordinates stay under 2.
+#pragma once
+
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "scene/compile/scene_source.h"
+
+namespace cistula {
+
+struct Frame {
+    glm::dvec3 center{0};
+    int scale = 0;
+    double factor = 1;  // 2^scale
+    double extent = 1;  // M
+
+    glm::dvec3 point(const glm::dvec3& world) const { return (world - center) * factor; }
+};
+
+/// M lies in [1, 2) unless the description pins the frame; then it is what results, and 2 or more is an error.
+Frame find_frame(const SceneSource& source);
+
+/// A solid's corners in scene units.
+std::vector<glm::dvec3> world_vertices(const SolidObject& solid);
+
+}  // namespace cistula

@@ -1,0 +1,16 @@
+// Convex bodies around what a scene shows.
+#pragma once
+
+#include <vector>
+
+#include "cistula/numerics/vec.h"
+
+namespace cistula {
+
+/// All points within `reach` of the convex hull of `points`, in the frame of reference.
+struct Hull {
+    std::vector<Vec3<double>> points;
+    double reach = 0;
+};
+
+}  // namespace cistula

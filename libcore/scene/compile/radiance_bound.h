@@ -1,0 +1,26 @@
+// The radiance bound B (NUMERICS, 7): no ray of a scene carries more. Inside libcore/scene.
+#pragma once
+
+#include <vector>
+
+#include "scene/compile/compile_lights.h"
+#include "scene/compile/compile_materials.h"
+
+namespace cistula {
+
+/// B is multiplied by this for the rounding of shading.
+inline constexpr double bound_slack = 1 + 0x1p-10;
+
+/// Per channel, without slack, in scene units. `boxes` are those of the solids, in the frame.
+glm::dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, const std::vector<FramedLight>& lights,
+                          const std::vector<Box>& boxes);
+
+struct RadianceScale {
+    glm::dvec3 bound{0};  // slack included, at most 1 after scaling
+    int exponent = 0;     // radiances are divided by 2^exponent
+};
+/// The power of two that brings the largest channel of the bound to (1/2, 1]; a pinned bound takes its place, and must
+/// not be less. Throws Error for bounds that the precision cannot scale.
+RadianceScale radiance_scale(const SceneDescription& scene, const glm::dvec3& bound, bool single_precision);
+
+}  // namespace cistula

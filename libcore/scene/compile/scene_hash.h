@@ -1,0 +1,27 @@
+// The hash of what an image depends on. Inside libcore/scene.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "scene/base/fnv128.h"
+#include "scene/compile/scene_source.h"
+
+namespace cistula {
+
+class SceneHash {
+  public:
+    void add_bytes(const void* data, size_t size) { hash_.add_bytes(data, size); }
+    /// -0 counts as 0.
+    void add(double value) { hash_.add(value + 0.0); }
+    void add(uint32_t value) { hash_.add(value); }
+    void add(const glm::dvec3& v) { add(v.x), add(v.y), add(v.z); }
+    void add(const MaterialDescription& m);
+
+    /// 32 lower-case digits.
+    std::string hex() const { return hash_.hex(); }
+
+  private:
+    Fnv128 hash_;
+};
+
+}  // namespace cistula

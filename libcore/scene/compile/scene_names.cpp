@@ -1,0 +1,43 @@
+#include "scene/compile/scene_names.h"
+
+#include "scene/compile/scene_source.h"
+#include "scene/description/platonic.h"
+
+namespace cistula {
+namespace {
+
+bool any(const glm::dvec3& color) {
+    return color.x > 0 || color.y > 0 || color.z > 0;
+}
+
+void add_light(SceneNames& names, const std::string& name, const std::string& place, const glm::dvec3& color,
+               double radius) {
+    if (any(color)) names.lights.push_back({name, place});
+    if (radius > 0) names.seen_lights.push_back({name, place});
+}
+
+}  // namespace
+
+SceneNames name_scene(const SceneDescription& description) {
+    const SceneSource source = gather_scene(description);
+    SceneNames names;
+    for (const SourceSolid& solid : source.solids) names.solids.push_back({solid.name, solid.place});
+    for (const MaterialDescription& material : source.materials) names.materials.push_back({material.name, ""});
+    // In the order of frame_lights.
+    for (size_t i = 0; i < description.lights.size(); ++i) {
+        const LightDescription& light = description.lights[i];
+        add_light(names, "light " + std::to_string(i), light.place, light.color, light.radius);
+    }
+    for (const SourceSolid& solid : source.solids) {
+        if (!solid.platonic) continue;
+        const EdgeLights& on_edges = solid.platonic->edge_lights;
+        const size_t edges = platonic_shape(solid.platonic->solid).edges.size();
+        for (size_t edge = 0; edge < edges; ++edge)
+            for (int i = 0; i < on_edges.count; ++i)
+                add_light(names, solid.name + " edge " + std::to_string(edge) + " light " + std::to_string(i),
+                          solid.place, on_edges.color, on_edges.radius);
+    }
+    return names;
+}
+
+}  // namespace cistula

@@ -1,0 +1,185 @@
+#include "scene/compile/scene_source.h"
+
+#include <algorithm>
+
+#include "cistula/numerics/vec.h"
+#include "scene/compile/mesh_topology.h"
+#include "scene/description/platonic.h"
+#include "scene/readers/mesh_file.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+bool finite_and_not_negative(const dvec3& v) {
+    return is_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
+}
+bool is_share(double a) {
+    return a >= 0 && a <= 1;
+}
+bool finite_and_not_negative(double a) {
+    return is_finite(a) && a >= 0;
+}
+
+void check_material(const SceneDescription& scene, const MaterialDescription& m, const std::string& place) {
+    const auto refuse = [&](const std::string& text) {
+        throw scene_error(scene, place, "material " + m.name + " " + text);
+    };
+    if (!finite_and_not_negative(m.color)) refuse("has a color that is negative or not finite");
+    if (!finite_and_not_negative(m.specular_color)) refuse("has a specular color that is negative or not finite");
+    if (!finite_and_not_negative(m.tint) || !is_share(m.tint.x) || !is_share(m.tint.y) || !is_share(m.tint.z))
+        refuse("has a tint outside [0, 1]");
+    if (!finite_and_not_negative(m.absorption)) refuse("has an absorption that is negative or not finite");
+    if (!finite_and_not_negative(m.ambient) || !finite_and_not_negative(m.diffuse) ||
+        !finite_and_not_negative(m.specular) || !finite_and_not_negative(m.exponent))
+        refuse("has a Phong coefficient or exponent that is negative or not finite");
+    if (!is_share(m.reflection) || !is_share(m.transmission) || !(m.reflection + m.transmission <= 1 + 1e-6))
+        refuse("has kr + kt above 1, or one of them outside [0, 1]; their sum must be at most 1");
+    if (!(m.index > 0) || !is_finite(m.index)) refuse("has an index of refraction that is not above 0");
+    if (m.texture < -1 || m.texture >= static_cast<int>(scene.textures.size()))
+        refuse("names a texture that does not exist");
+}
+
+void check_light(const SceneDescription& scene, const dvec3& color, const std::optional<dvec3>& glow, double radius,
+                 bool falloff, const std::string& place) {
+    if (!finite_and_not_negative(color) || !finite_and_not_negative(glow.value_or(dvec3{0})))
+        throw scene_error(scene, place, "a light's color and glow must be finite and not negative");
+    if (!finite_and_not_negative(radius)) throw scene_error(scene, place, "a light's radius must not be negative");
+    if (falloff && !(radius > 0))
+        throw scene_error(scene, place, "a light with falloff needs a radius above 0, where the falloff is clamped");
+}
+
+void check_platonic(const SceneDescription& scene, const SolidObject& solid, const std::string& place) {
+    if (!is_finite(solid.center) || !is_finite(solid.rotation))
+        throw scene_error(scene, place, "the center and the rotation must be finite");
+    if (!(solid.radius > 0) || !is_finite(solid.radius)) throw scene_error(scene, place, "the radius must be above 0");
+    const EdgeLights& lights = solid.edge_lights;
+    if (lights.count < 0) throw scene_error(scene, place, "the number of lights on an edge must not be negative");
+    if (lights.count > 0) check_light(scene, lights.color, lights.glow, lights.radius, lights.falloff, place);
+}
+
+void check_triangles(const SceneDescription& scene, const TrianglesObject& object, const std::string& place) {
+    if (object.triangles.empty()) throw scene_error(scene, place, "there are no triangles; give at least one");
+    for (const auto& corners : object.triangles)
+        for (const uint32_t corner : corners)
+            if (corner >= object.vertices.size())
+                throw scene_error(scene, place,
+                                  "a triangle names vertex " + std::to_string(corner) + ", but there are only " +
+                                      std::to_string(object.vertices.size()) + " (numbered from 0)");
+    if (!object.uvs.empty() && object.uvs.size() != object.vertices.size())
+        throw scene_error(scene, place,
+                          "there are " + std::to_string(object.uvs.size()) + " uvs for " +
+                              std::to_string(object.vertices.size()) + " vertices; give one a vertex, or none");
+    for (const glm::dvec2& uv : object.uvs)
+        if (!is_finite(uv.x) || !is_finite(uv.y)) throw scene_error(scene, place, "a uv is not finite");
+}
+
+/// All parts as one, where that closes what the file's materials cut apart.
+bool join_closed(std::vector<MeshPart>& parts) {
+    const bool with_uvs =
+        std::all_of(parts.begin(), parts.end(), [](const MeshPart& p) { return !p.mesh.uvs.empty(); });
+    MeshPart joined;
+    joined.name = parts.front().name;
+    for (const MeshPart& part : parts) {
+        const auto first = static_cast<uint32_t>(joined.mesh.owned_vertices.size());
+        MeshSource& to = joined.mesh;
+        to.owned_vertices.insert(to.owned_vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
+        if (with_uvs) to.owned_uvs.insert(to.owned_uvs.end(), part.mesh.uvs.begin(), part.mesh.uvs.end());
+        for (const auto& t : part.mesh.triangles)
+            to.owned_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    joined.mesh.view_owned();
+    if (!find_topology(joined.mesh).closed) return false;
+    parts.clear();
+    parts.push_back(std::move(joined));
+    return true;
+}
+
+void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshObject& mesh) {
+    const SceneDescription& scene = *source.description;
+    if (!is_finite(mesh.center) || !is_finite(mesh.rotation) || !is_finite(mesh.scale) || mesh.scale == 0)
+        throw scene_error(scene, object.place, "the center and rotation must be finite, the scale finite and not 0");
+    std::vector<MeshPart> parts = read_mesh(mesh, scene.source + ": " + object.place);
+    if (object.material >= 0 && parts.size() > 1) join_closed(parts);
+    for (MeshPart& part : parts) {
+        SourceSolid solid;
+        solid.name = parts.size() == 1 ? object.name : object.name + "/" + part.name;
+        solid.place = object.place;
+        solid.mesh = std::move(part.mesh);
+        if (object.material >= 0) {
+            solid.material = static_cast<uint32_t>(object.material);
+        } else if (part.material) {
+            check_material(scene, *part.material, object.place);
+            solid.material = static_cast<uint32_t>(source.materials.size());
+            source.materials.push_back(*part.material);
+        } else {
+            throw scene_error(scene, object.place,
+                              "the mesh brings no material of its own (" + mesh.file + "); name one with \"material\"");
+        }
+        source.solids.push_back(std::move(solid));
+    }
+}
+
+}  // namespace
+
+Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text) {
+    std::string message = description.source.empty() ? "scene" : description.source;
+    if (!place.empty()) message += ": " + place;
+    return {ExitCode::usage, message + ": " + text};
+}
+
+SceneSource gather_scene(const SceneDescription& description) {
+    SceneSource source;
+    source.description = &description;
+    source.materials = description.materials;
+    for (size_t i = 0; i < description.materials.size(); ++i)
+        check_material(description, description.materials[i], "/materials/" + std::to_string(i));
+    if (!finite_and_not_negative(description.ambient) || !finite_and_not_negative(description.background))
+        throw scene_error(description, "", "the ambient and background colors must be finite and not negative");
+    for (const LightDescription& light : description.lights) {
+        if (!is_finite(light.position)) throw scene_error(description, light.place, "the position must be finite");
+        check_light(description, light.color, light.glow, light.radius, light.falloff, light.place);
+    }
+
+    for (const ObjectDescription& object : description.objects) {
+        if (object.material >= static_cast<int>(description.materials.size()))
+            throw scene_error(description, object.place, "names a material that does not exist");
+        if (const auto* mesh = std::get_if<MeshObject>(&object.shape)) {
+            add_mesh(source, object, *mesh);
+            continue;
+        }
+        if (object.material < 0)
+            throw scene_error(description, object.place, "has no material; only a mesh file can bring its own");
+        SourceSolid solid;
+        solid.name = object.name;
+        solid.place = object.place;
+        solid.material = static_cast<uint32_t>(object.material);
+        if (const auto* platonic = std::get_if<SolidObject>(&object.shape)) {
+            check_platonic(description, *platonic, object.place);
+            solid.platonic = platonic;
+        } else {
+            const auto& triangles = std::get<TrianglesObject>(object.shape);
+            check_triangles(description, triangles, object.place);
+            solid.mesh.vertices = triangles.vertices;
+            solid.mesh.triangles = triangles.triangles;
+            solid.mesh.uvs = triangles.uvs;
+        }
+        source.solids.push_back(std::move(solid));
+    }
+    for (const SourceSolid& solid : source.solids) {
+        const MaterialDescription& material = source.materials[solid.material];
+        if (material.texture < 0) continue;
+        const std::string what = "the material " + material.name + " has a texture, but ";
+        if (solid.platonic)
+            throw scene_error(description, solid.place,
+                              what + "a " + platonic_name(solid.platonic->solid) +
+                                  " has no texture coordinates; give it a material without a texture");
+        if (solid.mesh.uvs.empty())
+            throw scene_error(description, solid.place,
+                              what + "the triangles have no texture coordinates; give one uv a vertex");
+    }
+    return source;
+}
+
+}  // namespace cistula

@@ -1,0 +1,54 @@
+// What a backend fills and the programs write: sums in integers, from which every channel of a file is made.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "cistula/model/pixel_record.h"
+
+namespace cistula {
+
+/// A rectangle of pixels; (0, 0) is the top left of the full frame.
+struct PixelRect {
+    int x = 0, y = 0, width = 0, height = 0;
+
+    bool operator==(const PixelRect&) const = default;
+};
+
+/// Leaves trivial elements unset: the threads that render the pixels touch their memory first.
+template <class T>
+struct UnsetAllocator : std::allocator<T> {
+    template <class U>
+    struct rebind {
+        using other = UnsetAllocator<U>;
+    };
+    template <class U>
+    void construct(U* place) {
+        ::new (static_cast<void*>(place)) U;
+    }
+    template <class U, class... Arguments>
+    void construct(U* place, Arguments&&... arguments) {
+        ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+    }
+};
+
+/// One rendered frame (or its crop). pixels is row-major over rect.
+struct Film {
+    int full_width = 0, full_height = 0;
+    PixelRect rect;
+    int radiance_exponent = 0;  // radiances were divided by 2^radiance_exponent
+    int samples = 1;            // per pixel
+    int fixed_shift = 0;        // s of the fixed sums
+    double rounding = 0;        // how far rounding moves points, in widths of a pixel at distance 1 (scene units)
+    std::vector<PixelRecord, UnsetAllocator<PixelRecord>> pixels;
+    RayCounts rays;
+    uint32_t flags = 0;  // RenderFlag bits of all pixels
+
+    /// What one unit of a pixel's sums adds to its mean, in the scene's units of radiance.
+    double unit() const { return std::ldexp(1.0, radiance_exponent - fixed_shift) / samples; }
+};
+
+}  // namespace cistula

@@ -1,0 +1,126 @@
+#include "scene/film/film_picture.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+
+#include "cistula/numerics/elementary.h"
+#include "cistula/numerics/fixed_sum.h"
+#include "scene/base/fnv128.h"
+
+namespace cistula {
+namespace {
+
+void check(const Film& film) {
+    if (film.samples < 1 || film.rect.width < 1 || film.rect.height < 1 ||
+        film.pixels.size() != static_cast<size_t>(film.rect.width) * static_cast<size_t>(film.rect.height))
+        throw std::invalid_argument("a film has samples, and as many pixels as its rectangle");
+}
+
+float radiance(const Film& film, const PixelRecord& pixel, int c) {
+    return resolve<float>(pixel.radiance[c], film.fixed_shift, static_cast<uint32_t>(film.samples),
+                          film.radiance_exponent);
+}
+
+/// The ledger's mean, rounded up to a unit of the fixed sums and then to a float.
+float ledger_bound(const Film& film, const PixelRecord& pixel, int c) {
+    const uint64_t total = static_cast<uint64_t>(pixel.pruned[c]) + static_cast<uint64_t>(pixel.cut[c]);
+    const uint64_t samples = static_cast<uint64_t>(film.samples);
+    const uint64_t mean = total / samples + (total % samples != 0);
+    const int width = static_cast<int>(std::bit_width(mean));
+    const int dropped = width > 24 ? width - 24 : 0;
+    const uint64_t kept = (mean >> dropped) + ((mean & ((uint64_t(1) << dropped) - 1)) != 0);
+    const double exact =
+        elementary::scaled(static_cast<double>(kept), dropped - film.fixed_shift + film.radiance_exponent);
+    const float nearest = static_cast<float>(exact);
+    return static_cast<double>(nearest) >= exact ? nearest : bits_as<float>(bits_as<uint32_t>(nearest) + 1);
+}
+
+/// The least half that is not below a value >= 0.
+float rounded_up_to_half(float value) {
+    half nearest(value);
+    if (static_cast<float>(nearest) < value) nearest.setBits(static_cast<uint16_t>(nearest.bits() + 1));
+    return static_cast<float>(nearest);
+}
+
+}  // namespace
+
+LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
+    check(film);
+    LayeredPicture picture;
+    picture.width = film.rect.width;
+    picture.height = film.rect.height;
+    picture.x = film.rect.x;
+    picture.y = film.rect.y;
+    picture.display_width = film.full_width;
+    picture.display_height = film.full_height;
+    const bool half = channels.half;
+    const auto add = [&](const char* name, bool as_half) { picture.channels.push_back({name, as_half, {}}); };
+    for (const char* name : {"R", "G", "B", "A"}) add(name, half);
+    for (const char* name : {"error.R", "error.G", "error.B"})
+        if (channels.error) add(name, half);
+    if (channels.id) add("id", false);
+    if (channels.samples) add("samples", false);
+    if (channels.cost) add("cost", false);
+    if (channels.z) add("Z", false);
+    for (const char* name : {"N.X", "N.Y", "N.Z"})
+        if (channels.normal) add(name, half);
+    for (LayeredPicture::Channel& channel : picture.channels) channel.values.resize(film.pixels.size());
+
+    // Every channel of some pixels before the next ones: those are then still in a cache.
+    constexpr size_t block = 1024;
+    for (size_t begin = 0; begin < film.pixels.size(); begin += block) {
+        const PixelRecord* first = film.pixels.data() + begin;
+        const PixelRecord* last = first + std::min(block, film.pixels.size() - begin);
+        size_t next = 0;
+        const auto fill = [&](const auto& value) {
+            float* to = picture.channels[next++].values.data() + begin;
+            for (const PixelRecord* pixel = first; pixel != last; ++pixel) *to++ = value(*pixel);
+        };
+        for (int c = 0; c < 3; ++c) fill([&film, c](const PixelRecord& pixel) { return radiance(film, pixel, c); });
+        fill([&film](const PixelRecord& pixel) {
+            return static_cast<float>(static_cast<double>(pixel.hits) / film.samples);
+        });
+        for (int c = 0; c < 3 && channels.error; ++c)
+            fill([&film, c, half](const PixelRecord& pixel) {
+                const float bound = ledger_bound(film, pixel, c);
+                return half ? rounded_up_to_half(bound) : bound;
+            });
+        if (channels.id) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.id); });
+        if (channels.samples) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.samples); });
+        if (channels.cost) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.rays); });
+        if (channels.z) fill([](const PixelRecord& pixel) { return pixel.z; });
+        for (int c = 0; c < 3 && channels.normal; ++c) fill([c](const PixelRecord& pixel) { return pixel.normal[c]; });
+    }
+    return picture;
+}
+
+ColorPicture to_color(const Film& film) {
+    check(film);
+    ColorPicture picture;
+    picture.width = static_cast<uint32_t>(film.rect.width);
+    picture.height = static_cast<uint32_t>(film.rect.height);
+    picture.texels.reserve(film.pixels.size());
+    for (const PixelRecord& pixel : film.pixels)
+        picture.texels.emplace_back(radiance(film, pixel, 0), radiance(film, pixel, 1), radiance(film, pixel, 2));
+    return picture;
+}
+
+std::string film_hash(const Film& film) {
+    Fnv128 hash;
+    for (const PixelRecord& pixel : film.pixels) {
+        for (const int64_t value : pixel.radiance) hash.add(value);
+        for (const int64_t value : pixel.pruned) hash.add(value);
+        for (const int64_t value : pixel.cut) hash.add(value);
+        hash.add(pixel.hits);
+        hash.add(pixel.rays);
+        hash.add(pixel.id);
+        hash.add(pixel.z);
+        for (const float value : pixel.normal) hash.add(value);
+    }
+    return hash.hex();
+}
+
+}  // namespace cistula

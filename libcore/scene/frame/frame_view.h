@@ -1,0 +1,85 @@
+// From a frame's settings to what every pixel needs, the same for all backends.
+#pragma once
+
+#include "cistula/transport/pixel.h"
+#include "scene/base/error.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/film/renderer.h"
+
+namespace cistula {
+
+/// Of a frame with a target error.
+template <class Real>
+void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings, LatticeSettings& lattice) {
+    /// Above this share of the bound a pixel's four corners do.
+    constexpr double coarse = 0x1p-8;
+    const double target = least(elementary::scaled(settings.target_error, -scene.radiance_exponent), 4.0);
+    lattice.target = greatest(int64_t(floor_of(elementary::scaled(target, color_bits))), int64_t(1));
+    lattice.most = settings.max_samples;
+    lattice.fine = target < coarse;
+    lattice.significant = target / 4;
+}
+
+/// All but the solids around the camera, which need an intersector (camera_solids).
+template <class Real>
+FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera, const FrameSettings& settings) {
+    const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, what); };
+    if (settings.depth < 1 || settings.depth > largest_depth)
+        refuse("depth " + std::to_string(settings.depth) + ": must be from 1 to " + std::to_string(largest_depth));
+    if (settings.supersample < 1 || settings.supersample > 64)
+        refuse("supersample " + std::to_string(settings.supersample) + ": must be from 1 to 64");
+    if (!(settings.cutoff >= 0)) refuse("cutoff: must be at least 0");
+    if (!(settings.target_error >= 0)) refuse("target error: must be at least 0");
+    if (settings.unshadowed && settings.adaptive()) refuse("target error: not of a frame without shadows");
+    if (settings.max_samples < least_lattice_samples || settings.max_samples > lattice_samples)
+        refuse("max samples " + std::to_string(settings.max_samples) + ": must be from " +
+               std::to_string(least_lattice_samples) + " to " + std::to_string(lattice_samples));
+    const double unit = elementary::power_of_two(scene.scale);
+    FrameView frame;
+    frame.camera = camera.camera;
+    frame.camera.position = (camera.camera.position - scene.center) * unit;
+    frame.unit_length = 1 / unit;
+    frame.width = settings.full_width;
+    frame.height = settings.full_height;
+    frame.supersample = settings.grid();
+    frame.half_sample = frame.camera.tan_half_width / (double(frame.width) * frame.supersample);
+    frame.is_far = is_far(frame.camera, double(scene.extent));
+    frame.tree.depth = settings.depth;
+    const int shift = fixed_shift(uint32_t(frame.supersample * frame.supersample));
+    frame.tree.fixed_scale = float(fixed_scale(shift));
+    frame.tree.fixed_unit = float(fixed_scale(-shift));
+    // A budget beyond the bound itself prunes everything either way.
+    const double budget = least(elementary::scaled(settings.truncation(), -scene.radiance_exponent), 16.0);
+    frame.tree.budget = int64_t(floor_of(least(budget * fixed_scale(shift), 0x1p62)));
+    if (settings.adaptive()) set_lattice(scene, settings, frame.lattice);
+    return frame;
+}
+
+/// The index in effect_masks of what renders a frame of a scene that calls for `effects`. After camera_solids, since a
+/// camera in a body adds to them. Adaptive sampling runs with all effects.
+inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
+    if (settings.unshadowed) return unshadowed_mask;
+    if (settings.adaptive()) return effect_mask_count - 1;
+    const uint32_t of_camera = frame.camera_media.empty() ? 0u : uint32_t(effect_insides);
+    return least_mask(settings.effects | effects | of_camera);
+}
+
+/// A film of the right size for a frame, its pixels unset.
+template <class Real>
+void prepare_film(Film& film, const FrameSettings& settings, const CompiledScene<Real>& scene,
+                  const CameraFrame& camera) {
+    film.full_width = settings.full_width;
+    film.full_height = settings.full_height;
+    film.rect = settings.crop;
+    film.radiance_exponent = scene.radiance_exponent;
+    film.samples = settings.grid() * settings.grid();
+    film.fixed_shift = fixed_shift(uint32_t(film.samples));
+    const double place = 2 * double(RealTraits<Real>::unit) * std::ldexp(double(scene.extent), -scene.scale);
+    film.rounding = place * film.full_width / (2 * camera.camera.tan_half_width);
+    film.pixels.clear();
+    film.pixels.resize(size_t(film.rect.width) * size_t(film.rect.height));
+    film.rays = RayCounts();
+    film.flags = 0;
+}
+
+}  // namespace cistula

@@ -1,0 +1,28 @@
+// By how much outlines in a picture are drawn too large, so that rounding moves nothing out of them. Inside
+// libcore/scene.
+#pragma once
+
+#include <algorithm>
+
+#include "cistula/transport/pixel.h"
+
+namespace cistula {
+
+/// Around what is projected, in pixels: it is rounded in double.
+inline constexpr double picture_margin = 0x1p-6;
+
+/// What bodies in a picture grow by: far more than rays and faces are off by rounding, in either precision (NUMERICS, 1
+/// and 2). `extent`: the scene's M.
+inline double picture_growth(const FrameView& frame, double extent) {
+    constexpr double share_of_extent = 0x1p-16, share_of_distance = 0x1p-44;
+    return share_of_extent * extent + share_of_distance * length(frame.camera.position);
+}
+
+/// Whether that is enough: not for cameras very far away, or very wide.
+inline bool margins_suffice(const FrameView& frame, double extent) {
+    constexpr double farthest = 0x1p40, widest_tangent = 256;
+    return length(frame.camera.position) <= farthest * extent &&
+           frame.camera.tan_half_width * std::max(1.0, double(frame.height) / frame.width) <= widest_tangent;
+}
+
+}  // namespace cistula

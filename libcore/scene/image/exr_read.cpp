@@ -1,0 +1,199 @@
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "scene/base/file_bytes.h"
+#include "scene/image/exr.h"
+
+namespace cistula {
+namespace {
+
+/// Runs `read`; what the library throws becomes an Error that names the file.
+template <class Read>
+auto with_file_errors(const std::string& path, Read read) {
+    try {
+        return read();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw file_error(path, "read", std::string("not enough memory for a picture of its size"));
+    } catch (const std::exception& failure) {
+        throw file_error(path, "read", std::string(failure.what()));
+    }
+}
+
+/// Before the library opens a file: a damaged header must not ask for more memory than any picture needs.
+void limit_sizes() {
+    static const bool once = [] {
+        Imf::Header::setMaxImageSize(static_cast<int>(largest_picture_side), static_cast<int>(largest_picture_side));
+        return true;
+    }();
+    (void)once;
+}
+
+int lines_per_chunk(Imf::Compression compression) {
+    switch (compression) {
+        case Imf::NO_COMPRESSION:
+        case Imf::RLE_COMPRESSION:
+        case Imf::ZIPS_COMPRESSION:
+            return 1;
+        case Imf::ZIP_COMPRESSION:
+        case Imf::PXR24_COMPRESSION:
+            return 16;
+        case Imf::PIZ_COMPRESSION:
+        case Imf::B44_COMPRESSION:
+        case Imf::B44A_COMPRESSION:
+        case Imf::DWAA_COMPRESSION:
+            return 32;
+        case Imf::DWAB_COMPRESSION:
+            return 256;
+        default:
+            return 1;
+    }
+}
+
+/// Throws unless every chunk is there. The table of offsets alone does not tell: it stands before the pixels, so a file
+/// that was cut short has it whole. Tiles are left to the reading of the pixels.
+void check_chunks(Imf::InputFile& file) {
+    if (!file.isComplete()) throw std::runtime_error("the file is not complete: chunks of pixels are missing");
+    if (file.header().hasTileDescription()) return;
+    const Imath::Box2i window = file.header().dataWindow();
+    const int step = lines_per_chunk(file.header().compression());
+    for (int64_t y = window.min.y; y <= window.max.y; y += step) {
+        const char* bytes = nullptr;
+        int count = 0;
+        file.rawPixelData(static_cast<int>(y), bytes, count);
+    }
+}
+
+void check_full_sampling(const Imf::InputFile& file) {
+    const Imf::ChannelList& channels = file.header().channels();
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+        if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
+            throw std::runtime_error(std::string("channel ") + channel.name() +
+                                     " is subsampled; convert it to one value per pixel");
+}
+
+void read_attributes(const Imf::Header& header, LayeredPicture& picture) {
+    for (auto entry = header.begin(); entry != header.end(); ++entry) {
+        const std::string name = entry.name();
+        if (name == "pixelAspectRatio" || name == "screenWindowWidth") continue;  // every file has them
+        const Imf::Attribute& attribute = entry.attribute();
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
+            picture.attributes[name] = text->value();
+        } else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&attribute)) {
+            picture.attributes[name] = whole->value();
+        } else if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) {
+            picture.attributes[name] = number->value();
+        } else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) {
+            picture.attributes[name] = static_cast<double>(single->value());
+        } else if (const auto* list = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute)) {
+            picture.attributes[name] = std::vector<float>(list->value());
+        } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute)) {
+            const float* first = matrix->value().getValue();
+            picture.attributes[name] = std::vector<float>(first, first + 16);
+        } else if (const auto* colors = dynamic_cast<const Imf::ChromaticitiesAttribute*>(&attribute)) {
+            const Imf::Chromaticities& c = colors->value();
+            picture.attributes[name] =
+                std::vector<float>{c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y};
+        }
+    }
+}
+
+LayeredPicture read_layers(const std::string& path) {
+    Imf::InputFile file(path.c_str());
+    check_full_sampling(file);
+    check_chunks(file);
+    const Imf::Header& header = file.header();
+    const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
+    LayeredPicture picture;
+    picture.width = data.max.x - data.min.x + 1;
+    picture.height = data.max.y - data.min.y + 1;
+    picture.x = data.min.x - display.min.x;
+    picture.y = data.min.y - display.min.y;
+    picture.display_width = display.max.x - display.min.x + 1;
+    picture.display_height = display.max.y - display.min.y + 1;
+    read_attributes(header, picture);
+    for (auto entry = header.channels().begin(); entry != header.channels().end(); ++entry)
+        picture.channels.push_back({entry.name(), entry.channel().type == Imf::HALF, {}});
+    Imf::FrameBuffer buffer;
+    for (LayeredPicture::Channel& channel : picture.channels) {
+        channel.values.resize(static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height));
+        buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), data));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(data.min.y, data.max.y);
+    return picture;
+}
+
+ColorPicture read_colors(const std::string& path) {
+    Imf::InputFile file(path.c_str());
+    const Imf::ChannelList& channels = file.header().channels();
+    const bool gray = !channels.findChannel("R") && !channels.findChannel("G") && !channels.findChannel("B");
+    std::string present;
+    for (auto entry = channels.begin(); entry != channels.end(); ++entry)
+        present += (present.empty() ? "" : ", ") + std::string(entry.name());
+    if (gray ? !channels.findChannel("Y")
+             : !channels.findChannel("R") || !channels.findChannel("G") || !channels.findChannel("B"))
+        throw std::runtime_error("a texture has the channels R, G and B, or Y; this file has " + present);
+    if (gray && (channels.findChannel("RY") || channels.findChannel("BY")))
+        throw std::runtime_error("its colors are stored as luminance and chroma (Y, RY, BY); convert it to R, G and B");
+    check_full_sampling(file);
+    check_chunks(file);
+
+    const Imath::Box2i data = file.header().dataWindow();
+    ColorPicture picture;
+    picture.width = static_cast<uint32_t>(data.max.x - data.min.x + 1);
+    picture.height = static_cast<uint32_t>(data.max.y - data.min.y + 1);
+    picture.texels.resize(static_cast<size_t>(picture.width) * picture.height);
+    Imf::FrameBuffer buffer;
+    const char* names[3] = {"R", "G", "B"};
+    for (int c = 0; c < (gray ? 1 : 3); ++c)
+        buffer.insert(gray ? "Y" : names[c],
+                      Imf::Slice::Make(Imf::FLOAT, &picture.texels[0][c], data, sizeof(glm::vec3)));
+    file.setFrameBuffer(buffer);
+    file.readPixels(data.min.y, data.max.y);
+    if (gray)
+        for (glm::vec3& texel : picture.texels) texel = glm::vec3(texel[0]);
+    return picture;
+}
+
+}  // namespace
+
+LayeredPicture read_exr(const std::string& path) {
+    limit_sizes();
+    check_readable(path);
+    return with_file_errors(path, [&] { return read_layers(path); });
+}
+
+bool exr_is_complete(const std::string& path) {
+    limit_sizes();
+    try {
+        Imf::InputFile file(path.c_str());
+        check_chunks(file);
+        if (file.header().hasTileDescription()) read_layers(path);
+        return true;
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
+ColorPicture read_exr_texture(const std::string& path) {
+    limit_sizes();
+    check_readable(path);
+    return with_file_errors(path, [&] { return read_colors(path); });
+}
+
+}  // namespace cistula

@@ -1,0 +1,178 @@
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <set>
+#include <stdexcept>
+
+#include "scene/base/atomic_file.h"
+#include "scene/image/exr.h"
+
+namespace cistula {
+namespace {
+
+/// Enough for one file, which keeps twice as many blocks of lines in work. Files written at once share the threads in
+/// the order of their blocks, so that none should queue all it has.
+constexpr int most_threads_of_a_file = 4;
+
+/// OpenEXR's destructor swallows errors; this stream keeps them, so that a full disk never passes for a file.
+class CheckedStream : public Imf::OStream {
+  public:
+    explicit CheckedStream(const std::string& path)
+        : Imf::OStream(path.c_str()), file_(std::fopen(path.c_str(), "wb")) {
+        if (!file_) error_number_ = errno;
+    }
+    ~CheckedStream() override { close(); }
+
+    void write(const char bytes[], int count) override {
+        if (!file_ || std::fwrite(bytes, 1, static_cast<size_t>(count), file_) != static_cast<size_t>(count)) fail();
+    }
+    uint64_t tellp() override {
+        const off_t at = file_ ? ftello(file_) : -1;
+        if (at < 0) fail();
+        return static_cast<uint64_t>(at);
+    }
+    void seekp(uint64_t at) override {
+        if (!file_ || fseeko(file_, static_cast<off_t>(at), SEEK_SET) != 0) fail();
+    }
+
+    void close() {
+        if (file_ && std::fclose(file_) != 0) keep(errno);
+        file_ = nullptr;
+    }
+    /// errno of the first failure; 0: none.
+    int error_number() const { return error_number_; }
+
+  private:
+    void keep(int error_number) {
+        if (error_number_ == 0) error_number_ = error_number != 0 ? error_number : EIO;
+    }
+    [[noreturn]] void fail() {
+        keep(errno);
+        throw std::runtime_error("cannot write");
+    }
+
+    FILE* file_;
+    int error_number_ = 0;
+};
+
+void check(const LayeredPicture& picture) {
+    if (picture.width < 1 || picture.height < 1 || picture.display_width < 1 || picture.display_height < 1)
+        throw std::invalid_argument("write_exr: the windows must not be empty");
+    if (picture.channels.empty()) throw std::invalid_argument("write_exr: a picture needs a channel");
+    const size_t pixels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
+    std::set<std::string> names;
+    for (const LayeredPicture::Channel& channel : picture.channels) {
+        if (channel.name.empty() || channel.name.size() > 255 || !names.insert(channel.name).second)
+            throw std::invalid_argument("write_exr: channel names must differ and have 1 to 255 bytes");
+        if (channel.values.size() != pixels)
+            throw std::invalid_argument("write_exr: channel " + channel.name + " must have width * height values");
+    }
+    // Other types under these names make files that readers refuse.
+    static const std::set<std::string> kept = {"channels",
+                                               "chunkCount",
+                                               "compression",
+                                               "dataWindow",
+                                               "displayWindow",
+                                               "lineOrder",
+                                               "maxSamplesPerPixel",
+                                               "name",
+                                               "pixelAspectRatio",
+                                               "screenWindowCenter",
+                                               "screenWindowWidth",
+                                               "tiles",
+                                               "type",
+                                               "version",
+                                               "view"};
+    for (const auto& [name, value] : picture.attributes)
+        if (name.empty() || name.size() > 255 || kept.count(name) != 0)
+            throw std::invalid_argument("write_exr: OpenEXR does not allow the attribute name '" + name + "'");
+}
+
+void insert(Imf::Header& header, const std::string& name, const std::vector<float>& values) {
+    const char* key = name.c_str();
+    if (name == "chromaticities" && values.size() == 8) {
+        const auto point = [&](size_t i) { return Imath::V2f(values[2 * i], values[2 * i + 1]); };
+        header.insert(key, Imf::ChromaticitiesAttribute(Imf::Chromaticities(point(0), point(1), point(2), point(3))));
+    } else if (values.size() == 16) {
+        Imath::M44f matrix;
+        for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = values[static_cast<size_t>(i)];
+        header.insert(key, Imf::M44fAttribute(matrix));
+    } else {
+        header.insert(key, Imf::FloatVectorAttribute(values));
+    }
+}
+
+Imf::Header header_of(const LayeredPicture& picture) {
+    const Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(picture.display_width - 1, picture.display_height - 1));
+    const Imath::Box2i data(Imath::V2i(picture.x, picture.y),
+                            Imath::V2i(picture.x + picture.width - 1, picture.y + picture.height - 1));
+    Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    header.zipCompressionLevel() = 4;  // named, because the default differs between versions
+    for (const auto& [name, value] : picture.attributes) {
+        if (const auto* text = std::get_if<std::string>(&value))
+            header.insert(name.c_str(), Imf::StringAttribute(*text));
+        else if (const auto* whole = std::get_if<int>(&value))
+            header.insert(name.c_str(), Imf::IntAttribute(*whole));
+        else if (const auto* number = std::get_if<double>(&value))
+            header.insert(name.c_str(), Imf::DoubleAttribute(*number));
+        else
+            insert(header, name, std::get<std::vector<float>>(value));
+    }
+    for (const LayeredPicture::Channel& channel : picture.channels)
+        header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
+    return header;
+}
+
+void write_pixels(Imf::OStream& stream, const LayeredPicture& picture) {
+    const Imf::Header header = header_of(picture);
+    const Imath::Box2i& window = header.dataWindow();
+    std::vector<std::vector<half>> halves(picture.channels.size());
+    Imf::FrameBuffer buffer;
+    for (size_t i = 0; i < picture.channels.size(); ++i) {
+        const LayeredPicture::Channel& channel = picture.channels[i];
+        if (channel.half) {
+            halves[i].assign(channel.values.begin(), channel.values.end());
+            buffer.insert(channel.name, Imf::Slice::Make(Imf::HALF, halves[i].data(), window));
+        } else {
+            buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
+        }
+    }
+    Imf::OutputFile file(stream, header, std::min(Imf::globalThreadCount(), most_threads_of_a_file));
+    file.setFrameBuffer(buffer);
+    file.writePixels(picture.height);
+}
+
+}  // namespace
+
+void set_exr_threads(int threads) {
+    Imf::setGlobalThreadCount(threads);
+}
+
+void write_exr(const std::string& path, const LayeredPicture& picture) {
+    check(picture);
+    AtomicFile target(path);
+    CheckedStream stream(target.temporary());
+    try {
+        write_pixels(stream, picture);
+    } catch (const std::exception& failure) {
+        if (stream.error_number() == 0) throw file_error(path, "write", std::string(failure.what()));
+    }
+    stream.close();
+    if (stream.error_number() != 0) throw file_error(path, "write", stream.error_number());
+    target.commit();
+}
+
+}  // namespace cistula

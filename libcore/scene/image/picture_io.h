@@ -1,0 +1,18 @@
+// Textures in, previews out, whatever the format.
+#pragma once
+
+#include <string>
+
+#include "scene/image/picture.h"
+
+namespace cistula {
+
+/// Reads a texture as linear RGB. OpenEXR (by extension or by content) and the seed's .data and .out are read by every
+/// build, other formats through OpenImageIO. Integer samples are decoded from sRGB, floating-point ones are linear.
+/// Every texel is finite and not negative. Throws Error(ExitCode::file).
+ColorPicture read_texture(const std::string& path);
+
+/// Writes a PNG, whole or not at all: clamped to [0, 1], sRGB, 8 bits. Throws Error(ExitCode::file).
+void write_preview(const std::string& path, const ColorPicture& linear);
+
+}  // namespace cistula

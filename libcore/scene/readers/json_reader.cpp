@@ -1,0 +1,215 @@
+#include "scene/readers/json_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "scene/base/error.h"
+#include "scene/base/suggest.h"
+
+namespace cistula {
+namespace {
+
+/// False where `json` is no number in range. -0 becomes 0, so that equal scenes are equal bits.
+bool number_from(const Json& json, const Range& range, double& value) {
+    if (!json.is_number()) return false;
+    value = json.get<double>() + 0.0;
+    return range.contains(value);
+}
+
+template <int n>
+bool numbers_from(const Json& json, const Range& range, glm::vec<n, double, glm::defaultp>& value) {
+    if (!json.is_array() || json.size() != n) return false;
+    for (int i = 0; i < n; ++i)
+        if (!number_from(json[static_cast<size_t>(i)], range, value[i])) return false;
+    return true;
+}
+
+/// Says which of the n numbers is at fault where only one can be.
+template <int n>
+glm::vec<n, double, glm::defaultp> numbers_of(const JsonValue& value, const Key& key) {
+    glm::vec<n, double, glm::defaultp> numbers{0};
+    if (numbers_from<n>(value.json(), key.range, numbers)) return numbers;
+    if (!value.json().is_array() || value.json().size() != n) value.fail_expected(expected_text(key));
+    const Key element{key.name, KeyType::number, key.range, {}, false, {}};
+    for (int i = 0; i < n; ++i) numbers[i] = value.item(static_cast<size_t>(i)).number(element);
+    return numbers;
+}
+
+}  // namespace
+
+std::string found_text(const Json& json) {
+    constexpr size_t longest = 40;
+    if (json.is_object()) return json.empty() ? "an empty object" : "an object";
+    if (json.is_array()) return json.empty() ? "an empty array" : fmt::format("an array of {}", json.size());
+    if (json.is_number_float()) return number_text(json.get<double>());
+    if (!json.is_string()) return json.dump();
+    const std::string& text = json.get_ref<const std::string&>();
+    if (text.empty()) return "an empty string";
+    return "'" + (text.size() <= longest ? text : text.substr(0, longest) + "...") + "'";
+}
+
+JsonValue JsonValue::item(size_t index) const {
+    return {(*json_)[index], *source_, fmt::format("{}/{}", place_, index)};
+}
+
+JsonValue JsonValue::member(const std::string& key) const {
+    return {json_->at(key), *source_, place_of(key)};
+}
+
+std::string JsonValue::place_of(std::string_view key) const {
+    std::string place = place_ + "/";
+    for (const char c : key) {  // RFC 6901
+        if (c == '~')
+            place += "~0";
+        else if (c == '/')
+            place += "~1";
+        else
+            place += c;
+    }
+    return place;
+}
+
+void JsonValue::check_comment() const {
+    const auto found = json_->find(std::string(comment_key));
+    if (found == json_->end() || found->is_string()) return;
+    if (!found->is_array() ||
+        !std::all_of(found->begin(), found->end(), [](const Json& line) { return line.is_string(); }))
+        member(std::string(comment_key)).fail_expected("a string or an array of strings");
+}
+
+void JsonValue::fail_at(const std::string& place, const std::string& message) const {
+    throw Error(ExitCode::usage,
+                one_line(fmt::format("{}: {}: {}", *source_, place.empty() ? "/" : place.c_str(), message)));
+}
+
+void JsonValue::fail_expected(const std::string& expected) const {
+    fail(fmt::format("expected {}, found {}", expected, found_text(*json_)));
+}
+
+size_t JsonValue::array_size(size_t least, const std::string& expected) const {
+    if (!json_->is_array() || json_->size() < least) fail_expected(expected);
+    return json_->size();
+}
+
+double JsonValue::number(const Key& key) const {
+    double value = 0;
+    if (number_from(*json_, key.range, value)) return value;
+    fail_expected("a number " + std::string(key.range.above ? "" : "from ") + range_text(key.range));
+}
+
+int64_t JsonValue::whole(const Key& key) const {
+    double value = 0;
+    if (number_from(*json_, key.range, value) && value == std::floor(value)) return static_cast<int64_t>(value);
+    fail_expected(expected_text(key));
+}
+
+bool JsonValue::boolean(const Key& key) const {
+    if (!json_->is_boolean()) fail_expected(expected_text(key));
+    return json_->get<bool>();
+}
+
+const std::string& JsonValue::text(const Key& key) const {
+    if (!json_->is_string() || json_->get_ref<const std::string&>().empty()) fail_expected(expected_text(key));
+    return json_->get_ref<const std::string&>();
+}
+
+int JsonValue::choice(const Key& key) const {
+    if (!json_->is_string()) fail_expected(expected_text(key));
+    const std::string& name = json_->get_ref<const std::string&>();
+    for (size_t i = 0; i < key.choices.size(); ++i)
+        if (key.choices[i] == name) return static_cast<int>(i);
+    fail(fmt::format("unknown value {}; {}", found_text(*json_),
+                     suggestion(name, {key.choices.begin(), key.choices.end()}, "values")));
+}
+
+glm::dvec3 JsonValue::color(const Key& key) const {
+    double gray = 0;
+    if (number_from(*json_, key.range, gray)) return glm::dvec3{gray};
+    return numbers_of<3>(*this, key);
+}
+
+glm::dvec3 JsonValue::point(const Key& key) const {
+    return numbers_of<3>(*this, key);
+}
+
+glm::dvec2 JsonValue::pair(const Key& key) const {
+    return numbers_of<2>(*this, key);
+}
+
+JsonObject::JsonObject(JsonValue value, const KeyTable& table) : value_(std::move(value)), table_(table) {
+    if (table.keys.size() > 64) throw std::logic_error("a key table holds at most 64 keys");
+    if (!value_.json().is_object()) value_.fail_expected("an object");
+    value_.check_comment();
+    for (const auto& member : value_.json().items())
+        if (member.key() != comment_key && !table.find(member.key()))
+            value_.fail_at(value_.place_of(member.key()),
+                           "unknown key; " + suggestion(member.key(), table.names(), "keys"));
+    for (const Key& key : table.keys)
+        if (key.required && !value_.json().contains(key.name))
+            value_.fail(fmt::format("missing key '{}'{}", key.name,
+                                    key.type == KeyType::other ? "" : ": expected " + expected_text(key)));
+}
+
+const Key& JsonObject::key_of(std::string_view name) {
+    for (size_t i = 0; i < table_.keys.size(); ++i) {
+        if (table_.keys[i].name != name) continue;
+        asked_ |= uint64_t{1} << i;
+        return table_.keys[i];
+    }
+    throw std::logic_error(fmt::format("the table '{}' has no key '{}'", table_.name, name));
+}
+
+const Json* JsonObject::json_of(std::string_view name) {
+    key_of(name);
+    const auto found = value_.json().find(std::string(name));
+    return found == value_.json().end() ? nullptr : &*found;
+}
+
+JsonValue JsonObject::at(std::string_view key) {
+    key_of(key);
+    return value_.member(std::string(key));
+}
+
+void JsonObject::read(std::string_view key, double& value) {
+    if (has(key)) value = at(key).number(key_of(key));
+}
+void JsonObject::read(std::string_view key, int& value) {
+    if (has(key)) value = static_cast<int>(at(key).whole(key_of(key)));
+}
+void JsonObject::read(std::string_view key, bool& value) {
+    if (has(key)) value = at(key).boolean(key_of(key));
+}
+void JsonObject::read(std::string_view key, std::string& value) {
+    if (has(key)) value = at(key).text(key_of(key));
+}
+void JsonObject::read(std::string_view key, glm::dvec3& value) {
+    if (has(key)) value = key_of(key).type == KeyType::color ? at(key).color(key_of(key)) : at(key).point(key_of(key));
+}
+void JsonObject::read(std::string_view key, glm::dvec2& value) {
+    if (has(key)) value = at(key).pair(key_of(key));
+}
+void JsonObject::read(std::string_view key, std::optional<glm::dvec3>& value) {
+    if (has(key)) read(key, value.emplace());
+}
+void JsonObject::read(std::string_view key, std::optional<double>& value) {
+    if (has(key)) read(key, value.emplace());
+}
+
+int JsonObject::read_choice(std::string_view key) {
+    return has(key) ? at(key).choice(key_of(key)) : -1;
+}
+
+void JsonObject::fail(std::string_view key, const std::string& message) const {
+    value_.fail_at(value_.place_of(key), message);
+}
+
+void JsonObject::finish() const {
+    const size_t count = table_.keys.size();
+    const uint64_t all = count == 64 ? ~uint64_t{0} : (uint64_t{1} << count) - 1;
+    if (asked_ != all) throw std::logic_error(fmt::format("a key of the table '{}' is never read", table_.name));
+}
+
+}  // namespace cistula

@@ -1,0 +1,127 @@
+// Text to a tree of JSON, with what nlohmann's own tree builder leaves out: duplicate keys are errors, and every error
+// has a line and a column or a place.
+#include <algorithm>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "scene/base/error.h"
+#include "scene/base/suggest.h"
+#include "scene/readers/json_reader.h"
+
+namespace cistula {
+namespace {
+
+/// nlohmann's message without its own prefix, and with what was read last cut to its end.
+std::string plain_message(std::string message) {
+    if (const size_t bracket = message.find("] "); message.starts_with("[json.exception.") && bracket != message.npos)
+        message.erase(0, bracket + 2);
+    if (message.starts_with("parse error at "))
+        if (const size_t colon = message.find(": "); colon != message.npos) message.erase(0, colon + 2);
+    constexpr std::string_view opening = "last read: '";
+    constexpr size_t longest = 40;
+    const size_t start = message.find(opening);
+    const size_t end = message.rfind('\'');
+    if (start != message.npos && end > start + opening.size() + longest) {
+        const size_t first = start + opening.size();
+        message.replace(first, end - first - longest, "...");
+    }
+    return message;
+}
+
+class TreeBuilder final : public nlohmann::json_sax<Json> {
+  public:
+    TreeBuilder(const std::string& text, const std::string& source) : text_(text), source_(source) {}
+
+    Json take() { return std::move(root_); }
+
+    bool null() override { return add(nullptr); }
+    bool boolean(bool value) override { return add(value); }
+    bool number_integer(number_integer_t value) override { return add(value); }
+    bool number_unsigned(number_unsigned_t value) override { return add(value); }
+    bool number_float(number_float_t value, const string_t&) override { return add(value); }
+    bool string(string_t& value) override { return add(std::move(value)); }
+    bool binary(binary_t&) override { return false; }  // JSON text holds none
+
+    bool start_object(std::size_t) override {
+        open(Json::object());
+        names_.emplace_back();
+        return true;
+    }
+    bool key(string_t& name) override {
+        auto& members = open_.back()->get_ref<Json::object_t&>();
+        members.emplace_back(name, Json());
+        if (!names_.back().insert(name).second)
+            throw Error(ExitCode::usage,
+                        one_line(fmt::format("{}: {}: duplicate key; give it once", source_, place())));
+        return true;
+    }
+    bool end_object() override {
+        open_.pop_back();
+        names_.pop_back();
+        return true;
+    }
+    bool start_array(std::size_t) override {
+        open(Json::array());
+        return true;
+    }
+    bool end_array() override {
+        open_.pop_back();
+        return true;
+    }
+
+    bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
+        const size_t at = std::min(position == 0 ? 0 : position - 1, text_.size());
+        const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<ptrdiff_t>(at), '\n');
+        const size_t line_start = at == 0 ? 0 : text_.rfind('\n', at - 1) + 1;  // npos + 1 is 0
+        throw Error(ExitCode::usage, one_line(fmt::format("{}:{}:{}: {}", source_, line, at - line_start + 1,
+                                                          plain_message(error.what()))));
+    }
+
+  private:
+    Json& slot(Json value) {
+        if (open_.empty()) return root_ = std::move(value);
+        Json& parent = *open_.back();
+        if (parent.is_array()) {
+            parent.push_back(std::move(value));
+            return parent.back();
+        }
+        return parent.get_ref<Json::object_t&>().back().second = std::move(value);
+    }
+    template <class Value>
+    bool add(Value&& value) {
+        slot(Json(std::forward<Value>(value)));
+        return true;
+    }
+    void open(Json container) { open_.push_back(&slot(std::move(container))); }
+
+    std::string place() const {
+        std::string path;
+        for (Json* level : open_) {
+            if (level->is_array())
+                path += fmt::format("/{}", level->size() - 1);
+            else
+                path += "/" + level->get_ref<Json::object_t&>().back().first;
+        }
+        return path;
+    }
+
+    const std::string& text_;
+    const std::string& source_;
+    Json root_;
+    std::vector<Json*> open_;  // from the root inward; what they point to moves only once it is closed
+    std::vector<std::unordered_set<std::string>> names_;
+};
+
+}  // namespace
+
+Json parse_json(const std::string& text, const std::string& source) {
+    TreeBuilder builder(text, source);
+    constexpr bool strict = true, ignore_comments = true;
+    Json::sax_parse(text, &builder, Json::input_format_t::json, strict, ignore_comments);
+    return builder.take();
+}
+
+}  // namespace cistula

@@ -1,0 +1,22 @@
+// Four points in space to two triangles.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "scene/description/description.h"
+
+namespace cistula {
+
+/// How far a quad may be from a plane, and how blunt its corners, relative to its longer diagonal.
+inline constexpr double quad_tolerance = 1e-6;
+
+/// What is wrong with the corners, nothing where they make a planar and strictly convex quad.
+std::optional<std::string> quad_problem(const std::array<glm::dvec3, 4>& corners);
+
+/// Triangles (0, 1, 2) and (0, 2, 3); the corners' uv are (0, 0), (1, 0), (1, 1), (0, 1), so a texture's top row runs
+/// from the first corner to the second.
+TrianglesObject quad_triangles(const std::array<glm::dvec3, 4>& corners);
+
+}  // namespace cistula

@@ -1,0 +1,224 @@
+#include "scene/readers/read_json.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "scene/base/suggest.h"
+#include "scene/readers/json_reader.h"
+
+namespace cistula {
+namespace {
+
+using NameIndices = std::unordered_map<std::string, int>;
+
+// Sums that should be 1 may come out a little above it in decimal.
+constexpr double share_slack = 1e-6;
+
+FilmDescription read_film(const JsonValue& value) {
+    FilmDescription film;
+    JsonObject keys(value, film_keys);
+    keys.read("width", film.width);
+    keys.read("height", film.height);
+    keys.read("frames", film.frames);
+    keys.read("supersample", film.supersample);
+    keys.finish();
+    return film;
+}
+
+CylindricalPath read_cylindrical(const JsonValue& value) {
+    CylindricalPath path;
+    JsonObject keys(value, cylindrical_keys);
+    keys.read("r0", path.r0);
+    keys.read("z0", path.z0);
+    keys.read("phi0", path.phi0);
+    keys.read("Ar", path.Ar);
+    keys.read("Az", path.Az);
+    keys.read("wr", path.wr);
+    keys.read("wz", path.wz);
+    keys.read("wphi", path.wphi);
+    keys.read("pr", path.pr);
+    keys.read("pz", path.pz);
+    keys.finish();
+    return path;
+}
+
+CameraDescription read_camera(const JsonValue& value) {
+    CameraDescription camera;
+    JsonObject keys(value, camera_keys);
+    keys.read("position", camera.position);
+    keys.read("target", camera.target);
+    keys.read("up", camera.up);
+    keys.read("fov", camera.field_of_view);
+    keys.read("time_step", camera.time_step);
+    if (keys.has("path")) {
+        JsonObject path(keys.at("path"), path_keys);
+        if (path.has("position")) camera.position_path = read_cylindrical(path.at("position"));
+        if (path.has("target")) camera.target_path = read_cylindrical(path.at("target"));
+        if (!camera.position_path && !camera.target_path)
+            path.value().fail("expected a path for 'position', for 'target' or for both");
+        path.finish();
+    }
+    if (camera.position_path && keys.has("position"))
+        keys.fail("position", "the path gives the position already; leave out one of the two");
+    if (camera.target_path && keys.has("target"))
+        keys.fail("target", "the path gives the target already; leave out one of the two");
+    if (camera.up == glm::dvec3{0}) keys.fail("up", "expected a direction other than [0, 0, 0]");
+    if (!camera.position_path && !camera.target_path && camera.position == camera.target)
+        keys.fail("target", "the camera's position and target coincide; move one of them");
+    keys.finish();
+    return camera;
+}
+
+TextureDescription read_texture(const JsonValue& value, const std::string& base_dir) {
+    TextureDescription texture;
+    const bool is_object = value.json().is_object();
+    const bool has_file = is_object && value.json().contains("file");
+    const bool has_checker = is_object && value.json().contains("checker");
+    if (has_file && has_checker) value.fail("expected one of 'file' and 'checker', found both");
+    if (is_object && !has_file && !has_checker) {
+        const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat"};
+        for (const auto& member : value.json().items())
+            if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
+                value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
+        value.fail("expected one of the keys 'file' and 'checker'");
+    }
+    if (!has_checker) {
+        JsonObject keys(value, texture_file_keys);
+        keys.read("file", texture.file);
+        texture.file = file_beside_scene(texture.file, base_dir);
+        if (const int filter = keys.read_choice("filter"); filter >= 0) texture.bilinear = filter == 1;
+        keys.read("repeat", texture.repeat);
+        keys.finish();
+        return texture;
+    }
+    JsonObject keys(value, texture_checker_keys);
+    const JsonValue colors = keys.at("checker");
+    if (colors.array_size(2, "an array of two colors") != 2) colors.fail_expected("an array of two colors");
+    const Key& color = *material_keys.find("color");
+    texture.checker = {colors.item(0).color(color), colors.item(1).color(color)};
+    texture.bilinear = false;
+    keys.read("repeat", texture.repeat);
+    keys.finish();
+    return texture;
+}
+
+MaterialDescription read_material(const JsonValue& value, const NameIndices& textures) {
+    MaterialDescription material;
+    JsonObject keys(value, material_keys);
+    keys.read("color", material.color);
+    if (keys.has("texture")) material.texture = index_of_name(keys.at("texture"), textures, "texture");
+    keys.read("ambient", material.ambient);
+    keys.read("diffuse", material.diffuse);
+    keys.read("specular", material.specular);
+    keys.read("specular_color", material.specular_color);
+    keys.read("exponent", material.exponent);
+    keys.read("reflection", material.reflection);
+    keys.read("transmission", material.transmission);
+    keys.read("tint", material.tint);
+    keys.read("index", material.index);
+    keys.read("absorption", material.absorption);
+    keys.read("fresnel", material.fresnel);
+    keys.finish();
+    const double shares = material.reflection + material.transmission;
+    if (shares > 1 + share_slack)
+        value.fail(fmt::format("reflection + transmission is {}; expected at most 1", number_text(shares)));
+    return material;
+}
+
+LightDescription read_light(const JsonValue& value) {
+    LightDescription light;
+    JsonObject keys(value, light_keys);
+    keys.read("position", light.position);
+    keys.read("color", light.color);
+    keys.read("glow", light.glow);
+    keys.read("radius", light.radius);
+    light.falloff = keys.read_choice("falloff") == 1;
+    keys.finish();
+    if (light.falloff && light.radius == 0)
+        keys.fail("falloff", "inverse-square needs a 'radius' above 0, within which it stays constant");
+    light.place = value.place();
+    return light;
+}
+
+FrameOfReference read_frame(const JsonValue& value) {
+    FrameOfReference frame;
+    JsonObject keys(value, frame_keys);
+    keys.read("center", frame.center);
+    keys.read("scale", frame.scale);
+    keys.read("bound", frame.bound);
+    keys.finish();
+    return frame;
+}
+
+/// Calls read(name, value) for every member of an object whose keys are names, but for its comment.
+template <class Read>
+void for_each_name(const JsonValue& value, const std::string& kind, Read read) {
+    if (!value.json().is_object()) value.fail_expected(fmt::format("an object of {}s by name", kind));
+    value.check_comment();
+    for (const auto& member : value.json().items()) {
+        if (member.key() == comment_key) continue;
+        if (member.key().empty()) value.fail_at(value.place_of(""), fmt::format("a {}'s name is not empty", kind));
+        read(member.key(), value.member(member.key()));
+    }
+}
+
+}  // namespace
+
+std::string file_beside_scene(const std::string& file, const std::string& base_dir) {
+    if (base_dir.empty()) return file;
+    return (std::filesystem::path(base_dir) / file).string();  // an absolute file replaces the folder
+}
+
+int index_of_name(const JsonValue& value, const NameIndices& indices, const std::string& kind) {
+    if (!value.json().is_string()) value.fail_expected(fmt::format("the name of a {}", kind));
+    const std::string& name = value.json().get_ref<const std::string&>();
+    const auto found = indices.find(name);
+    if (found != indices.end()) return found->second;
+    std::vector<std::string_view> known(indices.size());
+    for (const auto& [other, index] : indices) known[static_cast<size_t>(index)] = other;
+    value.fail(fmt::format("unknown {} {}; {}", kind, found_text(value.json()), suggestion(name, known, kind + "s")));
+}
+
+SceneDescription read_json_scene(const std::string& text, const std::string& label, const std::string& base_dir) {
+    const Json json = parse_json(text, label);
+    const JsonValue value(json, label);
+    SceneDescription scene;
+    JsonObject keys(value, scene_keys);
+    std::string schema;
+    keys.read("$schema", schema);
+    keys.read("depth", scene.depth);
+    keys.read("cutoff", scene.cutoff);
+    keys.read("ambient", scene.ambient);
+    keys.read("background", scene.background);
+    if (keys.has("film")) scene.film = read_film(keys.at("film"));
+    if (keys.has("camera")) scene.camera = read_camera(keys.at("camera"));
+    if (keys.has("frame")) scene.frame = read_frame(keys.at("frame"));
+    NameIndices textures, materials;
+    if (keys.has("textures"))
+        for_each_name(keys.at("textures"), "texture", [&](const std::string& name, const JsonValue& texture) {
+            textures[name] = static_cast<int>(scene.textures.size());
+            scene.textures.push_back(read_texture(texture, base_dir));
+            scene.textures.back().name = name;
+        });
+    if (keys.has("materials"))
+        for_each_name(keys.at("materials"), "material", [&](const std::string& name, const JsonValue& material) {
+            materials[name] = static_cast<int>(scene.materials.size());
+            scene.materials.push_back(read_material(material, textures));
+            scene.materials.back().name = name;
+        });
+    const JsonValue objects = keys.at("objects");
+    const ObjectContext context{scene, materials, base_dir};
+    const size_t object_count = objects.array_size(0, "an array of objects");
+    for (size_t i = 0; i < object_count; ++i) scene.objects.push_back(read_json_object(objects.item(i), context));
+    if (keys.has("lights")) {
+        const JsonValue lights = keys.at("lights");
+        const size_t light_count = lights.array_size(0, "an array of lights");
+        for (size_t i = 0; i < light_count; ++i) scene.lights.push_back(read_light(lights.item(i)));
+    }
+    keys.finish();
+    return scene;
+}
+
+}  // namespace cistula

@@ -1,0 +1,172 @@
+// The elements of "objects": solids, quads, triangle lists and mesh files.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "scene/base/suggest.h"
+#include "scene/readers/json_reader.h"
+#include "scene/readers/quad.h"
+#include "scene/readers/read_json.h"
+
+namespace cistula {
+namespace {
+
+const Key& vertex_key() {
+    return *solid_keys.find("center");
+}
+
+void read_common(JsonObject& keys, const ObjectContext& context, ObjectDescription& object) {
+    keys.read("name", object.name);
+    if (keys.has("material")) object.material = index_of_name(keys.at("material"), context.materials, "material");
+}
+
+/// Textures need uv, which solids and triangle lists without "uvs" do not have.
+void refuse_texture(JsonObject& keys, const ObjectContext& context, const ObjectDescription& object,
+                    const std::string& reason) {
+    const MaterialDescription& material = context.scene.materials[static_cast<size_t>(object.material)];
+    if (material.texture >= 0)
+        keys.fail("material", fmt::format("the material '{}' has a texture, but {}", material.name, reason));
+}
+
+EdgeLights read_edge_lights(const JsonValue& value) {
+    EdgeLights lights;
+    JsonObject keys(value, edge_lights_keys);
+    keys.read("count", lights.count);
+    keys.read("color", lights.color);
+    keys.read("glow", lights.glow);
+    keys.read("radius", lights.radius);
+    lights.falloff = keys.read_choice("falloff") == 1;
+    keys.finish();
+    if (lights.falloff && lights.radius == 0)
+        keys.fail("falloff", "inverse-square needs a 'radius' above 0, within which it stays constant");
+    return lights;
+}
+
+void read_solid(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
+    SolidObject solid;
+    JsonObject keys(value, solid_keys);
+    read_common(keys, context, object);
+    solid.solid = static_cast<PlatonicSolid>(keys.read_choice("solid"));
+    keys.read("center", solid.center);
+    keys.read("radius", solid.radius);
+    keys.read("rotate", solid.rotation);
+    if (keys.has("edge_lights")) solid.edge_lights = read_edge_lights(keys.at("edge_lights"));
+    keys.finish();
+    refuse_texture(keys, context, object, "a solid has no uv for it; use triangles with 'uvs' or a mesh");
+    object.shape = solid;
+}
+
+void read_quad(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
+    JsonObject keys(value, quad_keys);
+    read_common(keys, context, object);
+    const JsonValue points = keys.at("quad");
+    const std::string expected = "an array of four points [x, y, z]";
+    if (points.array_size(4, expected) != 4) points.fail_expected(expected);
+    std::array<glm::dvec3, 4> corners;
+    for (size_t i = 0; i < 4; ++i) corners[i] = points.item(i).point(vertex_key());
+    if (const auto problem = quad_problem(corners)) points.fail(*problem);
+    keys.finish();
+    object.shape = quad_triangles(corners);
+}
+
+TrianglesObject read_triangle_list(const JsonValue& value) {
+    constexpr Key uv_key{"uvs", KeyType::pair, {-1e6, 1e6}, {}, false, {}};
+    TrianglesObject list;
+    JsonObject keys(value, triangle_list_keys);
+
+    const JsonValue vertices = keys.at("vertices");
+    const size_t vertex_count = vertices.array_size(3, "an array of at least three points [x, y, z]");
+    list.vertices.reserve(vertex_count);
+    for (size_t i = 0; i < vertex_count; ++i) list.vertices.push_back(vertices.item(i).point(vertex_key()));
+
+    const JsonValue indices = keys.at("indices");
+    const std::string expected = "three indices of vertices [i, j, k]";
+    const Key index_key{"indices", KeyType::whole, {0, static_cast<double>(vertex_count - 1)}, {}, false, {}};
+    const size_t triangle_count = indices.array_size(1, "an array of at least one triangle [i, j, k]");
+    list.triangles.reserve(triangle_count);
+    for (size_t i = 0; i < triangle_count; ++i) {
+        const JsonValue triangle = indices.item(i);
+        if (triangle.array_size(3, expected) != 3) triangle.fail_expected(expected);
+        auto& corners = list.triangles.emplace_back();
+        for (size_t corner = 0; corner < 3; ++corner)
+            corners[corner] = static_cast<uint32_t>(triangle.item(corner).whole(index_key));
+    }
+
+    if (keys.has("uvs")) {
+        const JsonValue uvs = keys.at("uvs");
+        const std::string one_each = fmt::format("an array of {} pairs [u, v], one a vertex", vertex_count);
+        if (uvs.array_size(0, one_each) != vertex_count) uvs.fail_expected(one_each);
+        list.uvs.reserve(vertex_count);
+        for (size_t i = 0; i < vertex_count; ++i) list.uvs.push_back(uvs.item(i).pair(uv_key));
+    }
+    keys.finish();
+    return list;
+}
+
+void read_triangles(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
+    JsonObject keys(value, triangles_keys);
+    read_common(keys, context, object);
+    TrianglesObject list = read_triangle_list(keys.at("triangles"));
+    keys.finish();
+    if (list.uvs.empty()) refuse_texture(keys, context, object, "the triangles have no 'uvs'");
+    object.shape = std::move(list);
+}
+
+void read_mesh(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
+    MeshObject mesh;
+    JsonObject keys(value, mesh_keys);
+    read_common(keys, context, object);
+    keys.read("mesh", mesh.file);
+    mesh.file = file_beside_scene(mesh.file, context.base_dir);
+    keys.read("center", mesh.center);
+    keys.read("scale", mesh.scale);
+    keys.read("rotate", mesh.rotation);
+    keys.finish();
+    object.shape = mesh;
+}
+
+struct Form {
+    const char* key;  // the key that tells the form
+    const KeyTable& keys;
+    void (*read)(const JsonValue&, const ObjectContext&, ObjectDescription&);
+};
+
+const Form forms[] = {
+    {"solid", solid_keys, read_solid},
+    {"quad", quad_keys, read_quad},
+    {"triangles", triangles_keys, read_triangles},
+    {"mesh", mesh_keys, read_mesh},
+};
+
+/// An object that has the key of no form: most likely it is misspelled.
+[[noreturn]] void fail_without_form(const JsonValue& value) {
+    std::vector<std::string_view> known;
+    for (const Form& form : forms)
+        for (const std::string_view name : form.keys.names())
+            if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+    for (const auto& member : value.json().items())
+        if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
+            value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
+    value.fail("expected one of the keys 'solid', 'quad', 'triangles' and 'mesh'");
+}
+
+}  // namespace
+
+ObjectDescription read_json_object(const JsonValue& value, const ObjectContext& context) {
+    if (!value.json().is_object()) value.fail_expected("an object");
+    const Form* chosen = nullptr;
+    for (const Form& form : forms) {
+        if (!value.json().contains(form.key)) continue;
+        if (chosen)
+            value.fail(fmt::format("expected one of 'solid', 'quad', 'triangles' and 'mesh', found both '{}' and '{}'",
+                                   chosen->key, form.key));
+        chosen = &form;
+    }
+    if (!chosen) fail_without_form(value);
+    ObjectDescription object;
+    object.place = value.place();
+    chosen->read(value, context, object);
+    return object;
+}
+
+}  // namespace cistula

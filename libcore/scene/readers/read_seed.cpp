@@ -1,0 +1,205 @@
+#include "scene/readers/read_seed.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "scene/readers/quad.h"
+#include "scene/readers/read_json.h"
+#include "scene/readers/seed_tokens.h"
+
+namespace cistula {
+namespace {
+
+// Where the input is silent, the public programs of its family.
+constexpr double ambient_light = 0.5;
+constexpr double phong_exponent = 110;
+constexpr double glass_index = 1.5;
+constexpr double floor_reflection = 0.5;
+constexpr double seen_radius = 0.1;  // a ray that passes a light closer than this returned white
+constexpr double share_slack = 1e-6;
+constexpr Range light_count{0, 100000};
+
+struct SeedSolid {
+    PlatonicSolid solid;
+    const char* name;
+    double edge;  // length of an edge where the circumscribed sphere has radius 1
+};
+
+constexpr SeedSolid seed_solids[] = {
+    {PlatonicSolid::octahedron, "octahedron", 1.4142135623730951},
+    {PlatonicSolid::dodecahedron, "dodecahedron", 0.7136441795461798},
+    {PlatonicSolid::icosahedron, "icosahedron", 1.0514622242382672},
+};
+
+const Range& range_of(const KeyTable& table, std::string_view key) {
+    return table.find(key)->range;
+}
+
+glm::dvec3 read_point(SeedTokens& tokens, const std::string& what) {
+    const Range& range = range_of(solid_keys, "center");
+    glm::dvec3 point;
+    point.x = tokens.number(what + " x", range);
+    point.y = tokens.number(what + " y", range);
+    point.z = tokens.number(what + " z", range);
+    return point;
+}
+
+glm::dvec3 read_color(SeedTokens& tokens, const std::string& what) {
+    const Range& range = range_of(material_keys, "color");
+    glm::dvec3 color;
+    color.r = tokens.number(what + " red", range);
+    color.g = tokens.number(what + " green", range);
+    color.b = tokens.number(what + " blue", range);
+    return color;
+}
+
+CylindricalPath read_path(SeedTokens& tokens, const std::string& what) {
+    CylindricalPath path;
+    const std::pair<const char*, double*> numbers[] = {
+        {"r0", &path.r0}, {"z0", &path.z0}, {"phi0", &path.phi0}, {"Ar", &path.Ar}, {"Az", &path.Az},
+        {"wr", &path.wr}, {"wz", &path.wz}, {"wphi", &path.wphi}, {"pr", &path.pr}, {"pz", &path.pz}};
+    for (const auto& [name, number] : numbers)
+        *number = tokens.number(what + " " + name, range_of(cylindrical_keys, name));
+    return path;
+}
+
+/// One "%d" or "%04d", nothing else that begins with a percent sign.
+bool is_pattern(std::string_view pattern) {
+    const size_t percent = pattern.find('%');
+    if (percent == std::string_view::npos || pattern.find('%', percent + 1) != std::string_view::npos) return false;
+    std::string_view rest = pattern.substr(percent + 1);
+    if (rest.size() > 2 && rest[0] == '0' && rest[1] >= '1' && rest[1] <= '9') rest.remove_prefix(2);
+    return rest.starts_with('d');
+}
+
+/// Apart enough that neighbors on an edge stay points: at most a quarter of their distance.
+EdgeLights edge_lights(int count, double edge_length) {
+    EdgeLights lights;
+    lights.count = count;
+    if (count > 0) lights.radius = std::min(seen_radius, edge_length / (count + 1) / 4);
+    return lights;
+}
+
+void read_solid(SeedTokens& tokens, const SeedSolid& seed, SceneDescription& scene) {
+    const std::string name = seed.name;
+    if (tokens.words_on_new_line() == 11) {
+        tokens.word(name);
+        tokens.fail(tokens.line(), fmt::format("expected 9 or 10 numbers for the {}, found 11", name));
+    }
+    SolidObject solid;
+    solid.solid = seed.solid;
+    solid.center = read_point(tokens, name + " center");
+    ObjectDescription object;
+    object.place = fmt::format("line {}", tokens.line());
+    object.name = name;
+    object.material = static_cast<int>(scene.materials.size());
+    MaterialDescription material;
+    material.name = name;
+    material.color = material.specular_color = read_color(tokens, name + " color");
+    material.specular = 1;
+    material.exponent = phong_exponent;
+    material.index = glass_index;
+    solid.radius = tokens.number(name + " radius", range_of(solid_keys, "radius"));
+    material.reflection = tokens.number(name + " reflection", range_of(material_keys, "reflection"));
+    material.transmission = tokens.number(name + " transmission", range_of(material_keys, "transmission"));
+    const double shares = material.reflection + material.transmission;
+    if (shares > 1 + share_slack)
+        tokens.fail(tokens.line(),
+                    fmt::format("{} reflection + transmission is {}; expected at most 1", name, number_text(shares)));
+    if (tokens.one_more_on_line()) {
+        const int count = tokens.whole(name + " lights on each edge", range_of(edge_lights_keys, "count"));
+        solid.edge_lights = edge_lights(count, seed.edge * solid.radius);
+    }
+    object.shape = solid;
+    scene.materials.push_back(material);
+    scene.objects.push_back(object);
+}
+
+void read_floor(SeedTokens& tokens, SceneDescription& scene) {
+    std::array<glm::dvec3, 4> corners;
+    ObjectDescription object;
+    for (size_t i = 0; i < corners.size(); ++i) {
+        corners[i] = read_point(tokens, fmt::format("floor corner {}", i + 1));
+        if (i == 0) object.place = fmt::format("line {}", tokens.line());
+    }
+    if (const auto problem = quad_problem(corners)) tokens.fail(tokens.line(), "floor: " + *problem);
+    MaterialDescription material;
+    material.name = object.name = "floor";
+    material.color = glm::dvec3{1};
+    material.texture = 0;
+    material.specular = 1;
+    material.exponent = phong_exponent;
+    material.reflection = floor_reflection;
+    object.material = static_cast<int>(scene.materials.size());
+    object.shape = quad_triangles(corners);
+    scene.materials.push_back(material);
+    scene.objects.push_back(object);
+}
+
+void read_lights(SeedTokens& tokens, SceneDescription& scene) {
+    const int count = tokens.whole("number of lights", light_count);
+    for (int i = 1; i <= count; ++i) {
+        LightDescription light;
+        const std::string name = fmt::format("light {}", i);
+        light.position = read_point(tokens, name + " position");
+        light.place = fmt::format("line {}", tokens.line());
+        light.color = read_color(tokens, name + " color");
+        light.glow = glm::dvec3{1};
+        light.radius = seen_radius;
+        scene.lights.push_back(light);
+    }
+}
+
+}  // namespace
+
+SceneDescription read_seed_scene(const std::string& text, const std::string& label, const std::string& base_dir) {
+    SeedTokens tokens(text, label);
+    SceneDescription scene;
+    scene.seed_format = true;
+    scene.ambient = glm::dvec3{ambient_light};
+    scene.film.frames = tokens.whole("number of frames", range_of(film_keys, "frames"));
+    TextureDescription texture;
+    texture.name = "floor";
+    texture.file = file_beside_scene(std::string(tokens.word("the floor's texture file")), base_dir);
+    scene.textures.push_back(texture);
+    scene.film.output = tokens.word("the output pattern with %d");
+    if (!is_pattern(scene.film.output))
+        tokens.fail(tokens.line(),
+                    fmt::format("expected an output pattern with one %d, found '{}'", scene.film.output));
+    scene.film.width = tokens.whole("picture width", range_of(film_keys, "width"));
+    scene.film.height = tokens.whole("picture height", range_of(film_keys, "height"));
+    scene.camera.field_of_view = tokens.number("horizontal field of view", range_of(camera_keys, "fov"));
+    scene.camera.position_path = read_path(tokens, "camera");
+    scene.camera.target_path = read_path(tokens, "target");
+    for (const SeedSolid& solid : seed_solids) read_solid(tokens, solid, scene);
+    read_floor(tokens, scene);
+    read_lights(tokens, scene);
+    scene.depth = tokens.whole("depth", range_of(scene_keys, "depth"));
+    scene.film.supersample = tokens.whole("supersampling k", range_of(film_keys, "supersample"));
+    tokens.finish();
+    return scene;
+}
+
+std::string seed_template() {
+    return R"(300
+floor.data
+frames/frame%d.out
+1280 720 120
+6.0 5.0 0.0 2.0 1.0 0.05 0.1 0.05 0.0 0.0
+3.0 0.0 3.1415926 1.5 0.5 0.03 0.07 0.02 0.0 0.0
+-2.5 2.5 2 0.9843 0.4745 0.0156 2.25 0.1 0.6
+2.5 2.5 2 0.49 0.3216 0.0078 1.732 0.1 0.6
+2.5 -2.5 2 0.949 0.773 0.05 2.118 0.1 0.6
+-5 -5 0
+5 -5 0
+5 5 0
+-5 5 0
+2
+-4 4 3 1 1 1
+5 0 4 1 1 1
+4 3
+)";
+}
+
+}  // namespace cistula

@@ -1,0 +1,55 @@
+// Trees of boxes from Embree's builder. Inside libcore/scene.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cistula/model/scene_view.h"
+#include "scene/base/box.h"
+#include "scene/trees/embree_handles.h"
+
+namespace cistula {
+
+/// A box and its number, rounded outward to float and pushed out by `pad`.
+RTCBuildPrimitive padded_primitive(const Box& box, double pad, uint32_t number);
+
+/// Items in groups of at most eight neighbors: group g is order[first[g]] to order[first[g + 1] - 1], ascending.
+struct Groups {
+    std::vector<uint32_t> order, first;
+    uint32_t size() const { return first.empty() ? 0 : static_cast<uint32_t>(first.size()) - 1; }
+};
+/// The same from run to run. Reorders `primitives`.
+Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives);
+
+struct Tree {
+    std::vector<TreeNode> nodes;
+    std::vector<uint32_t> items;
+};
+/// A binary tree whose leaves hold one or two items; primitive i stands for item i. At most max_tree_depth deep.
+/// quality 0: quick, 1: the builder's best without splitting primitives. Reorders `primitives`.
+Tree build_tree(std::vector<RTCBuildPrimitive>& primitives, int quality);
+
+/// Calls visit(item) for the items whose leaf's box meets `box`.
+template <class Visit>
+void for_each_in_box(const Tree& tree, const Box& box, const Visit& visit) {
+    if (tree.nodes.empty()) return;
+    int32_t stack[max_tree_depth + 1] = {0};
+    int size = 1;
+    while (size > 0) {
+        const TreeNode& node = tree.nodes[static_cast<size_t>(stack[--size])];
+        for (int side = 0; side < 2; ++side) {
+            bool apart = false;
+            for (int axis = 0; axis < 3; ++axis)
+                apart |= node.low[side][axis] > box.high[axis] || node.high[side][axis] < box.low[axis];
+            if (apart) continue;
+            const int32_t child = node.child[side];
+            if (child >= 0) {
+                stack[size++] = child;
+            } else {
+                for (uint32_t i = 0; i < node.count[side]; ++i) visit(tree.items[static_cast<size_t>(~child) + i]);
+            }
+        }
+    }
+}
+
+}  // namespace cistula

@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <utility>
+
+#include "scene/compile/frame.h"
+#include "scene/description/platonic.h"
+#include "scene/description/rotation.h"
+#include "scene/readers/quad.h"
+#include "testing/generated_mesh.h"
+#include "testing/generated_parts.h"
+
+namespace cistula::generated {
+namespace {
+
+/// The mirror image of a solid beyond one of its faces, whose corners are exactly the same.
+TrianglesObject beyond_face(const SolidObject& solid, const PlatonicShape::Face& face) {
+    TrianglesObject mesh = triangulated_solid(solid);
+    const dvec3 normal = Rotation(solid.rotation)(face.normal), on = mesh.vertices[face.vertices[0]];
+    for (uint32_t i = 0; i < mesh.vertices.size(); ++i)
+        if (std::find(face.vertices.begin(), face.vertices.end(), i) == face.vertices.end())
+            mesh.vertices[i] -= 2 * dot(normal, mesh.vertices[i] - on) * normal;
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+    return mesh;
+}
+
+class Objects : Part {
+  public:
+    explicit Objects(State& state) : Part(state), materials_(state), shapes_(state) {}
+
+    void add_surroundings() {
+        if (random_.chance(0.65))
+            add(quad_triangles(
+                    {dvec3{-5, -5, floor_height}, {5, -5, floor_height}, {5, 5, floor_height}, {-5, 5, floor_height}}),
+                false);
+        if (random_.chance(0.2)) add(quad_triangles({dvec3{-4, 4, -1}, {4, 4, -1}, {4, 5, 4}, {-4, 5, 4}}), false);
+        const double sheets = random_.unit();
+        if (sheets < 0.08) {
+            const auto count = static_cast<uint32_t>(random_.of({8, 40, 300}));
+            const double size = random_.between(0.3, 2);
+            heavy_ = count > 100;
+            add(placed(triangle_soup(count, size, random_.below(1000)), dvec3(0), 2, dvec3(0)), true);
+        } else if (sheets < 0.16) {
+            TrianglesObject bowl = torus(1.5, 0.6, 16, 8);
+            bowl.triangles.resize(bowl.triangles.size() / 2);
+            const dvec3 center = random_.in_cube(0.5);
+            add(placed(std::move(bowl), center, 1, shapes_.degrees()), true);
+        } else if (sheets < 0.24) {
+            TrianglesObject pane;  // a fan, across what stands there
+            pane.vertices = {{0, 0.1, 0}, {2, 0, -0.9}, {1.2, 0.3, 2}, {-1, 0, 2.2}, {-2.1, -0.2, 0.3}};
+            pane.uvs = {{0.5, 0.5}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+            pane.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
+            const dvec3 center = random_.in_cube(0.3);
+            add(placed(std::move(pane), center, 1, dvec3(0, 0, random_.between(0, 90))), true);
+        }
+    }
+
+    void add_groups() {
+        if (random_.chance(0.25)) return add_apart();
+        const dvec3 places[] = {{-1.7, -1, 0}, {1.7, -1, 0}, {0, 1.9, 0}};
+        const uint32_t count = 1 + random_.below(3), first = random_.below(3);
+        const bool mixed = random_.chance(0.4);
+        uint32_t theme = random_.below(10);
+        for (uint32_t i = 0; i < count; ++i) {
+            const dvec3 center = count == 1 ? dvec3(0) : places[(first + i) % 3];
+            centers_.push_back(center);
+            if (mixed) theme = random_.below(10);
+            if (theme < 3)
+                add_nested(center);
+            else if (theme < 7)
+                add_touching(center);
+            else if (theme < 8)
+                add_overlapping(center);
+            else
+                add(shapes_.closed_mesh(center, random_.between(0.8, 1.1)), true);
+        }
+    }
+
+  private:
+    void add(Shape shape, bool see_through) {
+        bool textured = false;
+        if (auto* triangles = std::get_if<TrianglesObject>(&shape)) {
+            if (triangles->uvs.empty() && random_.chance(0.4))
+                for (const dvec3& p : triangles->vertices) triangles->uvs.emplace_back(p.x, p.y + 0.5 * p.z);
+            textured = !triangles->uvs.empty();
+        } else if (auto* solid = std::get_if<SolidObject>(&shape)) {
+            if (edge_lights_left_ > 0 && random_.chance(0.15) && !heavy_) add_edge_lights(solid->edge_lights);
+        }
+        ObjectDescription object;
+        object.name = "object " + std::to_string(scene_.objects.size());
+        object.material =
+            reused_ >= 0 && !textured && random_.chance(0.2) ? reused_ : materials_.add(see_through, textured);
+        if (scene_.materials[static_cast<size_t>(object.material)].texture < 0) reused_ = object.material;
+        object.shape = std::move(shape);
+        scene_.objects.push_back(std::move(object));
+    }
+
+    /// By its planes, or else as a mesh.
+    void add_of(bool planes, const SolidObject& solid) {
+        add(planes ? Shape(solid) : Shape(triangulated_solid(solid)), true);
+    }
+
+    void add_edge_lights(EdgeLights& lights) {
+        --edge_lights_left_;
+        lights.count = 1 + static_cast<int>(random_.below(2));
+        lights.color = random_.chance(0.15) ? dvec3(0) : random_.color_times({0.05, 0.2});
+        if (palette_ < Palette::lamps || random_.chance(0.2)) return;
+        lights.radius = random_.of({0.02, 0.06});
+        if (random_.chance(0.6)) lights.glow = random_.color();
+        lights.falloff = random_.chance(0.4);
+    }
+
+    /// Convex solids that do not touch, in a grid: more than a plain loop takes, or fewer.
+    void add_apart() {
+        const uint32_t nx = 2 + random_.below(3), ny = 1 + random_.below(3), nz = 1 + random_.below(2);
+        const bool lattice = random_.chance(0.3);
+        reach_ = 0.6;
+        for (uint32_t x = 0; x < nx; ++x)
+            for (uint32_t y = 0; y < ny; ++y)
+                for (uint32_t z = 0; z < nz; ++z) {
+                    dvec3 center = 1.3 * dvec3(x - 0.5 * (nx - 1), y - 0.5 * (ny - 1), z);
+                    if (!lattice) center += random_.in_cube(0.1);
+                    const SolidObject s = shapes_.solid(center, random_.between(0.2, 0.52));
+                    cores_.push_back({s.center, s.radius});
+                    centers_.push_back(s.center);
+                    add(s, true);
+                }
+    }
+
+    void add_nested(const dvec3& center) {
+        const uint32_t count = 2 + random_.below(3);
+        double radius = random_.between(0.9, 1.2);
+        dvec3 at = center;
+        for (uint32_t i = 0; i < count; ++i) {
+            Shape shape = shapes_.closed(at, radius);
+            if (const auto* s = std::get_if<SolidObject>(&shape)) {
+                cores_.push_back({at, radius});
+                radius *= 0.95 * platonic_shape(s->solid).inradius;
+            } else {
+                radius *= 0.45;
+            }
+            if (random_.chance(0.3)) at += random_.in_cube(0.3 * radius);
+            add(std::move(shape), true);
+        }
+    }
+
+    void add_overlapping(const dvec3& center) {
+        const uint32_t count = 2 + random_.below(3);
+        for (uint32_t i = 0; i < count; ++i) {
+            const dvec3 at = center + random_.in_cube(0.4);
+            add(shapes_.closed(at, random_.between(0.5, 0.9)), true);
+        }
+    }
+
+    void add_touching(const dvec3& center) {
+        switch (random_.below(7)) {
+            case 0: {  // a row of cubes, cut along one diagonal or the other
+                const dvec3 turn = shapes_.degrees();
+                const double radius = 0.6, step = 2 * radius * platonic_shape(PlatonicSolid::cube).inradius;
+                const dvec3 along = Rotation(turn)(dvec3(step, 0, 0));
+                const uint32_t count = 2 + random_.below(2);
+                for (uint32_t i = 0; i < count; ++i) {
+                    const dvec3 turned = turn + dvec3(random_.of({0, 90}), 0, 0);
+                    const SolidObject s = cube(center + (i - 0.5 * (count - 1)) * along, radius, turned);
+                    add_of(random_.chance(0.6), s);
+                }
+                break;
+            }
+            case 1:
+            case 2: {  // a solid and its mirror image beyond a face
+                const SolidObject s = shapes_.solid(center, 0.7);
+                const auto& faces = platonic_shape(s.solid).faces;
+                TrianglesObject twin = beyond_face(s, faces[random_.below(static_cast<uint32_t>(faces.size()))]);
+                const bool planes = random_.chance(0.5), twin_first = random_.chance(0.5);
+                if (twin_first) add(twin, true);
+                add_of(planes, s);
+                if (!twin_first) add(std::move(twin), true);
+                break;
+            }
+            case 3: {  // two in the same place
+                const SolidObject s = shapes_.solid(center, 0.9);
+                add(s, true);
+                add_of(random_.chance(0.5), s);
+                break;
+            }
+            case 4: {  // faces in one plane that overlap in part
+                SolidObject s = shapes_.solid(center, 0.7);
+                const auto& shape = platonic_shape(s.solid);
+                const dvec3 normal = Rotation(s.rotation)(shape.faces.back().normal);
+                cores_.push_back({s.center, s.radius});
+                add(s, true);
+                s.center += 2 * s.radius * shape.inradius * normal;
+                add(s, true);
+                break;
+            }
+            case 5: {  // cubes that lie on the floor and on one another
+                const double half = platonic_shape(PlatonicSolid::cube).inradius;
+                const double lower = random_.between(0.7, 1.1), upper = random_.between(0.3, 0.7);
+                const dvec3 on_floor = center + dvec3(0, 0, floor_height + lower * half);
+                add(cube(on_floor, lower, dvec3(0)), true);
+                add(cube(on_floor + dvec3(0.1, 0, (lower + upper) * half), upper, dvec3(0, 0, 30)), true);
+                break;
+            }
+            default: {  // corners on the faces, or on the corners, of what is around
+                const dvec3 turn = shapes_.degrees();
+                const double half = platonic_shape(PlatonicSolid::cube).inradius;
+                const bool octahedron = random_.chance(0.5);
+                SolidObject inner = cube(center, octahedron ? half : 1, turn);
+                inner.solid = octahedron ? PlatonicSolid::octahedron : PlatonicSolid::tetrahedron;
+                add(cube(center, 1, turn), true);
+                add_of(random_.chance(0.5), inner);
+            }
+        }
+    }
+
+    Materials materials_;
+    Shapes shapes_;
+    int reused_ = -1;           // a material without a texture
+    int edge_lights_left_ = 2;  // solids that may still carry them
+};
+
+}  // namespace
+
+void add_objects(State& state) {
+    Objects objects(state);
+    objects.add_surroundings();
+    objects.add_groups();
+}
+
+}  // namespace cistula::generated

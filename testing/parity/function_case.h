@@ -1,0 +1,54 @@
+// A case of the function parity check: what it returns, as words that can be compared.
+#pragma once
+
+#include "cistula/numerics/double_double.h"
+#include "testing/draw/draw.h"
+
+namespace cistula::parity {
+
+/// Takes the bits of a case's outputs. All NaNs count as one: IEEE 754 leaves their sign and payload open, x86 and
+/// NVIDIA differ in them, and no image holds one.
+class Words {
+  public:
+    CISTULA_HD explicit Words(uint64_t* out) : out_(out) {}
+
+    CISTULA_HD void bits(uint64_t word) { out_[count_++] = word; }
+    template <class Real>
+    CISTULA_HD void real(Real x) {
+        bits(x == x ? uint64_t(bits_as<typename Layout<Real>::Bits>(x)) : 0x7ff8000000000000u);
+    }
+    /// For values whose zero may have either sign, as of a greatest or least over several: consumers do not see it.
+    template <class Real>
+    CISTULA_HD void unsigned_zero(Real x) {
+        real(x == Real(0) ? Real(0) : x);
+    }
+    template <class Real>
+    CISTULA_HD void vec(const Vec3<Real>& v) {
+        for (int k = 0; k < 3; ++k) real(v[k]);
+    }
+    CISTULA_HD void pair(const DoubleDouble& a) {
+        real(a.high);
+        real(a.low);
+    }
+    CISTULA_HD int count() const { return count_; }
+
+  private:
+    uint64_t* out_;
+    int count_ = 0;
+};
+
+inline constexpr int most_words = 16;
+
+/// Case, a functor: `name`, `Number` (float or double), `words`, `Input`, make(Draw&) and run(Input, Words&).
+template <class Case>
+CISTULA_HD inline void run_case(uint64_t index, uint64_t seed, uint64_t* out) {
+    Draw draw(index, seed);
+    const typename Case::Input input = Case::make(draw);
+    Words words(out);
+    Case::run(input, words);
+}
+
+template <class... Cases>
+struct CaseList {};
+
+}  // namespace cistula::parity

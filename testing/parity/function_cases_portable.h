@@ -1,0 +1,78 @@
+// Function parity, portable.h: what the device computes by instructions of its own.
+#pragma once
+
+#include "testing/parity/function_case.h"
+
+namespace cistula::parity {
+
+/// Where reciprocal() is correctly rounded: powers of two, both included.
+inline constexpr int reciprocal_range = 120;
+
+template <class Real>
+struct ReciprocalCase {
+    static constexpr const char* name = "reciprocal";
+    using Number = Real;
+    struct Input {
+        Real x;
+    };
+    static constexpr int words = 1;
+    CISTULA_HD static Real size(Draw& draw) {
+        constexpr int last = reciprocal_range;
+        switch (draw.below(4)) {
+            case 0:
+                return magnitude(draw.scaled<Real>(-2, 1));
+            case 1:  // around powers of two, where quotients are hardest to round
+                return draw.near(two_to<Real>(draw.between(1 - last, last - 1)), 8);
+            case 2:  // the ends
+                return draw.one_in(2) ? stepped(two_to<Real>(-last), draw.between(0, 3))
+                                      : stepped(two_to<Real>(last), draw.between(-3, 0));
+            default:
+                return magnitude(draw.scaled<Real>(-last, last - 1));
+        }
+    }
+    CISTULA_HD static Input make(Draw& draw) {
+        const Real x = size(draw);
+        return {draw.one_in(2) ? -x : x};
+    }
+    CISTULA_HD static void run(const Input& in, Words& out) { out.real(reciprocal(in.x)); }
+};
+
+/// Not NaN and not both zero.
+template <class Real>
+struct LesserGreaterCase {
+    static constexpr const char* name = "lesser_greater";
+    using Number = Real;
+    struct Input {
+        Real a, b;
+    };
+    static constexpr int words = 2;
+    CISTULA_HD static Real number(Draw& draw) {
+        const Real x = draw.any<Real>();
+        return x == x ? x : Real(draw.between(-2, 2));
+    }
+    CISTULA_HD static Input make(Draw& draw) {
+        Input in;
+        in.a = number(draw);
+        in.b = number(draw);
+        const int steps = draw.between(-1, 1);
+        const bool finite = in.a - in.a == Real(0), zero = in.a == Real(0);
+        switch (draw.below(4)) {
+            case 0:  // equal, or neighbors
+                if (finite && !zero) in.b = stepped(in.a, steps);
+                break;
+            case 1:
+                in.b = -in.a;
+                break;
+            default:
+                break;
+        }
+        if (in.a == Real(0) && in.b == Real(0)) in.b = two_to<Real>(draw.between(-Layout<Real>::bias, 1));
+        return in;
+    }
+    CISTULA_HD static void run(const Input& in, Words& out) {
+        out.real(lesser(in.a, in.b));
+        out.real(greater(in.a, in.b));
+    }
+};
+
+}  // namespace cistula::parity

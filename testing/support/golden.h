@@ -1,0 +1,62 @@
+// The golden images: which there are, and how make_golden and the tests render and compare them.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/common/golden.h"
+#include "backend_embree/embree/embree_renderer.h"
+#include "scene/film/film_picture.h"
+#include "scene/readers/read_scene.h"
+
+namespace cistula::golden {
+
+template <class Real>
+Film render_brute(const SceneDescription& description) {
+    const auto renderer = make_host_renderer<Real>(compile_scene<Real>(description), HostIntersector::brute);
+    return render_with(*renderer, description, settings_for(description));
+}
+
+template <class Real>
+Film render_embree(const SceneDescription& description, const EmbreeOptions& options = {}) {
+    const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(description), options);
+    return render_with(*renderer, description, settings_for(description));
+}
+
+/// The largest difference of R, G and B between two pictures of one size, and where it is.
+struct Difference {
+    double worst = 0;
+    std::string channel;
+    int x = 0, y = 0;
+    size_t differing = 0;
+};
+
+inline Difference compare(const LayeredPicture& a, const LayeredPicture& b, bool colors_only) {
+    Difference result;
+    for (const auto& channel : a.channels) {
+        if (colors_only && channel.name != "R" && channel.name != "G" && channel.name != "B") continue;
+        const auto other =
+            std::find_if(b.channels.begin(), b.channels.end(), [&](const auto& c) { return c.name == channel.name; });
+        if (other == b.channels.end() || other->values.size() != channel.values.size()) {
+            result.differing += channel.values.size();
+            continue;
+        }
+        for (size_t i = 0; i < channel.values.size(); ++i) {
+            const float x = channel.values[i], y = other->values[i];
+            if (bits_as<uint32_t>(x) == bits_as<uint32_t>(y)) continue;
+            ++result.differing;
+            const double difference = x > y ? double(x) - y : double(y) - x;
+            if (difference > result.worst)
+                result = {difference, channel.name, int(i) % a.width, int(i) / a.width, result.differing};
+        }
+    }
+    return result;
+}
+
+}  // namespace cistula::golden
