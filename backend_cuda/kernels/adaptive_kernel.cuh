@@ -179,7 +179,8 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
     PixelRecord& taken = memory.get().records[threadIdx.x];
     typename Stack::Storage branches;
     Stack stack(branches, JobStop{job.stop});
-    const typename PathTraits<Real, path>::Intersector intersector{scene};
+    using Intersector = typename PathTraits<Real, path>::Intersector;
+    const Intersector intersector{scene};
     const bool gradual = shades_gradually(scene);
     WarpPixels pixels(job);
     for (;;) {
@@ -187,7 +188,8 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
         const bool ends = stack.stopped();  // asked ahead: the answer takes a while
         const bool any = pixels.take_samples([&](int x, int y, LatticeStorage& pixel, int slot, PixelRecord& record) {
             const uint32_t hash =
-                take_sample<Real, E>(scene, job.frame, intersector, x, y, slot, gradual, taken, own, stack);
+                take_sample(PixelTask<E, Intersector, Stack>{scene, job.frame, intersector, x, y, own, stack}, slot,
+                            gradual, taken);
             pixel.samples[slot].keep(taken, hash);
             AtomicAdd()(record.rays, taken.rays);
             if (LatticePixel::is_chosen(job.frame.lattice, slot)) choose_sample(taken, record);

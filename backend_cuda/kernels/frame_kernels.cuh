@@ -38,7 +38,9 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     PixelRecord& record = block_storage.records[threadIdx.x];
     typename Stack::Storage branches;
     Stack stack(branches, JobStop{job.stop});
-    const auto intersector = PathTraits<Real, path>::intersector(scene, block.in_view);
+    using Intersector = typename PathTraits<Real, path>::Intersector;
+    const Intersector intersector = PathTraits<Real, path>::intersector(scene, block.in_view);
+    const PixelTask<E, Intersector, Stack> task{scene, job.frame, intersector, job.x + column, job.y + row, own, stack};
     const bool is_inside = column < job.width && row < job.height;
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);
@@ -47,8 +49,7 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
         // constants that are fetched.
         if (round != 0) __syncthreads();
         const int i = round + (shares ? warp : 0);
-        if (is_inside && i < samples)
-            add_sample<Real, E>(scene, job.frame, intersector, job.x + column, job.y + row, i, record, own, stack);
+        if (is_inside && i < samples) add_sample(task, i, record);
     }
     if (is_inside) end_pixel(record, own);
     __syncthreads();

@@ -83,6 +83,11 @@ class FrameTask {
     template <class E>
     using Stack = StoppableStack<StackOf<Real, E, Media>, RenderStop>;
 
+    template <class E>
+    PixelTask<E, Intersector, Stack<E>> task_for(int x, int y, PixelWork& own, Stack<E>& stack) const {
+        return {scene_, frame_, intersector_, x, y, own, stack};
+    }
+
     bool stopped() const { return progress_.stop.load(std::memory_order_relaxed); }
 
     template <int mask>
@@ -91,7 +96,7 @@ class FrameTask {
         return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
             typename Stack<E>::Storage storage;
             Stack<E> stack(storage, RenderStop{progress_.stop});
-            render_pixel<Real, E>(scene_, frame_, intersector_, x, y, SampleRange(), pixel, own, stack);
+            render_pixel(task_for<E>(x, y, own, stack), SampleRange(), pixel);
         });
     }
 
@@ -101,7 +106,7 @@ class FrameTask {
         return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
             typename Stack<E>::Storage storage;
             Stack<E> stack(storage, RenderStop{progress_.stop});
-            render_adaptive_pixel<Real, E>(scene_, frame_, intersector_, x, y, gradual, pixel, own, stack);
+            render_adaptive_pixel(task_for<E>(x, y, own, stack), gradual, pixel);
         });
     }
 

@@ -128,8 +128,9 @@ PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real
         SampleRecorder<Real, Intersector> recorder(reader, tree.record, work, tree);
         const ObservedIntersector<Real, Intersector> observed{intersector, recorder};
         ObservedStack<Real, Intersector> stack(recorder);
-        render_pixel<Real, BranchEffects>(scene, frame, observed, x, y, SampleRange{sample, k * k}, tree.record, work,
-                                          stack);
+        const PixelTask<BranchEffects, ObservedIntersector<Real, Intersector>, ObservedStack<Real, Intersector>> task{
+            scene, frame, observed, x, y, work, stack};
+        render_pixel(task, SampleRange{sample, k * k}, tree.record);
         tree.rays = work.rays;
         PixelBranch& primary = tree.branches.front();
         const Vec3<double> direction =

@@ -92,8 +92,9 @@ void expect_same_with_mask(const SceneDescription& scene, const std::string& wha
         Stack stack(storage);
         PixelWork work;
         PixelRecord record;
-        render_adaptive_pixel<Real, E>(view, frame, intersector, i % film.rect.width, i / film.rect.width,
-                                       shades_gradually(view), record, work, stack);
+        const PixelTask<E, BruteIntersector<Real>, Stack> task{
+            view, frame, intersector, i % film.rect.width, i / film.rect.width, work, stack};
+        render_adaptive_pixel(task, shades_gradually(view), record);
         film.pixels[size_t(i)] = record;
         film.rays.add(work.rays);
         samples += record.samples;

@@ -31,8 +31,9 @@ void render_shared(const Scene& scene, const FrameView& frame, const Intersector
             Stack stack(storage);
             PixelRecord part;
             PixelWork work;
-            render_pixel<Real, E>(scene, frame, intersector, film.rect.x + i % width, film.rect.y + i / width,
-                                  SampleRange{thread, threads}, part, work, stack);
+            const PixelTask<E, Intersector, Stack> task{
+                scene, frame, intersector, film.rect.x + i % width, film.rect.y + i / width, work, stack};
+            render_pixel(task, SampleRange{thread, threads}, part);
             film.rays.add(work.rays);
             film.flags |= work.flags;
             if (thread == 0)

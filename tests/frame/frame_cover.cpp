@@ -42,12 +42,12 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
                 using Stack = StackOf<Real, E, MediaList>;
                 typename Stack::Storage storage;
                 Stack stack(storage);
+                const PixelTask<E, BvhIntersector<Real>, Stack> task{view,       frame, intersector, rect.x + x,
+                                                                     rect.y + y, work,  stack};
                 if (settings.adaptive())
-                    render_adaptive_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, gradual, record,
-                                                   work, stack);
+                    render_adaptive_pixel(task, gradual, record);
                 else
-                    render_pixel<Real, E>(view, frame, intersector, rect.x + x, rect.y + y, SampleRange(), record, work,
-                                          stack);
+                    render_pixel(task, SampleRange(), record);
                 const bool is_background = test::same_bytes(record, hints.background.record);
                 share.all += 1;
                 share.background += is_background;

@@ -7,24 +7,27 @@
 
 namespace cistula {
 
-/// Takes sample `slot` of pixel (px, py) into `record`, and gives its path hash. A tree of more than most_branches is
-/// walked again with four times the budget, and so on: the ledger says so. `gradual`: shades_gradually(scene), found
-/// once. `work` is the thread's own.
-template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE uint32_t take_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
-                                    int py, int slot, bool gradual, PixelRecord& record, PixelWork& work,
-                                    Stack& stack) {
-    const uint32_t before = work.rays.total();
-    TreeSettings settings = frame.tree;
+/// Takes sample `slot` of a pixel into `record`, and gives its path hash. A tree of more than most_branches is
+/// followed again with four times the budget, and so on: the ledger says so. `gradual`: shades_gradually(scene), found
+/// once. The task's work is the thread's own.
+template <class E, class Intersector, class Stack>
+CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task, int slot, bool gradual,
+                                    PixelRecord& record) {
+    using Real = typename PixelTask<E, Intersector, Stack>::Real;
+    using Hashing = HashingStack<Stack, Real>;
+    const uint32_t before = task.work.rays.total();
+    TreeSettings settings = task.frame.tree;
     for (;; settings.budget = 4 * greatest(settings.budget, int64_t(1))) {
         begin_pixel(record);
         PathHash hash;
-        HashingStack<Stack, Real> hashing(stack, hash, Real(frame.lattice.significant));
-        render_sample<Real, E>(scene, frame, settings, HashingIntersector<Intersector>{intersector, hash, gradual}, px,
-                               py, slot % lattice_side, slot / lattice_side, true, record, work, hashing);
-        record.rays = work.rays.total() - before;
-        if (!hashing.drop()) return hash.value;
-        if (stack.stopped()) return hash.value;
+        Hashing stack(task.stack, hash, Real(task.frame.lattice.significant));
+        const HashingIntersector<Intersector> intersector{task.intersector, hash, gradual};
+        const PixelTask<E, HashingIntersector<Intersector>, Hashing> hashed{task.scene, task.frame, intersector, task.x,
+                                                                            task.y,     task.work,  stack};
+        render_sample(hashed, settings, {slot % lattice_side, slot / lattice_side, true}, record);
+        record.rays = task.work.rays.total() - before;
+        if (!stack.drop()) return hash.value;
+        if (task.stack.stopped()) return hash.value;
     }
 }
 
@@ -60,14 +63,12 @@ CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, PixelReco
     record.unmet = pixel.unmet();
 }
 
-/// Renders pixel (px, py) of a frame with a target error.
-template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void render_adaptive_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector,
-                                          int px, int py, bool gradual, PixelRecord& record, PixelWork& work,
-                                          Stack& stack) {
-    sample_adaptively(frame.lattice, record, [&](int slot, PixelRecord& taken) {
-        return take_sample<Real, E>(scene, frame, intersector, px, py, slot, gradual, taken, work, stack);
-    });
+/// Renders a pixel of a frame with a target error.
+template <class E, class Intersector, class Stack>
+CISTULA_INLINE void render_adaptive_pixel(const PixelTask<E, Intersector, Stack>& task, bool gradual,
+                                          PixelRecord& record) {
+    sample_adaptively(task.frame.lattice, record,
+                      [&](int slot, PixelRecord& taken) { return take_sample(task, slot, gradual, taken); });
 }
 
 }  // namespace cistula

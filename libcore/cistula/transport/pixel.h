@@ -122,36 +122,59 @@ struct FirstSeen {
     }
 };
 
+/// A pixel under way: what all of its samples share. E: the effects that are compiled in.
+template <class E, class Intersector, class Stack>
+struct PixelTask {
+    using Scene = typename Intersector::Scene;
+    using Real = typename Scene::Scalar;
+    using Media = typename Intersector::Media;
+
+    const Scene& scene;
+    const FrameView& frame;
+    const Intersector& intersector;
+    int x, y;         // the pixel, in the full frame
+    PixelWork& work;  // of the pixel, or of the thread
+    Stack& stack;
+};
+
 /// Which of a pixel's samples are rendered: all, or every step-th where several threads share a pixel.
 struct SampleRange {
     int first = 0, step = 1;
 };
 
-/// Sample (column, row) of the k x k grid of pixel (px, py), added to the record. `settings`: frame.tree, or a budget
-/// of the sample's own.
-template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void render_sample(const Scene& scene, const FrameView& frame, const TreeSettings& settings,
-                                  const Intersector& intersector, int px, int py, int column, int row, bool middle,
-                                  PixelRecord& record, PixelWork& work, Stack& stack) {
+/// A sample of a pixel's k x k grid.
+struct GridSample {
+    int column, row;
+    bool middle;  // stands for the pixel where no mean makes sense
+};
+
+/// Adds a sample to the record. `settings`: frame.tree, or a budget of the sample's own.
+template <class E, class Intersector, class Stack>
+CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, const TreeSettings& settings,
+                                  const GridSample& sample, PixelRecord& record) {
+    using Task = PixelTask<E, Intersector, Stack>;
+    using Real = typename Task::Real;
+    const FrameView& frame = task.frame;
     const int k = frame.supersample;
-    Ray<Real, typename Intersector::Media> ray;
+    Ray<Real, typename Task::Media> ray;
     // In half samples from the middle of the picture.
-    const int across = 2 * (px * k + column) + 1 - frame.width * k;
-    const int down = 2 * (py * k + row) + 1 - frame.height * k;
+    const int across = 2 * (task.x * k + sample.column) + 1 - frame.width * k;
+    const int down = 2 * (task.y * k + sample.row) + 1 - frame.height * k;
     const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
-    PixelSums<Real> sums(settings, scene, record, work.flags);
-    ++work.rays.primary;
+    PixelSums<Real> sums(settings, task.scene, record, task.work.flags);
+    ++task.work.rays.primary;
     double start;
-    if (!primary_ray(scene, frame, direction, ray, start)) {
-        sums.add(scene.background);
+    if (!primary_ray(task.scene, frame, direction, ray, start)) {
+        sums.add(task.scene.background);
         return;
     }
-    if (middle) {
-        work.start = start;
-        work.facing = dot(direction, frame.camera.forward);
+    if (sample.middle) {
+        task.work.start = start;
+        task.work.facing = dot(direction, frame.camera.forward);
     }
-    RayTree<Real, E, Intersector, Stack> tree(scene, intersector, settings.depth, sums, work.rays, stack);
-    tree.trace(ray, FirstSeen<Real>{frame, work, record, middle});
+    RayTree<Real, E, Intersector, Stack> tree(task.scene, task.intersector, settings.depth, sums, task.work.rays,
+                                              task.stack);
+    tree.trace(ray, FirstSeen<Real>{frame, task.work, record, sample.middle});
 }
 
 /// A pixel's record before its first sample, and after its last.
@@ -164,23 +187,21 @@ CISTULA_INLINE void end_pixel(PixelRecord& record, const PixelWork& work) {
     record.samples = work.rays.primary;
 }
 
-/// Sample i of pixel (px, py), row by row of its k x k grid.
-template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void add_sample(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
-                               int py, int i, PixelRecord& record, PixelWork& work, Stack& stack) {
-    const int k = frame.supersample, row = k == 1 ? 0 : i / k, column = i - row * k;
-    render_sample<Real, E>(scene, frame, frame.tree, intersector, px, py, column, row, column == k / 2 && row == k / 2,
-                           record, work, stack);
+/// Adds sample i, row by row of the k x k grid, to the record.
+template <class E, class Intersector, class Stack>
+CISTULA_INLINE void add_sample(const PixelTask<E, Intersector, Stack>& task, int i, PixelRecord& record) {
+    const int k = task.frame.supersample, row = k == 1 ? 0 : i / k, column = i - row * k;
+    render_sample(task, task.frame.tree, {column, row, column == k / 2 && row == k / 2}, record);
 }
 
-/// Samples of pixel (px, py), of the k x k grid of centers. `work` is the pixel's own.
-template <class Real, class E, class Intersector, class Stack, class Scene>
-CISTULA_INLINE void render_pixel(const Scene& scene, const FrameView& frame, const Intersector& intersector, int px,
-                                 int py, SampleRange samples, PixelRecord& record, PixelWork& work, Stack& stack) {
+/// Renders samples of a pixel's k x k grid of centers into its record.
+template <class E, class Intersector, class Stack>
+CISTULA_INLINE void render_pixel(const PixelTask<E, Intersector, Stack>& task, SampleRange samples,
+                                 PixelRecord& record) {
     begin_pixel(record);
-    for (int i = samples.first; i < frame.supersample * frame.supersample; i += samples.step)
-        add_sample<Real, E>(scene, frame, intersector, px, py, i, record, work, stack);
-    end_pixel(record, work);
+    for (int i = samples.first; i < task.frame.supersample * task.frame.supersample; i += samples.step)
+        add_sample(task, i, record);
+    end_pixel(record, task.work);
 }
 
 }  // namespace cistula
