@@ -13,7 +13,13 @@ NAME  := $(basename $(notdir $(SCENE)))
 
 # $(call setup,LISTS): the Debian packages of these lists; $(call configure,PRESET)
 setup = $(if $(filter no,$(SETUP)),@true,@cmake/install-packages $(1))
-configure = @cmake/configure $(1) $(CMAKE_ARGS)
+configure = @cmake/configure $(1) $(2) $(CMAKE_ARGS)
+
+# `make render` compiles kernels only where there is a GPU, with CUDA=yes, or in a folder that was configured for them before.
+CUDA   ?=
+no_kernels = $(if $(findstring CISTULA_WITH_CUDA,$(CMAKE_ARGS))$(filter yes,$(CUDA)),,$(shell \
+    nvidia-smi -L >/dev/null 2>&1 || { [ -e $(BUILD)/.configured ] && ! grep -q WITH_CUDA=OFF $(BUILD)/.configured; } || \
+    echo -DCISTULA_WITH_CUDA=OFF))
 
 .DEFAULT_GOAL := help
 .PHONY: help render build test test-quick test-asan test-report lint check-all bench gpu-check golden install cuda-toolkit clean
@@ -24,7 +30,7 @@ help: ## this list
 
 render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
 	$(call setup,packages.txt)
-	$(call configure,$(PRESET))
+	$(call configure,$(PRESET),$(no_kernels))
 	@cmake --build $(BUILD) --target render
 	@mkdir -p out
 	$(BUILD)/bin/render $(SCENE) --backend embree -o out/$(NAME).exr --preview out/$(NAME).png

@@ -30,12 +30,14 @@ struct RenderStop {
     bool operator()() const { return flag.load(std::memory_order_relaxed); }
 };
 
-/// Whether an intersector runs with the mask that the scene calls for. The device's traversal runs here to be tested
-/// only: with all effects, which spares the compiler the other masks.
+/// Whether an intersector runs with the mask that the scene calls for. The device's traversal and the plain loop over a
+/// SceneView run here as references: with all effects, which spares the compiler the other masks.
 template <class Intersector>
 inline constexpr bool runs_every_mask = true;
 template <class Real>
 inline constexpr bool runs_every_mask<BvhIntersector<Real>> = false;
+template <class Real>
+inline constexpr bool runs_every_mask<BruteIntersector<Real>> = false;
 
 /// One frame on the host.
 template <class Real, class Intersector>
@@ -58,7 +60,8 @@ class FrameTask {
         prepare_film(film, settings, compiled, camera);
         if (!camera_solids(scene_, intersector, frame_.camera.position, frame_.camera_media))
             film.flags |= flag_media_overflow;
-        mask_ = runs_every_mask<Intersector> ? mask_to_run(compiled.effects, settings, frame_) : effect_mask_count - 1;
+        mask_ = mask_to_run(compiled.effects, settings, frame_);
+        if (!runs_every_mask<Intersector> && mask_ != unshadowed_mask) mask_ = effect_mask_count - 1;
     }
 
     /// The effects that run: the least mask that contains what the scene and the settings ask for.
@@ -68,7 +71,8 @@ class FrameTask {
     bool run() {
         if (settings_.adaptive()) return render_adaptive();
         if constexpr (!runs_every_mask<Intersector>) {
-            return render_uniform<effect_mask_count - 1>();
+            return mask_ == unshadowed_mask ? render_uniform<unshadowed_mask>()
+                                            : render_uniform<effect_mask_count - 1>();
         } else {
             using Render = bool (FrameTask::*)();
             static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
