@@ -22,7 +22,7 @@ no_kernels = $(if $(findstring CISTULA_WITH_CUDA,$(CMAKE_ARGS))$(filter yes,$(CU
     echo -DCISTULA_WITH_CUDA=OFF))
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-quick test-asan test-report lint check-all bench gpu-check golden install cuda-toolkit clean
+.PHONY: help render build test test-quick test-asan test-report lint check-all bench gpu-check golden docs install cuda-toolkit clean
 
 help: ## this list
 	@echo 'make TARGET [PRESET=release|release-all|debug|asan|clang] [SETUP=no] [CMAKE_ARGS=...]'
@@ -100,6 +100,11 @@ golden: ## render the golden images again and say what changed
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD) --target make_golden
 	$(BUILD)/bin/make_golden golden
+
+docs: ## the reference of libcore/cistula and of the Renderer interface, into out/docs
+	$(call setup,docs/packages.txt)
+	@mkdir -p out
+	doxygen docs/Doxyfile
 
 install: ## install programs, libraries, headers and the CMake package under PREFIX (/usr/local)
 	$(call setup,packages.txt)

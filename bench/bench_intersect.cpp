@@ -59,7 +59,7 @@ struct Ours {
     Hit<Real> closest(const Ray<Real>& ray) const { return EmbreeIntersector<Real>{view, tree->scene()}.closest(ray); }
 };
 
-/// The same triangles, in the same frame of reference, by the library alone.
+/// Embree alone over the triangles of Ours, in their scene coordinates.
 class Theirs {
   public:
     Theirs(const SceneDescription& scene, const CompiledScene<float>& compiled) {
@@ -132,7 +132,7 @@ void time_embree(benchmark::State& state) {
     count_rays(state, setting->single.rays.size());
 }
 
-/// The same work is compared: both must find the same surface.
+/// Checks that equal work is compared: both find one surface.
 void check_agreement() {
     size_t hits = 0, differing = 0;
     for (const Ray<float>& ray : setting->single.rays) {

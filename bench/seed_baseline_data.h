@@ -65,7 +65,7 @@ struct Scene {
     Vec background;
 };
 
-/// The same arrays with their owner, on the host.
+/// The arrays of a Scene with their owner, on the host.
 struct OwnedScene {
     std::vector<Triangle> triangles;
     std::vector<Uv> uvs;

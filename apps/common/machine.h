@@ -8,7 +8,7 @@ namespace cistula {
 /// What follows "KEY:" or "KEY\t:" in one of Linux's tables; empty: not there.
 std::string table_value(const char* file, const std::string& key);
 
-/// As the kernel names it; "unknown" where it does not.
+/// The processor's name as the kernel gives it; "unknown" where it does not.
 std::string processor_name();
 
 /// "unknown" where it has none.

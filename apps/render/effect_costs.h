@@ -14,8 +14,8 @@
 
 namespace cistula {
 
-/// Of one needed effect. `share` of the frame's time goes where it is taken out; none where it cannot be taken out
-/// alone.
+/// What one needed effect costs: the `share` of the frame's time that goes where it is taken out; none where it cannot
+/// be taken out alone.
 struct EffectCost {
     uint32_t effect = 0;
     std::optional<double> share;

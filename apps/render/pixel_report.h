@@ -31,7 +31,7 @@ const char* name_of(BranchEnd end);
 const char* name_of(CrossingKind crossing);
 const char* name_of(LightFate fate);
 
-/// Of one sample, in the scene's units of radiance.
+/// The radiance of one sample, in the scene's units.
 glm::dvec3 radiance_of(const FixedColor& sum, const Film& film);
 
 /// Between two directions, from its cosine.
@@ -43,7 +43,7 @@ float shown(const PixelReport& report, const std::string& channel);
 /// 0 for one sample; the one nearest the pixel's center of several.
 size_t middle_sample(int supersample);
 
-/// Of all samples.
+/// Rays of all samples of the pixel.
 RayCounts rays_of(const PixelTree& tree);
 
 }  // namespace cistula

@@ -24,7 +24,7 @@ struct Thresholds {
     bool any() const { return fail || hardfail; }
 };
 
-/// Of a channel that both pictures have.
+/// How a channel that both pictures have differs between them.
 struct ChannelStatistics {
     std::string name;
     size_t differing = 0;  // floats of other bits

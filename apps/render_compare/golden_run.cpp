@@ -46,7 +46,7 @@ std::vector<std::string> golden_names(const fs::path& folder) {
     return names;
 }
 
-/// Of the film in golden.json.
+/// The hash of the film in golden.json.
 std::string expected_hash(const fs::path& file, const char* precision) {
     try {
         return Json::parse(read_file(file.string())).at(precision).at("hash").get<std::string>();

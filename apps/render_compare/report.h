@@ -16,7 +16,7 @@ std::string verdict(const Comparison& comparison, const Thresholds& thresholds);
 /// What differs beside the floats, a table of the channels, the verdict.
 std::string report_text(const Comparison& comparison, const Thresholds& thresholds);
 
-/// The same as JSON; infinities and NaN, which JSON does not have, are strings.
+/// The report as JSON; infinities and NaN, which JSON does not have, are strings.
 nlohmann::ordered_json report_json(const Comparison& comparison, const CompareOptions& options);
 
 /// "R at (12, 34): 0.5 / 0.25", with the bits where the values are equal.

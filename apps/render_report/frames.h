@@ -24,7 +24,7 @@ class Frames {
     /// Seconds of wall clock. Throws Error: interrupted after Ctrl-C, failed where the frame cannot be trusted.
     double render(const Setting& setting, Film& film, uint32_t effects = 0);
     double render(Renderer& renderer, const FrameSettings& settings, Film& film);
-    /// The same, but nothing where the limit was passed.
+    /// The seconds of render(), or nothing where the limit was passed.
     std::optional<double> render_within(const FrameLimit& limit, const Setting& setting, Film& film);
 
     /// Milliseconds of the frame just rendered: of its kernels where the renderer tells, else all `seconds`.

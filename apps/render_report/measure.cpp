@@ -11,7 +11,7 @@
 namespace cistula::report {
 namespace {
 
-/// Of the materials that objects have.
+/// Notes down the largest shares of light among the materials that objects have.
 void find_shares(const SceneDescription& scene, SceneRecord& record) {
     for (const ObjectDescription& object : scene.objects) {
         if (object.material < 0) continue;

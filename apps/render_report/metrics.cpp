@@ -7,7 +7,7 @@
 namespace cistula::report {
 namespace {
 
-/// Of every pixel, in the channel where it is largest.
+/// The difference of every pixel, in the channel where it is largest.
 std::vector<double> largest_differences(const Picture& picture, const Picture& reference) {
     if (picture.width != reference.width || picture.height != reference.height || picture.pixels.empty() ||
         picture.pixels.size() != reference.pixels.size())

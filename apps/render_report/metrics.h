@@ -20,7 +20,7 @@ struct Remainder {
     double mean = 0, rms = 0, max = 0;
 };
 
-/// Of a picture against a reference; over all channels of all pixels unless said otherwise.
+/// How far a picture is from a reference; over all channels of all pixels unless said otherwise.
 struct Metrics {
     double max = 0, rmse = 0;
     double p999 = 0;               // 99.9 % of the pixels differ by no more in any channel

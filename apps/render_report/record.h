@@ -25,7 +25,7 @@ struct Rays {
     uint64_t total() const { return primary + reflected + transmitted + shadow; }
 };
 
-/// Of a setting with a target.
+/// What a setting with a target error came to.
 struct TargetOutcome {
     double over = 0;      // share of the pixels that are farther than the target from the reference
     uint64_t missed = 0;  // pixels that say so themselves: see apps/common/target.h
@@ -73,7 +73,7 @@ struct Level {
     Rays rays;
 };
 
-/// The same frame, run by code that has more effects compiled in than the scene calls for.
+/// The time of a scene's frame in code that has more effects compiled in than the scene calls for.
 struct MaskCost {
     uint32_t mask = 0;
     std::vector<std::string> added;  // beyond the least mask
@@ -85,7 +85,7 @@ struct Image {
     std::string png;  // base64
 };
 
-/// The same frame by two renderers: integers (and bits of floats) that are not the same.
+/// A frame by two renderers: the number of integers (and bits of floats) that are not equal.
 struct ParityCase {
     std::string first, second, precision;
     uint64_t compared = 0, differing = 0;

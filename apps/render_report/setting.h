@@ -24,10 +24,11 @@ struct Setting {
 void to_json(Json& json, const Setting& setting);
 void from_json(const Json& json, Setting& setting);
 
-/// Of a setting with a target, depth 1024.
+/// The settings of a frame of this size; with a target error the depth is 1024.
 FrameSettings frame_settings(const Setting& setting, int width, int height);
 
-/// As deep as a render goes, one sample and no cutoff: what they say is the target's business.
+/// The setting with a target error, as deep as a render goes, with one sample and no cutoff: what they say is the
+/// target's business.
 Setting with_target(Setting setting, double target_error);
 
 /// "depth:4/cutoff:0/float/samples:1x1", or "target:0.01/float"; names of intersectors other than the exact ones are

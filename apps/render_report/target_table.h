@@ -31,9 +31,9 @@ struct TargetTable {
     std::optional<UniformRow> uniform;
 };
 
-/// Of one scene's entries, into which it points, by median wall time. As close is what keeps 99.9 % of the pixels as
-/// close: a target speaks of these, while an RMSE may be one pixel's. Samples are compared at an RMSE, since that of a
-/// grid is made by many pixels.
+/// The table of one scene's entries, into which it points, by median wall time. As close is what keeps 99.9 % of the
+/// pixels as close: a target speaks of these, while an RMSE may be one pixel's. Samples are compared at an RMSE, since
+/// that of a grid is made by many pixels.
 TargetTable target_table(const std::vector<const Entry*>& entries);
 
 void to_json(Json& json, const TargetRow& row);

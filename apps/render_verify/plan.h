@@ -28,7 +28,7 @@ struct Part {
     std::function<void(CompiledScene<double>&)> edit_double;
     uint64_t count = 0;
 
-    /// The same change in either precision.
+    /// Makes one change in either precision.
     template <class Edit>
     void edit(const Edit& change) {
         edit_float = [change](CompiledScene<float>& compiled) { change(compiled); };

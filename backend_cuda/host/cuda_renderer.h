@@ -45,7 +45,7 @@ struct KernelResources {
     double occupancy;              // their threads, as a share of those that a multiprocessor has room for
 };
 
-/// Of all kernels in this program. Throws Error (device).
+/// What all kernels in this program take. Throws Error (device).
 std::vector<KernelResources> kernel_resources();
 
 /// Uploads the scene. Throws Error (device) with CUDA's own words where a device cannot be used.

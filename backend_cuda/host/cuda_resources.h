@@ -26,7 +26,7 @@ class CudaMemory {
             fail_cuda(cudaErrorMemoryAllocation, "no room for " + std::to_string(bytes) + " bytes");
     }
 
-    /// The same, but false where there is no room for it. Other errors throw.
+    /// At least `bytes`, contents undefined; false where there is no room for it. Other errors throw.
     bool try_reserve(size_t bytes) {
         if (bytes <= bytes_) return true;
         free();

@@ -34,7 +34,7 @@ struct BlockPlan {
     static constexpr int width = 2 * tile_width;  // of blocks that do not share a tile
     static constexpr BlockShape shared_shape = {tile_width, tile_height};
 
-    /// Of a shared tile, or of a tile for each warp.
+    /// The block's pixels: a shared tile, or a tile for each warp.
     CISTULA_INLINE constexpr BlockShape shape() const {
         return mapping == PixelMapping::shared_tile ? shared_shape : BlockShape{width, warps / 2 * tile_height};
     }

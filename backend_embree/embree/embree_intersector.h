@@ -16,7 +16,7 @@ struct ClosestQuery {
     Hit<Real> best;
 };
 
-/// The same for shadows; `visit` adds one primitive to the sum and tells whether all is dark then.
+/// A shadow query's context; `visit` adds one primitive to the sum and tells whether no light is left then.
 template <class Real>
 struct ShadowQuery {
     EmbreeContext context;
@@ -25,7 +25,7 @@ struct ShadowQuery {
     TriangleRay<Real> triangle_ray;
     bool (*visit)(ShadowQuery&, uint32_t primitive);
 };
-/// Of the mask that asks.
+/// ShadowQuery for the effects compiled into the caller.
 template <class Real, class E>
 struct SummedShadowQuery : ShadowQuery<Real> {
     ShadowSum<E> sum;

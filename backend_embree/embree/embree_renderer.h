@@ -20,19 +20,19 @@ template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options = {});
 
-/// The same loop over a ConstantScene, as kernels run it: masks reach the primitives' tests, and the shadow plan spares
-/// most of them. Null where the scene fits into none.
+/// A renderer over a ConstantScene, as kernels run it: masks reach the primitives' tests. Null where the scene fits
+/// into none.
 template <class Real>
 std::unique_ptr<Renderer> make_constant_renderer(std::shared_ptr<const CompiledScene<Real>> scene);
 
-/// The same loop over Embree's own triangles, solids of planes too: another image, approximate at edges and where
-/// bodies touch, its hits in float whatever Real is. For previews and comparisons (native_intersector.h).
+/// A renderer over Embree's own triangles, solids of planes too: another image, approximate at edges and where bodies
+/// touch, its hits in float whatever Real is. For previews and comparisons (native_intersector.h).
 template <class Real>
 std::unique_ptr<Renderer> make_native_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options = {});
 
-/// The same loop over libcore's own intersectors: the oracle (brute) and the path that the GPU runs (bvh; the scene
-/// must have its tree, see build_primitive_tree).
+/// libcore's own intersectors: the oracle (brute) and the path that the GPU runs (bvh; the scene must have its tree,
+/// see build_primitive_tree).
 enum class HostIntersector { brute, bvh };
 template <class Real>
 std::unique_ptr<Renderer> make_host_renderer(std::shared_ptr<const CompiledScene<Real>> scene,

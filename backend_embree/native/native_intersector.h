@@ -46,7 +46,7 @@ struct NativeClosest {
     }
 };
 
-/// The same for shadows: all hits before the light, in any order.
+/// A shadow query against native triangles: all hits before the light, in any order.
 template <class Real>
 struct NativeShadow {
     EmbreeContext context;

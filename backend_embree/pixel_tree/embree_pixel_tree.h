@@ -9,8 +9,8 @@
 
 namespace cistula {
 
-/// Of pixel (x, y) of the frame; settings.crop plays no part. Throws std::logic_error where the trees are not what the
-/// renderer gives for that pixel, bit for bit, and Error as a render does.
+/// The ray trees of pixel (x, y) of the frame; settings.crop plays no part. Throws std::logic_error where the trees are
+/// not what the renderer gives for that pixel, bit for bit, and Error as a render does.
 template <class Real>
 PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<Real>> scene, const CameraFrame& camera,
                             const FrameSettings& settings, int x, int y);

@@ -69,7 +69,8 @@ class FilmTimer {
         return sum;
     }
 
-    /// The same frames, rendered beforehand; frames in work and threads as for the whole film.
+    /// The time of writing the frames, rendered beforehand, in milliseconds; frames in work and threads as for the
+    /// whole film.
     double writers() {
         std::vector<FinishedFrame> finished(frames_.size());
         for (size_t i = 0; i < frames_.size(); ++i) {

@@ -20,7 +20,7 @@ FrameSettings settings_of(int width, int height, int depth, int supersample) {
     return settings;
 }
 
-/// Of the runs after warm-up, in milliseconds.
+/// Times of the runs after warm-up, in milliseconds.
 struct FrameRuns {
     std::vector<double> kernel, transfer, frame;
     Film film;  // the last

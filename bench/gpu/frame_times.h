@@ -11,8 +11,8 @@ namespace cistula::bench {
 /// `runs` after warm-up, with the rays that they took.
 void time_frames(GpuRecord& record, const std::string& folder, int runs);
 
-/// The same scene at 3840x2160 in depth 8 with 4 x 4 samples on one GPU, two, ... all: the slowest one's kernels, and
-/// that the integers are the same.
+/// Times benchmark.json at 3840x2160 in depth 8 with 4 x 4 samples on one GPU, two, ... all: the slowest one's kernels,
+/// and that the integers are equal.
 void time_devices(GpuRecord& record, const std::string& folder, int runs);
 
 }  // namespace cistula::bench

@@ -15,7 +15,7 @@ struct ConvexInput {
     uint32_t skipped;  // a face
 };
 
-/// The same solid in double, for aiming.
+/// A convex solid in double, for aiming.
 struct ConvexShape {
     uint32_t kind;
     Turn turn;

@@ -27,7 +27,7 @@ struct CaseRunner {
     void (*run)(uint64_t seed, uint64_t first, uint64_t count, uint64_t* out);
 };
 
-/// The same cases in the same order.
+/// The cases of host and device, in one order.
 std::vector<CaseRunner> host_cases();
 std::vector<CaseRunner> device_cases();
 

@@ -12,7 +12,7 @@
 
 namespace cistula::bench {
 
-/// Of one kind of ray.
+/// What a comparison of one kind of ray found.
 struct RayTally {
     uint64_t rays = 0, hits = 0;  // the host's; hits of shadow rays: those that are stopped
     uint64_t differing = 0;       // rays or findings

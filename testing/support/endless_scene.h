@@ -26,7 +26,7 @@ inline SceneDescription room_of_mirrors() {
     return read_scene_text(room_of_mirrors_text, "room.json", "");
 }
 
-/// Of such a scene: nothing is pruned.
+/// Settings of a frame of such a scene: nothing is pruned.
 inline FrameSettings endless_settings(int width, int height) {
     FrameSettings settings;
     settings.set_size(width, height);

@@ -23,7 +23,7 @@ inline constexpr PlatonicSolid platonic_solids[] = {PlatonicSolid::tetrahedron, 
                                                     PlatonicSolid::octahedron, PlatonicSolid::dodecahedron,
                                                     PlatonicSolid::icosahedron};
 
-/// The same numbers on every machine: the standard's engine, our own conversions.
+/// Random numbers, equal on every machine: the standard's engine, our own conversions.
 class Random {
   public:
     explicit Random(uint64_t seed) : engine_(seed) {}

@@ -338,7 +338,7 @@ TEST(GeneratedScenes, HoldTheSameWithoutFiles) {
     check_coverage("");
 }
 
-/// Of the numbers that draws and formulas give.
+/// A digest of the numbers that draws and formulas give.
 std::string digest(const SceneDescription& scene) {
     SceneHash hash;
     for (const ObjectDescription& object : scene.objects) {

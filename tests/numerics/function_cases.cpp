@@ -208,7 +208,7 @@ TYPED_TEST(FunctionInputs, TrianglesAreHitAtEdgesAndCornersToo) {
     EXPECT_GT(not_finite, 10);
 }
 
-/// Of the shadow cases, which share words: loss, path, opaque, share.
+/// Expects shadows of all kinds from cases that share words: loss, path, opaque, transmittance.
 template <class Case>
 void expect_shadows_of_all_kinds() {
     using Real = typename Case::Number;

@@ -91,7 +91,7 @@ TYPED_TEST(LightsOnFaces, LeaveTheirSolidBlack) {
             }
 }
 
-/// The same scenes are not black for want of anything else.
+/// Scenes whose own lights leave them black are not black for want of anything else.
 TYPED_TEST(LightsOnFaces, OneThatStandsOffLightsTheSolid) {
     for (const PlatonicSolid kind : test::platonic_solids)
         for (const bool mesh : {false, true}) {

@@ -40,7 +40,7 @@ inline void expect_same(Tally& tally, const Film& found, const Film& expected, u
     }
 }
 
-/// The same of what is hit only: how many samples, and which solid.
+/// One try a pixel: equal in what is hit only, how many samples and which solid.
 inline void expect_same_hits(Tally& tally, const Film& found, const Film& expected, uint64_t scene,
                              uint64_t variation) {
     for (size_t i = 0; i < expected.pixels.size(); ++i) {

@@ -43,7 +43,7 @@ void shuffle_primitives(CompiledScene<Real>& scene, std::mt19937_64& random) {
         for (uint32_t lane = cluster.count; lane > 1; --lane) swap_lanes(cluster, lane - 1, uint32_t(random() % lane));
 }
 
-/// The same tree with children and the items of leaves in another order.
+/// Puts a tree's children and the items of its leaves in another order.
 template <class Real>
 void shuffle_tree(CompiledScene<Real>& scene, std::mt19937_64& random) {
     for (TreeNode& node : scene.tree) {

@@ -13,7 +13,7 @@ struct ConstantScene {
     static constexpr const char* exact = "the color itself, for 1 to 64 x 64 samples a pixel";
     static constexpr Bound bound = no_failures("pixels");
 
-    /// Of a scene all of which has this color: the background, a room in ambient light, clear solids before them.
+    /// A scene all of which has this color: the background, a room in ambient light, clear solids before them.
     static SceneDescription scene_of(int kind, const glm::dvec3& color) {
         SceneDescription scene = empty_scene();
         scene.camera.position = {0.125, -2.5, 0.25};

@@ -88,7 +88,7 @@ struct BouncesInside {
         }
         return best;
     }
-    /// Not farther outside than the boxes of trees allow for: 64 u M (NUMERICS, 1).
+    /// Not farther outside than the boxes of trees allow for: 64 u M (docs/rules.md, 1).
     template <class Real>
     CISTULA_HD static bool within_box(const SceneView<Real>& scene, const Vec3<Real>& point) {
         const Vec3<double> p(point);

@@ -88,7 +88,7 @@ struct FoldedPath {
                                                     : CrossingKind::leave);
     }
 
-    /// As stored, in Real. NaN where the scene has no such wall: nothing then holds.
+    /// The wall's place as stored, in Real. NaN where the scene has no such wall: nothing then holds.
     template <class Real>
     CISTULA_HD double wall(const Setup<Real>& setup, int axis, bool upper) const {
         if (walls == Walls::cube_of_triangles || walls == Walls::two_sheets)

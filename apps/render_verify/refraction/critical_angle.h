@@ -56,7 +56,8 @@ struct CriticalAngle {
     }
 };
 
-/// The same through the ray tree: from inside a cube in a larger one, faces across the axes, their normals exact.
+/// The critical angle through the ray tree: from inside a cube in a larger one, faces across the axes, their normals
+/// exact.
 struct CriticalAngleTraced {
     static constexpr const char* name = "refraction/critical-angle/traced";
     static constexpr const char* exact = "the ray tree mirrors or bends as 113 bits say, in steps of 2^-22";

@@ -57,7 +57,7 @@ inline SceneDescription room() {
     return scene;
 }
 
-/// The same pixels but for the solids' numbers, of which the image without has `fewer`, and the count of rays.
+/// Expects equal pixels but for the solids' numbers, of which the image without has `fewer`, and the count of rays.
 inline void expect_same(const Film& with, const Film& without, int fewer, Tally& tally) {
     for (size_t i = 0; i < without.pixels.size(); ++i) {
         const PixelRecord &a = with.pixels[i], &b = without.pixels[i];

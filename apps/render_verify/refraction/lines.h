@@ -51,7 +51,7 @@ struct Watched {
     }
 };
 
-/// Of what a tree sees first nothing is kept.
+/// An observer that keeps nothing of what a tree sees first.
 struct Unnoted {
     template <class Hit, class Normal>
     CISTULA_HD void surface(const Hit&, const Normal&) const {}

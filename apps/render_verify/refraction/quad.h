@@ -59,7 +59,7 @@ Quad add_record(const Vec3<double>& direction, const Vec3<double>& normal, doubl
     for (int k = 0; k < 3; ++k) pair(total ? Quad(0) : through[k] / root(square));
     return g2;
 }
-/// The same question to either precision, side by side; returns double's g^2.
+/// Asks one question of either precision, side by side; returns double's g^2.
 inline Quad add_records(const Vec3<double>& direction, const Vec3<double>& normal, double from, double to,
                         std::vector<double>& numbers) {
     add_record<float>(direction, normal, from, to, numbers);

@@ -1,4 +1,4 @@
-// Adaptive sampling of one fixed lattice of 16 x 16 samples a pixel (NUMERICS, 10): which of them a pixel needs.
+// Adaptive sampling of one fixed lattice of 16 x 16 samples a pixel (docs/rules.md, 10): which of them a pixel needs.
 // Decided in integers from the pixel's own samples, so that crops, tiles and backends agree.
 #pragma once
 

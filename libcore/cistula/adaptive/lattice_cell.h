@@ -1,5 +1,5 @@
 // The lattice of 16 x 16 samples a pixel that adaptive sampling draws from: its samples, and rectangles of them
-// (NUMERICS, 10).
+// (docs/rules.md, 10).
 #pragma once
 
 #include "cistula/model/lattice_settings.h"

@@ -68,8 +68,8 @@ struct MediaList {
     }
 };
 
-/// The same where all closed solids are convex and none touches another: a ray is inside one at most, and its state
-/// lets it enter only from outside and leave only from inside.
+/// The solid that contains a point, where all closed solids are convex and none touches another: a ray is inside one at
+/// most, and its state lets it enter only from outside and leave only from inside.
 struct OneMedium {
     static constexpr bool contacts = false, meshes = false;
 
@@ -93,7 +93,7 @@ struct OneMedium {
     }
 };
 
-/// The same solids in another form.
+/// Converts one form of the solids around a point into another.
 CISTULA_INLINE void assign(MediaList& to, const MediaList& from) {
     to = from;
 }

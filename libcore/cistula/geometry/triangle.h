@@ -250,7 +250,7 @@ CISTULA_INLINE bool misses_flat(const SheetPlane<Real>& plane, uint32_t from, co
     return (plane.flat != 0) & crosses_beside(plane, origin, direction, off, slant);
 }
 
-/// The same of a cluster, if that belongs to a flat sheet.
+/// Whether a ray misses a cluster that belongs to a flat sheet; false where the cluster belongs to none.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
     return misses_flat(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
@@ -294,7 +294,7 @@ CISTULA_INLINE void closest_cluster(const Scene& scene, uint32_t index, const Ra
     if (!leaves_flat(scene, index, ray)) closest_triangles(scene, index, ray, triangle_ray, best);
 }
 
-/// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.
+/// Takes one facet's crossing if it is the ray's next; `left` is the flat sheet on which the ray starts, or no_solid.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_facet(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                   const TriangleRay<Real>& triangle_ray, uint32_t left, Hit<Real>& best) {

@@ -26,7 +26,7 @@ CISTULA_INLINE Vec3<double> camera_direction(const Camera& camera, double across
     return through * inverse_root(dot(through, through));
 }
 
-/// The same through the point (x, y) of a picture of width x height pixels; (0, 0) is its top left corner.
+/// The unit direction through the point (x, y) of a picture of width x height pixels; (0, 0) is its top left corner.
 CISTULA_HD inline Vec3<double> camera_direction(const Camera& camera, double x, double y, int width, int height) {
     return camera_direction(camera, 2 * x - width, 2 * y - height, camera.tan_half_width / width);
 }

@@ -1,6 +1,6 @@
 // A scene as the shading code sees it: flat arrays, nothing owned, the same layout on host and device.
-// Lengths are in the scene's frame (NUMERICS: centred, scaled by a power of two so that coordinates stay under 2);
-// radiances are scaled by a power of two so that the radiance bound is at most 1.
+// Lengths are in the scene's frame (docs/rules.md, 1: centered, scaled by a power of two so that coordinates stay under
+// 2); radiances are scaled by a power of two so that the radiance bound is at most 1.
 #pragma once
 
 #include "cistula/numerics/vec.h"
@@ -150,7 +150,7 @@ struct Light {
     uint32_t incident_count;
 };
 
-/// A light lies on a face if it is within this much of the plane, as a share of M (NUMERICS, 5).
+/// A light lies on a face if it is within this much of the plane, as a share of M (docs/rules.md, 5).
 template <class Real>
 inline constexpr Real incidence = 16 * RealTraits<Real>::unit;
 

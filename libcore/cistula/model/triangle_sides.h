@@ -15,8 +15,8 @@ struct Apex {
         const Real step = Real(8) * RealTraits<Real>::unit * extent;
         return {along(centroid, height, normal), step < height * Real(0.125) ? step / height : Real(0.125)};
     }
-    /// From a point on the triangle: the segment crosses no other triangle (NUMERICS, 2), so that the new origin is on
-    /// the right side of all of them.
+    /// From a point on the triangle: the segment crosses no other triangle (docs/rules.md, 2), so that the new origin
+    /// is on the right side of all of them.
     CISTULA_INLINE Vec3<Real> from(const Vec3<Real>& point) const { return along(point, share, place - point); }
 };
 

@@ -20,7 +20,7 @@ CISTULA_INLINE DoubleDouble two_sum(double a, double b) {
     const double s = a + b, bb = s - a;
     return {s, (a - (s - bb)) + (b - bb)};
 }
-/// The same where |a| >= |b| or a = 0 (Dekker).
+/// a + b exactly, as a rounded sum and its error, where |a| >= |b| or a = 0 (Dekker).
 CISTULA_INLINE DoubleDouble fast_two_sum(double a, double b) {
     const double s = a + b;
     return {s, b - (s - a)};

@@ -30,7 +30,8 @@ CISTULA_INLINE bool to_fixed(Real x, Scale scale, int64_t& out) {
     return true;
 }
 
-/// The same with ceil in place of floor: for the ledger.
+/// out = ceil(x * scale), exactly, for x in [0, 1]; anything else (NaN too) gives false and leaves out alone. For the
+/// ledger.
 template <class Real, class Scale>
 CISTULA_INLINE bool to_fixed_up(Real x, Scale scale, int64_t& out) {
     const Real value = x * static_cast<Real>(scale);

@@ -82,8 +82,9 @@ CISTULA_INLINE float reciprocal(float a) {
     return 1.0f / a;
 #endif
 }
-/// The same of doubles: the third-order step leaves less than an ulp, from which Newton's is exact (Markstein 1990) but
-/// where all bits of the significand are set. There it is exact from above, where the estimate's lower half puts it.
+/// 1 / a in double, correctly rounded, for |a| in [2^-120, 2^120]. On the device the third-order step leaves less than
+/// an ulp, from which Newton's is exact (Markstein 1990) but where all bits of the significand are set. There it is
+/// exact from above, where the estimate's lower half puts it.
 CISTULA_INLINE double reciprocal(double a) {
 #if CISTULA_ON_DEVICE
     double r;

@@ -99,7 +99,7 @@ CISTULA_HD inline DoubleDouble cos_reduced(double hi, double lo) {
                         start.low + fused(square.high * square.high, polynomial(square.high, series), small));
 }
 
-/// Of an angle in radians. Infinite and NaN arguments give NaN; sin(-0) = -0.
+/// The sine of an angle in radians. Infinite and NaN arguments give NaN; sin(-0) = -0.
 CISTULA_HD inline double sin(double x) {
     if (!is_finite(x)) return not_a_number;
     if (magnitude(x) < 0x1p-27) return x;

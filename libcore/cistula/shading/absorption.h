@@ -1,5 +1,5 @@
 // What the solids along a straight line absorb: signed sums of integers over its crossings, so that faces at which
-// nothing changes leave every bit alone (Beer-Lambert; NUMERICS, 6).
+// nothing changes leave every bit alone (Beer-Lambert; docs/rules.md, 6).
 #pragma once
 
 #include "cistula/geometry/ray.h"

@@ -1,6 +1,6 @@
 // A ray meets a face: which of the crossings that rounding cannot tell apart is shaded, and what is beyond them all.
-// Touching bodies then pass light from one index straight to the other (NUMERICS, 4), and what stays on the viewer's
-// side is in the viewer's medium.
+// Touching bodies then pass light from one index straight to the other (docs/rules.md, 4), and what stays on the
+// viewer's side is in the viewer's medium.
 #pragma once
 
 #include "cistula/geometry/ray.h"

@@ -1,4 +1,5 @@
-// Transmittance toward a light: sums of integers over the faces crossed, the same in any order (NUMERICS, 5 and 6).
+// Transmittance toward a light: sums of integers over the faces crossed, the same in any order (docs/rules.md, 5 and
+// 6).
 #pragma once
 
 #include "cistula/geometry/convex.h"
@@ -207,7 +208,7 @@ CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const Sha
     if (!leaves_flat(scene, index, shadow.ray)) shadow_triangles<Real, E>(scene, index, shadow, triangle_ray, sum);
 }
 
-/// The same for one facet; `left` is the flat sheet on which the ray starts, or no_solid.
+/// Adds one facet's crossing to a shadow's sum; `left` is the flat sheet on which the ray starts, or no_solid.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                  const TriangleRay<Real>& triangle_ray, uint32_t left, ShadowSum<E>& sum) {

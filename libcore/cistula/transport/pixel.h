@@ -25,8 +25,8 @@ CISTULA_HD inline bool is_far(const Camera& camera, double extent) {
     return dot(camera.position, camera.position) > 4 * extent * extent;
 }
 
-/// The ray from the camera, from where it enters the sphere of radius 2 M (NUMERICS, 1), in double for either Real.
-/// `start` is how far from the camera that is. False: it passes the scene by.
+/// The ray from the camera, from where it enters the sphere of radius 2 M (docs/rules.md, 1), in double for either
+/// Real. `start` is how far from the camera that is. False: it passes the scene by.
 template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, const Vec3<double>& direction,
                                    Ray<Real, Media>& ray, double& start) {
@@ -50,7 +50,7 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, c
     return true;
 }
 
-/// The same through the point (x, y) of the picture, whose direction it gives too.
+/// The ray from the camera through the point (x, y) of the picture, whose direction it gives too.
 template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, double x, double y,
                                    Ray<Real, Media>& ray, Vec3<double>& direction, double& start) {
@@ -65,7 +65,7 @@ CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& inte
     using Real = typename Scene::Scalar;
     // Through no axis, edge or symmetry that a scene is likely to have.
     const Vec3<double> direction = normalized(Vec3<double>(0.36, 0.48, 0.8112));
-    // From the sphere of radius 2 M, as all rays (NUMERICS, 1).
+    // From the sphere of radius 2 M, as all rays (docs/rules.md, 1).
     const double ahead = dot(point, direction);
     const double rest = 4 * double(scene.extent) * double(scene.extent) - (dot(point, point) - ahead * ahead);
     const double distance = ahead + square_root(greatest(rest, 0.0));

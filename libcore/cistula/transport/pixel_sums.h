@@ -1,4 +1,4 @@
-// A sample's way into its pixel: radiance and what truncation took away, in integers (NUMERICS, 7 and 8).
+// A sample's way into its pixel: radiance and what truncation took away, in integers (docs/rules.md, 7 and 8).
 #pragma once
 
 #include "cistula/model/pixel_record.h"
@@ -96,7 +96,7 @@ class PixelSums {
         return {channel(weight, 0) * bound_[0], channel(weight, 1) * bound_[1], channel(weight, 2) * bound_[2]};
     }
 
-    /// Of what is bounded, in units of the sums, rounded up. The greatest.
+    /// The bounds by channel in units of the sums, rounded up, as `most`; gives the greatest.
     CISTULA_INLINE static int64_t most_of(const Vec3<Real>& bounded, Real scale, uint32_t& flags, int64_t (&most)[3]) {
         const Vec3<Real> units = in_units(bounded, scale, flags);
         int64_t worst = 0;

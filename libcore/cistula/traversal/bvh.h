@@ -1,5 +1,5 @@
 // Walks a binary tree of padded boxes with a float ray that only finds candidates: the primitive tests decide, so that
-// no tree changes a bit (NUMERICS, 1). What the GPU runs; the host runs it in tests.
+// no tree changes a bit (docs/rules.md, 1). What the GPU runs; the host runs it in tests.
 #pragma once
 
 #include "cistula/traversal/brute.h"

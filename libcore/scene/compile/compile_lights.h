@@ -36,13 +36,13 @@ template <class Real>
 void find_convex_incidents(const std::vector<FramedLight>& lights, const std::vector<ConvexSolid>& convex,
                            double extent, IncidentLists& incidents);
 
-/// The same for triangles, through the tree over their groups.
+/// Incident triangles of a mesh by the rule of find_convex_incidents, through the tree over their groups.
 template <class Real>
 void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, const Groups& groups,
                              const Tree& tree, uint32_t solid, uint32_t first_triangle, double extent,
                              IncidentLists& incidents);
 
-/// The same for a mesh without a tree, numbering its own triangles.
+/// Incident triangles of a mesh without a tree, numbering its own triangles.
 template <class Real>
 void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid,
                              double extent, IncidentLists& incidents);

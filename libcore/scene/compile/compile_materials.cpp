@@ -10,7 +10,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double largest_absorption = 0x1p20;  // sigma M (NUMERICS, 6)
+constexpr double largest_absorption = 0x1p20;  // sigma M (docs/rules.md, 6)
 constexpr double largest_integer_exponent = 1024;
 
 /// 1 - kr - kt of the rounded shares, rounded down: the three never add up to more than 1.

@@ -324,7 +324,7 @@ class Compiler {
         reach_edge_lights(scene_, owners);
     }
 
-    /// Of every solid, with the seen lights on its edges, and of every other seen light.
+    /// Adds the hull of every solid, with the visible lights on its edges, and of every other visible light.
     void add_hulls() {
         for (const ConvexSolid& convex : convex_) scene_.hulls[convex.solid].points = convex.vertices;
         for (uint32_t i = 0; i < source_.solids.size(); ++i)

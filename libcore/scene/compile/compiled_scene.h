@@ -78,7 +78,7 @@ FacetTree<Real> facet_tree(const SceneView<Real>& scene, int quality = 1);
 template <class Real>
 void build_primitive_tree(CompiledScene<Real>& scene, int quality = 1);
 
-/// Box of a primitive in the frame, rounded outward and padded by 2^-18 M (NUMERICS, 1).
+/// Box of a primitive in the frame, rounded outward and padded by 2^-18 M (docs/rules.md, 1).
 struct PaddedBox {
     float low[3], high[3];
 };

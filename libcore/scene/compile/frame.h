@@ -1,4 +1,4 @@
-// The frame of reference (NUMERICS, 1): centered, and scaled by a power of two so that coordinates stay under 2.
+// The frame of reference (docs/rules.md, 1): centered, and scaled by a power of two so that coordinates stay under 2.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Where leaving rays start toward (NUMERICS, 2): an apex over every side of every triangle, so low that nothing of the
-// mesh stands between it and the triangle.
+// Where leaving rays start toward (docs/rules.md, 2): an apex over every side of every triangle, so low that nothing of
+// the mesh stands between it and the triangle.
 #pragma once
 
 #include <vector>

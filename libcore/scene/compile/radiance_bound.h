@@ -1,4 +1,4 @@
-// The radiance bound B (NUMERICS, 7): no ray of a scene carries more. Inside libcore/scene.
+// The radiance bound B (docs/rules.md, 7): no ray of a scene carries more. Inside libcore/scene.
 #pragma once
 
 #include <vector>

@@ -76,7 +76,7 @@ class Renderer {
     /// "embree", "native", "bvh", "brute", "cuda".
     virtual std::string intersector() const = 0;
 
-    /// Of backends with devices of their own; else zeros.
+    /// Times of the last frame, from backends with devices of their own; else zeros.
     virtual RenderTimes times() const { return {}; }
 
     /// What the user should know of the last frame, one line each: that it went by parts for want of memory, ...

@@ -36,7 +36,7 @@ class FrameCover {
     /// Ascending and apart; `row` counts from the top of the rectangle.
     std::span<const PixelRun> runs(int row) const { return bands_[size_t(row / band_rows)]; }
 
-    /// The same of one hull: a run, maybe empty, for each of some bands.
+    /// The outline of one hull: a run, maybe empty, for each of some bands.
     struct Outline {
         static constexpr size_t all = ~size_t{0};
 
@@ -44,7 +44,7 @@ class FrameCover {
         int first_band;
         std::vector<PixelRun> runs;
 
-        /// Of a row of the rectangle; empty beyond the bands.
+        /// The run in a row of the rectangle; empty beyond the bands.
         PixelRun run(int row) const {
             const int band = row / band_rows - first_band;
             return band < 0 || band >= int(runs.size()) ? PixelRun() : runs[size_t(band)];
@@ -64,9 +64,9 @@ class FrameCover {
         if (to > from) visit(from, to, false);
     }
 
-    /// As of a hull that holds the camera.
+    /// Covers everything, for a hull that holds the camera.
     void add_all(size_t number);
-    /// Of hull `number`; `extent`: the scene's M.
+    /// Covers what hull `number` may show; `extent`: the scene's M.
     void add(size_t number, const Hull& hull, double extent, const FrameView& frame);
 
   private:

@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-/// Of a frame with a target error.
+/// Sets what a frame with a target error asks of every pixel's lattice.
 template <class Real>
 void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings, LatticeSettings& lattice) {
     /// Above this share of the bound a pixel's four corners do.

@@ -11,8 +11,8 @@ namespace cistula {
 /// Around what is projected, in pixels: it is rounded in double.
 inline constexpr double picture_margin = 0x1p-6;
 
-/// What bodies in a picture grow by: far more than rays and faces are off by rounding, in either precision (NUMERICS, 1
-/// and 2). `extent`: the scene's M.
+/// What bodies in a picture grow by: far more than rays and faces are off by rounding, in either precision
+/// (docs/rules.md, 1 and 2). `extent`: the scene's M.
 inline double picture_growth(const FrameView& frame, double extent) {
     constexpr double share_of_extent = 0x1p-16, share_of_distance = 0x1p-44;
     return share_of_extent * extent + share_of_distance * length(frame.camera.position);

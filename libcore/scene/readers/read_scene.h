@@ -11,8 +11,8 @@ namespace cistula {
 /// directory for standard input. Throws Error: file where it cannot be read, usage where it is wrong.
 SceneDescription read_scene(const std::string& path);
 
-/// The same from a text in memory. `source_name` is for messages; `base_dir` is what file names are relative to
-/// (empty: the working directory). JSON if the first character that is not white is '{', else the seed's text.
+/// Reads a scene from a text in memory. `source_name` is for messages; `base_dir` is what file names are relative to
+/// (empty: the working directory). JSON if the first character that is not white is '{', else the text input.
 SceneDescription read_scene_text(const std::string& text, const std::string& source_name, const std::string& base_dir);
 
 }  // namespace cistula

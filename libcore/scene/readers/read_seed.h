@@ -1,4 +1,4 @@
-// The text input of the program that Cistula grew from (docs/scene.md, "The seed's text"). Scenes are read through
+// The text input of the program that Cistula grew from (docs/scene.md, "The text input"). Scenes are read through
 // read_scene.h.
 #pragma once
 

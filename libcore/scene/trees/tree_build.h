@@ -18,7 +18,7 @@ struct Groups {
     std::vector<uint32_t> order, first;
     uint32_t size() const { return first.empty() ? 0 : static_cast<uint32_t>(first.size()) - 1; }
 };
-/// The same from run to run. Reorders `primitives`.
+/// Groups of neighbors, equal from run to run. Reorders `primitives`.
 Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives);
 
 struct Tree {

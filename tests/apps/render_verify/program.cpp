@@ -1,4 +1,4 @@
-// render-verify: options, exit codes, records; what cases judge; and that docs/numerics.md names every case.
+// render-verify: options, exit codes, records; what cases judge; and that docs/cases names every case.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -289,12 +289,20 @@ TEST_F(RenderVerify, ListsItsCases) {
     EXPECT_EQ(size_t(std::count(result.out.begin(), result.out.end(), '\n')), all_cases().size());
 }
 
-// ---- docs/numerics.md
+// ---- docs/cases
 
-/// The names in the fourth column of its tables.
+/// The pages of hazards, one after the other.
+std::string hazard_pages() {
+    std::string text;
+    for (const auto& entry : std::filesystem::directory_iterator(CISTULA_SOURCE_DIR "/docs/cases"))
+        text += bytes_of(entry.path().string());
+    return text;
+}
+
+/// Names of cases in the fourth column of the pages' tables.
 std::multiset<std::string> documented_cases() {
     std::multiset<std::string> names;
-    std::istringstream text(bytes_of(CISTULA_SOURCE_DIR "/docs/numerics.md"));
+    std::istringstream text(hazard_pages());
     for (std::string line; std::getline(text, line);) {
         if (line.rfind("| ", 0) != 0) continue;
         std::vector<std::string> cells;
@@ -323,16 +331,16 @@ std::multiset<std::string> documented_cases() {
     return names;
 }
 
-TEST(NumericsDocument, NamesEveryCaseAndNoOther) {
+TEST(HazardPages, NamesEveryCaseAndNoOther) {
     const std::multiset<std::string> documented = documented_cases();
     std::set<std::string> existing;
     for (const CaseEntry& entry : all_cases()) {
         EXPECT_TRUE(existing.insert(entry.info.name).second) << entry.info.name << " exists twice";
-        EXPECT_GE(documented.count(entry.info.name), 1u) << entry.info.name << " is not in docs/numerics.md";
+        EXPECT_GE(documented.count(entry.info.name), 1u) << entry.info.name << " is not in docs/cases";
         EXPECT_EQ(entry.plan == nullptr, entry.render != nullptr) << entry.info.name;
     }
     for (const std::string& name : documented)
-        EXPECT_TRUE(existing.count(name) != 0) << name << " in docs/numerics.md is no case of render-verify";
+        EXPECT_TRUE(existing.count(name) != 0) << name << " in docs/cases is no case of render-verify";
     EXPECT_GE(existing.size(), 20u);
 }
 
