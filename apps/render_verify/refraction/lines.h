@@ -58,9 +58,10 @@ struct Unnoted {
     CISTULA_HD void nothing(bool) const {}
 };
 
+/// Follows the ray's tree. Not inlined: every case calls it, and a tree is much code.
 template <class Real, class Intersector>
-CISTULA_HD inline void trace(const Setup<Real>& setup, const Intersector& intersector, const Ray<Real>& ray,
-                             Lines<Real>& lines) {
+CISTULA_SELDOM void trace(const Setup<Real>& setup, const Intersector& intersector, const Ray<Real>& ray,
+                          Lines<Real>& lines) {
     using Glass = Effects<effect_reflection | effect_transmission | effect_refraction | effect_insides>;
     using Stack = StackOf<Real, Glass, MediaList>;
     using Tree = RayTree<Real, Glass, Watched<Real, Intersector>, Stack>;
