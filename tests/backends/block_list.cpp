@@ -15,9 +15,9 @@ using namespace cistula;
 namespace {
 
 constexpr BlockPlan plans[] = {{PixelMapping::shared_tile},
-                               {PixelMapping::shared_tile, large_block_warps},
+                               {PixelMapping::shared_tile, most_warps},
                                {PixelMapping::own_tiles},
-                               {PixelMapping::own_tiles, large_block_warps}};
+                               {PixelMapping::own_tiles, most_warps}};
 
 FrameView frame_of(const PixelRect& rect) {
     return test::frame_from({0, 0, 0}, 1, rect.x + rect.width, rect.y + rect.height);
