@@ -299,7 +299,7 @@ TEST(Elementary, Srgb) {
     EXPECT_TRUE(std::isnan(e::linear_to_srgb(nan)));
 }
 
-/// The same bits everywhere: a hash of results that must never change, on any processor or compiler.
+/// A hash of results that must never change, on any processor or compiler.
 TEST(Elementary, BitsArePinned) {
     uint64_t hash = 1469598103934665603u;
     const auto take = [&](double value) { hash = (hash ^ std::bit_cast<uint64_t>(value)) * 1099511628211u; };
