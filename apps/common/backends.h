@@ -1,4 +1,4 @@
-// The backends that programs offer by name: what this build has, which GPUs it may use, and a renderer on them.
+// The backends that programs offer by name: those of this build, the GPUs to use, and renderers on them.
 #pragma once
 
 #include <memory>
@@ -14,47 +14,48 @@ namespace cistula {
 
 enum class Backend { embree, cuda };
 
-/// "embree" or "cuda", what --backend says. Throws Error (usage).
+/// The backend named by --backend: "embree" or "cuda". Throws Error (usage).
 Backend parse_backend(const std::string& text);
 const char* backend_name(Backend backend);
 
-/// "exact" or "native", what --intersector says. Throws Error (usage), also for native on another backend than Embree.
+/// The intersection named by --intersector: "exact" or "native". Throws Error (usage), also for native on another
+/// backend than Embree.
 Intersection parse_intersection(const std::string& text, Backend backend);
 
-/// What --device says: these GPUs, or all that can be used.
+/// The GPUs named by --device: a list, or all usable ones.
 struct DeviceChoice {
     bool all = false;
     std::vector<int> indices = {0};
 };
 
-/// "0,2" or "all"; empty: the default. Throws Error (usage), as for any choice where the backend is not CUDA.
+/// Parses "0,2" or "all"; empty: the default. Throws Error (usage), also for any text if the backend is not CUDA.
 DeviceChoice parse_devices(const std::string& text, Backend backend);
 
-/// The GPUs that a program runs on, and how records name them. All empty where the backend is not CUDA.
+/// The GPUs that a program runs on, and their names for records. All empty if the backend is not CUDA.
 struct ChosenDevices {
     CudaOptions options;
     std::vector<std::string> names;
-    std::string driver;  // the CUDA version that it supports
+    std::string driver;  // the latest CUDA version that it supports
 };
 
-/// Throws Error (device) where this build or this machine does not have what was asked for: early, before a scene is
+/// The devices to run on. Throws Error (device) if this build or this machine lacks them; called before the scene is
 /// compiled.
 ChosenDevices choose_devices(Backend backend, const DeviceChoice& choice);
 
-/// Those of `present` that were chosen. Throws Error (device) where one is not there or cannot be used.
+/// The chosen GPUs among `present`. Throws Error (device) if one is missing or unusable.
 std::vector<CudaDevice> pick_devices(const DeviceChoice& choice, const std::vector<CudaDevice>& present);
 
-/// What --list-devices prints: a line for each GPU, or one that says why there is none.
+/// The output of --list-devices: a line for each GPU, or one that says why there is none.
 std::string list_devices_text();
 std::string list_devices_text(const std::vector<CudaDevice>& devices);
 
-/// Throws Error (device) where this build does not have the backend. Never another one instead. Native intersection is
-/// Embree's: parse_intersection refuses it for any other.
+/// A renderer on the backend, never on another one. Throws Error (device) if this build lacks the backend. Native
+/// intersection is only for Embree: parse_intersection rejects it for others.
 template <class Real>
 std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
                                         const CudaOptions& options, Intersection intersection = Intersection::exact);
 
-/// Whether this build has the CUDA backend; whether this machine has a GPU is another question.
+/// Whether this build has the CUDA backend, independent of GPUs in this machine.
 bool has_cuda_backend();
 
 }  // namespace cistula

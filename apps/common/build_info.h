@@ -1,9 +1,9 @@
-// What a program was made of, for the records that it writes.
+// Facts about the build, for records.
 #pragma once
 
 namespace cistula {
 
-/// The compiler's flags: those of the build type and of the floating-point contract.
+/// The compiler's flags of the build type and of the floating-point contract.
 const char* build_flags();
 
 /// `git describe --always --dirty` of the source tree when the build was configured; "unknown" outside a git tree.

@@ -53,7 +53,8 @@ void fail_choice(const char* option, const std::string& text, const std::vector<
 
 void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
                      const std::string& description) {
-    // expected(0, 1) would take a scene that follows; expected(0) would make the lone flag "true".
+    // expected(0, 1) would take the scene's name that follows as the value; expected(0) would turn the lone flag into
+    // "true".
     app.add_option(name, text, description)->expected(0, 0)->default_str(alone)->take_last()->option_text(" ");
 }
 
@@ -93,7 +94,7 @@ int run_program(const char* name, const char* memory_advice, const std::function
         fmt::print(stderr, "{}: {}\n", name, one_line(message));
         return static_cast<int>(code);
     };
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is then an error of its write
+    std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit then is a write error
     try {
         return work();
     } catch (const Error& error) {

@@ -1,4 +1,4 @@
-// What the command lines of all programs have in common: numbers, names, unknown options, the end of main.
+// Command line handling shared by all programs: numbers, names, unknown options, the end of main.
 #pragma once
 
 #include <charconv>
@@ -15,10 +15,10 @@ class App;
 
 namespace cistula {
 
-/// Throws Error (usage).
+/// Throws Error (usage) with this message.
 [[noreturn]] void fail_usage(const std::string& message);
 
-/// The whole of `text` as a number of type T; nothing where it is none.
+/// The whole of `text` as a number of type T; nothing if it is not one.
 template <class T>
 std::optional<T> whole_number(std::string_view text) {
     T value{};
@@ -27,13 +27,13 @@ std::optional<T> whole_number(std::string_view text) {
     return value;
 }
 
-/// Throws Error (usage): "OPTION TEXT: must be a whole number from LOW to HIGH".
+/// The text of an option as an integer. Throws Error (usage): "OPTION TEXT: must be a whole number from LOW to HIGH".
 int integer_option(const char* option, const std::string& text, int low, int high);
 
-/// Throws Error (usage): "OPTION TEXT: must be a or b; did you mean 'a'?".
+/// Throws Error (usage) for an unknown choice: "OPTION TEXT: must be a or b; did you mean 'a'?".
 [[noreturn]] void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names);
 
-/// The value that goes by the name `text`. Throws Error (usage).
+/// The choice named `text`. Throws Error (usage).
 template <class T>
 T chosen(const char* option, const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
     std::vector<std::string_view> names;
@@ -44,24 +44,24 @@ T chosen(const char* option, const std::string& text, const std::vector<std::pai
     fail_choice(option, text, names);
 }
 
-/// An option that stands alone or has a value: --NAME makes `text` what `alone` says, --NAME=VALUE makes it VALUE. The
-/// word that follows is never taken for the value.
+/// Adds an option with an optional value: --NAME sets `text` to `alone`, --NAME=VALUE to VALUE. The next word is never
+/// taken as the value.
 void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
                      const std::string& description);
 
-/// Fills the variables that the options of `app` are bound to; false where --help was asked for. Throws Error (usage)
-/// for unknown options and empty values; `extra_positional` makes the message for a word that has no place.
+/// Parses the command line into the variables bound to the options of `app`; false if --help was given. Throws Error
+/// (usage) for unknown options and empty values; `extra_positional` makes the message for a superfluous word.
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
                         const std::function<std::string(const std::string&)>& extra_positional);
 
-/// Whether two paths lead to one file, which need not be there yet.
+/// Whether two paths name the same file, which may not exist yet.
 bool is_same_file(const std::string& a, const std::string& b);
 
 /// Writes to standard output. Throws Error (file).
 void print(const std::string& text);
 
-/// Runs a program's work; what it throws becomes a line on standard error that begins with `name`. Returns the exit
-/// code. `memory_advice`: what needs less memory.
+/// Runs a program's work and returns the exit code; exceptions become a line on standard error that begins with `name`.
+/// `memory_advice`: advice on using less memory, for when it runs out.
 int run_program(const char* name, const char* memory_advice, const std::function<int()>& work);
 
 }  // namespace cistula

@@ -1,5 +1,5 @@
-// Compiled for any x86-64. No templates and no inline functions of the library in here: the linker keeps one copy of
-// those, and it may be one that was compiled for the baseline.
+// Compiled for any x86-64. It must use no templates and no inline functions of the library: the linker keeps one copy
+// of each, possibly the one compiled for the baseline.
 #include "apps/common/cpu_baseline.h"
 
 #include <cpuid.h>
@@ -9,7 +9,7 @@
 namespace cistula {
 namespace {
 
-// __builtin_cpu_supports knows neither MOVBE nor, in every compiler, LZCNT and F16C.
+// __builtin_cpu_supports lacks MOVBE and, in some compilers, LZCNT and F16C.
 bool has_leaf1_ecx(unsigned bit) {
     unsigned a = 0, b = 0, c = 0, d = 0;
     return __get_cpuid(1, &a, &b, &c, &d) && (c & bit);
@@ -33,7 +33,7 @@ void require_cpu_baseline() {
         const char* name;
         bool there;
     } parts[] = {
-        // The builtin also asks whether the kernel saves the wide registers.
+        // The builtin also checks that the kernel saves the wide registers.
         {" AVX", __builtin_cpu_supports("avx") != 0},   {" AVX2", __builtin_cpu_supports("avx2") != 0},
         {" FMA", __builtin_cpu_supports("fma") != 0},   {" BMI1", __builtin_cpu_supports("bmi") != 0},
         {" BMI2", __builtin_cpu_supports("bmi2") != 0}, {" F16C", has_leaf1_ecx(bit_F16C)},
@@ -49,7 +49,7 @@ void require_cpu_baseline() {
     }
     if (!lacks) return;
     append(line, sizeof(line), "; x86-64-v3 is needed (Intel Haswell of 2013, AMD Excavator or Zen, or later)\n");
-    // Neither iostream nor atexit handlers: nothing of the program has been set up yet.
+    // Neither iostream nor atexit handlers are initialized yet.
     const ssize_t written = write(STDERR_FILENO, line, strlen(line));
     (void)written;
     _exit(2);
@@ -57,7 +57,7 @@ void require_cpu_baseline() {
 
 namespace {
 
-// 101 is the first priority open to programs: before every static constructor that has none.
+// 101 is the first priority available to programs: before every static constructor without a priority.
 __attribute__((constructor(101))) void require_cpu_baseline_at_start() {
     require_cpu_baseline();
 }

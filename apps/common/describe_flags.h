@@ -1,4 +1,4 @@
-// What the flags of a film say, in words.
+// Descriptions of a film's flags in words.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace cistula {
 
-/// Why a film with these flags cannot be trusted, for a message; empty for 0. The flags are RenderFlag's.
+/// The reason why a film with these flags (RenderFlag bits) is unreliable, for a message; empty for 0.
 std::string describe_flags(uint32_t flags);
 
 }  // namespace cistula

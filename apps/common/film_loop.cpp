@@ -20,7 +20,7 @@
 namespace cistula {
 namespace {
 
-/// A picture without values that a frame's file would look like: its windows, channels and attributes.
+/// The picture that a frame's file must match, without values: its windows, channels and attributes.
 LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
     Film one;
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
@@ -47,7 +47,7 @@ bool is_finished(const FilmJob& job, const CameraFrame& camera) {
     try {
         return is_same_image(read_exr(path), expected_picture(job, camera));
     } catch (const Error&) {
-        return false;  // someone else's EXR: rendered again
+        return false;  // not an EXR of this frame: rendered again
     }
 }
 
@@ -65,7 +65,8 @@ bool is_finished(const FilmJob& job, const CameraFrame& camera) {
                             raw ? "--frames " + format_frames(left) : std::string("--resume")));
 }
 
-/// Memory in large pages, where the system has them: the faults of small ones take a GPU's film longer than its pixels.
+/// Allocates the film in large pages where the system has them; page faults on small ones would take longer than a GPU
+/// needs for the pixels.
 void reserve(Film& film, uint64_t pixels) {
     if (film.pixels.capacity() >= pixels) return;
     film.pixels.reserve(pixels);
@@ -90,10 +91,10 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
 
 }  // namespace
 
-// A GPU is so much faster than the compression of its frames that every core should compress. Several share a frame:
-// with one frame for each core, cores idle until as many are rendered, and again while the last ones are written. Two
-// frames at least, so that one is encoded while the other one is compressed. The CPU backend needs the cores itself,
-// and memory for no more than two films.
+// A GPU renders much faster than frames are compressed, so every core should compress. Several cores share a frame:
+// with one frame per core, cores would idle until as many frames are rendered, and again while the last ones are
+// written. At least two frames, so that one is encoded while the other is compressed. The CPU backend needs the cores
+// for rendering, and memory for no more than two films.
 WriterLimits writer_limits(const FilmOptions& options) {
     WriterLimits limits;
     if (options.backend == Backend::cuda) {
@@ -118,7 +119,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
         fmt::print(stderr, "render: {} of {} frames are complete and stay as they are\n", stats.resumed.size(),
                    job.frames.size());
 
-    std::set<std::string> notes;  // said so far
+    std::set<std::string> notes;  // printed so far
     FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options), progress.stop, stats.frames);
     {
         FilmProgress report(options.quiet ? ProgressStyle::none : options.progress, cameras.size(), progress);
@@ -160,7 +161,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
         }
     }
     writer.finish();
-    if (stats.frames.size() == cameras.size()) return;  // an interruption after the last frame changes nothing
+    if (stats.frames.size() == cameras.size()) return;  // an interruption after the last frame has no effect
     fail_interrupted(job, stats.frames);
 }
 

@@ -1,4 +1,4 @@
-// The frames of a film: rendered one after the other, each written while the next ones render.
+// The frame loop of a film: frames are rendered one after the other, and each is written while the next ones render.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace cistula {
 
-/// All that the frames have in common.
+/// The parameters shared by all frames.
 struct FilmJob {
     const FilmOptions& options;
     const SceneDescription& scene;
@@ -24,12 +24,12 @@ struct FilmJob {
     const std::vector<int>& frames;
 };
 
-/// Renders and writes. Fills stats.frames. Throws Error: failed where a frame's flags say that it cannot be trusted
-/// (its file is not written), file where one cannot be written, interrupted where progress.stop was set from outside
-/// (frames finished by then are whole).
+/// Renders and writes all frames, and fills stats.frames. Throws Error: `failed` if a frame's flags make it unreliable
+/// (its file is not written), `file` if a file cannot be written, `interrupted` if progress.stop was set from outside
+/// (frames finished by then are complete).
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats);
 
-/// What may be on its way to files while frames render.
+/// Limits for frames being written while others render.
 WriterLimits writer_limits(const FilmOptions& options);
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// What whoever renders a film asks for, beside the scene and the settings of its frames.
+// Options for rendering a film, besides the scene and the settings of its frames.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct FilmOptions {
     Intersection intersection = Intersection::exact;
     Precision precision = Precision::single_;
     OutputChannels channels;
-    std::string stats;  // the file for the times and counts, as given; empty: none
+    std::string stats;  // file for times and counts, as given; empty: none
     bool resume = false, quiet = false, verbose = false;
     ProgressStyle progress = ProgressStyle::automatic;
 };

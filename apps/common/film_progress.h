@@ -1,4 +1,4 @@
-// What a user sees while the frames of a film render.
+// Progress display while the frames of a film render.
 #pragma once
 
 #include <chrono>
@@ -9,27 +9,27 @@
 
 namespace cistula {
 
-/// Where a film stands.
+/// State of a film's rendering.
 struct ProgressState {
-    int frame = 0;        // number of the frame in work
-    size_t index = 0;     // its place among the frames to render, from 0
+    int frame = 0;        // number of the current frame
+    size_t index = 0;     // its index among the frames to render, from 0
     size_t count = 1;     // frames to render
-    double fraction = 0;  // of the frame in work, 0 to 1
+    double fraction = 0;  // of the current frame, 0 to 1
     double elapsed = 0;   // seconds since the film began
     double rays_per_second = 0;
 };
 
-/// Seconds left, if the rest goes as what is done went; negative where nothing is done.
+/// Estimated seconds left at the average speed so far; negative if nothing is done yet.
 double remaining_seconds(const ProgressState& state);
 
-/// "950 rays/s", "12.3 Mrays/s".
+/// A rate with its unit: "950 rays/s", "12.3 Mrays/s".
 std::string format_rate(double rays_per_second);
 
-/// One line of at most `columns` characters, without a line end.
+/// A progress bar of at most `columns` characters, without a line end.
 std::string progress_bar(const ProgressState& state, int columns);
 std::string progress_line(const ProgressState& state);
 
-/// Shows how far a film is: a bar on a terminal, elsewhere now and then a line. Watches a RenderProgress for that.
+/// Shows a film's progress from a RenderProgress: a bar on a terminal, a line now and then elsewhere.
 class FilmProgress {
   public:
     FilmProgress(ProgressStyle style, size_t frames, const RenderProgress& progress);
@@ -37,7 +37,7 @@ class FilmProgress {
     void begin_frame(int frame, size_t index, uint64_t pixels);
     void end_frame();
 
-    /// A line of its own on standard error, the bar drawn again below it.
+    /// Prints a line on standard error and redraws the bar below it.
     void say(const std::string& line) { line_.say(line); }
 
   private:
@@ -54,7 +54,7 @@ class FilmProgress {
     size_t index_ = 0;
     uint64_t pixels_ = 1;
     Clock::time_point frame_start_ = start_;
-    StatusLine line_;  // after all that it shows
+    StatusLine line_;  // declared last: it uses the members above
 };
 
 }  // namespace cistula

@@ -15,7 +15,7 @@ namespace {
     throw Error(ExitCode::usage, fmt::format("--frames {}: {}", text, what));
 }
 
-/// The number at the front of `rest`, which it takes away; nothing where there are no digits or too many.
+/// Removes a number from the front of `rest` and returns it; nothing if there are no digits or too many.
 std::optional<int> take_number(std::string_view& rest) {
     if (rest.empty() || rest[0] < '0' || rest[0] > '9') return std::nullopt;
     int value = 0;

@@ -111,7 +111,7 @@ void FrameWriter::work() {
     }
 }
 
-/// Encoded frames are small beside their films: there may soon be room for another.
+/// Releases a film after encoding. The encoded frame is much smaller, so there may be room for another one.
 void FrameWriter::give_film_back(Task& task, size_t bytes_of_layers) {
     Film film = std::move(task.frame.film);
     const size_t bytes = bytes_of(film);
@@ -146,7 +146,7 @@ void FrameWriter::write(Task& task) {
     }
     give_film_back(task, bytes_of(layers, color));
     stats.write_seconds = seconds_of([&] {
-        // The preview first: where the image is complete, --resume may rely on both.
+        // The preview is written first: if the image is complete, --resume can rely on both.
         if (!frame.preview.empty()) write_preview(frame.preview, color);
         if (raw)
             write_seed_frame(frame.path, color);

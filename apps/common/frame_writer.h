@@ -1,4 +1,4 @@
-// Writes frames on threads of its own, so that the next ones render meanwhile.
+// Writes frames on its own threads while the next ones render.
 #pragma once
 
 #include <atomic>
@@ -19,51 +19,52 @@
 
 namespace cistula {
 
-/// A rendered frame on its way to its files.
+/// A rendered frame to be written.
 struct FinishedFrame {
     Film film;
     Attributes attributes;
     std::string path, preview;  // empty preview: none
-    FrameStats stats;           // the writer adds the ledger, the hash, its times, and how far a target was reached
+    FrameStats stats;           // the writer adds error totals, hash, times, and the target report
     FrameSettings settings;
 };
 
-/// How much a FrameWriter may have in work.
+/// Limits on the frames in a FrameWriter.
 struct WriterLimits {
     int frames = 1;                  // one thread each
-    size_t bytes = size_t{2} << 30;  // of films and of the layers that they become
-    int exr_threads = 0;             // of OpenEXR, shared by the frames, beside those; see set_exr_threads
+    size_t bytes = size_t{2} << 30;  // of films and of the layers made from them
+    int exr_threads =
+        0;  // OpenEXR's own threads, shared by all frames and additional to those above; see set_exr_threads
 };
 
-/// Every frame in work is led by one thread from its film to its files, whatever the others do.
+/// Writes frames concurrently; each is processed by one thread from its film to its files.
 class FrameWriter {
   public:
-    /// `stop` is set as soon as a write fails. `written` receives the frames in the order in which they were put; it
-    /// may be read after finish() or the destructor. Ledger and hash are computed where `measure`. Sets OpenEXR's
-    /// threads: files are neither written nor read elsewhere meanwhile.
+    /// `stop` is set as soon as a write fails. `written` receives the frames in the order of put(); it may be read
+    /// after finish() or the destructor. Error totals and hash are computed if `measure` is set. Sets OpenEXR's
+    /// threads, so no EXR file may be read or written elsewhere meanwhile.
     FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits, std::atomic<bool>& stop,
                 std::vector<FrameStats>& written);
     ~FrameWriter();
 
-    /// Waits for room. Frames that exceed the limit of bytes on their own go two at a time, and one film at a time.
-    /// Throws what the first write that failed threw; the frame is then not written.
+    /// Adds a frame; blocks until there is room. Frames that exceed the limit of bytes on their own are processed two
+    /// at a time, only one of them as a film. Throws the first write error; the frame is then not written.
     void put(FinishedFrame frame);
 
-    /// A film whose frame is encoded, for its memory; or an empty one.
+    /// A film that is no longer needed, for reuse of its memory; or an empty one.
     Film take_spare();
 
-    /// Waits until all is written. Throws what the first write that failed threw.
+    /// Waits until all frames are written. Throws the first write error.
     void finish();
 
   private:
     struct Task {
         size_t index = 0;  // in the order of put()
-        size_t bytes = 0;  // in memory, of the film or then of its layers
+        size_t bytes = 0;  // memory of the film, later of its layers
         bool has_film = true;
         FinishedFrame frame;
     };
 
-    bool has_room(size_t bytes) const;  // mutex_ held
+    bool has_room(size_t bytes) const;  // requires mutex_
     void work();
     void write(Task& task);
     void give_film_back(Task& task, size_t bytes_of_layers);
@@ -77,13 +78,13 @@ class FrameWriter {
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::queue<Task> waiting_;           // for a thread to take notice
+    std::queue<Task> waiting_;           // tasks that no thread has taken yet
     std::map<size_t, FrameStats> done_;  // not yet in written_
     std::vector<Film> spares_;
-    std::exception_ptr failure_;         // the first
-    size_t next_index_ = 0, bytes_ = 0;  // bytes_: of all in work
-    int in_work_ = 0, films_ = 0;        // films_: frames in work that are not encoded
-    size_t idle_ = 0;                    // threads, those that have not noticed a waiting frame among them
+    std::exception_ptr failure_;         // the first write error
+    size_t next_index_ = 0, bytes_ = 0;  // bytes_: of all frames in work
+    int in_work_ = 0, films_ = 0;        // films_: frames in work that are not encoded yet
+    size_t idle_ = 0;  // threads without work, including those that have not yet woken up for a waiting frame
     bool closing_ = false;
     std::vector<std::thread> threads_;
 };

@@ -1,4 +1,4 @@
-// The golden images: what they are rendered with. Shared by make_golden, the tests and render-compare.
+// Render settings of the golden images, shared by make_golden, the tests and render-compare.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace cistula::golden {
 
-/// At most; films that are smaller keep their size.
+/// Largest size in pixels; smaller films keep theirs.
 inline constexpr int width = 320, height = 180;
 
-/// The names of all scenes in a folder and those inside it, sorted: "benchmark" for benchmark.json, "hard/slivers" for
+/// The names of all scenes in a folder and its subfolders, sorted: "benchmark" for benchmark.json, "hard/slivers" for
 /// hard/slivers.json.
 inline std::vector<std::string> scene_names(const std::filesystem::path& scenes) {
     std::vector<std::string> names;

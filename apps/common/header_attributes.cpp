@@ -16,7 +16,7 @@ std::vector<float> to_floats(const Row (&rows)[4]) {
     return values;
 }
 
-/// Sees what the matrices, which are floats, round away.
+/// Hash of the camera in double; it also covers what the float matrices round away.
 std::string camera_hash(const Camera& camera) {
     Fnv128 hash;
     for (const Vec3<double>* v : {&camera.position, &camera.forward, &camera.right, &camera.up})

@@ -1,5 +1,5 @@
-// What an EXR header says about the image: all that the pixels depend on and nothing else, so that equal images are
-// equal files whatever made them.
+// Attributes of an EXR header: everything that the pixels depend on and nothing else, so that equal images give equal
+// files on any machine.
 #pragma once
 
 #include <map>
@@ -15,21 +15,21 @@ namespace cistula {
 
 using Attributes = decltype(LayeredPicture::attributes);
 
-/// Scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera, worldToNDC,
-/// chromaticities (Rec. 709, D65), and the intersector where it is not the exact one. docs/programs.md says what each
-/// holds.
+/// The attributes: scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera,
+/// worldToNDC, chromaticities (Rec. 709, D65), and the intersector if it is not the exact one. docs/programs.md
+/// documents each.
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera, Intersection intersection = Intersection::exact);
 
-/// World to camera space (x right, y up, looking along -z), 16 numbers for row vectors: p' = p M.
+/// Matrix from world to camera space (x right, y up, looking along -z): 16 numbers for row vectors, p' = p M.
 std::vector<float> world_to_camera(const Camera& camera);
 
-/// World to normalized device coordinates, for row vectors: after the division by w, which is the distance along the
-/// view axis, x is -1 to 1 from left to right, y -1 to 1 from bottom to top of the full frame, z = 1 - 1 / distance.
+/// Matrix from world to normalized device coordinates, for row vectors. After division by w, the distance along the
+/// view axis: x is -1 to 1 from left to right, y -1 to 1 from bottom to top of the full frame, z = 1 - 1 / distance.
 std::vector<float> world_to_ndc(const Camera& camera, int width, int height);
 
-/// True where `picture` holds the image that these attributes, windows and channels describe. The values of
-/// `expected` are not looked at.
+/// Whether `picture` is the image that the attributes, windows and channels of `expected` describe. The values of
+/// `expected` are ignored.
 bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected);
 
 }  // namespace cistula

@@ -8,7 +8,7 @@
 namespace cistula {
 namespace {
 
-// What a signal handler may touch: lock-free atomics, _exit, write and sigaction.
+// State for the signal handler, which may only use lock-free atomics, _exit, write and sigaction.
 std::atomic<std::atomic<bool>*> watched{nullptr};
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
@@ -27,7 +27,7 @@ void on_signal(int) {
         _exit(static_cast<int>(ExitCode::interrupted));
     }
     *stop = true;
-    restore();  // the second one kills
+    restore();  // a second signal then ends the process
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ InterruptGuard::InterruptGuard() {
     sigemptyset(&action.sa_mask);
     for (int i = 0; i < 2; ++i) {
         sigaction(signals[i], nullptr, &previous[i]);
-        // Ignored by whoever started us (nohup, a shell's background job): leave it so.
+        // A signal ignored by the parent (nohup, a shell's background job) stays ignored.
         if (previous[i].sa_handler != SIG_IGN) sigaction(signals[i], &action, nullptr);
     }
 }

@@ -1,12 +1,13 @@
-// Ctrl-C and SIGTERM: a flag that the renderer looks at now and then.
+// Handling of Ctrl-C and SIGTERM through a flag that renderers poll.
 #pragma once
 
 #include <atomic>
 
 namespace cistula {
 
-/// While one lives, the first SIGINT or SIGTERM is caught and the second ends the process at once. Before watch() the
-/// first one ends it too, with exit code 130 and a line that says that nothing was written. One at a time.
+/// While an object of this class exists, the first SIGINT or SIGTERM is caught and the second ends the process. Before
+/// watch() the first one also ends it, with exit code 130 and a line that says that nothing was written. Only one
+/// object at a time.
 class InterruptGuard {
   public:
     InterruptGuard();
@@ -14,7 +15,7 @@ class InterruptGuard {
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-    /// From now on an interruption sets `stop`, which must outlive the guard.
+    /// Lets interruptions set `stop` from now on; it must outlive the guard.
     void watch(std::atomic<bool>& stop);
 };
 

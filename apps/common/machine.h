@@ -1,20 +1,20 @@
-// What a program runs on, for the records that it writes.
+// Names of the machine's parts, for records.
 #pragma once
 
 #include <string>
 
 namespace cistula {
 
-/// What follows "KEY:" or "KEY\t:" in one of Linux's tables; empty: not there.
+/// The value after "KEY:" or "KEY\t:" in a table of Linux such as /proc/cpuinfo; empty if missing.
 std::string table_value(const char* file, const std::string& key);
 
-/// The processor's name as the kernel gives it; "unknown" where it does not.
+/// Name of the processor, from the kernel; "unknown" if missing.
 std::string processor_name();
 
-/// "unknown" where it has none.
+/// Name of the host; "unknown" if it has none.
 std::string host_name();
 
-/// NVIDIA's kernel driver, "580.159.04"; "unknown" where there is none.
+/// Version of NVIDIA's kernel driver, such as "580.159.04"; "unknown" if there is none.
 std::string gpu_driver_version();
 
 }  // namespace cistula

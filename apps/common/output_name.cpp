@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr int most_digits = 32;
 
-/// The directory that a file goes to.
+/// Creates the directory of a file.
 void make_directory(const std::string& path) {
     const fs::path directory = fs::path(path).parent_path();
     if (directory.empty()) return;
@@ -114,7 +114,7 @@ void require_different_files(const std::string& scene, const OutputName& image, 
     const auto use = [&](const std::string& path, const char* what) {
         if (path.empty()) return;
         std::error_code error;
-        // Absolute first: weakly_canonical leaves a relative path so where its beginning does not exist.
+        // Made absolute first: weakly_canonical leaves a relative path unchanged if its first part does not exist.
         const fs::path absolute = fs::absolute(path, error);
         const fs::path real = fs::weakly_canonical(absolute, error);
         const auto [user, is_new] = users.emplace((error ? absolute.lexically_normal() : real).string(), what);

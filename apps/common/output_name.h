@@ -9,13 +9,13 @@
 
 namespace cistula {
 
-/// A file name, or a pattern of one. A run of # is the frame number with at least as many digits, %d and %0Nd are
-/// printf's, %% is a percent sign.
+/// A file name or a pattern of file names. A run of # is replaced by the frame number with at least as many digits; %d
+/// and %0Nd are as in printf; %% is a percent sign.
 class OutputName {
   public:
     OutputName() = default;
 
-    /// `option` is what the messages blame ("-o"). Throws Error (usage) where the text holds two patterns or another
+    /// `option` is the option named in messages ("-o"). Throws Error (usage) if the text holds two patterns or another
     /// conversion.
     OutputName(std::string_view text, std::string_view option);
 
@@ -25,34 +25,34 @@ class OutputName {
 
   private:
     std::string text_, prefix_, suffix_;
-    int digits_ = -1;  // least number of digits; -1: no pattern
+    int digits_ = -1;  // least number of digits; -1: not a pattern
 };
 
 enum class FileKind {
     exr,
-    raw,  // the seed's frames: .out or .data
+    raw,  // the seed's format: .out or .data
 };
 
-/// By the extension, case ignored. Throws Error (usage) for any other.
+/// The kind of a file by its extension, case ignored. Throws Error (usage) for unknown ones.
 FileKind file_kind(const std::string& path);
 
-/// Where no -o is given: the scene's own film.output if it names one, else SCENE.exr in the working directory, or
-/// SCENE.####.exr where several frames were asked for by name. A scene from standard input is called "stdin".
+/// The output if no -o is given: the scene's film.output if it has one, else SCENE.exr in the working directory, or
+/// SCENE.####.exr if several frames were given explicitly. A scene from standard input is named "stdin".
 std::string default_output(const SceneDescription& scene, size_t frames_given);
 
-/// The frames to render: those given; else all of the film with a pattern, the first without one. Throws Error (usage)
-/// where several are given for a name that holds one.
+/// The frames to render: those given; by default the whole film for a pattern, the first frame for a plain name. Throws
+/// Error (usage) if several frames are given for a plain name.
 std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames);
 
-/// Makes the directories of these frames where they are missing. Throws Error (file) where that fails or the first name
-/// is a directory's: better now than after an hour of rendering.
+/// Creates missing directories for these frames. Throws Error (file) if that fails or the first name is a directory, so
+/// that the error is found before rendering.
 void make_directories(const OutputName& name, const std::vector<int>& frames);
 
-/// Makes the directory of a single file in the same way.
+/// Creates the directory of a single file if it is missing. Throws Error (file) if that fails.
 void make_directory_of(const std::string& path);
 
-/// Throws Error (usage) where two of these would be one file, symbolic links followed: the scene, the stats, the images
-/// and previews of all frames. `stats` may be empty, `scene` "-"; `option` is what names the stats.
+/// Throws Error (usage) if any two of these are the same file, symbolic links followed: the scene, the stats, the
+/// images and previews of all frames. `stats` may be empty, `scene` "-"; `option` is the option that names the stats.
 void require_different_files(const std::string& scene, const OutputName& image, const OutputName& preview,
                              const std::string& stats, const std::vector<int>& frames, const char* option = "--stats");
 

@@ -10,7 +10,7 @@
 namespace cistula {
 namespace {
 
-/// Two numbers around an x at the front of `text`, which it takes away.
+/// Removes "WxH" from the front of `text` and returns it; nothing if it is not there.
 std::optional<PictureSize> take_size(std::string_view& text) {
     const size_t x = text.find('x');
     if (x == text.npos) return std::nullopt;

@@ -1,4 +1,4 @@
-// Sizes and crops of pictures as people write them: 640x480, 64x64+128+96.
+// Parsing of picture sizes and crops: 640x480, 64x64+128+96.
 #pragma once
 
 #include <string_view>
@@ -13,10 +13,10 @@ struct PictureSize {
 
 inline constexpr int largest_side = 65536;  // pixels
 
-/// "640x480", what --res says. Throws Error (usage).
+/// Parses the size given to --res, such as "640x480". Throws Error (usage).
 PictureSize parse_size(std::string_view text);
 
-/// "WxH+X+Y", what --crop says; X and Y from the top left of the full frame. Throws Error (usage).
+/// Parses the rectangle given to --crop, "WxH+X+Y"; X and Y from the top left of the full frame. Throws Error (usage).
 PixelRect parse_crop(std::string_view text);
 
 }  // namespace cistula

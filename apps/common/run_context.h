@@ -1,4 +1,4 @@
-// What the records of programs begin with: when, on what and by which build they were made.
+// The context that programs' records begin with: date, machine and build.
 #pragma once
 
 #include <fmt/chrono.h>

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Bytes: the largest resident set of this process so far.
+/// Largest resident set of this process so far in bytes.
 uint64_t peak_memory() {
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);

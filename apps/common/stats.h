@@ -1,4 +1,4 @@
-// What --stats records: Google Benchmark's shape, a context and one entry per phase and frame.
+// The JSON written by --stats, in Google Benchmark's format: a context and one entry per phase and frame.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace cistula {
 
-/// Mean and largest pixel of one ledger over a frame, per channel, in the scene's units of radiance.
+/// Error bounds of a frame from one cause: mean over its pixels and largest pixel, per channel, in the scene's units of
+/// radiance.
 struct LedgerTotals {
     std::array<double, 3> mean{}, worst{};
 };
@@ -23,27 +24,27 @@ struct FrameStats {
     std::string file, hash;  // hash: of the film's integers
     int width = 0, height = 0;
     double render_seconds = 0, encode_seconds = 0, write_seconds = 0;
-    RenderTimes device;  // of a backend that has them
+    RenderTimes device;  // zeros for backends without devices
     RayCounts rays;
-    LedgerTotals pruned, cut;  // by the cutoff, by the depth limit
-    TargetReport target;       // where there is a target error
+    LedgerTotals pruned, cut;  // error bounds of branches pruned by the cutoff, and cut by the depth limit
+    TargetReport target;       // for frames with a target error
 };
 
 struct RunStats {
     double read_seconds = 0, compile_seconds = 0, tree_seconds = 0;
     std::string scene, scene_hash, intersector, driver;
-    std::vector<std::string> devices;            // GPUs; empty, as the driver, where none is used
+    std::vector<std::string> devices;            // GPUs; empty, like the driver, if none is used
     uint32_t required_effects = 0, effects = 0;  // masks
     size_t scene_bytes = 0;                      // geometry, trees and shading data
     int threads = 0;
     std::vector<FrameStats> frames;
-    std::vector<int> resumed;  // frames that --resume left alone
+    std::vector<int> resumed;  // frames that --resume skipped
 };
 
-/// Sums over the pixels of a film.
+/// The totals of one of the error ledgers over the pixels of a film.
 LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*ledger)[3]);
 
-/// The JSON text.
+/// The run's statistics as JSON text.
 std::string stats_json(const RunStats& stats, const FrameSettings& settings, const FilmOptions& options);
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// One line on standard error that says how far a program is.
+// A status line on standard error that shows a program's progress.
 #pragma once
 
 #include <chrono>
@@ -10,33 +10,33 @@
 
 namespace cistula {
 
-/// How a program shows how far it is. `automatic`: a line that is drawn again and again on a terminal, elsewhere a line
-/// every 30 s. `plain`: a line every 10 s and at milestones.
+/// How a program shows its progress. `automatic`: on a terminal a line that is redrawn, elsewhere a line every 30 s.
+/// `plain`: a line every 10 s and at milestones.
 enum class ProgressStyle { automatic, plain, none };
 
-/// Whether standard error is a terminal on which a line can be drawn again.
+/// Whether standard error is a terminal on which a line can be redrawn.
 bool is_terminal();
 
-/// "0:07", "12:34", "1:02:03".
+/// A duration as text: "0:07", "12:34", "1:02:03".
 std::string format_duration(double seconds);
 
-/// The line, which a thread of its own keeps up to date.
+/// A status line, kept up to date by its own thread.
 class StatusLine {
   public:
-    /// `text` gives the line, without a line end: of at most so many columns where it is drawn on a terminal, of any
-    /// length where `columns` is 0. An empty one is not shown. What `text` looks at must outlive this object and be
-    /// changed in update() only.
+    /// `text` returns the line without a line end: of at most `columns` columns on a terminal, of any length if
+    /// `columns` is 0. An empty line is not shown. The data that `text` reads must outlive this object and be changed
+    /// in update() only.
     StatusLine(ProgressStyle style, std::function<std::string(int columns)> text);
     ~StatusLine();
 
-    /// Runs `change`, which changes what `text` looks at, while the thread does not.
+    /// Runs `change`, which may modify the data that `text` reads, while the thread does not call `text`.
     template <class Change>
     void update(const Change& change) {
         const std::lock_guard lock(mutex_);
         change();
     }
 
-    /// Runs `write`, which writes to the terminal, while the line is out of the way.
+    /// Runs `write`, which writes to the terminal, while the status line is erased.
     template <class Write>
     void aside(const Write& write) {
         const std::lock_guard lock(mutex_);
@@ -44,10 +44,10 @@ class StatusLine {
         write();
     }
 
-    /// A line of its own on standard error, in every style.
+    /// Prints a line on standard error, in every style.
     void say(const std::string& line);
 
-    /// A line of its own where the style is plain.
+    /// Prints a line on standard error if the style is plain.
     void milestone(const std::string& line);
 
   private:
@@ -55,8 +55,8 @@ class StatusLine {
     enum class Output { drawn, lines, sparse_lines, none };
 
     void watch();
-    void show();   // mutex_ held
-    void erase();  // mutex_ held
+    void show();   // requires mutex_
+    void erase();  // requires mutex_
 
     const Output output_;
     const std::function<std::string(int columns)> text_;

@@ -1,4 +1,4 @@
-// What a user sees while a program goes through its steps.
+// Progress display for programs that run in steps.
 #pragma once
 
 #include <chrono>
@@ -9,31 +9,31 @@
 
 namespace cistula {
 
-/// Shows the step under way and how long it may still take: a line drawn again and again on a terminal; elsewhere now
-/// and then a line, and one for each step where the style is plain. Also holds the flag that Ctrl-C sets.
+/// Shows the current step and the estimated time left: on a terminal a line that is redrawn; elsewhere a line now and
+/// then, and one for each step if the style is plain. Also holds the flag that Ctrl-C sets.
 class StepProgress {
   public:
     explicit StepProgress(ProgressStyle style);
 
-    /// Begins a step of so many parts, or of parts whose weights have this sum.
+    /// Begins a step of `parts` parts, or of parts whose weights add up to that.
     void begin(const std::string& step, double parts);
     /// Names the part under way.
     void name_part(const std::string& name);
     /// Counts a part as done.
     void advance(double weight = 1);
-    /// Begins a part that is a frame of this many pixels, each of which counts as soon as it is done.
+    /// Begins a part that is a frame of this many pixels, each of which counts when it is done.
     void frame(uint64_t pixels);
 
-    /// A line of its own on standard error; nothing where the style is none.
+    /// Prints a line on standard error, unless the style is none.
     void say(const std::string& line);
 
-    /// Runs `write`, which writes to the terminal, while the line is out of the way.
+    /// Runs `write`, which writes to the terminal, while the status line is erased.
     template <class Write>
     void aside(const Write& write) {
         line_.aside(write);
     }
 
-    RenderProgress render;  // of the frame under way
+    RenderProgress render;  // of the current frame
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -45,7 +45,7 @@ class StepProgress {
     double parts_ = 0, done_ = 0;
     uint64_t pixels_ = 0;
     Clock::time_point start_ = Clock::now();
-    StatusLine line_;  // after all that it shows
+    StatusLine line_;  // declared last: it uses the members above
 };
 
 }  // namespace cistula

@@ -24,8 +24,8 @@ void TargetReport::add(const TargetReport& other) {
 TargetReport target_report(const Film& film, const FrameSettings& settings) {
     TargetReport report;
     const double unit = film.unit();
-    // A border that is moved by a share of the pixel's width changes it by that share of what lies on its brighter
-    // side: twice the pixel's radiance, if the border halves it and the other side is dark.
+    // If rounding moves an edge by some share of the pixel's width, the pixel changes by that share of the radiance on
+    // its brighter side: at most twice the pixel's radiance, if the edge halves it and the other side is black.
     const double worth = 2 * film.rounding * unit / settings.target_error;
     for (const PixelRecord& pixel : film.pixels) {
         double truncation = 0, pruned = 0;

@@ -1,4 +1,4 @@
-// Times of runs, repeated ones too: the median is what counts, the range says how far to trust it.
+// Times of repeated runs: median and range.
 #pragma once
 
 #include <chrono>
@@ -6,17 +6,17 @@
 
 namespace cistula {
 
-/// Milliseconds of one run each.
+/// Run times in milliseconds, one per run.
 struct Timing {
     std::vector<double> runs;
 
     bool empty() const { return runs.empty(); }
-    double median() const;  // 0 where there are no runs
+    double median() const;  // 0 if there are no runs
     double least() const;
     double most() const;
 };
 
-/// Seconds that `work` takes.
+/// Wall time of `work` in seconds.
 template <class Work>
 double seconds_of(Work&& work) {
     const auto start = std::chrono::steady_clock::now();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t shadows = effect_opaque_shadows | effect_transparent_shadows;
 
-/// A way to render the frame, and how long it took.
+/// A way to render the frame, and its times.
 struct Variant {
     std::unique_ptr<Renderer> renderer;
     FrameSettings settings;
@@ -42,7 +42,7 @@ EffectCosts measure_effects(const SceneDescription& scene, const std::vector<Eff
         return variants.size() - 1;
     };
     add(scene, settings);
-    // The mask without shadows has everything else, so that it is compared with the mask of all.
+    // The mask without shadows has all other effects, so it is compared with the mask of all effects.
     size_t with_shadows = 0, without_shadows = 0;
     if ((needed & shadows) != 0) {
         FrameSettings how = settings;
@@ -51,7 +51,7 @@ EffectCosts measure_effects(const SceneDescription& scene, const std::vector<Eff
         how.unshadowed = true;
         without_shadows = add(scene, how);
     }
-    std::vector<std::pair<uint32_t, size_t>> taken_out;  // effect, its variant; 0: none
+    std::vector<std::pair<uint32_t, size_t>> taken_out;  // effect and its variant; 0: none
     for (const EffectReason& reason : reasons) {
         if (!reason.needed) continue;
         const auto less = without_effect(scene, reason.effect);

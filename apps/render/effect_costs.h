@@ -1,4 +1,4 @@
-// What --explain=measure adds: how much of a frame's time each effect takes.
+// Measurements for --explain=measure: how much of a frame's time each effect takes.
 #pragma once
 
 #include <functional>
@@ -14,23 +14,23 @@
 
 namespace cistula {
 
-/// What one needed effect costs: the `share` of the frame's time that goes where it is taken out; none where it cannot
-/// be taken out alone.
+/// The cost of a required effect. `share`: the part of the frame's time saved without it; none if it cannot be removed
+/// alone.
 struct EffectCost {
     uint32_t effect = 0;
     std::optional<double> share;
 };
 
 struct EffectCosts {
-    double frame_ms = 0;  // the median of `runs` frames with all that is needed
+    double frame_ms = 0;  // median of `runs` frames with all required effects
     int runs = 0;
-    std::vector<EffectCost> costs;  // of the needed effects, in the order of the bits
+    std::vector<EffectCost> costs;  // of the required effects, in bit order
 };
 
 using MakeRenderer = std::function<std::unique_ptr<Renderer>(const SceneDescription&)>;
 
-/// Renders frame `frame` with and without each needed effect in turns, `runs` times after a warm-up, and compares
-/// medians: of kernels where the renderer has devices, else of whole frames. Both kinds of shadow are taken out
+/// Renders frame `frame` with and without each required effect in turns, `runs` times after a warm-up, and compares
+/// medians of kernel times if the renderer has devices, else of whole frames. Both kinds of shadows are removed
 /// together.
 EffectCosts measure_effects(const SceneDescription& scene, const std::vector<EffectReason>& reasons, int frame,
                             const FrameSettings& settings, const MakeRenderer& make, StepProgress& progress,

@@ -8,7 +8,7 @@
 namespace cistula {
 namespace {
 
-/// `other` has no place beside `option`, which is given where its text is not empty.
+/// `option` cannot be combined with `other`; an option is given if its text is not empty.
 struct Exclusion {
     const char* option;
     const std::string& text;
@@ -17,7 +17,7 @@ struct Exclusion {
     const char* why;
 };
 
-/// `option` has a meaning only beside another one.
+/// `option` requires another option.
 struct Need {
     const char* option;
     const std::string& text;

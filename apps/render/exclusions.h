@@ -1,11 +1,11 @@
-// Options of `render` that have no meaning beside one another.
+// Options of `render` that exclude or require one another.
 #pragma once
 
 #include "option_texts.h"
 
 namespace cistula {
 
-/// Throws Error (usage) that says which of two options is to be left out, or which one is missing.
+/// Throws Error (usage) that says which of two options must be removed, or which one is missing.
 void refuse_exclusions(const OptionTexts& texts);
 
 }  // namespace cistula

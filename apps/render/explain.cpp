@@ -11,7 +11,7 @@ std::string list_of(uint32_t mask) {
     return mask == 0 ? "nothing" : fmt::format("{}", fmt::join(names_of_effects(mask), ", "));
 }
 
-/// "12.3 %", or "-" where nothing was measured.
+/// An effect's share of the time: "12.3 %", or "-" if it was not measured.
 std::string text_of(const EffectCosts& costs, uint32_t effect) {
     for (const EffectCost& cost : costs.costs)
         if (cost.effect == effect && cost.share) return fmt::format("{:.1f} %", 100 * *cost.share);

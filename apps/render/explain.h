@@ -1,4 +1,4 @@
-// The table that --explain prints.
+// The table printed by --explain.
 #pragma once
 
 #include <string>
@@ -9,9 +9,8 @@
 
 namespace cistula {
 
-/// One line per effect: its name, whether the scene needs it, whether the code that would run has it, because of what.
-/// Then which of the instantiated masks would run and what it leaves out. With `costs` also each one's share of the
-/// time.
+/// A table of effects, one per line: its name, whether the scene needs it, whether the code to be run includes it, and
+/// why. Then the compiled mask to be run and what it leaves out. With `costs` also each effect's share of the time.
 std::string explain_table(const std::string& scene, const std::vector<EffectReason>& reasons,
                           const EffectCosts* costs = nullptr);
 

@@ -1,4 +1,4 @@
-// render: a scene to images.
+// render: renders a scene to images.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -34,7 +34,7 @@ int threads_of(const RenderOptions& options) {
     return options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
 }
 
-/// Does all that `work` spreads over threads on as many as --threads says.
+/// Runs `work` with its parallelism limited to --threads.
 template <class Work>
 void on_threads(const RenderOptions& options, const Work& work) {
     const int threads = threads_of(options);
@@ -62,7 +62,7 @@ std::unique_ptr<Renderer> prepare(const SceneDescription& scene, const RenderOpt
     return renderer;
 }
 
-/// The names of the files, checked against one another; their directories are there.
+/// The output file names, checked against one another, with their directories created.
 struct Outputs {
     OutputName image, preview;
     std::vector<int> frames;
@@ -112,7 +112,7 @@ void print_summary(const RunStats& stats, const OutputName& image, double second
                format_rate(render_seconds > 0 ? static_cast<double>(rays) / render_seconds : 0));
 }
 
-/// Says how far it came. Throws Error (target) where pixels missed it.
+/// Prints the target report. Throws Error (target) if pixels missed the target.
 void judge_target(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
     const bool reached =
         std::all_of(stats.frames.begin(), stats.frames.end(), [](const auto& f) { return f.target.missed == 0; });
@@ -133,7 +133,7 @@ void render_scene(const RenderOptions& options) {
 
     const FrameSettings settings = frame_settings(options, scene);
     const Outputs outputs = plan_outputs(options, scene);
-    RenderProgress progress;  // outlives the guard
+    RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
 
     stats.scene = options.scene;
@@ -159,13 +159,13 @@ void render_scene(const RenderOptions& options) {
             seconds = seconds_of([&] { render_film(job, *renderer, progress, stats); });
         } catch (const Error&) {
             try {
-                write_stats();        // of the frames that were finished
-            } catch (const Error&) {  // the first error is the one to report
+                write_stats();        // of the finished frames
+            } catch (const Error&) {  // the original error is the one to report
             }
             throw;
         }
         write_stats();
-        if (options.verbose && !stats.frames.empty())  // the renderer knows what ran
+        if (options.verbose && !stats.frames.empty())  // the renderer knows which effects it used
             fmt::print(stderr, "render: effects: {}\n", fmt::join(names_of_effects(stats.effects), ", "));
         if (!options.quiet) print_summary(stats, outputs.image, seconds);
         if (settings.adaptive() && !stats.frames.empty()) judge_target(stats, settings, options);
@@ -184,7 +184,7 @@ void measure_scene(const RenderOptions& options) {
     const SceneDescription scene = read_scene(options.scene);
     const FrameSettings settings = frame_settings(options, scene);
     const std::vector<EffectReason> reasons = explain_effects(scene);
-    StepProgress progress(options.quiet ? ProgressStyle::none : options.progress);  // outlives the guard
+    StepProgress progress(options.quiet ? ProgressStyle::none : options.progress);  // must outlive the guard
     InterruptGuard guard;
     guard.watch(progress.render.stop);
     on_threads(options, [&] {

@@ -1,11 +1,11 @@
-// The command line of `render` as it was written.
+// The unparsed command line of `render`.
 #pragma once
 
 #include <string>
 
 namespace cistula {
 
-/// The options' texts as CLI11 leaves them; empty where an option without a default is not given.
+/// The options' texts as CLI11 stores them; empty for options not given that have no default.
 struct OptionTexts {
     std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, target_error,
         max_samples, threads, layers, device, pixel, json, explain;

@@ -213,7 +213,7 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     settings.target_error = options.target_error.value_or(0);
     settings.max_samples = options.max_samples.value_or(settings.max_samples);
     settings.effects = options.all_effects ? all_effects : 0;
-    // As deep as it takes, unless asked otherwise: the budget of truncation ends the trees.
+    // With a target error the depth is unlimited by default: the budget of truncation ends the ray trees.
     if (settings.adaptive()) settings.depth = options.depth.value_or(largest_depth);
     settings.crop = options.crop.value_or(PixelRect{0, 0, settings.full_width, settings.full_height});
     const PixelRect& crop = settings.crop;

@@ -1,4 +1,4 @@
-// The command line of `render`, read and checked as far as it can be without the scene.
+// The command line of `render`, parsed and checked as far as possible without the scene.
 #pragma once
 
 #include <optional>
@@ -22,37 +22,38 @@ enum class Action { render, explain, measure, pixel, print_help, print_version, 
 struct RenderOptions : FilmOptions {
     Action action = Action::render;
     std::string scene;        // "-": standard input
-    std::string output;       // as given; empty: see default_output
+    std::string output;       // as given; empty: default_output
     std::string preview;      // as given; empty: none
     std::vector<int> frames;  // empty: none given
-    DeviceChoice devices;     // of the CUDA backend
+    DeviceChoice devices;     // for the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
-    PixelPlace pixel;  // with Action::pixel
-    std::string json;  // with Action::pixel: a file, "-" or empty
+    PixelPlace pixel;  // for Action::pixel
+    std::string json;  // for Action::pixel: a file, "-" or empty
     std::optional<int> supersample, depth;
     std::optional<double> cutoff, target_error;
-    std::optional<int> max_samples;  // with a target error
+    std::optional<int> max_samples;  // for a target error
     bool all_effects = false;        // --effects all
-    int threads = 0;                 // 0: all
+    int threads = 0;                 // 0: one per core
 };
 
 inline constexpr int largest_supersample = 64;  // k
 
-/// Throws Error (usage); the message names the option, what is wrong and what would be right.
+/// Parses the command line. Throws Error (usage); the message names the option, what is wrong and what would be right.
 RenderOptions parse_options(int argc, const char* const* argv);
 
-/// What --help prints: the options, examples, exit codes.
+/// The output of --help: options, examples, exit codes.
 std::string help_text();
 
-/// "X,Y". Throws Error (usage).
+/// Parses "X,Y". Throws Error (usage).
 PixelPlace parse_pixel(std::string_view text);
 
-/// "error,id,samples,cost,Z,N", any of them. Throws Error (usage) with the nearest name for an unknown one.
+/// Parses a list of layers, any of "error,id,samples,cost,Z,N". Throws Error (usage) with the nearest name for an
+/// unknown one.
 OutputChannels parse_layers(std::string_view text);
 
-/// The settings of every frame: the scene's film, depth and cutoff where no option overrides them. Throws Error
-/// (usage) where the crop leaves the frame.
+/// The settings of every frame: the scene's film, depth and cutoff unless options override them. Throws Error (usage)
+/// if the crop is not inside the frame.
 FrameSettings frame_settings(const RenderOptions& options, const SceneDescription& scene);
 
 }  // namespace cistula

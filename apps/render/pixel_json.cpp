@@ -1,4 +1,4 @@
-// The tree as JSON.
+// A pixel's ray trees as JSON.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ Json number(double value) {
     return value;
 }
 
-/// A float as the shortest decimal that gives it back.
+/// A float as the shortest decimal that reads back as the same float.
 Json number(float value) {
     if (!std::isfinite(value)) return number(static_cast<double>(value));
     return Json::parse(fmt::format("{}", value));

@@ -1,4 +1,4 @@
-// What --pixel prints: a pixel's ray trees, for people and for programs.
+// The output of --pixel: a pixel's ray trees as text and as JSON.
 #pragma once
 
 #include <string>
@@ -19,13 +19,14 @@ struct PixelReport {
     std::string scene_hash;
 };
 
-/// The middle sample's tree, a line for each other sample, the totals. Verbose: all trees, and nothing folded.
+/// The report as text: the middle sample's tree, a line for each other sample, the totals. Verbose: all trees, nothing
+/// folded.
 std::string pixel_text(const PixelReport& report, bool verbose);
 
-/// All of it; docs/programs.md names the keys.
+/// The whole report as JSON; docs/programs.md documents the keys.
 std::string pixel_json(const PixelReport& report);
 
-/// The names of the enumerations.
+/// The name of an enumerator.
 const char* name_of(BranchKind kind);
 const char* name_of(BranchEnd end);
 const char* name_of(CrossingKind crossing);
@@ -34,16 +35,16 @@ const char* name_of(LightFate fate);
 /// The radiance of one sample, in the scene's units.
 glm::dvec3 radiance_of(const FixedColor& sum, const Film& film);
 
-/// Between two directions, from its cosine.
+/// The angle in degrees between two directions, from its cosine.
 double degrees_of(double cosine);
 
-/// What the image shows of the pixel: the value of one of its channels, "R" or "error.G" or "Z".
+/// The value of one of the pixel's channels in the image: "R", "error.G", "Z", ...
 float shown(const PixelReport& report, const std::string& channel);
 
-/// 0 for one sample; the one nearest the pixel's center of several.
+/// Index of the sample nearest to the pixel's center; 0 for one sample.
 size_t middle_sample(int supersample);
 
-/// Rays of all samples of the pixel.
+/// Ray counts of all samples.
 RayCounts rays_of(const PixelTree& tree);
 
 }  // namespace cistula

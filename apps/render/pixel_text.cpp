@@ -1,4 +1,4 @@
-// The tree as indented text.
+// A pixel's ray trees as indented text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,16 +9,16 @@
 namespace cistula {
 namespace {
 
-/// What weighs less is under half a step of an 8-bit picture, and folded.
+/// Least weight of a branch that is printed unfolded: half a step of an 8-bit picture.
 constexpr double least_weight = 1.0 / 512;
-constexpr size_t most_lights = 6;    // lines of lights at one surface, unless all are asked for
-constexpr size_t most_samples = 64;  // lines of samples, likewise
+constexpr size_t most_lights = 6;    // of light lines at one surface, unless all are asked for
+constexpr size_t most_samples = 64;  // of sample lines, unless all are asked for
 
 std::string number(double value) {
-    return fmt::format("{:.4g}", value == 0 ? 0.0 : value);  // no -0
+    return fmt::format("{:.4g}", value == 0 ? 0.0 : value);  // avoids -0
 }
 
-/// One number where all channels have the same.
+/// A color as text: a single number if all channels are equal.
 std::string color(const glm::dvec3& c) {
     if (c.x == c.y && c.y == c.z) return number(c.x);
     return fmt::format("{} {} {}", number(c.x), number(c.y), number(c.z));
@@ -40,7 +40,7 @@ FixedColor sum_of(const FixedColor& a, const FixedColor& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
-/// One sample's tree.
+/// Prints one sample's tree.
 class TreeText {
   public:
     TreeText(const PixelReport& report, const SampleTree& sample, bool verbose, std::string& text)
@@ -118,7 +118,7 @@ class TreeText {
         return "";
     }
 
-    /// A solid's face, triangle for meshes, as a phrase: "gem (/objects/2), face 4".
+    /// A solid's face, or triangle for meshes, as a phrase: "gem (/objects/2), face 4".
     std::string face(const FaceMet& met) const {
         return fmt::format("{}, {} {}", called(report_.names.solids[met.solid]), met.triangle ? "triangle" : "face",
                            met.face);
@@ -196,7 +196,7 @@ class TreeText {
     }
 
     void write_lights(int depth, const PixelSurface& s) {
-        // Those that add the most, in the order of the scene; the rest is counted.
+        // The lights that contribute most, in scene order; the rest are only counted.
         std::vector<size_t> order(s.lights.size());
         for (size_t i = 0; i < order.size(); ++i) order[i] = i;
         if (!verbose_ && order.size() > most_lights) {
@@ -246,7 +246,7 @@ class TreeText {
     void write_light_counts(int depth, const PixelSurface& s, const std::vector<size_t>& rest) {
         size_t counts[4] = {};
         FixedColor adds{};
-        std::vector<uint32_t> shadows;  // of these
+        std::vector<uint32_t> shadows;  // solids in the way of these lights
         for (const size_t i : rest) {
             const LightShare& share = s.lights[i];
             ++counts[static_cast<size_t>(share.fate)];
@@ -278,7 +278,7 @@ class TreeText {
     bool folded_ = false;
 };
 
-/// What a sample's primary ray meets first.
+/// A phrase for the first hit of a sample's primary ray.
 std::string first_met(const PixelReport& report, const SampleTree& sample) {
     const PixelBranch& primary = sample.branches.front();
     switch (primary.end) {

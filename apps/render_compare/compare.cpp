@@ -23,7 +23,7 @@ bool same_data_window(const LayeredPicture& a, const LayeredPicture& b) {
     return a.width == b.width && a.height == b.height && a.x == b.x && a.y == b.y;
 }
 
-/// Shortest texts that read back as the same number, so that equal texts are equal values, NaN and -0 included.
+/// The shortest text that reads back as the same number, so that equal texts are equal values, NaN and -0 included.
 std::string to_text(const Attribute& value) {
     if (const auto* text = std::get_if<std::string>(&value)) return *text;
     if (const auto* whole = std::get_if<int>(&value)) return fmt::format("{}", *whole);
@@ -69,7 +69,7 @@ std::vector<std::string> differing_header(const LayeredPicture& a, const Layered
     return lines;
 }
 
-/// `window`: whose data window both channels fill.
+/// Statistics of two channels; `window`: the picture whose data window both have.
 ChannelStatistics statistics_of(const Channel& a, const Channel& b, const LayeredPicture& window,
                                 std::vector<double>& worst_of_pixels) {
     ChannelStatistics result;

@@ -1,4 +1,4 @@
-// Two pictures, channel by channel: how far apart they are, and what differs beside the floats.
+// Comparison of two pictures by channel: sizes of differences, and differences other than floats.
 #pragma once
 
 #include <cmath>
@@ -11,46 +11,46 @@
 
 namespace cistula {
 
-/// |a - b|; 0 for two NaNs and for the same infinity twice, infinity where only one is finite or the signs of
-/// infinities differ.
+/// |a - b|; 0 for two NaNs and for two equal infinities, infinity if only one is finite or the infinities have
+/// different signs.
 double difference(float a, float b);
 
-/// What may differ. None given: nothing, every bit counts.
+/// Allowed differences. By default none: every bit counts.
 struct Thresholds {
-    std::optional<double> fail;      // a pixel fails where a channel differs by more
-    double failpercent = 0;          // as many pixels may fail
+    std::optional<double> fail;      // a pixel fails if a channel differs by more
+    double failpercent = 0;          // percentage of pixels that may fail
     std::optional<double> hardfail;  // no pixel may differ by more
 
     bool any() const { return fail || hardfail; }
 };
 
-/// How a channel that both pictures have differs between them.
+/// Differences in a channel that both pictures have.
 struct ChannelStatistics {
     std::string name;
-    size_t differing = 0;  // floats of other bits
-    size_t infinite = 0;   // infinite differences; max knows them, mean, rmse and psnr leave them out
+    size_t differing = 0;  // floats with different bits
+    size_t infinite = 0;   // infinite differences; included in max, excluded from mean, rmse and psnr
     double max = 0, mean = 0, rmse = 0;
     double psnr = INFINITY;  // dB; the peak is the largest finite magnitude in either channel, at least 1
-    int x = 0, y = 0;        // the largest difference, else the first float of other bits; from the display window
-    float a = 0, b = 0;      // what stands there
+    int x = 0, y = 0;        // largest difference, or first float with different bits; origin at the display window
+    float a = 0, b = 0;      // the two values there
 };
 
 struct Comparison {
-    std::vector<std::string> structure;  // windows and channels: what no threshold forgives
-    std::vector<std::string> header;     // attributes and the type of channels: forgiven where there are thresholds
-    std::vector<ChannelStatistics> channels;  // none where the data windows differ
+    std::vector<std::string> structure;  // differences of windows and channels: never allowed
+    std::vector<std::string> header;     // differences of attributes and channel types: allowed if there are thresholds
+    std::vector<ChannelStatistics> channels;  // empty if the data windows differ
     size_t pixels = 0, over_fail = 0, over_hardfail = 0;
     double max = 0;
 
-    size_t differing() const;  // floats of other bits in all channels
+    size_t differing() const;  // floats with different bits in all channels
 };
 
 Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, const Thresholds& thresholds);
 
-/// Whether the thresholds hold; without them, whether the pictures are equal in every bit.
+/// Whether the differences are within the thresholds; without thresholds, whether the pictures are bitwise equal.
 bool passes(const Comparison& comparison, const Thresholds& thresholds);
 
-/// The differences, channel by channel. The data windows must be equal.
+/// The differences by channel as a picture. The data windows must be equal.
 LayeredPicture difference_picture(const LayeredPicture& a, const LayeredPicture& b);
 
 }  // namespace cistula

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// One scene in one precision.
+/// The comparison of one scene in one precision.
 struct GoldenResult {
     std::string scene, precision, expected_hash, hash;
     uint32_t flags = 0;
@@ -30,7 +30,7 @@ struct GoldenResult {
     bool holds() const { return flags == 0 && hash == expected_hash && passes(comparison, {}); }
 };
 
-/// The folders inside this one that hold a golden.json, sorted: "benchmark", "hard/slivers".
+/// The subfolders that hold a golden.json, sorted: "benchmark", "hard/slivers".
 std::vector<std::string> golden_names(const fs::path& folder) {
     std::error_code error;
     std::vector<std::string> names;
@@ -130,7 +130,7 @@ bool run_golden(const CompareOptions& options) {
         if (!options.quiet) print(text);
     };
     const std::vector<std::string> names = golden_names(options.golden);
-    // "." and "golden/.." have a parent too.
+    // Canonical, because "." and "golden/.." have a parent too.
     const fs::path folder = fs::canonical(options.golden), scenes = folder.parent_path() / "scenes";
     size_t name_width = 12;
     for (const std::string& name : names) name_width = std::max(name_width, name.size());

@@ -1,4 +1,4 @@
-// render-compare: two images, or the golden images and a backend.
+// render-compare: compares two images, or a backend's images with the golden ones.
 #include "apps/common/command_line.h"
 #include "compare.h"
 #include "golden_run.h"

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* default_golden = "golden";
 
-/// The options' texts as CLI11 leaves them.
+/// The options' texts as CLI11 stores them.
 struct Texts {
     std::string a, b, fail, failpercent, hardfail, diff, json, golden, backend, device, precision;
     bool quiet = false, version = false;
@@ -52,7 +52,7 @@ void refuse(bool given, const char* option, const char* why) {
     if (given) fail_usage(fmt::format("{}: {}", option, why));
 }
 
-/// What is written must not replace what is read, nor each other.
+/// Throws if an output file is also an input or another output.
 void require_different_files(const CompareOptions& options) {
     const std::pair<const char*, const std::string*> read[] = {{"the first image", &options.a},
                                                                {"the second image", &options.b}};

@@ -17,17 +17,17 @@ struct CompareOptions {
     Thresholds thresholds;
     std::string diff, json;  // files; empty: none
     bool quiet = false;
-    // Of --golden:
+    // With --golden:
     std::string golden;  // the folder
     Backend backend = Backend::embree;
     DeviceChoice devices;
     std::vector<Precision> precisions;
 };
 
-/// Throws Error (usage).
+/// Parses the command line. Throws Error (usage).
 CompareOptions parse_compare_options(int argc, const char* const* argv);
 
-/// What --help prints.
+/// The output of --help.
 std::string compare_help_text();
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// A comparison as people read it, and as JSON.
+// Report of a comparison as text and as JSON.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace cistula {
 
-/// One line: whether the comparison holds, and why or why not.
+/// One line: whether the comparison passes, and the reason.
 std::string verdict(const Comparison& comparison, const Thresholds& thresholds);
 
-/// What differs beside the floats, a table of the channels, the verdict.
+/// The differences other than floats, a table of the channels, and the verdict.
 std::string report_text(const Comparison& comparison, const Thresholds& thresholds);
 
-/// The report as JSON; infinities and NaN, which JSON does not have, are strings.
+/// The report as JSON; infinities and NaN, which JSON lacks, are strings.
 nlohmann::ordered_json report_json(const Comparison& comparison, const CompareOptions& options);
 
-/// "R at (12, 34): 0.5 / 0.25", with the bits where the values are equal.
+/// The pixel with the largest difference: "R at (12, 34): 0.5 / 0.25", with the bits if the values are equal.
 std::string worst_text(const ChannelStatistics& channel);
 
 }  // namespace cistula

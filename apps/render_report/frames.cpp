@@ -13,14 +13,14 @@
 namespace cistula::report {
 namespace {
 
-/// Stops `frame` once it passes a limit, or once `shown` is stopped, which tells how far it is.
+/// Watches a render and stops `frame` when it exceeds a limit or when `shown`, the progress on display, is stopped.
 class Watch {
   public:
     Watch(const FrameLimit& limit, RenderProgress& shown)
         : limit_(limit), shown_(shown), thread_([this] { watch(); }) {}
     ~Watch() { end(); }
 
-    /// Whether a limit was passed.
+    /// Ends the watch; returns whether a limit was exceeded.
     bool end() {
         {
             const std::lock_guard lock(mutex_);
@@ -54,7 +54,7 @@ class Watch {
     std::mutex mutex_;
     std::condition_variable wake_;
     bool done_ = false, late_ = false;
-    std::thread thread_;  // after all that it uses
+    std::thread thread_;  // declared last: it uses the members above
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Rendering and timing of single frames of one scene: every frame of the report goes through here.
+// Rendering and timing of single frames of one scene; all frames of the report are rendered here.
 #pragma once
 
 #include <limits>
@@ -11,23 +11,24 @@
 
 namespace cistula::report {
 
-/// Frames that take longer are stopped: ray trees may be endless.
+/// Time limits of a frame, since ray trees may be endless.
 struct FrameLimit {
     double whole = std::numeric_limits<double>::infinity();  // seconds of wall clock
-    double still = std::numeric_limits<double>::infinity();  // the same, in which no pixel is done
+    double still = std::numeric_limits<double>::infinity();  // seconds of wall clock in which no pixel is completed
 };
 
 class Frames {
   public:
     Frames(const SceneDescription& scene, const Machine& machine, int width, int height, StepProgress& progress);
 
-    /// Seconds of wall clock. Throws Error: interrupted after Ctrl-C, failed where the frame cannot be trusted.
+    /// Renders a frame and returns the wall time in seconds. Throws Error: `interrupted` after Ctrl-C, `failed` if the
+    /// frame is unreliable.
     double render(const Setting& setting, Film& film, uint32_t effects = 0);
     double render(Renderer& renderer, const FrameSettings& settings, Film& film);
-    /// The seconds of render(), or nothing where the limit was passed.
+    /// Renders a frame and returns the wall time in seconds, or nothing if a limit was exceeded.
     std::optional<double> render_within(const FrameLimit& limit, const Setting& setting, Film& film);
 
-    /// Milliseconds of the frame just rendered: of its kernels where the renderer tells, else all `seconds`.
+    /// Time of the last frame in milliseconds: of its kernels if the renderer measures them, else all `seconds`.
     double kernel_ms(const Setting& setting, double seconds);
 
     Renderers renderers;

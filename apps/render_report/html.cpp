@@ -8,7 +8,7 @@
 namespace cistula::report {
 namespace {
 
-/// At most `digits` significant ones, no exponent.
+/// A number with at most `digits` significant digits, without an exponent.
 std::string plain(double value, int digits) {
     const int before = value != 0 ? static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1 : 1;
     std::string text = fmt::format("{:.{}f}", value, std::max(0, digits - before));

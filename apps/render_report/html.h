@@ -1,4 +1,4 @@
-// Pieces of the page.
+// Parts of the HTML page.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,20 @@ namespace cistula::report {
 
 std::string escaped(const std::string& text);
 
-/// "0.77 ms", "12.3 ms", "1.24 s"
+/// A time with its unit: "0.77 ms", "12.3 ms", "1.24 s".
 std::string time_text(double milliseconds);
-/// The median, and the range in small print.
+/// The median time, with the range in small print.
 std::string time_html(const Timing& timing);
-/// "0.0012", "3.4·10⁻⁷"
+/// A number with two significant digits: "0.0012", "3.4·10⁻⁷".
 std::string number_text(double value);
-/// "1,234,567"
+/// An integer with separators: "1,234,567".
 std::string count_text(uint64_t value);
-/// "12 %", "0.3 %"
+/// A percentage: "12 %", "0.3 %".
 std::string percent_text(double share);
-/// "1×1", "double, 4×4 samples, depth 8, cutoff 0.002"
+/// A setting in words: "1×1", "double, 4×4 samples, depth 8, cutoff 0.002".
 std::string setting_text(const Setting& setting);
 
-/// A table in a box of its own, which scrolls if it must. Cells are HTML; columns whose head begins with '>' are
-/// numbers.
+/// A table in a scrollable box. Cells are HTML; columns whose head begins with '>' are numbers.
 class Table {
   public:
     explicit Table(std::vector<std::string> heads, std::string caption = "");
@@ -41,29 +40,29 @@ class Table {
 /// A figure with its caption (HTML).
 std::string figure(const std::string& content, const std::string& caption, const std::string& css = "");
 std::string image_tag(const Image& image, const std::string& description);
-/// A command line that can be selected as a whole.
+/// A command line that a click selects as a whole.
 std::string command_html(const std::string& command);
 
-/// One scene of one record, with what the sections say about it.
+/// A scene of a record, with values that several sections use.
 struct Shown {
     const Record* record = nullptr;
     const SceneRecord* scene = nullptr;
     std::string id, title;  // for anchors and headings
     std::vector<const Entry*> entries;
-    double smallest_error = 0;  // RMSE against the reference, of all entries
-    bool tight = false;         // the reference's remainder is under a sixteenth of it
+    double smallest_error = 0;  // smallest RMSE against the reference of all entries
+    bool tight = false;         // the reference's truncation is under a sixteenth of smallest_error
 
-    /// The error as stated: what was measured, and the reference's remainder where that could matter.
+    /// The errors to display: as measured, plus the reference's truncation where it could matter.
     double rmse(const Entry& entry) const;
     double max(const Entry& entry) const;
     double p999(const Entry& entry) const;
 };
 std::vector<Shown> all_shown(const std::vector<Record>& records);
 
-/// What targets cost and whether they are met; for the section of the knobs.
+/// Costs of target errors and whether they are met; part of the section on knobs.
 std::string target_html(const Shown& shown);
 
-// The sections, each empty if there is nothing to show.
+// The page's sections; each is empty if there is nothing to show.
 std::string pareto_section(const std::vector<Shown>& scenes);
 std::string knobs_section(const std::vector<Shown>& scenes);
 std::string where_section(const std::vector<Shown>& scenes);
@@ -72,7 +71,7 @@ std::string parity_section(const std::vector<Shown>& scenes);
 std::string verify_section(const std::vector<Record>& records);
 std::string scaling_section(const std::vector<Record>& records);
 std::string machine_section(const std::vector<Record>& records);
-/// What it all comes to, for the top of the page.
+/// The main results, for the top of the page.
 std::string summary_html(const std::vector<Shown>& scenes);
 
 }  // namespace cistula::report

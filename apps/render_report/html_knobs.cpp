@@ -1,4 +1,4 @@
-// 2. Each knob alone.
+// Section 2: each knob alone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace cistula::report {
 namespace {
 
 struct Alone {
-    std::vector<const Entry*> entries;  // by rising value
-    size_t unresolved = 0;              // whose error the yardstick cannot tell from its own
-    size_t exact = 0;                   // without any error
+    std::vector<const Entry*> entries;  // by ascending value
+    size_t unresolved = 0;              // entries whose error is too close to the error of its reference
+    size_t exact = 0;                   // entries without any error
 };
 
-/// A yardstick must be sixteen times closer than what it measures.
+/// Whether the reference is accurate enough for this error: it must be sixteen times closer.
 bool resolves(const Shown& shown, const std::string& knob, const Metrics& error) {
-    if (knob != "depth" && knob != "cutoff") return true;  // the others differ in nothing but the knob
+    if (knob != "depth" && knob != "cutoff") return true;  // other knobs' references differ in the knob only
     for (const Yardstick& one : shown.scene->yardsticks)
         if (one.setting.depth == deepest && one.setting.cutoff == yardstick_cutoff)
             return error.rmse >= 16 * one.remainder.rms;
@@ -46,7 +46,7 @@ std::string slope_number(double value) {
     return (value < 0 ? "−" : "") + fmt::format("{:.3f}", std::abs(value));
 }
 
-/// ln(error) = a + b x by least squares.
+/// A least-squares line ln(error) = a + b x.
 struct Line {
     double a = 0, b = 0;
     size_t points = 0;
@@ -64,7 +64,7 @@ Line fit(const std::vector<ChartPoint>& points) {
     return line;
 }
 
-/// Dashed: what would fall by `share` a level, from the middle of the points on.
+/// A dashed guide line that falls by `share` per level, from the middle of the points on.
 ChartSeries guide(const std::vector<ChartPoint>& points, const Share& share, int color) {
     ChartSeries series;
     series.label = fmt::format("{} {} a level, ln = {}", share.what == "reflection" ? "kr" : "kt",
@@ -74,7 +74,7 @@ ChartSeries guide(const std::vector<ChartPoint>& points, const Share& share, int
     series.dashed = true;
     const ChartPoint& middle = points[points.size() / 2];
     for (const double x : {points.front().x, points.back().x}) {
-        // Both ends inside the drawing: the line is cut where the data end.
+        // Both ends stay inside the drawing: the line is cut where the data end.
         double y = middle.y * std::pow(share.value, x - middle.x), at = x;
         const double low = points.back().y, high = points.front().y;
         if (y > high || y < low) {
@@ -151,9 +151,9 @@ std::string pair_of_charts(const Shown& shown, const Knob& knob, const Alone& al
            figure(chart_svg(times), caption + "Time; bars are the range of the runs.") + "</div>\n";
 }
 
-/// A knob with two positions: every entry beside the same frame with the other one, which has no error of this knob.
+/// A knob with two positions: every entry beside the frame with the other position, which has no error of this knob.
 struct Switch {
-    std::string caption, error, here, there;  // the error's and both times' heads
+    std::string caption, error, here, there;  // headings of the error and both times
     void (*turn)(Setting&);
 };
 

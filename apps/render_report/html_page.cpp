@@ -10,7 +10,7 @@ namespace {
 struct Section {
     const char *id, *title;
     std::string body;
-    const char* missing;  // what stands there if there is nothing
+    const char* missing;  // text in place of an empty section
 };
 
 std::string runs_text(const Record& record) {

@@ -1,4 +1,4 @@
-// The whole page, from records alone.
+// The HTML page, made from records alone.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace cistula::report {
 
-/// One HTML file: nothing loaded, no script, light and dark.
+/// The page as one self-contained HTML file, without scripts, for light and dark color schemes.
 std::string report_page(const std::vector<Record>& records);
 
 extern const char* const page_style;

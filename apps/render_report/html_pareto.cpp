@@ -1,4 +1,4 @@
-// 1. Time against error over all settings.
+// Section 1: time against error over all settings.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace cistula::report {
 namespace {
 
 struct Front {
-    std::vector<CostPoint> points;  // of all entries, in their order
+    std::vector<CostPoint> points;  // one for each entry, in their order
     std::vector<size_t> front;
     std::optional<size_t> knee;
     std::optional<double> digit;

@@ -1,4 +1,4 @@
-// 4. The seed's algorithm; 5. parity; 6. the hard cases; 7. the machine; scaling.
+// Sections 4 (the seed's algorithm), 5 (parity), 6 (hard cases), 7 (machine), and scaling.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string list_text(const Json& list) {
     return list.is_array() ? fmt::format("{}", fmt::join(list.get<std::vector<std::string>>(), ", ")) : "";
 }
 
-/// A number of render-verify's, or the text of one that JSON does not have.
+/// A number from render-verify's record, or the text for one that JSON lacks.
 std::string loose_number(const Json& value) {
     return value.is_number() ? number_text(value.get<double>()) : value.is_string() ? value.get<std::string>() : "–";
 }

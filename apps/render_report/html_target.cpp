@@ -1,4 +1,4 @@
-// What a target error costs, what it takes, and whether it is met.
+// Target errors: their cost, their sample counts, and whether they are met.
 #include <fmt/format.h>
 
 #include "html.h"
@@ -12,7 +12,7 @@ std::string samples_text(double samples) {
     return fmt::format("{:.3g}", samples);
 }
 
-/// Without its series. `what` is for readers of the description, `axis` for those of the drawing.
+/// A chart without series. `what` is for the text alternative, `axis` labels the y axis.
 Chart chart_against_target(const Shown& shown, const std::string& what, const std::string& axis) {
     Chart chart;
     chart.description = shown.title + ": " + what + " against target error";
@@ -21,7 +21,7 @@ Chart chart_against_target(const Shown& shown, const std::string& what, const st
     return chart;
 }
 
-/// Largest error, 99.9th percentile and RMSE, and the line on which an error is the target.
+/// Chart of largest error, 99.9th percentile and RMSE, with the line where the error equals the target.
 Chart error_chart(const Shown& shown, const TargetTable& table) {
     Chart chart = chart_against_target(shown, "error", "error");
     ChartSeries rmse, most, largest, target;

@@ -1,4 +1,4 @@
-// 3. Where the time goes.
+// Section 3: where the time goes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -94,7 +94,7 @@ std::string stage_table(const Shown& shown) {
         entry("read back", &Entry::transfer);
     }
     entry(gpu ? "a frame, all in all" : "a frame", &Entry::wall);
-    for (const Stage& one : shown.scene->stages)  // the file has floats whatever the precision
+    for (const Stage& one : shown.scene->stages)  // the file has floats in either precision
         if (one.name == "encode") table.row({"encode and write an EXR", time_html(one.time), time_html(one.time)});
     return table.html();
 }

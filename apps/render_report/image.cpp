@@ -19,7 +19,7 @@ Image to_image(const ColorPicture& linear) {
 }
 
 std::array<uint8_t, 3> heat_color(double place) {
-    // Night blue, violet, red, orange, pale yellow: lightness rises evenly.
+    // Night blue, violet, red, orange, pale yellow, with evenly increasing lightness.
     static constexpr double stops[][3] = {{10, 12, 40}, {84, 20, 110}, {186, 54, 85}, {249, 142, 9}, {252, 253, 191}};
     const double at = std::clamp(place, 0.0, 1.0) * 4;
     const int low = std::min(static_cast<int>(at), 3);
@@ -32,7 +32,7 @@ std::array<uint8_t, 3> heat_color(double place) {
 Image to_heat_image(int width, int height, const std::vector<double>& values) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     const double low = std::log(std::max(*least, 1.0)), high = std::log(std::max(*most, 1.0));
-    constexpr int shades = 64;  // few, so that the file is small
+    constexpr int shades = 64;  // few, to keep the file small
     std::vector<uint8_t> colors, pixels;
     for (int i = 0; i < shades; ++i)
         for (const uint8_t c : heat_color(static_cast<double>(i) / (shades - 1))) colors.push_back(c);

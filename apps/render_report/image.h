@@ -1,4 +1,4 @@
-// Small pictures for the page: PNG in memory, as base64.
+// Small pictures for the page: PNGs in memory, base64-encoded.
 #pragma once
 
 #include <array>
@@ -11,13 +11,14 @@
 
 namespace cistula::report {
 
-/// 8-bit sRGB of a linear picture, clamped to [0, 1].
+/// An 8-bit sRGB image of a linear picture, clamped to [0, 1].
 Image to_image(const ColorPicture& linear);
 
-/// Each value's color on a scale from dark to bright, logarithmic from the least to the largest; row-major.
+/// A heat map of row-major values on a color scale from dark to bright, logarithmic from the least to the largest
+/// value.
 Image to_heat_image(int width, int height, const std::vector<double>& values);
 
-/// The scale's color at a place from 0 to 1: red, green, blue.
+/// The color at position `place` of the scale, from 0 to 1: red, green, blue.
 std::array<uint8_t, 3> heat_color(double place);
 
 std::string base64(const std::string& bytes);

@@ -1,4 +1,4 @@
-// render-report: what accuracy costs in time.
+// render-report: measures the cost of accuracy in time.
 #include "apps/common/command_line.h"
 #include "program.h"
 

@@ -11,7 +11,7 @@
 namespace cistula::report {
 namespace {
 
-/// Notes down the largest shares of light among the materials that objects have.
+/// Finds the largest shares among the materials that objects use.
 void find_shares(const SceneDescription& scene, SceneRecord& record) {
     for (const ObjectDescription& object : scene.objects) {
         if (object.material < 0) continue;
@@ -21,7 +21,7 @@ void find_shares(const SceneDescription& scene, SceneRecord& record) {
         };
         take(record.mirror, "reflection", material.reflection);
         take(record.strongest, "reflection", material.reflection);
-        // A Fresnel surface shares kr + kt out by the angle.
+        // A Fresnel surface divides kr + kt by the angle.
         take(record.strongest, "transmission",
              material.fresnel ? material.reflection + material.transmission : material.transmission);
     }

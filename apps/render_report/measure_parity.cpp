@@ -1,4 +1,4 @@
-// The same frame by every renderer that this machine has.
+// Compares one frame of all renderers that this machine has.
 #include "backend_embree/embree/embree_renderer.h"
 #include "image.h"
 #include "measure.h"
@@ -9,7 +9,7 @@
 namespace cistula::report {
 namespace {
 
-constexpr size_t most_for_brute = 2000;  // primitives; beyond them the plain loop takes too long
+constexpr size_t most_for_brute = 2000;  // primitives; for more the plain loop is too slow
 
 template <class Real>
 struct Named {
@@ -17,7 +17,7 @@ struct Named {
     std::unique_ptr<Renderer> renderer;
 };
 
-/// The first is what the others are compared with.
+/// All renderers of this machine; the others are compared with the first.
 template <class Real>
 std::vector<Named<Real>> all_renderers(const Machine& machine,
                                        const std::shared_ptr<const CompiledScene<Real>>& scene) {

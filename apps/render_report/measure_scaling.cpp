@@ -1,4 +1,4 @@
-// Time against the size of what is rendered, on generated scenes and the one at hand.
+// Time against the size of the scene or the frame, on generated scenes and the given one.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ MaterialDescription matte() {
     return material;
 }
 
-/// A camera before `object` at the origin, two lights.
+/// A scene with a camera in front of `object` at the origin, and two lights.
 SceneDescription scene_of(std::variant<SolidObject, TrianglesObject, MeshObject> shape, MaterialDescription material) {
     SceneDescription scene;
     scene.source = "generated";
@@ -36,7 +36,7 @@ SceneDescription scene_of(std::variant<SolidObject, TrianglesObject, MeshObject>
     return scene;
 }
 
-/// `count` lights spread over the edges of an icosahedron, together as bright as two.
+/// A scene with `count` lights spread over the edges of an icosahedron, together as bright as two.
 SceneDescription scene_with_lights(int count) {
     MaterialDescription material = matte();
     material.reflection = 0.2;
@@ -63,7 +63,8 @@ class Scaling {
   public:
     Scaling(const MeasureSettings& settings, StepProgress& progress) : settings_(settings), progress_(progress) {}
 
-    /// False where it took longer than the limit: larger ones are then left out, and it too if its first frame did.
+    /// Adds a measurement. False if it took longer than the limit: larger ones are then skipped. If even its first
+    /// frame was too slow, it is skipped too.
     bool add(ScalingSeries& series, double value, Frames& frames, const Setting& setting) {
         progress_.begin(fmt::format("scaling: {} {:.0f}", series.name, value),
                         settings_.warm_ups + settings_.repetitions);
@@ -100,7 +101,7 @@ void measure_scaling(const std::string& scene_file, const MeasureSettings& setti
                      Record& record) {
     Scaling scaling(settings, progress);
     const Machine& machine = settings.machine;
-    const int side = settings.quick ? 4 : 1;  // a quick frame is so many times narrower and lower
+    const int side = settings.quick ? 4 : 1;  // factor by which a quick frame's width and height are reduced
     const auto series = [&](const char* name, std::string what) {
         record.scaling.push_back({name, std::move(what), {}});
         return record.scaling.size() - 1;

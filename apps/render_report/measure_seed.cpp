@@ -1,4 +1,4 @@
-// The algorithm of the course work beside ours.
+// The seed's algorithm compared with ours.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@
 namespace cistula::report {
 namespace {
 
-/// "seed/3840x2160/depth:4/grid:16" or ".../cpu".
+/// Parses a benchmark's name: "seed/3840x2160/depth:4/grid:16" or ".../cpu".
 bool parse_name(const std::string& name, SeedTable& table, SeedRow& row) {
     int end = 0;
     if (std::sscanf(name.c_str(), "seed/%dx%d/depth:%d%n", &table.width, &table.height, &row.depth, &end) != 3)
@@ -83,7 +83,7 @@ void measure_seed_table(const std::string& scene_file, const MeasureSettings& se
             OwnRow row{depth, precision_name(precision), {}};
             for (int round = 0; round < rounds; ++round) {
                 const double seconds = frames.render(setting, film);
-                if (round >= settings.warm_ups)  // the seed's times are kernels' too
+                if (round >= settings.warm_ups)  // the seed's times are those of kernels, too
                     row.time.runs.push_back(frames.kernel_ms(setting, seconds));
                 progress.advance();
             }

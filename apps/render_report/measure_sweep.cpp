@@ -1,4 +1,4 @@
-// All settings of the sweep: errors once, times in rounds.
+// Measures all settings of the sweep: errors once, times in several rounds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,12 +16,12 @@
 namespace cistula::report {
 namespace {
 
-/// At least, of a pixel.
+/// Least number of samples per pixel.
 double least_samples(const Setting& setting) {
     return setting.adaptive() ? 4 : static_cast<double>(setting.supersample) * setting.supersample;
 }
 
-/// Whether a frame takes at least as long as that of `other`, as none of its knobs makes it easier.
+/// Whether a frame takes at least as long as that of `other`, because no knob makes it easier.
 bool is_harder(const Setting& setting, const Setting& other) {
     const auto cutoff = [](const Setting& s) { return frame_settings(s, 1, 1).truncation(); };
     return other.depth <= setting.depth && cutoff(other) >= cutoff(setting) && other.precision <= setting.precision &&
@@ -51,7 +51,7 @@ class Sweep {
           settings_(settings),
           scene_(scene),
           plan_(plan_sweep(scene.base, settings.quick, other_intersectors(settings.machine.backend))) {
-        // Easier ones first, so that they tell of harder ones.
+        // Easier settings first, so that harder ones can be predicted from them.
         std::stable_sort(plan_.begin(), plan_.end(), [](const PlannedSetting& a, const PlannedSetting& b) {
             const auto effort = [](const Setting& s) {
                 return std::tuple(s.adaptive(), -s.target_error, s.supersample, s.precision, -s.cutoff, s.depth);
@@ -82,7 +82,7 @@ class Sweep {
         scene_.reference = reference_.yardstick;
     }
 
-    /// Rendered when it is first asked for; null where that takes too long.
+    /// The reference for one knob, rendered on first use; null if that takes too long.
     const ReferencePicture* yardstick_of(const std::string& knob, const Setting& setting) {
         if (reference_.yardstick.setting == setting) return &reference_;
         for (const ReferencePicture& one : yardsticks_)
@@ -100,7 +100,8 @@ class Sweep {
         return &yardsticks_.emplace_back(std::move(*found));
     }
 
-    /// Tries every setting: who predicts from others what a frame takes leaves out some that are quick enough.
+    /// Measures the error of every setting. All are tried: predicting times from other settings would leave out some
+    /// that are fast enough.
     void measure_errors(std::vector<Entry>& entries) {
         frames_.progress.begin(scene_.name + ": errors", static_cast<double>(plan_.size()));
         std::vector<Setting> stopped;
@@ -141,9 +142,11 @@ class Sweep {
             entry.target = {share_over(entry.setting.target_error, picture, reference_.picture), report.missed};
     }
 
-    /// One run of each a round, in another order every time: what disturbs the machine for a while disturbs all alike.
+    /// Times every setting once per round, in a different order each time, so that disturbances of the machine affect
+    /// all alike.
     void measure_times(std::vector<Entry>& entries, size_t begin) {
-        const int rounds = settings_.warm_ups - 1 + settings_.repetitions;  // the errors' frames were the first warm-up
+        const int rounds =
+            settings_.warm_ups - 1 + settings_.repetitions;  // the frames for the errors were the first warm-up
         const double seconds = std::accumulate(seconds_.begin(), seconds_.end(), 0.0);
         frames_.progress.begin(scene_.name + ": times", seconds * rounds);
         std::vector<size_t> order(entries.size() - begin);
@@ -167,8 +170,8 @@ class Sweep {
     std::vector<PlannedSetting> plan_;
     ReferencePicture reference_;
     std::deque<ReferencePicture> yardsticks_;
-    std::vector<Setting> without_end_;  // yardsticks that are not to be had
-    std::vector<double> seconds_;       // of the frames of measure_errors
+    std::vector<Setting> without_end_;  // settings whose reference took too long
+    std::vector<double> seconds_;       // of the frames in measure_errors
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Where the time goes: before and after the pixels, along the paths, over the picture, and into effects.
+// Where the time goes: before and after the pixels, by path depth, over the picture, and by effect.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace cistula::report {
 namespace {
 
-/// A file of its own that is gone in the end.
+/// A temporary file, removed by the destructor.
 class ScratchFile {
   public:
     ScratchFile()
@@ -91,7 +91,7 @@ void measure_levels(Frames& frames, const MeasureSettings& settings, SceneRecord
         frames.progress.advance();
         if (seconds > settings.limit) break;
     }
-    // The picture of the costs, at the size in which it is shown.
+    // The picture of costs is rendered at the size in which it is displayed.
     const auto [width, height] = small_size(frames.width, frames.height);
     frames.render(frames.renderers.of(scene.base), frame_settings(scene.base, width, height), film);
     std::vector<double> costs;

@@ -7,7 +7,7 @@
 namespace cistula::report {
 namespace {
 
-/// The difference of every pixel, in the channel where it is largest.
+/// Every pixel's difference in the channel where it is largest.
 std::vector<double> largest_differences(const Picture& picture, const Picture& reference) {
     if (picture.width != reference.width || picture.height != reference.height || picture.pixels.empty() ||
         picture.pixels.size() != reference.pixels.size())
@@ -76,7 +76,7 @@ Metrics compare_with(const Picture& picture, const Picture& reference) {
     metrics.worst_y = static_cast<int>(worst / static_cast<size_t>(picture.width));
     metrics.worst_here = picture.pixels[worst];
     metrics.worst_reference = reference.pixels[worst];
-    const size_t others = largest.size() / 1000;  // a thousandth of the pixels may differ by more
+    const size_t others = largest.size() / 1000;  // number of pixels above the 99.9th percentile
     const auto place = largest.end() - 1 - static_cast<std::ptrdiff_t>(others);
     std::nth_element(largest.begin(), place, largest.end());
     metrics.p999 = *place;

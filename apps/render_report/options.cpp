@@ -16,7 +16,7 @@ namespace {
 
 constexpr int quick_repetitions = 3;
 
-/// The options' texts as CLI11 leaves them.
+/// The options' texts as CLI11 stores them.
 struct Texts {
     std::vector<std::string> scenes, from;
     std::string output, json, verify, seed_baseline, cache, backend, device, threads, resolution, repetitions, limit;
@@ -84,7 +84,7 @@ double limit_option(const std::string& text) {
     return *value;
 }
 
-/// What is written must not replace what is read, nor each other.
+/// Throws if an output file is also an input or another output.
 void require_different_files(const ReportOptions& options) {
     std::vector<std::string> read = options.scenes;
     read.insert(read.end(), options.from.begin(), options.from.end());

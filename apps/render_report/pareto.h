@@ -1,4 +1,4 @@
-// Which of many (time, error) points are worth their time.
+// Pareto front of (time, error) points.
 #pragma once
 
 #include <cstddef>
@@ -7,24 +7,23 @@
 
 namespace cistula::report {
 
-/// Both above 0.
+/// A point with positive time and error.
 struct CostPoint {
     double time = 0, error = 0;
 };
 
-/// A slower point joins the front only if its error is less by this share: what is closer by a hair is no choice.
+/// Least relative gain in error by which a slower point joins the front.
 inline constexpr double least_gain = 0.01;
 
-/// The points that no other one beats in both, by rising time; of equal ones the first.
+/// Indices of the points that no other point beats in both, by ascending time; the first of equal ones.
 std::vector<size_t> pareto_front(const std::vector<CostPoint>& points, double gain = least_gain);
 
-/// The place in `front` where going on begins to cost more than it gains: the point farthest below the straight line
-/// between the front's ends, both axes logarithmic and scaled to the front. Of two points the quicker; nothing for
-/// none.
+/// Index in `front` of its knee: the point farthest below the line between the front's ends, in logarithmic axes scaled
+/// to the front; of two points the faster. Nothing for an empty front.
 std::optional<size_t> knee_of(const std::vector<CostPoint>& points, const std::vector<size_t>& front);
 
-/// By how much the time must be multiplied for a tenth of the error, along the line through the front's logarithms by
-/// least squares. Nothing for fewer than three points, or a front that does not fall.
+/// Factor on time for a tenth of the error, from a least-squares line through the front's logarithms. Nothing for fewer
+/// than three points or a front that does not fall.
 std::optional<double> time_per_digit(const std::vector<CostPoint>& points, const std::vector<size_t>& front);
 
 }  // namespace cistula::report

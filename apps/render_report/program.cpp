@@ -20,7 +20,7 @@
 namespace cistula::report {
 namespace {
 
-/// render-verify's record.
+/// Reads render-verify's record.
 Json read_verdicts(const std::string& file) {
     const std::string text = read_file(file);
     try {
@@ -81,13 +81,13 @@ std::vector<Record> read_records(const ReportOptions& options) {
         SeedTable table = read_seed_table(options.seed_baseline);
         for (Record& record : records)
             if (record.seed && record.seed->scene == table.scene && record.seed->context == table.context)
-                return records;  // it is in there, with ours
+                return records;  // it is included, with ours
         records.front().seed = std::move(table);
     }
     return records;
 }
 
-/// Throws Error (file) where a file's values are not of the types that they should be.
+/// The page for these records. Throws Error (file) if a file's values have wrong types.
 std::string page_of(const std::vector<Record>& records, const ReportOptions& options) {
     try {
         return report_page(records);
@@ -101,7 +101,7 @@ std::string page_of(const std::vector<Record>& records, const ReportOptions& opt
 }
 
 int run(const ReportOptions& options) {
-    // Before a long run rather than after it.
+    // Checked before a long run rather than after it.
     for (const std::string& file : {options.output, options.json})
         if (!file.empty()) AtomicFile probe(file);
     std::vector<Record> records;

@@ -83,7 +83,7 @@ Json parity_totals(const Record& record) {
     return {{"compared", compared}, {"differing", differing}};
 }
 
-/// By scene, for programs: the page makes its own from the entries.
+/// Tables of targets by scene, for other programs; the page computes its own from the entries.
 Json target_tables(const Record& record) {
     Json tables = Json::object();
     for (const SceneRecord& scene : record.scenes) {
@@ -99,7 +99,7 @@ void require(bool holds, const std::string& what) {
     if (!holds) throw std::runtime_error(what);
 }
 
-/// What the page relies on, beyond the types.
+/// Throws if the record violates what the page relies on, beyond the types.
 void check(const Record& record) {
     require(record.context.is_object(), "its context is no object");
     for (const Entry& entry : record.entries) {

@@ -1,5 +1,5 @@
-// What a run of render-report measured, in Google Benchmark's shape: a context and benchmarks, and beside them what the
-// page shows of every scene. The page is made of records alone, on whatever machine.
+// The measurements of a run of render-report, in Google Benchmark's format: a context and benchmarks, with the page's
+// data for every scene beside them. The page is made from records alone, on any machine.
 #pragma once
 
 #include <map>
@@ -25,58 +25,58 @@ struct Rays {
     uint64_t total() const { return primary + reflected + transmitted + shadow; }
 };
 
-/// What a setting with a target error came to.
+/// The result of a setting with a target error.
 struct TargetOutcome {
-    double over = 0;      // share of the pixels that are farther than the target from the reference
-    uint64_t missed = 0;  // pixels that say so themselves: see apps/common/target.h
+    double over = 0;      // share of the pixels that differ from the reference by more than the target
+    uint64_t missed = 0;  // pixels reported as missed, see apps/common/target.h
 };
 
-/// A setting of the sweep, measured.
+/// A measured setting of the sweep.
 struct Entry {
     std::string scene;  // SceneRecord::name
     Setting setting;
-    Timing wall, kernel, transfer;  // ms; the latter two empty where the backend has no device of its own
+    Timing wall, kernel, transfer;  // ms; kernel and transfer are empty if the backend has no device of its own
     std::string film_hash;
     Rays rays;
-    double samples = 0;  // per pixel, in the mean
+    double samples = 0;  // mean per pixel
     std::optional<TargetOutcome> target;
-    Metrics error;                         // against the scene's reference: all knobs together
-    std::map<std::string, Metrics> alone;  // knob -> against the same frame without that knob's error
+    Metrics error;                         // against the scene's reference: of all knobs together
+    std::map<std::string, Metrics> alone;  // knob -> error against the same frame without that knob's error
 };
 
-/// What errors are measured against.
+/// A reference picture for errors.
 struct Yardstick {
-    std::string knob;  // empty: the reference
+    std::string knob;  // empty: the reference for all knobs
     Setting setting;
-    Remainder remainder;  // what its own truncation may hide
-    double seconds = 0;   // to render it, or to read it back
+    Remainder remainder;  // bound on its own truncation
+    double seconds = 0;   // to render it or to read it from the cache
     bool cached = false;
 };
 
-/// The largest share of its light that some surface hands on to one ray.
+/// The largest share of light that any surface passes to one ray.
 struct Share {
     std::string what;  // "reflection" or "transmission"
     std::string material;
     double value = 0;
 };
 
-/// Before the first pixel of a frame, and after the last: ms.
+/// A stage before the first pixel of a frame or after the last, in ms.
 struct Stage {
     std::string name;  // "compile", "prepare", "first frame", "encode"
     std::string precision;
     Timing time;
 };
 
-/// Rays of the n-th surfaces along their paths: what a frame of depth n has more than one of depth n - 1.
+/// Rays of the n-th surfaces along their paths: those that a frame of depth n has in addition to depth n - 1.
 struct Level {
     int depth = 0;
     Rays rays;
 };
 
-/// The time of a scene's frame in code that has more effects compiled in than the scene calls for.
+/// Cost of a frame run by code with more effects than the scene requires.
 struct MaskCost {
     uint32_t mask = 0;
-    std::vector<std::string> added;  // beyond the least mask
+    std::vector<std::string> added;  // effects beyond the smallest mask
     Timing time;
 };
 
@@ -85,7 +85,7 @@ struct Image {
     std::string png;  // base64
 };
 
-/// A frame by two renderers: the number of integers (and bits of floats) that are not equal.
+/// Differences between one frame of two renderers: integers and bits of floats.
 struct ParityCase {
     std::string first, second, precision;
     uint64_t compared = 0, differing = 0;
@@ -94,12 +94,12 @@ struct ParityCase {
 struct SceneRecord {
     std::string name, file, hash;
     int width = 0, height = 0;
-    Setting base;  // where each knob is turned alone, the others stay here
+    Setting base;  // values of the other knobs when one knob is varied
     std::vector<std::string> effects;
     Share strongest, mirror;  // mirror: the largest reflection
     Yardstick reference;
     std::vector<Yardstick> yardsticks;
-    std::vector<std::string> left_out;  // settings that take longer than the limit, and what else for want of time
+    std::vector<std::string> left_out;  // settings slower than the limit, and other parts left out for lack of time
     std::vector<Stage> stages;
     std::vector<Level> levels;
     std::vector<MaskCost> effect_costs;
@@ -108,12 +108,12 @@ struct SceneRecord {
     std::string first_renderer, second_renderer;  // of the two pictures
     Image first_image, second_image;
     Image heat;
-    double heat_mean = 0, heat_most = 0;  // rays of a pixel
+    double heat_mean = 0, heat_most = 0;  // rays per pixel
 };
 
-/// The algorithm of the course work, timed by seed_baseline, and ours for the same picture.
+/// Times of the seed's algorithm from seed_baseline, and ours for the same picture.
 struct SeedRow {
-    int depth = 0, grid = 0;  // grid 0: the loop on the CPU
+    int depth = 0, grid = 0;  // grid 0: the seed's loop on the CPU
     Timing time;
 };
 struct OwnRow {
@@ -125,7 +125,7 @@ struct SeedTable {
     std::string scene;
     int width = 0, height = 0;
     Json context;
-    bool same_machine = false;  // as the record's
+    bool same_machine = false;  // the seed's record was made on this record's machine
     std::vector<SeedRow> seed;
     std::vector<OwnRow> ours;
 };
@@ -137,7 +137,7 @@ struct ScalingPoint {
 };
 struct ScalingSeries {
     std::string name;  // "triangles", "lights", ...
-    std::string what;  // the scene and settings, in words
+    std::string what;  // scene and settings in words
     std::vector<ScalingPoint> points;
 };
 
@@ -149,15 +149,15 @@ struct Record {
     std::vector<ScalingSeries> scaling;
     std::optional<Json> verify;  // render-verify's record
 
-    const std::string& text(const char* key) const;  // of the context; empty where it is not there
+    const std::string& text(const char* key) const;  // a value of the context; empty if missing
 };
 
-/// Machine, compiler, flags, commit, date.
+/// The context: machine, compiler, flags, commit, date.
 Json machine_context(const std::string& backend, const std::vector<std::string>& devices, const std::string& driver);
 
 std::string record_text(const Record& record);
 
-/// Throws Error (file) where the text is no record; `name` is for the message.
+/// Parses a record. Throws Error (file) if the text is none; `name` is for the message.
 Record parse_record(const std::string& text, const std::string& name);
 
 }  // namespace cistula::report

@@ -18,7 +18,7 @@
 namespace cistula::report {
 namespace {
 
-constexpr double worth_keeping = 1;  // seconds
+constexpr double worth_keeping = 1;  // seconds; slower pictures are cached
 
 std::string hash_of(const std::string& bytes) {
     Fnv128 hash;
@@ -26,7 +26,7 @@ std::string hash_of(const std::string& bytes) {
     return hash.hex();
 }
 
-/// All that the picture depends on, the code included.
+/// Cache key: everything that the picture depends on, including the code.
 std::string key_of(const Frames& frames, const std::string& scene_hash, const Setting& setting) {
     const FrameSettings settings = frame_settings(setting, frames.width, frames.height);
     const Attributes attributes = header_attributes(scene_hash, settings, setting.precision, frames.camera);
@@ -45,7 +45,7 @@ std::string default_cache() {
     return {};
 }
 
-// One line of JSON, which has the hash of the rest; then three doubles a pixel as they lie in memory.
+// File format: one line of JSON with the hash of the rest; then three doubles per pixel in native byte order.
 std::string pack_reference(const ReferencePicture& reference, const std::string& key) {
     const Picture& picture = reference.picture;
     std::string pixels(picture.pixels.size() * sizeof(picture.pixels[0]), '\0');
@@ -90,7 +90,7 @@ std::optional<ReferencePicture> reference_picture(Frames& frames, const std::str
         const double seconds = seconds_of([&] {
             try {
                 found = unpack_reference(read_file(file), key);
-            } catch (const Error&) {  // rendered again
+            } catch (const Error&) {  // render it again
             }
         });
         if (found) {

@@ -1,5 +1,4 @@
-// The renderers of one scene: one for each precision and intersector that a setting asks for, made when it is first
-// asked for.
+// The renderers of one scene: one for each precision and intersector in use, created on first use.
 #pragma once
 
 #include <map>
@@ -14,17 +13,16 @@
 
 namespace cistula::report {
 
-/// Where frames are rendered.
+/// The devices on which frames are rendered.
 struct Machine {
     Backend backend = Backend::embree;
     CudaOptions cuda;
 };
 
-/// How the host's or the device's rays find surfaces, by the name that settings have. A new one: a line in
-/// renderers.cpp.
+/// An intersector of the host or the device, by its name in settings. A new one needs a line in renderers.cpp.
 struct Intersector {
     const char* name;
-    bool (*offered)(Backend);  // whether the backend has it
+    bool (*offered)(Backend);  // whether a backend has it
     std::unique_ptr<Renderer> (*make_single)(const Machine&, std::shared_ptr<const CompiledScene<float>>);
     std::unique_ptr<Renderer> (*make_double)(const Machine&, std::shared_ptr<const CompiledScene<double>>);
 };
@@ -36,11 +34,11 @@ class Renderers {
 
     Renderer& of(const Setting& setting);
 
-    /// Throws Error as compile_scene does.
+    /// The compiled scene in float. Throws Error as compile_scene does.
     const std::shared_ptr<const CompiledScene<float>>& single();
     const std::shared_ptr<const CompiledScene<double>>& twice();
 
-    /// How long compiling and preparing took (trees, uploads), of what has been made.
+    /// Times of compilation and preparation (trees, uploads) for what has been created.
     const std::vector<Stage>& stages() const { return stages_; }
 
   private:

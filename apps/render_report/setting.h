@@ -1,5 +1,5 @@
-// The knobs between time and accuracy, as one setting. A new knob is a member here and a line in each function of
-// setting.cpp; its values stand in sweep_plan.cpp.
+// A setting of all parameters that trade time for accuracy (knobs). A new knob needs a member here, a line in each
+// function of setting.cpp, and values in sweep_plan.cpp.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ struct Setting {
     double cutoff = 0;
     Precision precision = Precision::single_;
     int supersample = 1;
-    std::string intersector = "exact";  // see renderers.h
-    double target_error = 0;            // above 0: adaptive samples; supersample and cutoff then say nothing
+    std::string intersector = "exact";  // a name from renderers.cpp
+    double target_error = 0;            // above 0: adaptive sampling; supersample and cutoff are ignored
 
     bool adaptive() const { return target_error > 0; }
     bool operator==(const Setting&) const = default;
@@ -24,18 +24,18 @@ struct Setting {
 void to_json(Json& json, const Setting& setting);
 void from_json(const Json& json, Setting& setting);
 
-/// The settings of a frame of this size; with a target error the depth is 1024.
+/// The frame settings for a setting. With a target error the depth is 1024.
 FrameSettings frame_settings(const Setting& setting, int width, int height);
 
-/// The setting with a target error, as deep as a render goes, with one sample and no cutoff: what they say is the
-/// target's business.
+/// The setting with a target error: largest depth, one sample and no cutoff, since the target decides these.
 Setting with_target(Setting setting, double target_error);
 
-/// "depth:4/cutoff:0/float/samples:1x1", or "target:0.01/float"; names of intersectors other than the exact ones are
+/// The setting's name: "depth:4/cutoff:0/float/samples:1x1", or "target:0.01/float"; intersectors other than the exact
+/// ones are appended.
 /// added.
 std::string setting_name(const Setting& setting);
 
-/// The command that renders this: "render scenes/platonic.json --res 1280x720 --depth 4 ...".
+/// The command that renders with this setting: "render scenes/platonic.json --res 1280x720 --depth 4 ...".
 std::string command_line(const std::string& scene, int width, int height, const Setting& setting,
                          const std::string& backend);
 

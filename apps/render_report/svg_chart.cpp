@@ -12,7 +12,7 @@ namespace {
 
 constexpr double left = 72, right = 14, top = 12, bottom = 52;
 
-/// From values to units of the drawing.
+/// An axis' mapping from values to units of the drawing.
 class Scale {
   public:
     Scale(bool log, double from, double to) : log_(log), from_(from), to_(to) {}
@@ -23,7 +23,7 @@ class Scale {
         high_ = any_ ? std::max(high_, value) : value;
         any_ = true;
     }
-    /// Some room around what was taken.
+    /// Adds a margin around the values taken.
     void settle() {
         if (!any_) low_ = 1, high_ = 10;
         if (log_) {
@@ -118,7 +118,7 @@ std::vector<double> ticks(double low, double high, bool log) {
     double step = std::pow(10.0, std::floor(std::log10((high - low) / 4)));
     for (const double factor : {2.0, 2.5, 2.0})
         if ((high - low) / step > 7) step *= factor;
-    if (low >= 0 && high <= 20 && step < 1) step = 1;  // counts of levels
+    if (low >= 0 && high <= 20 && step < 1) step = 1;  // small counts have integer ticks
     for (double value = std::ceil(low / step) * step; value <= high; value += step) all.push_back(value);
     return all;
 }
@@ -126,7 +126,7 @@ std::vector<double> ticks(double low, double high, bool log) {
 std::string chart_svg(const Chart& chart) {
     Scale x(chart.x.log, left, chart.width - right), y(chart.y.log, chart.height - bottom, top);
     for (const ChartSeries& series : chart.series) {
-        if (!series.dots && series.dashed) continue;  // a guide adapts to the data
+        if (!series.dots && series.dashed) continue;  // guide lines do not extend the axes
         for (const ChartPoint& point : series.points) {
             x.take(point.x);
             for (const double value : {point.y, point.low, point.high})

@@ -1,5 +1,5 @@
-// Small charts as inline SVG. Colors are classes (s0 to s6, see html_style.cpp), so that light and dark are the page's
-// business.
+// Small charts as inline SVG. Colors are CSS classes (s0 to s6, see html_style.cpp), so that the page chooses them for
+// light and dark.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@ namespace cistula::report {
 
 struct ChartPoint {
     double x = 0, y = 0;
-    double low = 0, high = 0;  // of y; equal: no range is drawn
-    std::string tip;           // shown on hovering
+    double low = 0, high = 0;  // range of y; not drawn if equal
+    std::string tip;           // tooltip
     bool faint = false;
 };
 
@@ -19,7 +19,7 @@ enum class DotShape { circle, square, diamond };
 
 struct ChartSeries {
     std::string label;  // for the legend; empty: not in it
-    int color = 0;      // s0 ...
+    int color = 0;      // the class, s0 ...
     std::vector<ChartPoint> points;
     bool line = true, dots = true;
     bool dashed = false;
@@ -31,30 +31,31 @@ struct ChartAxis {
     bool log = true;
 };
 
-/// A ring around a point, with a word beside it.
+/// A ring around a point, with a label.
 struct ChartMark {
     double x = 0, y = 0;
     std::string word;
 };
 
 struct Chart {
-    std::string description;  // for those who cannot see it
+    std::string description;  // text alternative for screen readers
     ChartAxis x, y;
     std::vector<ChartSeries> series;
     std::vector<ChartMark> marks;
-    int width = 480, height = 330;  // units of the drawing; text is 14 high
+    int width = 480, height = 330;  // in units of the drawing; text is 14 high
 };
 
-/// Without its legend. Points that are not finite, and those at or below 0 on a logarithmic axis, are not drawn.
+/// The chart as SVG, without its legend. Points that are not finite, and those <= 0 on a logarithmic axis, are not
+/// drawn.
 std::string chart_svg(const Chart& chart);
 
-/// A list of the series that have a label; empty for fewer than two.
+/// The legend: a list of the series that have a label; empty for fewer than two.
 std::string chart_legend(const Chart& chart);
 
-/// Columns of stacked parts.
+/// A column of stacked parts.
 struct Stack {
     std::string label;
-    std::vector<double> parts;  // by color
+    std::vector<double> parts;  // in the order of the names and colors
 };
 struct Stacks {
     std::string description, x_label, y_label;
@@ -64,10 +65,10 @@ struct Stacks {
 };
 std::string stacks_svg(const Stacks& stacks);
 
-/// "10³", "0.01", "500": what stands at ticks.
+/// The label of a tick: "10³", "0.01", "500".
 std::string tick_text(double value);
 
-/// Round values from `low` to `high`.
+/// Round values from `low` to `high` for ticks.
 std::vector<double> ticks(double low, double high, bool log);
 
 }  // namespace cistula::report

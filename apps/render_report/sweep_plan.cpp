@@ -57,7 +57,7 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
     Plan plan;
     plan.add(base);
 
-    // All together: what the Pareto front is looked for among.
+    // All knobs together, as candidates for the Pareto front.
     const std::vector<int> depths =
         with_value(quick ? std::vector<int>{1, 2, 4, 8, 16} : std::vector<int>{1, 2, 4, 8, 16, 32, 64}, base.depth);
     const std::vector<int> lattices = quick ? std::vector<int>{1, 2, 4} : std::vector<int>{1, 2, 4, 8};
@@ -69,7 +69,7 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
         for (const int depth : depths)
             if (lattice == 1 || !quick) plan.add(with(base, depth, 0, twice, lattice));
 
-    // Each alone.
+    // Each knob alone.
     const Setting whole = with(base, deepest, yardstick_cutoff, single, 1);
     for (const int depth : with_value(quick ? std::vector<int>{1, 2, 3, 4, 6, 8, 12, 16}
                                             : std::vector<int>{1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64},
@@ -90,8 +90,8 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
             setting.intersector = other;
             plan.add(setting).alone["intersector"] = exact;
         }
-    // A target is about all of the error. What small ones take without it: the whole lattice, with more truncation or
-    // as much.
+    // A target covers all of the error. For comparison with small targets: the whole lattice without a target, with
+    // more or equal truncation.
     for (const double cutoff : cutoffs)
         if (cutoff > 0) plan.add(with(base, deepest, cutoff, single, reference_supersample));
     for (const double target : quick ? std::vector<double>{0.3, 0.1, 0.03, 0.01, 0.004}
@@ -99,7 +99,7 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
         plan.add(with_target(base, target)).alone["target"] = reference_setting(base, quick);
         if (target > 0.004) continue;
         plan.add(with(base, deepest, target / 4, single, reference_supersample));
-        // Where rounding moves borders no number of samples in float keeps a small one.
+        // Where rounding moves edges, no number of samples in float meets a small target.
         Setting exact = with_target(base, target);
         exact.precision = twice;
         plan.add(exact);

@@ -1,4 +1,4 @@
-// Which settings are measured, and what each knob's own error is taken against.
+// The settings to measure, and the reference for each knob's own error.
 #pragma once
 
 #include <map>
@@ -11,10 +11,10 @@ namespace cistula::report {
 
 struct PlannedSetting {
     Setting setting;
-    std::map<std::string, Setting> alone;  // knob -> the same frame without that knob's error
+    std::map<std::string, Setting> alone;  // knob -> this setting without that knob's error
 };
 
-/// A knob as the page shows it.
+/// A knob's texts on the page.
 struct Knob {
     std::string name;   // the key of PlannedSetting::alone
     std::string title;  // "Depth"
@@ -23,19 +23,20 @@ struct Knob {
     double (*value)(const Setting&) = nullptr;
 };
 
-/// In the order of the page. A new knob: a line here, its values in plan_sweep.
+/// The knobs in page order. A new one needs a line here and values in plan_sweep.
 const std::vector<Knob>& knobs();
 
-/// Every setting once. `base`: the scene's depth, no cutoff, float, one sample. `others`: intersectors beside the exact
-/// one.
+/// All settings, without duplicates. `base`: the scene's depth, no cutoff, float, one sample. `others`: intersectors
+/// besides the exact one.
 std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const std::vector<std::string>& others = {});
 
-inline constexpr int deepest = 256;                  // of the reference and of yardsticks
-inline constexpr double yardstick_cutoff = 0x1p-40;  // radiance that a pixel of a yardstick may lose
-inline constexpr double reference_cutoff = 0x1p-18, quick_reference_cutoff = 0x1p-11;  // the same of the reference
+inline constexpr int deepest = 256;                  // depth of the reference and of references for single knobs
+inline constexpr double yardstick_cutoff = 0x1p-40;  // truncation budget of a pixel in references for single knobs
+inline constexpr double reference_cutoff = 0x1p-18,
+                        quick_reference_cutoff = 0x1p-11;  // budget of the overall reference
 inline constexpr int reference_supersample = 16;
 
-/// Double precision, the full lattice, whole trees.
+/// The reference's setting: double precision, the full lattice, ray trees of full depth.
 Setting reference_setting(const Setting& base, bool quick);
 
 }  // namespace cistula::report

@@ -1,4 +1,4 @@
-// What a target error costs, beside the best that fixed settings do.
+// The cost of target errors compared with the best fixed settings.
 #pragma once
 
 #include <optional>
@@ -10,30 +10,30 @@
 namespace cistula::report {
 
 struct TargetRow {
-    const Entry* entry = nullptr;  // with the target
-    const Entry* fixed = nullptr;  // the quickest fixed setting with a p999 no larger; null: none was measured
+    const Entry* entry = nullptr;  // the entry with the target
+    const Entry* fixed = nullptr;  // the fastest fixed setting with a p999 no larger; null: none was measured
 
-    /// The target's time over the fixed setting's; there must be one.
+    /// The target's time divided by the fixed setting's, which must exist.
     double ratio() const;
 };
 
-/// How many samples a pixel takes adaptively for the error of a uniform grid.
+/// Samples per pixel that adaptive sampling needs for the error of a uniform grid.
 struct UniformRow {
-    const Entry* uniform = nullptr;  // 4x4, of all depths and cutoffs that with the smallest RMSE
-    const Entry* closer = nullptr;   // the largest target whose RMSE is no larger; null: none is that close
-    const Entry* farther = nullptr;  // the next larger one: samples lie between; null: closer is the largest of all
-    double samples = 0;              // per pixel: between the two in log-log; of `closer` where there is no other
+    const Entry* uniform = nullptr;  // the 4x4 grid: the one with the smallest RMSE of all depths and cutoffs
+    const Entry* closer = nullptr;   // the largest target whose RMSE is no larger; null: there is none
+    const Entry* farther = nullptr;  // the next larger target; null: closer is the largest of all
+    double samples = 0;  // per pixel: interpolated between the two in log-log; those of `closer` if there is no other
 };
 
 struct TargetTable {
-    std::vector<TargetRow> rows;       // in float, by falling target
-    std::vector<TargetRow> in_double;  // the small ones again
+    std::vector<TargetRow> rows;       // in float, by descending target
+    std::vector<TargetRow> in_double;  // the smallest targets again, in double
     std::optional<UniformRow> uniform;
 };
 
-/// The table of one scene's entries, into which it points, by median wall time. As close is what keeps 99.9 % of the
-/// pixels as close: a target speaks of these, while an RMSE may be one pixel's. Samples are compared at an RMSE, since
-/// that of a grid is made by many pixels.
+/// The table for one scene's entries, into which it points; times are medians of wall time. Targets are compared with
+/// fixed settings at equal p999 (99.9 % of the pixels are as close), since a target concerns most pixels, while an RMSE
+/// may be due to one. Sample counts are compared at equal RMSE, since a grid's is due to many pixels.
 TargetTable target_table(const std::vector<const Entry*>& entries);
 
 void to_json(Json& json, const TargetRow& row);

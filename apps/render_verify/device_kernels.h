@@ -1,4 +1,4 @@
-// The kernels of cases: a thread takes every 2^16th ray. Included by the generated group_*.cu only.
+// Kernels of cases; each thread takes every 2^16th ray. Included by the generated group_*.cu only.
 #pragma once
 
 #include <cstring>
@@ -57,7 +57,7 @@ DeviceMethods<Real> device_methods_of() {
     return methods;
 }
 
-/// In the order of the list.
+/// The launchers of the cases in list order.
 template <class Real, class... Cases>
 std::vector<DeviceMethods<Real>> device_methods(CaseList<Cases...>) {
     return {device_methods_of<Cases, Real>()...};

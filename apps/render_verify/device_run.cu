@@ -1,4 +1,4 @@
-// A part's way to the device and its findings' way back.
+// Transfer of a part to the device and of its results back.
 #include "apps/render_verify/device_run.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint64_t words_at_once = uint64_t(1) << 22;
 
-/// A part in the device's memory, with the tree that devices walk.
+/// A part in the device's memory, with the tree that devices traverse.
 template <class Real>
 class DeviceSetup {
   public:

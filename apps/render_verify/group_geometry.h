@@ -1,4 +1,4 @@
-// Where rays land: edges, vertices, planes, scales, distances, and what is degenerate.
+// Cases on hits: edges, vertices, planes, scales, distances, and degenerate triangles.
 #pragma once
 
 #include "apps/render_verify/geometry/broken_on_purpose.h"

@@ -1,5 +1,5 @@
-// What must not change an image, or must change it in a known way: scales, flips, effects, threads, samples,
-// brightness.
+// Cases on changes that must leave an image unchanged or change it in a known way: scales, flips, effects, threads,
+// samples, brightness.
 #pragma once
 
 #include "apps/render_verify/metamorphic/brightness.h"

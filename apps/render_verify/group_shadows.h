@@ -1,5 +1,5 @@
-// What reaches a point of a light: shadows of faces on themselves, of closed bodies, of glass, and lights that touch
-// them.
+// Cases on the light that reaches a point: self-shadowing of faces, shadows of closed bodies and of glass, lights in
+// contact with these.
 #pragma once
 
 #include "apps/render_verify/shadows/acne.h"

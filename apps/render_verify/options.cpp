@@ -49,7 +49,8 @@ std::vector<const CaseEntry*> chosen_cases(const std::vector<std::string>& wante
     for (const std::string& text : wanted) {
         bool any = false;
         for (size_t i = 0; i < cases.size() && !any; ++i)
-            if (cases[i].info.name == text) any = taken[i] = true;  // a name that others begin with too
+            if (cases[i].info.name == text)
+                any = taken[i] = true;  // an exact name is chosen even if it is a prefix of others
         for (size_t i = 0; i < cases.size() && !any; ++i)
             if (fits(text, cases[i].info.name)) taken[i] = true;
         for (size_t i = 0; i < cases.size(); ++i) any = any || fits(text, cases[i].info.name);

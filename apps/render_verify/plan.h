@@ -1,5 +1,4 @@
-// The parts of a case of rays: scenes as people describe them, compiled as renderers compile them, and what to do in
-// each.
+// The parts of a case of rays: scene descriptions, compiled as renderers compile them, and the rays to trace in each.
 #pragma once
 
 #include <cstring>
@@ -17,18 +16,18 @@ struct Part {
     std::string label;  // "icosahedron, scale 2^40"
     SceneDescription scene;
     std::vector<std::byte> functor;
-    std::vector<glm::dvec3> points;  // in the scene's units; the functor sees them in the frame
+    std::vector<glm::dvec3> points;  // in scene units; the functor gets them in the frame
     std::vector<double> numbers;
-    /// More numbers, when the frame is known: center, lengths per unit of length.
+    /// Appends numbers that depend on the frame: `factor` is frame lengths per scene unit.
     std::function<void(const glm::dvec3& center, double factor, std::vector<double>&)> frame_numbers;
     /// Texts that the scene's warnings must contain.
     std::vector<std::string> warnings;
-    /// Changes a compiled scene by hand into what no description gives.
+    /// Changes the compiled scene into something that no description gives.
     std::function<void(CompiledScene<float>&)> edit_float;
     std::function<void(CompiledScene<double>&)> edit_double;
     uint64_t count = 0;
 
-    /// Makes one change in either precision.
+    /// Sets edit_float and edit_double to the same function.
     template <class Edit>
     void edit(const Edit& change) {
         edit_float = [change](CompiledScene<float>& compiled) { change(compiled); };
@@ -43,7 +42,7 @@ class Plan {
     const bool quick;
     std::vector<Part> parts;
 
-    /// `count` rays, or so many in a quick run.
+    /// The number of rays: in_full, or in_quick for a quick run.
     uint64_t rays(uint64_t in_full, uint64_t in_quick) const { return quick ? in_quick : in_full; }
 
     template <class Functor>

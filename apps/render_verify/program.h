@@ -1,4 +1,4 @@
-// `render-verify` over any table of cases; main runs it over all_cases(), tests over their own.
+// The program render-verify for any table of cases: main passes all_cases(), tests pass their own.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace cistula::verify {
 
-/// Returns the exit code; throws Error.
+/// Runs the program. Returns the exit code; throws Error.
 int verify_program(int argc, const char* const* argv, const std::vector<CaseEntry>& cases);
 
 }  // namespace cistula::verify

@@ -30,7 +30,7 @@ const char* precision_name(const Outcome& outcome) {
     return outcome.precision == Precision::double_ ? "double" : "float";
 }
 
-/// JSON has no infinities.
+/// A number as JSON, which has no infinities.
 Json number(double value) {
     if (std::isfinite(value)) return value;
     return value > 0 ? "inf" : value < 0 ? "-inf" : "nan";

@@ -1,4 +1,4 @@
-// What cases found, as people and programs read it.
+// The results of cases as text, JSON and HTML.
 #pragma once
 
 #include <string>
@@ -10,28 +10,28 @@
 
 namespace cistula::verify {
 
-/// What the run was made on.
+/// The devices of a run.
 struct RunContext {
     std::vector<std::string> devices;  // GPUs
-    std::string driver;                // the CUDA version that it supports
+    std::string driver;                // the latest CUDA version that it supports
     double seconds = 0;
 };
 
 std::string table_head(const std::vector<const CaseEntry*>& cases);
 std::string table_row(const Outcome& outcome, const std::vector<const CaseEntry*>& cases);
-/// The last line, and before it what does not hold and where.
+/// The text printed at the end: the failed cases with their places, then one line of totals.
 std::string summary(const std::vector<Outcome>& outcomes);
 std::string list_text(const std::vector<CaseEntry>& cases);
 
-/// "0 rays", "1.5 ulps"
+/// The measured value with its unit: "0 rays", "1.5 ulps".
 std::string measured_text(const Outcome& outcome);
 std::string bound_text(const Outcome& outcome);
-/// What is wrong with an outcome that does not hold; empty for others.
+/// The reason why an outcome fails; empty if it passes.
 std::string complaint(const Outcome& outcome);
 
 nlohmann::ordered_json report_json(const std::vector<Outcome>& outcomes, const VerifyOptions& options,
                                    const RunContext& context);
-/// One page, nothing loaded, no script, light and dark.
+/// The results as one self-contained HTML page, without scripts, for light and dark color schemes.
 std::string report_html(const std::vector<Outcome>& outcomes, const VerifyOptions& options, const RunContext& context);
 
 }  // namespace cistula::verify

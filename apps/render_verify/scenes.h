@@ -1,4 +1,4 @@
-// Scenes and targets that cases share, described as people describe theirs.
+// Scene descriptions and targets shared by cases.
 #pragma once
 
 #include <cmath>
@@ -16,10 +16,10 @@ inline constexpr PlatonicSolid platonic_solids[] = {PlatonicSolid::tetrahedron, 
                                                     PlatonicSolid::octahedron, PlatonicSolid::dodecahedron,
                                                     PlatonicSolid::icosahedron};
 
-/// How a solid is given: by its planes or as a closed mesh.
+/// The form of a solid: its planes or a closed mesh.
 enum class Shape { planes, triangles };
 
-/// One material, no objects, no lights.
+/// A description with one material, no objects, no lights.
 inline SceneDescription empty_scene() {
     SceneDescription scene;
     scene.source = "verify";
@@ -29,7 +29,7 @@ inline SceneDescription empty_scene() {
     return scene;
 }
 
-/// Returns the material's number.
+/// Adds a material and returns its index.
 inline int add_material(SceneDescription& scene, const MaterialDescription& material) {
     scene.materials.push_back(material);
     scene.materials.back().name = "m" + std::to_string(scene.materials.size());
@@ -71,7 +71,7 @@ inline void add_solid(SceneDescription& scene, Shape shape, const SolidObject& s
         add_object(scene, triangulated_solid(solid), material);
 }
 
-/// Corners of a solid and the points at k/16 of its edges.
+/// The corners of a solid and the points at k/16 of its edges.
 inline std::vector<glm::dvec3> edge_points(const SolidObject& solid) {
     const PlatonicShape& shape = platonic_shape(solid.solid);
     const std::vector<glm::dvec3> corners = triangulated_solid(solid).vertices;
@@ -84,7 +84,8 @@ inline std::vector<glm::dvec3> edge_points(const SolidObject& solid) {
     return points;
 }
 
-/// Outward unit normals and distances of a solid's faces in the frame, four numbers each (chord in crossings.h).
+/// Appends outward unit normals and distances of a solid's faces in the frame, four numbers each (chord in
+/// crossings.h).
 inline void add_planes(const SolidObject& solid, const glm::dvec3& frame_center, double factor,
                        std::vector<double>& numbers) {
     const PlatonicShape& shape = platonic_shape(solid.solid);
@@ -96,15 +97,15 @@ inline void add_planes(const SolidObject& solid, const glm::dvec3& frame_center,
     }
 }
 
-/// Where a solid stands in a scene.
+/// Position, size and neighbors of a test solid.
 struct Placement {
     const char* name;
     glm::dvec3 center;
     double radius;
-    bool beside_unit;  // a solid of radius 1 stands 1.5 to its side, first in the file
+    bool beside_unit;  // a solid of radius 1 lies 1.5 to its side, first in the file
 };
 
-/// The scales that geometry is tested at.
+/// The placements, at all scales at which geometry is tested.
 inline std::vector<Placement> placements() {
     return {{"scale 1", {0, 0, 0}, 1, false},
             {"scale 1 at 1e6", {1e6, -1e6, 1e6}, 1, false},
@@ -114,7 +115,7 @@ inline std::vector<Placement> placements() {
             {"2^-20 beside a unit one", {1.5, 0.25, -0.125}, 0x1p-20, true}};
 }
 
-/// A Platonic solid at a placement: the scene, and the solid's number in it.
+/// A scene with a Platonic solid at a placement, and the solid's index.
 struct PlacedSolid {
     SceneDescription scene;
     SolidObject solid;

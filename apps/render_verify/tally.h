@@ -1,22 +1,22 @@
-// What a case has found so far: sums and extremes only, so that threads, tiles and devices give one result in any
-// order.
+// The results of a case so far: sums and extremes only, so that they do not depend on the order of threads, tiles and
+// devices.
 #pragma once
 
 #include "cistula/numerics/real.h"
 
 namespace cistula::verify {
 
-/// Where in a case: the number of the part in the upper bits, that of the ray in the lower 40.
+/// Encoding of a place in a case: number of the part in the upper bits, number of the ray in the lower 40.
 inline constexpr int place_shift = 40;
 inline constexpr uint64_t no_place = ~uint64_t(0);
 
 struct Tally {
     uint64_t tried = 0;
     uint64_t failures = 0;
-    uint64_t witnesses = 0;        // tries that met the hazard in fact; cases that count them need some
-    double worst = 0;              // the largest of what was measured; 1 where something failed
-    uint64_t worst_at = no_place;  // the least place with that
-    uint64_t place = no_place;     // of the ray in work; the framework sets it
+    uint64_t witnesses = 0;        // tries in which the hazard occurred; cases with needs_witness need some
+    double worst = 0;              // the largest deviation; 1 if something failed
+    uint64_t worst_at = no_place;  // the smallest place with that deviation
+    uint64_t place = no_place;     // of the current ray; set by the framework
 
     CISTULA_HD void expect(bool holds) {
         ++tried;
@@ -24,7 +24,7 @@ struct Tally {
         ++failures;
         note(1, place);
     }
-    /// A deviation >= 0. What is not a number is infinite.
+    /// Records a deviation >= 0. NaN counts as infinite.
     CISTULA_HD void measure(double deviation) {
         ++tried;
         note(deviation == deviation ? deviation : RealTraits<double>::infinity, place);

@@ -1,4 +1,4 @@
-// Cameras for tests of what a picture holds, and the pixels that are compared.
+// Cameras for tests of picture contents, and the pixels that are compared.
 #pragma once
 
 #include <cmath>
@@ -13,9 +13,9 @@ inline bool same_bytes(const PixelRecord& a, const PixelRecord& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// Cameras of all kinds: far and near, wide and narrow, in the middle of things and turned away from them.
+/// A random camera: far or near, wide or narrow, inside the scene or turned away from it.
 inline CameraDescription random_camera(Random& random, const CameraDescription& like) {
-    constexpr double size = 5;  // of most scenes
+    constexpr double size = 5;  // size of most test scenes
     CameraDescription camera = like;
     camera.position_path.reset();
     camera.target_path.reset();
@@ -27,7 +27,7 @@ inline CameraDescription random_camera(Random& random, const CameraDescription& 
     return camera;
 }
 
-/// From `position` along -z.
+/// A view from `position` along -z.
 inline FrameView frame_from(const glm::dvec3& position, double tangent, int width, int height) {
     FrameView frame;
     frame.camera.position = position;

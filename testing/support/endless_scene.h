@@ -1,4 +1,4 @@
-// Scenes whose ray trees have no end within the lifetime of a test: solids that lose no light among mirrors.
+// Scenes whose ray trees are endless for a test: lossless solids among mirrors.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace cistula::test {
 
-/// Octahedra in a tetrahedron of mirrors: every hit makes two branches of one. Few enough for a GPU's plain loop.
+/// Octahedra in a tetrahedron of mirrors: every hit splits a branch in two. Few enough for a GPU's plain loop.
 inline constexpr const char* room_of_mirrors_text = R"({
     "film": {"width": 96, "height": 54}, "depth": 2, "ambient": 1, "background": 1,
     "camera": {"position": [0.4, -1.8, 0.3], "target": [0, 0, 0], "fov": 60},
@@ -26,7 +26,7 @@ inline SceneDescription room_of_mirrors() {
     return read_scene_text(room_of_mirrors_text, "room.json", "");
 }
 
-/// Settings of a frame of such a scene: nothing is pruned.
+/// Settings for an endless scene: nothing is pruned.
 inline FrameSettings endless_settings(int width, int height) {
     FrameSettings settings;
     settings.set_size(width, height);

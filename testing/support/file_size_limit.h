@@ -1,4 +1,4 @@
-// A stand-in for a full disk: while it lives, this process cannot make a file longer than so many bytes.
+// A stand-in for a full disk: limits the size of files that this process writes during the object's lifetime.
 #pragma once
 
 #include <sys/resource.h>

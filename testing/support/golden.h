@@ -1,4 +1,4 @@
-// The golden images: which there are, and how make_golden and the tests render and compare them.
+// The golden images: their names, and how make_golden and the tests render and compare them.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ Film render_embree(const SceneDescription& description, const EmbreeOptions& opt
     return render_with(*renderer, description, settings_for(description));
 }
 
-/// The largest difference of R, G and B between two pictures of one size, and where it is.
+/// The largest difference of R, G and B between two pictures of one size, and its pixel.
 struct Difference {
     double worst = 0;
     std::string channel;

@@ -1,5 +1,4 @@
-// Tests that need a GPU: where there is none they are skipped and say so, or fail where CISTULA_REQUIRE_GPU=1 demands
-// one.
+// Support for tests that need a GPU. Without one they are skipped with a message, or fail if CISTULA_REQUIRE_GPU=1.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +11,7 @@
 
 namespace cistula::test {
 
-/// Why no test can run on a GPU here; empty where one can.
+/// The reason why tests cannot run on a GPU here; empty if they can.
 inline std::string missing_gpu() {
     try {
         choose_devices(Backend::cuda, {});
@@ -29,7 +28,8 @@ inline bool gpu_required() {
 
 }  // namespace cistula::test
 
-/// At the head of a test. tests/CMakeLists.txt looks for the words "skipped for want of a GPU".
+/// Skips the test if there is no GPU; use it first in a test. tests/CMakeLists.txt looks for the words "skipped for
+/// want of a GPU".
 #define CISTULA_NEEDS_GPU()                                                                          \
     do {                                                                                             \
         const std::string missing = cistula::test::missing_gpu();                                    \

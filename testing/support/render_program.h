@@ -1,4 +1,4 @@
-// The built `render`, a folder to run it in, and a small scene there.
+// A fixture that runs the built `render` in a scratch directory with a small scene.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ class RenderProgram : public testing::Test {
         EXPECT_EQ(result.code, 0) << result.error;
     }
 
-    /// One line on standard error that begins with "render: ", nothing on standard output.
+    /// Expects an error: one line on standard error that begins with "render: " and nothing on standard output.
     void expect_refused(const Arguments& arguments, ExitCode code, const std::string& part) const {
         const ProgramResult result = run(arguments);
         EXPECT_EQ(result.code, static_cast<int>(code)) << result.error;
@@ -61,7 +61,7 @@ class RenderProgram : public testing::Test {
         EXPECT_EQ(result.out, "");
     }
 
-    /// A frame that would take years, by both signals.
+    /// Expects that SIGINT and SIGTERM each end a frame that would take years.
     void expect_interrupted_within_a_pixel(const Arguments& more) const {
         put_bytes(file("room.json"), test::room_of_mirrors_text);
         Arguments arguments{"room.json", "-v", "-o", "room.exr", "--depth", "256"};

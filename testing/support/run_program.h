@@ -1,4 +1,4 @@
-// Runs a built program as a user would and collects what it leaves.
+// Runs a built program as a user would and collects its output.
 #pragma once
 
 #include <fcntl.h>
@@ -19,14 +19,14 @@
 namespace cistula {
 
 struct ProgramResult {
-    int code = -1;  // exit code; 1000 + signal where one ended it
+    int code = -1;  // exit code; 1000 + signal if a signal ended it
     std::string out, error;
 };
 
-/// A program under way, in a working directory, with files for its three streams.
+/// A running program with a working directory and files for its three streams.
 class RunningProgram {
   public:
-    /// `prepare` runs in the child before the program (limits, signals).
+    /// `prepare` runs in the child process before the program (for limits, signals).
     RunningProgram(
         const std::string& program, const std::vector<std::string>& arguments, const std::string& directory,
         const std::string& input = "", const std::function<void()>& prepare = [] {}) {
@@ -71,7 +71,7 @@ class RunningProgram {
                 bytes_of(streams_.file("error"))};
     }
 
-    /// True as soon as `condition` holds; false where it does not within `seconds` or the program ends before.
+    /// Waits until `condition` holds; false if it does not within `seconds` or the program ends before.
     bool wait_until(const std::function<bool()>& condition, double seconds) const {
         const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
         while (!condition()) {

@@ -1,4 +1,4 @@
-// Scenes made in memory for tests, and the numbers to make them of.
+// Scenes made in memory for tests, and random numbers for them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ inline constexpr PlatonicSolid platonic_solids[] = {PlatonicSolid::tetrahedron, 
                                                     PlatonicSolid::octahedron, PlatonicSolid::dodecahedron,
                                                     PlatonicSolid::icosahedron};
 
-/// Random numbers, equal on every machine: the standard's engine, our own conversions.
+/// A random generator with the same numbers on every machine: the standard's engine with our own conversions.
 class Random {
   public:
     explicit Random(uint64_t seed) : engine_(seed) {}
@@ -107,7 +107,7 @@ std::unique_ptr<CompiledScene<Real>> compile(const SceneDescription& scene, bool
     return compiled;
 }
 
-// ---- compiled scenes, by hand: what no description gives, such as triangles that are not finite
+// ---- compiled scenes, made by hand for what no description gives, such as triangles that are not finite
 
 template <class Real>
 using Triangle = std::array<Vec3<Real>, 3>;
@@ -159,7 +159,7 @@ Ray<Real> ray_from(const Vec3<Real>& origin, const Vec3<Real>& direction) {
     return ray;
 }
 
-/// Takes a crossing: the ray goes straight on.
+/// Passes a crossing: the ray continues straight on.
 template <class Real>
 void pass(Ray<Real>& ray, const Hit<Real>& hit) {
     if (key_kind(hit.key) != CrossingKind::sheet)
@@ -167,7 +167,7 @@ void pass(Ray<Real>& ray, const Hit<Real>& hit) {
     ray.after = {hit.t, hit.key};
 }
 
-/// A new line from a face, as the ray tree starts it.
+/// Starts a new line on a face as the ray tree does.
 template <class Real>
 Ray<Real> spawn(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit, const MediaList& media) {
     Ray<Real> ray = ray_from(origin, direction);
@@ -177,7 +177,7 @@ Ray<Real> spawn(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit
     return ray;
 }
 
-/// How far a line is inside a Platonic solid about the origin, by its planes moved in by `margin`.
+/// Length of a line inside a Platonic solid about the origin whose planes are moved inward by `margin`.
 inline double chord(const PlatonicShape& shape, const Rotation& rotation, double radius, double margin,
                     const dvec3& origin, const dvec3& direction) {
     double enter = -1e300, leave = 1e300;
@@ -195,8 +195,8 @@ struct Count {
     int enters = 0, leaves = 0, sheets = 0;
 };
 
-/// Goes straight on until nothing is met; a line that starts on no face meets all. Crossings come in increasing (t,
-/// key), and they end.
+/// Follows a line through all crossings until nothing is hit; a line that starts on no face hits all. Crossings must
+/// come in increasing order of (t, key), and end.
 template <class Real, class Intersector>
 Count cross_all(const Intersector& intersector, Ray<Real> ray) {
     Count count;
@@ -213,8 +213,8 @@ Count cross_all(const Intersector& intersector, Ray<Real> ray) {
     return count;
 }
 
-/// On a spiral, around what scenes/benchmark.json shows: lights that are seen and light nothing, after those that are
-/// there. On every edge of every solid: they glow, and light nothing.
+/// Adds visible lights that give no light: `count` on every edge of every solid, and others on a spiral around the
+/// contents of scenes/benchmark.json.
 inline void add_edge_lights(SceneDescription& scene, int count) {
     for (ObjectDescription& object : scene.objects)
         if (auto* solid = std::get_if<SolidObject>(&object.shape)) {

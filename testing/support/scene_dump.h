@@ -1,5 +1,5 @@
-// All that a description says of the picture, as text, exactly: equal texts are equal scenes. Left out are where things
-// stand in a file, the seed's output pattern and its flag.
+// Exact text dump of everything in a description that affects the picture: equal texts are equal scenes. Left out are
+// places in the file, the seed's output pattern and its flag.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Small descriptions that several tests start from.
+// Small scene descriptions that several tests start from.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ inline MaterialDescription material(const std::string& name, double reflection =
     return m;
 }
 
-/// One material, no objects and no lights.
+/// A description with one material, no objects and no lights.
 inline SceneDescription empty_scene() {
     SceneDescription scene;
     scene.source = "test.json";
@@ -56,7 +56,7 @@ inline LightDescription& add_light(SceneDescription& scene, const glm::dvec3& po
     return scene.lights.back();
 }
 
-/// Two triangles across z, counter-clockwise from above, with uvs.
+/// A square of two triangles perpendicular to the z axis, counter-clockwise seen from above, with uvs.
 inline TrianglesObject square(double half = 1, double z = 0) {
     TrianglesObject object;
     object.vertices = {{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
@@ -65,7 +65,7 @@ inline TrianglesObject square(double half = 1, double z = 0) {
     return object;
 }
 
-/// `run` throws Error with that code and a message that contains `part`.
+/// Expects that `run` throws Error with this code and a message that contains `part`.
 template <class Run>
 void expect_error(const Run& run, ExitCode code, const std::string& part) {
     try {

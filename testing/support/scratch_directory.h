@@ -1,4 +1,4 @@
-// A directory for one test's files, removed with all that is in it.
+// A temporary directory for one test, removed with its contents.
 #pragma once
 
 #include <stdlib.h>

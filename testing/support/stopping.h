@@ -10,10 +10,10 @@ namespace cistula::test {
 
 struct Stopped {
     bool whole = false;
-    double seconds = 0;  // from the order to the end
+    double seconds = 0;  // from the request to stop to the end of the render
 };
 
-/// A frame that is stopped after that many seconds.
+/// Renders a frame and stops it after `after` seconds.
 inline Stopped render_stopped(Renderer& renderer, const CameraFrame& camera, const FrameSettings& settings,
                               double after) {
     using Clock = std::chrono::steady_clock;

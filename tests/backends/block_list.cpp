@@ -54,7 +54,7 @@ TEST(BlockList, EveryPixelIsABlocksOrInAGap) {
                 const int strips = (rect.height + strip_rows - 1) / strip_rows;
                 size_t blocks = 0;
                 for (int first = 0; first < step; ++first) {
-                    // As many for each, though the last may lie beyond the rectangle.
+                    // Every list gets the same number of strips, though the last strip may lie outside the rectangle.
                     const BlockList list(cover, {1u, 8u}, {first, step, (strips + step - 1) / step}, plan);
                     const BlockShape shape = list.shape();
                     blocks += list.places().size();

@@ -338,7 +338,7 @@ TEST(GeneratedScenes, HoldTheSameWithoutFiles) {
     check_coverage("");
 }
 
-/// A digest of the numbers that draws and formulas give.
+/// Hash of the numbers in a scene that come from random draws and formulas.
 std::string digest(const SceneDescription& scene) {
     SceneHash hash;
     for (const ObjectDescription& object : scene.objects) {

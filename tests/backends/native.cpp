@@ -68,7 +68,7 @@ bool near_an_edge(const Film& exact, const ColorPicture& colors, size_t pixel, d
     return false;
 }
 
-/// The largest share of pixels whose rays rounding may send past an edge on the other side, as in test_images.
+/// Largest share of pixels whose rays rounding sends past an edge on the other side, as in tests/backends/images.cpp.
 constexpr double largest_share_seen = 0.002;
 
 template <class Real>

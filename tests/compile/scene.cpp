@@ -55,7 +55,7 @@ SceneDescription varied_scene() {
     return scene;
 }
 
-/// A scene with all lengths multiplied by 2^k.
+/// The scene with all lengths multiplied by 2^k.
 SceneDescription scaled_scene(SceneDescription scene, int k) {
     const double s = std::ldexp(1.0, k);
     for (auto& object : scene.objects) {

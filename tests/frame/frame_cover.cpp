@@ -58,7 +58,7 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
     EXPECT_EQ(wrong, 0u) << what;
 }
 
-/// The cover of a small frame.
+/// The cover of a frame of 40 x 30 pixels.
 template <class Real>
 FrameCover cover_of(const SceneDescription& description) {
     const auto scene = compile_scene<Real>(description);

@@ -22,7 +22,7 @@ class ShadowPlans : public ::testing::Test {
     using Intersector = BruteIntersector<Real, OneMedium, Small>;
     using E = Effects<clear_bodies>;
 
-    /// Loads one scene without a plan and with one; false where it is none for the plain loop.
+    /// Compiles the scene with and without a shadow plan; false if it does not fit a ConstantScene.
     bool load(const SceneDescription& description) {
         compiled_ = compile_scene<Real>(description);
         const SceneView<Real> view = compiled_->view();

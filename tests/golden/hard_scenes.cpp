@@ -54,7 +54,7 @@ class HardScenes : public ::testing::Test {
         return count;
     }
 
-    /// The share of pixels that differ by more than half of 1/255.
+    /// Share of pixels that differ by more than half of 1/255 in some channel.
     static double share_apart(const Film& a, const Film& b) {
         const ColorPicture x = to_color(a), y = to_color(b);
         size_t count = 0;

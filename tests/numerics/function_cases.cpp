@@ -42,7 +42,7 @@ void expect_sound() {
     std::set<std::vector<uint64_t>> distinct;
     for_each_input<Case>([&](const auto&, const uint64_t* words) { distinct.emplace(words, words + Case::words); });
     EXPECT_GT(distinct.size(), inputs / 8);
-    // The same from another start and in other pieces; another seed gives other results.
+    // Results do not depend on where a range starts or how it is divided; another seed gives other results.
     std::vector<uint64_t> whole(1000 * Case::words), part(whole), other(whole);
     run_on_host<Case>(seed, 5000, 1000, whole.data());
     run_on_host<Case>(seed, 5000, 400, part.data());
@@ -208,7 +208,7 @@ TYPED_TEST(FunctionInputs, TrianglesAreHitAtEdgesAndCornersToo) {
     EXPECT_GT(not_finite, 10);
 }
 
-/// Expects shadows of all kinds from cases that share words: loss, path, opaque, transmittance.
+/// The inputs of a shadow case reach every kind of shadow. All shadow cases have the words loss, path, opaque, share.
 template <class Case>
 void expect_shadows_of_all_kinds() {
     using Real = typename Case::Number;

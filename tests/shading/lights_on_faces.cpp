@@ -91,7 +91,7 @@ TYPED_TEST(LightsOnFaces, LeaveTheirSolidBlack) {
             }
 }
 
-/// Scenes whose own lights leave them black are not black for want of anything else.
+/// A light off the faces does light these scenes: they are not black for another reason.
 TYPED_TEST(LightsOnFaces, OneThatStandsOffLightsTheSolid) {
     for (const PlatonicSolid kind : test::platonic_solids)
         for (const bool mesh : {false, true}) {

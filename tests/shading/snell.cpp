@@ -133,7 +133,7 @@ TYPED_TEST(SnellTest, CriticalAngleIsDecidedInFineSteps) {
                 const Vec3<Real> normal(Real(0), Real(0), Real(1));
                 const Vec3<Real> d(Real(double(s)), Real(0), Real(double(-sqrtq((1 - s) * (1 + s)))));
                 ASSERT_EQ(refracted(d, normal, index[0], index[1]).total, k > 0) << index[0] << " " << k;
-                // The same angle about other normals: the formula decides as its exact value does.
+                // The critical angle about other normals: the formula decides as its exact value does.
                 const glm::dvec3 n = random.direction();
                 const Vec3<Real> about(n), turned = TestFixture::incoming(random, n, double(sqrtq((1 - s) * (1 + s))));
                 const Exact<Real> exact(turned, about, index[0], index[1]);

@@ -1,5 +1,5 @@
-// What geometry rests on, taken away: each of these must fail on the rays that the sound tests pass, or those prove
-// nothing. The broken tests are made here; the library has no switches for them.
+// Negative controls: the precautions of the geometry removed one at a time. Each must fail on rays that the sound tests
+// pass, or those prove nothing. The broken tests are made here; the library has no switches for them.
 #pragma once
 
 #include "apps/render_verify/geometry/edges_from_inside.h"
@@ -12,7 +12,7 @@ enum class Flaw {
     unpadded_boxes,       // the triangles' own boxes, met by the candidate ray without slack
 };
 
-/// The triangle's own box, rounded to nearest, and a candidate ray that is as sharp.
+/// A triangle's bounding box rounded to nearest, and a candidate ray without slack.
 template <class Real>
 CISTULA_HD inline bool meets_own_box(const Cluster<Real>& cluster, uint32_t lane, const Ray<Real>& ray) {
     BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
@@ -27,7 +27,7 @@ CISTULA_HD inline bool meets_own_box(const Cluster<Real>& cluster, uint32_t lane
     return box_ray.enter(low, high) < RealTraits<float>::infinity;
 }
 
-/// Crossings ahead of the ray, by a loop over all triangles with the flawed test.
+/// Crossings ahead of the ray, found by a loop over all triangles with the flawed test.
 template <Flaw flaw, class Real>
 CISTULA_HD inline uint32_t flawed_crossings(const SceneView<Real>& scene, const Ray<Real>& ray) {
     uint32_t count = 0;
@@ -54,7 +54,7 @@ CISTULA_HD inline uint32_t flawed_crossings(const SceneView<Real>& scene, const 
     return count;
 }
 
-/// The rays of edges_from_inside, at vertices only: there every edge function of many triangles is exactly 0 or close.
+/// The rays of edges_from_inside, at vertices only, where edge functions of many triangles are 0 or nearly so.
 template <Flaw flaw>
 struct Flawed {
     template <class Real, class Intersector>

@@ -1,4 +1,4 @@
-// Many triangles in one place: each is met once, in the order of the keys.
+// Many coincident triangles: each is hit once, in the order of the keys.
 #pragma once
 
 #include "apps/render_verify/geometry/upright_solids.h"
@@ -12,7 +12,7 @@ struct Coincident {
     static constexpr bool needs_witness = true;
 
     static constexpr uint32_t copies = 1000;
-    uint32_t solids;  // 1: copies in one sheet; else each a sheet of its own
+    uint32_t solids;  // 1: all copies in one sheet; else one sheet each
 
     static void plan(Plan& plan) {
         for (const uint32_t solids : {1u, copies}) {

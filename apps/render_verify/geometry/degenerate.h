@@ -1,4 +1,4 @@
-// Triangles that are none: reported when the scene is read, never hit.
+// Degenerate triangles: reported when the scene is read, never hit.
 #pragma once
 
 #include <limits>
@@ -13,9 +13,9 @@ struct Degenerate {
     static constexpr Bound bound = no_failures("rays");
     static constexpr bool needs_witness = true;
 
-    bool sound_one;  // solid 0 is a triangle that is sound
+    bool sound_one;  // solid 0 is a valid triangle
 
-    /// A triangle that is, then ten that are not.
+    /// A mesh of one valid and ten degenerate triangles.
     static TrianglesObject broken() {
         const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
         TrianglesObject mesh;
@@ -46,7 +46,8 @@ struct Degenerate {
         Part& part = plan.add("left out at load", scene, Degenerate{true}, targets, plan.rays(1'000'000, 20000));
         part.warnings = {"3 triangles with a repeated vertex", "5 triangles with a vertex that is not finite",
                          "2 triangles of zero area"};
-        // Finite ones put into the arrays by hand, as those that seal a mesh stay there. No tree has others.
+        // Finite ones written into the compiled arrays, since those that close a mesh stay there. Trees contain no
+        // others.
         Part& raw = plan.add("in the arrays", scene, Degenerate{true}, targets, plan.rays(1'000'000, 20000));
         raw.edit([](auto& compiled) {
             auto& cluster = compiled.clusters[0];
@@ -71,7 +72,7 @@ struct Degenerate {
         const Vec3<Real> target = draw.one_in(2) ? a : along(a, draw.unit<Real>(), b - a);
         const Ray<Real> ray = aimed(setup, draw, Vec3<Real>(on_sphere(draw) * (1.9 * double(setup.extent()))), target);
         const Hit<Real> hit = intersector.closest(ray);
-        // The sound triangle is number 0.
+        // The valid triangle is number 0.
         tally.witness(hit.found() && key_face(hit.key) == 0);
         tally.expect(!hit.found() || (key_face(hit.key) == 0 && is_finite(hit.t)));
     }

@@ -1,4 +1,4 @@
-// From inside a convex solid there is exactly one way out, also where two or more faces meet.
+// A ray from inside a convex solid has exactly one exit, also where two or more faces meet.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -8,8 +8,8 @@
 
 namespace cistula::verify::geometry {
 
-/// Rays for every target of every placement of the five solids. Numbers: the middle, the inradius, how far targets may
-/// be from the solid's edges for the rounding of scene units, then its planes from first_plane on.
+/// Adds rays for every target of every placement of the five solids. Numbers: the center, the inradius, the greatest
+/// distance of targets from the solid's edges due to rounding of scene units, then its planes from first_plane on.
 inline constexpr uint32_t first_plane = 5;
 template <class Functor>
 void plan_solids(Plan& plan, Shape shape, uint64_t rays_a_target_full, uint64_t rays_a_target_quick) {
@@ -33,7 +33,7 @@ void plan_solids(Plan& plan, Shape shape, uint64_t rays_a_target_full, uint64_t 
 
 struct EdgesFromInside {
     uint32_t solid;
-    bool tiny;  // so small beside the scene that its inside holds few numbers
+    bool tiny;  // so small in its scene that its inside contains few floating-point numbers
 
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,

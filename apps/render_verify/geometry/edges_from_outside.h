@@ -1,11 +1,11 @@
-// From outside a convex solid is entered and left once, or passed by, also along its edges and its silhouette.
+// A ray from outside enters and leaves a convex solid once or misses it, also at its edges and its silhouette.
 #pragma once
 
 #include "apps/render_verify/geometry/edges_from_inside.h"
 
 namespace cistula::verify::geometry {
 
-/// From outside, at a target: far off, from a coarse lattice, or parallel to an axis.
+/// A ray from outside at a target: from far away, from a coarse lattice, or parallel to an axis.
 template <class Real>
 CISTULA_HD inline Vec3<Real> outside_origin(Draw& draw, const Vec3<Real>& target, double extent) {
     const uint32_t kind = draw.below(8);

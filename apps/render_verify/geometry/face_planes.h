@@ -1,4 +1,4 @@
-// Rays in the very plane of a face.
+// Rays exactly in the plane of a face.
 #pragma once
 
 #include "apps/render_verify/geometry/upright_solids.h"

@@ -1,4 +1,4 @@
-// Many triangles about one vertex: a lens of two fans that share their rim, closed.
+// Fans of many triangles about one vertex: a closed lens of two fans that share their rim.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -7,7 +7,7 @@
 
 namespace cistula::verify::geometry {
 
-/// Vertices: the upper hub, the lower hub, the rim.
+/// The lens as a mesh. Vertices: the upper hub, the lower hub, the rim.
 inline TrianglesObject lens(uint32_t spokes, const glm::dvec3& center, double height) {
     TrianglesObject mesh;
     mesh.vertices = {center + glm::dvec3(0, 0, height), center - glm::dvec3(0, 0, height)};
@@ -46,7 +46,7 @@ struct Fans {
         }
     }
 
-    /// In the place of a compiled scene's clusters: eight neighbors of either fan each.
+    /// Replaces a compiled scene's clusters by those of a lens: eight neighbors of either fan each.
     template <class Scene>
     static void put_triangles(Scene& compiled, const TrianglesObject& mesh) {
         using Lanes = typename decltype(compiled.clusters)::value_type;
@@ -84,7 +84,7 @@ struct Fans {
         if (draw.one_in(8)) origin = target, origin.z = draw.one_in(2) ? Real(1.25) : Real(-1.25);
         const Ray<Real> ray = aimed(setup, draw, origin, target);
         const Crossings found = cross_all(intersector, ray);
-        // A line steeper than the lens is through where it goes through its faces.
+        // A line steeper than the lens crosses the lens if it crosses its faces.
         const bool steep = magnitude(ray.direction.z) > Real(0.5) * length(ray.direction);
         tally.witness(steep);
         tally.expect(steep ? found.are(1, 1) : found.balanced());

@@ -1,4 +1,4 @@
-// Cameras so far away that the scene is a point to a float: rays begin where they come near it, in double.
+// Cameras so far away that the scene is a point in float: rays start near the scene, computed in double.
 #pragma once
 
 #include "apps/render_verify/geometry/upright_solids.h"

@@ -1,4 +1,4 @@
-// Rays that are no rays: they meet nothing, and asking ends.
+// Rays with components that are not finite: they hit nothing, and queries terminate.
 #pragma once
 
 #include "apps/render_verify/geometry/upright_solids.h"
@@ -6,7 +6,7 @@
 
 namespace cistula::verify::geometry {
 
-/// Twenty solids that overlap, and a light.
+/// Adds a part with twenty overlapping solids and a light.
 template <class Functor>
 void plan_twenty(Plan& plan) {
     for (const Shape shape : {Shape::planes, Shape::triangles}) {
@@ -46,8 +46,8 @@ struct NotFiniteRays {
     }
 };
 
-/// What is finite, but hardly a direction: whatever is met is in order, and it ends. Rays start within 2 M and are no
-/// longer than 1, as the renderer's are: Embree's own checks abort on numbers above 2^60.
+/// Rays with finite but extreme directions: hits are in order, and queries terminate. Rays start within 2 M and
+/// directions are no longer than 1, as the renderer's are: Embree's own checks abort on numbers above 2^60.
 struct ExtremeRays {
     static constexpr const char* name = "geometry/extreme-rays";
     static constexpr const char* exact = "subnormal numbers, zeros, no direction at all: crossings in order, to an end";

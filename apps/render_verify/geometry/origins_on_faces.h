@@ -1,4 +1,4 @@
-// Lines that start on a face, an edge or a vertex of a solid, as mirrored and refracted rays do.
+// Lines that start on a face, an edge or a vertex of a solid, as reflected and refracted rays do.
 #pragma once
 
 #include "apps/render_verify/geometry/edges_from_outside.h"
@@ -6,7 +6,7 @@
 
 namespace cistula::verify::geometry {
 
-/// On planes: the start is within rounding of two faces or more, and one of them is the one left.
+/// Starts on solids of planes: within rounding of two faces or more, one of which is the face just left.
 struct OriginsOnPlanes {
     static constexpr const char* name = "geometry/origins-on-faces/planes";
     static constexpr const char* exact =
@@ -73,7 +73,7 @@ struct OriginsOnPlanes {
         const Vec3<double> normal(scene.slabs[body.first_slab + face / 2].normal);
         return face & 1u ? normal : -normal;
     }
-    /// How far a point is outside a face's plane; the missing side of a single plane: infinitely far inside.
+    /// Distance of a point outside a face's plane; minus infinity for the missing side of a single plane.
     template <class Real>
     CISTULA_HD static double beyond(const SceneView<Real>& scene, const Solid& body, uint32_t face,
                                     const Vec3<Real>& p) {
@@ -81,7 +81,7 @@ struct OriginsOnPlanes {
         const double at = dot(Vec3<double>(slab.normal), Vec3<double>(p));
         return face & 1u ? at - double(slab.high) : double(slab.low) - at;
     }
-    /// The next crossing of the solid in question; another one may be in the way.
+    /// The next crossing of the tested solid; another solid may come before it.
     template <class Real, class Intersector>
     CISTULA_HD Hit<Real> first_of(const Intersector& intersector, Ray<Real> ray) const {
         for (;;) {
@@ -93,7 +93,7 @@ struct OriginsOnPlanes {
     }
 };
 
-/// On triangles: a ray finds the face, and the next line starts from there as the ray tree starts it.
+/// Starts on solids of triangles: a ray finds the face, and the next line starts there as the ray tree starts it.
 struct FromTriangles {
     uint32_t solid;
     bool tiny;

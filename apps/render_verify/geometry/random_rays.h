@@ -1,4 +1,4 @@
-// One hit rule: whichever way hits are found, they are the same hits.
+// Random rays: all intersectors must find the same hits.
 #pragma once
 
 #include "apps/render_verify/geometry/fans.h"
@@ -11,7 +11,7 @@ inline TrianglesObject moved(TrianglesObject mesh, const glm::dvec3& center, con
     return mesh;
 }
 
-/// Draws of plans: on the host, the same everywhere.
+/// A random point for plans; drawn on the host, equal everywhere.
 inline glm::dvec3 drawn(Draw& draw, double half) {
     const double x = draw.centered(half), y = draw.centered(half), z = draw.centered(half);
     return {x, y, z};

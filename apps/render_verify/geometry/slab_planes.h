@@ -5,7 +5,7 @@
 
 namespace cistula::verify::geometry {
 
-/// An upright cube: a line along an axis is inside where both other coordinates are strictly within the planes.
+/// Rays along an axis at an upright cube; inside if both other coordinates are strictly between the planes.
 struct AxisParallel {
     static constexpr const char* name = "geometry/axis-parallel";
     static constexpr const char* exact =
@@ -50,7 +50,7 @@ struct AxisParallel {
         ray.origin[axis] = Real(-1.25) * setup.extent() * ray.direction[axis];
         tally.witness(on);
         const Crossings found = cross_all(intersector, ray);
-        // In the plane of a face of triangles the line may be on either side of it, but comes out as it goes in.
+        // In the plane of a face of triangles the line may be on either side of it, but must leave if it enters.
         if (!planes && on)
             tally.expect(found.balanced() && found.enters <= 1);
         else
@@ -58,7 +58,7 @@ struct AxisParallel {
     }
 };
 
-/// Rays that start exactly in the plane of a cube's face, with no memory of it.
+/// Rays that start exactly in the plane of a cube's face, without state from a previous hit.
 struct OnSlabPlanes {
     static constexpr const char* name = "geometry/origins-on-slab-planes";
     static constexpr const char* exact = "from a face inward: in at t = 0 and out; outward or along it: nothing";

@@ -5,13 +5,13 @@
 
 namespace cistula::verify::geometry {
 
-/// The box [-1, 1]^3 cut along grid planes at these coordinates of every axis.
+/// The box [-1, 1]^3, cut by grid planes at these coordinates of every axis.
 inline TrianglesObject grid_box(const std::vector<double>& cuts) {
     const uint32_t n = uint32_t(cuts.size());
     TrianglesObject mesh;
     for (int axis = 0; axis < 3; ++axis)
         for (const bool high : {false, true}) {
-            // Vertices at one position count as one, so that every face may bring its own.
+            // Vertices at one position count as one, so every face may have its own.
             const uint32_t first = uint32_t(mesh.vertices.size());
             for (uint32_t i = 0; i < n; ++i)
                 for (uint32_t j = 0; j < n; ++j) {
@@ -36,7 +36,7 @@ inline TrianglesObject grid_box(const std::vector<double>& cuts) {
     return mesh;
 }
 
-/// A prism about a line through the origin: `sides` long thin faces.
+/// A prism about a line through the origin with `sides` long thin faces.
 inline TrianglesObject needle(uint32_t sides, double radius, const glm::dvec3& rotation, const glm::dvec3& center) {
     const Rotation turned(rotation);
     TrianglesObject mesh;

@@ -5,7 +5,7 @@
 
 namespace cistula::verify::geometry {
 
-/// A zero that is not told from its negative: every crossing at the same bits.
+/// Whether two rays, which differ in the signs of zeros only, have the same crossings to the bit.
 template <class Real, class Intersector>
 CISTULA_HD inline bool same_crossings(const Intersector& intersector, Ray<Real> a, Ray<Real> b) {
     for (uint32_t i = 0; i < 64; ++i) {

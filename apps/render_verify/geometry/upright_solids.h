@@ -1,4 +1,4 @@
-// The five solids about the origin, as several cases take them.
+// The five solids about the origin, shared by several cases.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -11,7 +11,7 @@ inline std::string shape_name(Shape shape) {
     return shape == Shape::planes ? " of planes" : " of triangles";
 }
 
-/// The five solids about the origin, as planes and as triangles, upright and turned.
+/// Adds parts with the five solids about the origin, as planes and as triangles, upright and turned.
 template <class Functor>
 void plan_upright(Plan& plan, uint64_t rays) {
     for (const PlatonicSolid kind : platonic_solids)

@@ -21,8 +21,8 @@ std::string random_letters(int count) {
     return text;
 }
 
-/// A rename survives a power failure only once its directory is on the disk. Some file systems refuse; the file is
-/// whole then all the same.
+/// Flushes a directory to the disk, without which a rename may not survive a power failure. Failure is ignored: some
+/// file systems refuse, and the file is complete all the same.
 void flush_directory(const std::filesystem::path& directory) {
     const int descriptor = open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0) return;
@@ -47,7 +47,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
     const fs::path target(target_);
     if (target.filename().empty()) throw file_error(path, "write", path.empty() ? ENOENT : EISDIR);
 
-    // Room for the random part, where a name is as long as the file system allows.
+    // Leaves room for the random part if the name is as long as the file system allows.
     const std::string name = target.filename().string().substr(0, 200);
     int error_number = EEXIST;
     for (int attempt = 0; attempt < 100 && descriptor_ < 0 && error_number == EEXIST; ++attempt) {

@@ -1,4 +1,4 @@
-// Files that are written whole or not at all: a failure or an interruption leaves the old file as it was.
+// Atomic writing of files: a failure or an interruption leaves the old file unchanged.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace cistula {
 
-/// Write to temporary(), then commit(). Without a commit the destructor removes what was written.
-/// The temporary lies beside the target as ".NAME.XXXXXX.part", so that renaming it is one step of the file system.
-/// A link is followed: the file that it points to is replaced. Only regular files are ever replaced.
+/// A file that replaces its target in one step. Write to temporary(), then commit(); without a commit the destructor
+/// removes what was written. The temporary is ".NAME.XXXXXX.part" beside the target, so that replacing is one rename.
+/// Symbolic links are followed: the file that they point to is replaced. Only regular files are replaced.
 class AtomicFile {
   public:
-    /// Creates the temporary, empty, with the permissions of the file that it will replace.
-    /// Throws Error(ExitCode::file) with the system's reason.
+    /// Creates the temporary, empty, with the permissions of the file that it will replace. Throws
+    /// Error(ExitCode::file) with the system's reason.
     explicit AtomicFile(const std::string& path);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -26,17 +26,17 @@ class AtomicFile {
     /// Appends to the temporary. Throws Error(ExitCode::file).
     void write(std::string_view bytes);
 
-    /// Forces the bytes to the disk and puts the file in its place. Throws Error(ExitCode::file).
+    /// Flushes the bytes to the disk and renames the temporary to the target. Throws Error(ExitCode::file).
     void commit();
 
   private:
     std::string path_;       // as the user wrote it, for messages
-    std::string target_;     // with links followed
+    std::string target_;     // symbolic links resolved
     std::string temporary_;  // empty once committed
     int descriptor_ = -1;
 };
 
-/// Replaces the file by these bytes, or leaves it untouched and throws Error(ExitCode::file).
+/// Replaces the file by these bytes, or leaves it unchanged and throws Error(ExitCode::file).
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
 }  // namespace cistula

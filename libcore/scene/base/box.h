@@ -1,4 +1,4 @@
-// Boxes along the axes, in double.
+// Axis-aligned bounding boxes in double.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace cistula {
 
-/// The least box along the axes around the points that were added to it; empty before the first.
+/// The smallest axis-aligned box around the points added to it; empty before the first.
 struct Box {
     glm::dvec3 low{INFINITY}, high{-INFINITY};
 

@@ -1,4 +1,4 @@
-// Errors that a user can act on. Programs turn them into one line on standard error and the exit code.
+// Errors that a user can act on. Programs print them as one line on standard error and return the exit code.
 #pragma once
 
 #include <stdexcept>
@@ -9,7 +9,7 @@ namespace cistula {
 /// Exit codes of every program (docs/programs.md).
 enum class ExitCode : int {
     done = 0,
-    failed = 1,  // a comparison or a case does not hold
+    failed = 1,  // a comparison or a test case failed
     usage = 2,   // the command line or the scene is wrong
     file = 3,    // a file cannot be read or written
     device = 4,  // no usable GPU, or CUDA is not in this build
@@ -17,7 +17,8 @@ enum class ExitCode : int {
     interrupted = 130,
 };
 
-/// what() is the whole message: the place (file:line:column or file: JSON path), what is wrong, what would be right.
+/// An error for the user. what() is the whole message: the place (file:line:column or file: JSON pointer), what is
+/// wrong, what would be right.
 class Error : public std::runtime_error {
   public:
     Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

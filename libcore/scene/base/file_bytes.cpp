@@ -15,7 +15,7 @@ namespace {
 
 using FileHandle = std::unique_ptr<FILE, int (*)(FILE*)>;
 
-/// What the user can do about it; empty where the words of the system say enough.
+/// Advice for the user; empty where the system's message is clear enough.
 std::string remedy(const std::string& path, const std::string& verb, int error_number) {
     const std::string directory = std::filesystem::path(path).parent_path().string();
     const bool writes = verb == "write";

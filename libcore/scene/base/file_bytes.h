@@ -1,4 +1,4 @@
-// Whole files as bytes, and the wording of the errors that the operating system gives.
+// Reading of whole files, and messages for the operating system's errors.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,17 @@
 
 namespace cistula {
 
-/// Pictures with a longer side are taken for damaged files.
+/// Longest side in pixels of a picture that is read; files that claim more are taken as damaged.
 inline constexpr int64_t largest_picture_side = 65536;
 
-/// "PATH: cannot read: No such file or directory; check the spelling" from errno's value. verb: "read" or "write".
+/// An error with the text of `error_number` (errno): "PATH: cannot read: No such file or directory; check the
+/// spelling". verb: "read" or "write".
 Error file_error(const std::string& path, const std::string& verb, int error_number);
 
-/// "PATH: cannot read: REASON", with the line breaks that libraries put into their reasons taken out.
+/// An error with a library's reason, line breaks removed: "PATH: cannot read: REASON".
 Error file_error(const std::string& path, const std::string& verb, const std::string& reason);
 
-/// Throws Error(ExitCode::file) unless `path` is a file that can be opened and is no directory.
+/// Throws Error(ExitCode::file) unless `path` can be opened and is not a directory.
 void check_readable(const std::string& path);
 
 /// All bytes of a file. Throws Error(ExitCode::file).
@@ -26,7 +27,7 @@ std::string read_file(const std::string& path);
 /// The first `count` bytes, fewer where the file is shorter. Throws Error(ExitCode::file).
 std::string read_file_start(const std::string& path, size_t count);
 
-/// ".exr" of "a/b.EXR": the extension in lower case with its dot, empty where there is none.
+/// The extension in lower case with its dot: ".exr" for "a/b.EXR"; empty if there is none.
 std::string lower_extension(const std::string& path);
 
 }  // namespace cistula

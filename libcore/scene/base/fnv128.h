@@ -1,4 +1,4 @@
-// 128-bit FNV-1a: of films, scenes and cameras.
+// 128-bit FNV-1a, for hashes of films, scenes and cameras.
 #pragma once
 
 #include <concepts>
@@ -10,8 +10,8 @@
 
 namespace cistula {
 
-/// Published constants (offset basis 0x6c62272e07bb0142 62b821756295c58d, prime 2^88 + 0x13b). Numbers go in as their
-/// bytes, the lowest first; floating-point numbers as their bits, so -0 is not 0.
+/// A 128-bit FNV-1a hash with the published constants (offset basis 0x6c62272e07bb0142 62b821756295c58d, prime 2^88 +
+/// 0x13b). Numbers enter as their bytes, lowest first; floating-point numbers as their bits, so -0 is not 0.
 class Fnv128 {
   public:
     void add_bytes(const void* data, size_t size) {
@@ -26,7 +26,7 @@ class Fnv128 {
     void add(float value) { add(bits_as<uint32_t>(value)); }
     void add(double value) { add(bits_as<uint64_t>(value)); }
 
-    /// 32 lower-case digits.
+    /// The hash as 32 lower-case hexadecimal digits.
     std::string hex() const {
         std::string text;
         for (int shift = 124; shift >= 0; shift -= 4)

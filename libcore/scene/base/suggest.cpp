@@ -24,7 +24,7 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural) {
     if (known.empty()) return fmt::format("there are no {}", plural);
-    constexpr size_t longest_compared = 64;  // distances take time that grows with the square of the length
+    constexpr size_t longest_compared = 64;  // distances take time quadratic in the length
     std::string_view nearest;
     size_t least = std::max<size_t>(2, name.size() / 3) + 1;
     if (name.size() <= longest_compared) {

@@ -1,4 +1,4 @@
-// "Did you mean": the nearest of the names that would have been right.
+// "Did you mean": the known name nearest to a misspelled one.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,15 @@
 
 namespace cistula {
 
-/// Insertions, deletions, substitutions and swaps of neighbors that lead from a to b (optimal string alignment, bytes).
+/// Optimal string alignment distance: the least number of insertions, deletions, substitutions and swaps of neighboring
+/// bytes that turn a into b.
 size_t edit_distance(std::string_view a, std::string_view b);
 
-/// "did you mean 'width'?" where one of `known` is near, else "known keys: a, b, c"; `plural` says what they are.
+/// "did you mean 'width'?" if one of `known` is near `name`, else "known keys: a, b, c"; `plural` is their collective
+/// name ("keys").
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural);
 
-/// The text on one line: control characters become escapes. Names from files go through this on their way to a message.
+/// The text as a single line, with control characters escaped; for names from files in messages.
 std::string one_line(std::string_view text);
 
 }  // namespace cistula

@@ -32,8 +32,8 @@ GroupBox box_of(const std::vector<GroupBox>& boxes, uint32_t begin, uint32_t end
     return all;
 }
 
-/// A node over groups [begin, end), which stand in the order of the builder's tree: halves are neighbors, so that no
-/// second build is needed. Returns its number.
+/// Adds a node over groups [begin, end) and returns its number. The groups are in the order of the builder's tree, so
+/// halves are neighbors and no second build is needed.
 uint32_t halve(Tree& tree, const std::vector<GroupBox>& boxes, uint32_t begin, uint32_t end) {
     const auto number = static_cast<uint32_t>(tree.nodes.size());
     tree.nodes.emplace_back();

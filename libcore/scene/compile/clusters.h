@@ -1,4 +1,4 @@
-// Triangles to clusters of up to eight neighbors. Inside libcore/scene.
+// Groups triangles into clusters of up to eight neighbors. Private to libcore/scene.
 #pragma once
 
 #include "cistula/model/scene_view.h"
@@ -10,7 +10,7 @@ namespace cistula {
 
 Groups group_triangles(const FramedMesh& mesh);
 
-/// A tree over groups' boxes, for queries while compiling; its items are numbers of groups.
+/// A tree over the groups' boxes, for queries during compilation; its items are group numbers.
 Tree group_tree(const FramedMesh& mesh, const Groups& groups);
 
 /// Appends one cluster per group. Unused lanes hold a corner of lane 0 three times.

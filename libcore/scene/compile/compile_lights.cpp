@@ -58,7 +58,7 @@ std::vector<FramedLight> frame_lights(const SceneSource& source, const Frame& fr
         const SourceSolid& solid = source.solids[convex[i].solid];
         add_edge_lights(lights, *solid.platonic, solid.place, convex[i], static_cast<int>(i), frame);
     }
-    // I / r^2 in scene units is I 4^scale over the square of the frame's distance.
+    // I / r^2 in scene units is I 4^scale / r^2 with r in the frame.
     for (FramedLight& light : lights)
         if (light.falloff) light.color *= frame.factor * frame.factor;
     return lights;
@@ -68,7 +68,7 @@ template <class Real>
 void find_convex_incidents(const std::vector<FramedLight>& lights, const std::vector<ConvexSolid>& convex,
                            double extent, IncidentLists& incidents) {
     const double tolerance = static_cast<double>(incidence<Real>) * extent;
-    const double reach = 4 * tolerance;  // beyond a solid's box by more than this, nothing can be incident
+    const double reach = 4 * tolerance;  // farther than this outside a solid's box, no light can be incident
     for (size_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].lights()) continue;
         const dvec3 p = rounded<Real>(lights[i].position);

@@ -1,4 +1,5 @@
-// All lights of a scene, those on edges too, in the frame; and the faces that they lie on. Inside libcore/scene.
+// All lights of a scene in the frame, those on edges included, and the faces on which they lie. Private to
+// libcore/scene.
 #pragma once
 
 #include <array>
@@ -11,15 +12,15 @@
 
 namespace cistula {
 
-/// Position and radius in the frame, radiances as described; with falloff, color is I 4^scale.
+/// A light with position and radius in the frame and radiances as described; with falloff, color is I 4^scale.
 struct FramedLight {
     glm::dvec3 position;
     glm::dvec3 color, radiance;
     double radius;
     bool falloff;
     std::string place;
-    int convex = -1;                       // on an edge of this one of the convex solids
-    std::array<uint32_t, 2> edge_faces{};  // faces of its shape
+    int convex = -1;                       // the convex solid on whose edge it lies; -1: none
+    std::array<uint32_t, 2> edge_faces{};  // the two faces at that edge
 
     bool lights() const { return color.x > 0 || color.y > 0 || color.z > 0; }
 };
@@ -28,26 +29,27 @@ struct FramedLight {
 std::vector<FramedLight> frame_lights(const SceneSource& source, const Frame& frame,
                                       const std::vector<ConvexSolid>& convex);
 
-/// Incident faces of each light, in the order of solids and faces.
+/// For each light, the faces that it lies on, in the order of solids and faces.
 using IncidentLists = std::vector<std::vector<Incident>>;
 
-/// |n.l - h| <= 16 u M within the solid grown by as much, u and rounding those of the scene's precision.
+/// Adds the convex solids' faces on which lights lie: |n.l - h| <= 16 u M inside the solid grown by as much, u and
+/// rounding those of the scene's precision.
 template <class Real>
 void find_convex_incidents(const std::vector<FramedLight>& lights, const std::vector<ConvexSolid>& convex,
                            double extent, IncidentLists& incidents);
 
-/// Incident triangles of a mesh by the rule of find_convex_incidents, through the tree over their groups.
+/// Adds a mesh's triangles on which lights lie, found through the tree over their groups.
 template <class Real>
 void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, const Groups& groups,
                              const Tree& tree, uint32_t solid, uint32_t first_triangle, double extent,
                              IncidentLists& incidents);
 
-/// Incident triangles of a mesh without a tree, numbering its own triangles.
+/// Adds a mesh's triangles on which lights lie, without a tree and in the mesh's own numbering.
 template <class Real>
 void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid,
                              double extent, IncidentLists& incidents);
 
-/// Which lamp lies on a face, and of what, in words for explain_effects; empty if none does.
+/// Which light lies on a face of which object, in words for explain_effects; empty if none does.
 std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights,
                          const IncidentLists& incidents);
 

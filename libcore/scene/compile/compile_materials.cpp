@@ -10,10 +10,10 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double largest_absorption = 0x1p20;  // sigma M (docs/rules.md, 6)
+constexpr double largest_absorption = 0x1p20;  // of absorption * M (docs/rules.md, 6)
 constexpr double largest_integer_exponent = 1024;
 
-/// 1 - kr - kt of the rounded shares, rounded down: the three never add up to more than 1.
+/// 1 - kr - kt for the rounded shares, rounded down, so that the three never add up to more than 1.
 template <class Real>
 Real local_rounded_down(Real reflection, Real transmission) {
     const auto exact = static_cast<__float128>(1) - reflection - transmission;
@@ -90,7 +90,7 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     const bool integer =
         material.exponent <= largest_integer_exponent && material.exponent == floor_of(material.exponent);
     m.integer_exponent = integer ? static_cast<int32_t>(material.exponent) : -1;
-    // What a scene may exceed 1 by must not grow from bounce to bounce.
+    // Shares may add up to slightly more than 1; that excess must not grow from bounce to bounce.
     const double whole = greatest(material.reflection + material.transmission, 1.0);
     const double transmission = material.transmission / whole;
     m.reflection = static_cast<Real>(material.reflection / whole);

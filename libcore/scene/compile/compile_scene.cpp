@@ -30,7 +30,7 @@ Real rounded_up(double x) {
     return r < x ? std::nextafter(r, RealTraits<Real>::infinity) : r;
 }
 
-/// The builder leaves freed blocks with the allocator, which would keep them while the largest arrays are filled.
+/// Returns memory to the system that the allocator keeps after a tree build, before the largest arrays are filled.
 void return_free_memory() {
 #ifdef __GLIBC__
     malloc_trim(0);
@@ -38,10 +38,10 @@ void return_free_memory() {
 }
 
 constexpr size_t most_pairs = 10'000'000;
-constexpr uint32_t most_outlined = 16;  // triangles: of larger meshes the box is outlined
-constexpr double touching = 0x1p-17;    // far above the reach of a meeting
+constexpr uint32_t most_outlined = 16;  // triangles of a mesh that is outlined by its corners; larger ones by their box
+constexpr double touching = 0x1p-17;    // tolerance for solids in contact, far above that of meetings (meeting.h)
 
-/// One compilation: the parts in the order in which they need one another.
+/// One compilation; its steps are called in the order of their dependencies.
 template <class Real>
 class Compiler {
   public:
@@ -107,7 +107,7 @@ class Compiler {
         }
     }
 
-    /// Solids with an inside that may share a face with another one (meeting.h).
+    /// Finds the solids with an inside that may share a face with another solid (meeting.h).
     void find_touched() {
         std::vector<uint32_t> order;
         for (uint32_t i = 0; i < scene_.solids.size(); ++i)
@@ -124,7 +124,7 @@ class Compiler {
             }
     }
 
-    /// Only spares work, so that scenes of very many pairs may do without.
+    /// Finds solids that overlap no other. An optimization, skipped for scenes with very many pairs.
     void find_solids_alone() {
         const SceneView<Real> view = scene_.view();
         const size_t primitives = view.convex.size + view.clusters.size;
@@ -198,10 +198,11 @@ class Compiler {
                 if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
             }
         triangle_count_ += mesh.size();
-        from.mesh = {};  // its triangles are in the clusters now
+        from.mesh = {};  // its triangles are now stored in the clusters
     }
 
-    /// Whether all corners lie within `tolerance` of the plane of the largest triangle, which the solid then gets.
+    /// Whether all corners lie within `tolerance` of the plane of the largest triangle, which is then stored in the
+    /// solid.
     static bool is_flat(const FramedMesh& mesh, double tolerance, Solid& solid) {
         dvec3 normal(0), on(0);
         for (uint32_t t = 0; t < mesh.size(); ++t) {
@@ -220,7 +221,7 @@ class Compiler {
         return true;
     }
 
-    /// What needs the tree over groups, which is gone before the clusters come.
+    /// The steps that need the tree over groups, which is freed before the clusters are filled.
     void prepare(uint32_t number, const FramedMesh& mesh, const Groups& groups, ApexHeights& heights) {
         const Tree tree = group_tree(mesh, groups);
         const SourceSolid& from = source_.solids[number];
@@ -285,7 +286,7 @@ class Compiler {
     }
 
     void compile_lights() {
-        std::vector<uint32_t> owners;  // of seen lights
+        std::vector<uint32_t> owners;  // of visible lights
         for (size_t i = 0; i < lights_.size(); ++i) {
             const FramedLight& light = lights_[i];
             hash_.add(light.position);
@@ -324,7 +325,7 @@ class Compiler {
         reach_edge_lights(scene_, owners);
     }
 
-    /// Adds the hull of every solid, with the visible lights on its edges, and of every other visible light.
+    /// Adds a hull for each solid with the visible lights on its edges, and for every other visible light.
     void add_hulls() {
         for (const ConvexSolid& convex : convex_) scene_.hulls[convex.solid].points = convex.vertices;
         for (uint32_t i = 0; i < source_.solids.size(); ++i)

@@ -14,9 +14,9 @@ bool close(const glm::dvec3& a, const glm::dvec3& b) {
     return magnitude(a.x - b.x) <= coplanar && magnitude(a.y - b.y) <= coplanar && magnitude(a.z - b.z) <= coplanar;
 }
 
-/// Gives parallel pairs one normal. Returns, for each direction, its pairs.
+/// Gives parallel plane pairs a common normal. Returns the pairs of each direction.
 std::vector<std::vector<PlanePair*>> share_normals(std::vector<PlanePair*>& pairs) {
-    // By |n.x|, so that opposite normals meet; only representatives in a window of that are compared.
+    // Sorted by |n.x|, so that opposite normals are neighbors; each is compared with representatives in a window only.
     std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair* a, const PlanePair* b) {
         return magnitude(a->normal.x) < magnitude(b->normal.x);
     });
@@ -49,7 +49,7 @@ std::vector<std::vector<PlanePair*>> share_normals(std::vector<PlanePair*>& pair
     return directions;
 }
 
-/// An offset of a plane along a direction; `negated` where its pair's normal is the direction's negative.
+/// The offset of a plane along a direction; `negated`: its pair's normal is the negative of the direction.
 struct Offset {
     double value;
     double* stored;

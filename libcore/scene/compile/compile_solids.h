@@ -1,4 +1,4 @@
-// Convex solids as planes in the frame, in double. Inside libcore/scene.
+// Convex solids as planes in the frame, in double. Private to libcore/scene.
 #pragma once
 
 #include <vector>
@@ -9,28 +9,28 @@
 
 namespace cistula {
 
-/// low <= normal.x <= high. A single plane has low = -infinity.
+/// A pair of parallel planes: low <= normal.x <= high. A single plane has low = -infinity.
 struct PlanePair {
     glm::dvec3 normal;
     double low, high;
-    bool turned = false;  // the normal is the shape's negated: low and high sides have changed places
+    bool turned = false;  // the normal is the shape's negated, and the low and high sides are swapped
 
-    /// The face of the compiled slab for the shape's face 2 i + side.
+    /// The compiled slab's face for the shape's face 2 i + side.
     uint32_t face(uint32_t shape_face) const { return turned ? shape_face ^ 1 : shape_face; }
 };
 
 struct ConvexSolid {
-    uint32_t solid = 0;  // number in the scene
+    uint32_t solid = 0;  // index in the scene
     std::vector<glm::dvec3> vertices;
     std::vector<PlanePair> planes;
     Box box;
 };
 
-/// Rotated, then moved and scaled to the frame.
+/// A solid's planes, rotated, then translated and scaled into the frame.
 ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Frame& frame);
 
-/// Makes planes of different solids that are coplanar to within 1e-12 share one record (n, h), so that touching faces
-/// have equal t: normals equal up to an exact sign, offsets equal.
+/// Gives planes of different solids that coincide to within 1e-12 one record (n, h), so that touching faces have equal
+/// t: normals equal up to sign, offsets equal.
 void share_planes(std::vector<ConvexSolid>& solids, double extent);
 
 }  // namespace cistula

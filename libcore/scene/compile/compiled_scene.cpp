@@ -21,11 +21,11 @@ struct Plane {
     double distance;
 };
 
-// Rounding of a corner's distance from its planes is far below this, and planes that nearly meet the corner only grow
-// the box by as much.
+// Tolerance for corners of planes: far above the rounding of a corner's distance from its planes. Planes that nearly
+// meet the corner enlarge the box by no more than this.
 constexpr double corner_slack = 0x1p-30;
 
-/// The box of the corners of a convex solid whose planes are pushed out by 64 u M, u that of float.
+/// The box of a convex solid whose planes are pushed out by 64 u M, u that of float.
 template <class Real>
 Box convex_box(const SceneView<Real>& scene, const Solid& solid) {
     const double extent = static_cast<double>(scene.extent), push = 64 * 0x1p-24 * extent;

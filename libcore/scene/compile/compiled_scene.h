@@ -1,4 +1,4 @@
-// From a description to the flat arrays that the shading code reads.
+// Compiles a description into the flat arrays that the shading code reads.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace cistula {
 
-/// A scene in its frame of reference, in one precision. Owns what view() points to; immutable once compiled.
+/// A scene in its frame of reference, in one precision. Owns the arrays that view() points to; immutable once compiled.
 template <class Real>
 struct CompiledScene {
     std::vector<Solid> solids;
@@ -30,16 +30,16 @@ struct CompiledScene {
     std::vector<TreeNode> tree;  // filled by build_primitive_tree only
     std::vector<uint32_t> tree_items;
     std::vector<LightNode> seen_tree;
-    std::vector<Hull> hulls;  // around all that is seen
+    std::vector<Hull> hulls;  // around everything visible
     Vec3<Real> background, bound;
     Real extent = 1;
 
-    Vec3<double> center{0};  // frame: coordinates are (world - center) * 2^scale
+    Vec3<double> center{0};  // of the frame: coordinates are (world - center) * 2^scale
     int scale = 0;
-    int radiance_exponent = 0;                 // radiances are world's * 2^-radiance_exponent
-    uint32_t effects = 0;                      // exactly what the scene requires (effects.h)
+    int radiance_exponent = 0;                 // radiances are those of the scene * 2^-radiance_exponent
+    uint32_t effects = 0;                      // exactly those that the scene requires (effects.h)
     std::vector<EffectReason> effect_reasons;  // one per effect: needed or not, and because of what
-    std::string hash;  // of all that the image depends on but for camera and settings; the same in both precisions
+    std::string hash;  // of everything that affects the image except camera and settings; equal in both precisions
     std::vector<std::string> solid_names;  // a name per solid, for messages and the id layer
     std::vector<std::string> warnings;     // degenerate triangles left out, open meshes taken as sheets, ...
 
@@ -51,7 +51,7 @@ struct CompiledScene {
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description);
 
-/// The tree over primitives that bvh.h walks (Embree's builder). quality: 0 quick, 1 the builder's best.
+/// The tree over primitives that bvh.h traverses (Embree's builder). quality: 0 quick, 1 the builder's best.
 struct PrimitiveTree {
     std::vector<TreeNode> nodes;
     std::vector<uint32_t> items;
@@ -59,12 +59,12 @@ struct PrimitiveTree {
 template <class Real>
 PrimitiveTree primitive_tree(const SceneView<Real>& scene, int quality = 1);
 
-/// The tree that devices walk: over convex solids and single triangles, which lie in the order of its leaves.
+/// The tree that devices traverse: over convex solids and single triangles, which are stored in leaf order.
 template <class Real>
 struct FacetTree : PrimitiveTree {
     std::vector<Facet<Real>> facets;
 
-    /// Makes the scene's tree this one.
+    /// Replaces the scene's tree by this one.
     void put_into(SceneView<Real>& scene) const {
         scene.facets = {facets.data(), static_cast<uint32_t>(facets.size())};
         scene.tree = {nodes.data(), static_cast<uint32_t>(nodes.size())};
@@ -74,11 +74,11 @@ struct FacetTree : PrimitiveTree {
 template <class Real>
 FacetTree<Real> facet_tree(const SceneView<Real>& scene, int quality = 1);
 
-/// Adds primitive_tree to the scene.
+/// Sets the scene's tree to its primitive_tree.
 template <class Real>
 void build_primitive_tree(CompiledScene<Real>& scene, int quality = 1);
 
-/// Box of a primitive in the frame, rounded outward and padded by 2^-18 M (docs/rules.md, 1).
+/// A primitive's bounding box in the frame, rounded outward and grown by 2^-18 M (docs/rules.md, 1).
 struct PaddedBox {
     float low[3], high[3];
 };

@@ -28,7 +28,7 @@ SheetPlane<Real> boxed_plane(const SceneView<Real>& scene, uint32_t index) {
     return plane;
 }
 
-/// Finds the shares for one crossing of each material first, then for two of each, ...
+/// Tabulates the transmitted shares by number of crossings: one crossing of each material first, then two of each, ...
 template <class Real>
 void find_shares(ConstantScene<Real>& to) {
     int found = 0;

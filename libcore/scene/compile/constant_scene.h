@@ -1,4 +1,4 @@
-// From a scene to the form that travels with a kernel's parameters.
+// Conversion of a small scene to the form that is passed among a kernel's parameters.
 #pragma once
 
 #include <memory>
@@ -7,9 +7,9 @@
 
 namespace cistula {
 
-/// The ConstantScene of a view that can be read here, with all that is found out for it beforehand. Null if the scene
-/// is too large, or if a ray in it may be inside more than one solid or a mesh: OneMedium asks for that. `there`: the
-/// same scene where kernels read it.
+/// The ConstantScene of a view readable here, with everything precomputed for it. Null if the scene is too large, or if
+/// a ray may be inside more than one solid or inside a mesh, which OneMedium rules out. `there`: the scene where
+/// kernels read it.
 template <class Real>
 std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there);
 template <class Real>

@@ -13,7 +13,7 @@ SlabGroup<Real>& first_group(CompiledScene<Real>& scene, uint32_t solid) {
     return scene.slab_groups[scene.solids[solid].first_group];
 }
 
-/// Whether no sphere around another solid's lights reaches into this one.
+/// Whether no sphere around another solid's lights overlaps this solid.
 template <class Real>
 bool stands_apart(CompiledScene<Real>& scene, uint32_t solid) {
     return std::all_of(scene.convex.begin(), scene.convex.end(), [&](uint32_t other) {

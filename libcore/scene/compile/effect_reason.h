@@ -1,4 +1,4 @@
-// What is said of an effect in a scene: needed or not, and because of what.
+// The reason why a scene needs an effect, or does not.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace cistula {
 
-/// Whether a scene needs one effect. `because` names the material, object or light that calls for it, or says that none
+/// Whether a scene needs one effect. `because` names the material, object or light that requires it, or says that none
 /// does.
 struct EffectReason {
     uint32_t effect = 0;  // one bit of Effect

@@ -10,7 +10,7 @@
 namespace cistula {
 namespace {
 
-// M rounded up to float must stay under 2.
+// M must stay under 2 after rounding up to float.
 constexpr double largest_extent = 2 - 0x1p-20;
 
 void add_sphere(Box& box, const glm::dvec3& center, double radius) {
@@ -93,8 +93,8 @@ Frame find_frame(const SceneSource& source) {
         throw scene_error(description, "/frame",
                           "the largest coordinate is " + std::to_string(extent) +
                               " in the pinned frame; it must stay under 2: choose a lesser scale or another center");
-    // Unpinned, M may lie just under 1 (see largest_extent); what is derived from it is then a little larger than need
-    // be.
+    // If the scene does not give the frame, M may be just under 1 (see largest_extent); what is derived from it is then
+    // slightly larger than necessary.
     frame.extent = description.frame ? (extent > 0 ? extent : 1) : greatest(extent, 1.0);
     return frame;
 }

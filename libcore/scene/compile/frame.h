@@ -13,12 +13,13 @@ struct Frame {
     glm::dvec3 center{0};
     int scale = 0;
     double factor = 1;  // 2^scale
-    double extent = 1;  // M
+    double extent = 1;  // M: largest absolute coordinate
 
     glm::dvec3 point(const glm::dvec3& world) const { return (world - center) * factor; }
 };
 
-/// M lies in [1, 2) unless the description pins the frame; then it is what results, and 2 or more is an error.
+/// The frame of a scene. M lies in [1, 2), unless the description gives the frame; then M follows from it, and 2 or
+/// more is an error.
 Frame find_frame(const SceneSource& source);
 
 /// A solid's corners in scene units.

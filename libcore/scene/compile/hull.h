@@ -1,4 +1,4 @@
-// Convex bodies around what a scene shows.
+// Convex bodies around the visible parts of a scene.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace cistula {
 
-/// All points within `reach` of the convex hull of `points`, in the frame of reference.
+/// All points within distance `reach` of the convex hull of `points`, in the frame of reference.
 struct Hull {
     std::vector<Vec3<double>> points;
     double reach = 0;

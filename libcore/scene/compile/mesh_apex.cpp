@@ -10,13 +10,13 @@ namespace {
 
 using glm::dvec3;
 
-/// min(1, tan(a / 2)) of the angle from a triangle to its neighbor at one edge, on both sides of the triangle.
+/// min(1, tan(a / 2)), a the angle between a triangle and its neighbor at one edge, for both sides of the triangle.
 struct AngleFactors {
     double inside = 1, outside = 1;
 };
 
 AngleFactors angle_factors(const dvec3& edge_start, const dvec3& edge, const dvec3& normal, const dvec3& opposite) {
-    // In the plane across the edge: x runs into the triangle, y along its normal.
+    // In the plane perpendicular to the edge: x points into the triangle, y along its normal.
     const dvec3 inward = cross(normal, edge), to = opposite - edge_start;
     const double normal_length = length(normal);
     const double x = dot(to, inward) / (normal_length * length(edge)), y = dot(to, normal) / normal_length;
@@ -45,12 +45,12 @@ Box box_of(const std::array<dvec3, 3>& corner) {
     return box;
 }
 
-/// Six times the volume of the tetrahedron over a, b, c: positive if `top` lies where they are counter-clockwise.
+/// Six times the signed volume of a tetrahedron: positive if a, b, c are counter-clockwise seen from `top`.
 double volume(const dvec3& top, const dvec3& a, const dvec3& b, const dvec3& c) {
     return dot(top - a, cross(b - a, c - a));
 }
 
-/// Whether the open segment goes through a triangle. Ends that touch it do not count.
+/// Whether an open segment passes through a triangle. Touching with an end does not count.
 bool crosses(const dvec3& from, double from_volume, const dvec3& to, const std::array<dvec3, 3>& q) {
     const double to_volume = volume(to, q[0], q[1], q[2]);
     if (!((from_volume > 0 && to_volume < 0) || (from_volume < 0 && to_volume > 0))) return false;
@@ -58,14 +58,14 @@ bool crosses(const dvec3& from, double from_volume, const dvec3& to, const std::
     return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
-/// The tetrahedron over one side of a triangle. A lower apex makes one that lies inside.
+/// The tetrahedron between a triangle and its apex on one side. It shrinks with the apex' height.
 struct ApexView {
     std::array<dvec3, 3> corner;
     dvec3 centroid, up;  // unit normal on that side
 
-    /// Whether another triangle reaches into the tetrahedron otherwise than through the triangle itself.
+    /// Whether another triangle intersects the tetrahedron other than through its base.
     bool blocked_by(const std::array<dvec3, 3>& q, double height) const {
-        int shared[3] = {-1, -1, -1};  // by corner of q: the corner at the same position
+        int shared[3] = {-1, -1, -1};  // for each corner of q the corner at the same position; -1: none
         bool above = false;
         for (int k = 0; k < 3; ++k) {
             for (int i = 0; i < 3; ++i)
@@ -78,12 +78,12 @@ struct ApexView {
         for (int i = 0; i < 3; ++i)
             if (shared[0] != i && shared[1] != i && shared[2] != i && crosses(apex, apex_volume, corner[i], q))
                 return true;
-        for (int i = 0; i < 3; ++i) {  // the side across from corner i
+        for (int i = 0; i < 3; ++i) {  // the side opposite corner i
             const int b = (i + 1) % 3, c = (i + 2) % 3;
             const std::array<dvec3, 3> face{apex, corner[b], corner[c]};
             for (int k = 0; k < 3; ++k) {
                 const int l = (k + 1) % 3;
-                // An edge from a corner of a side touches that side there and goes on without crossing it.
+                // An edge that starts at a corner of a side only touches that side.
                 const bool touches = shared[k] == b || shared[k] == c || shared[l] == b || shared[l] == c;
                 if (!touches && crosses(q[k], volume(q[k], face[0], face[1], face[2]), q[l], face)) return true;
             }
@@ -118,7 +118,8 @@ ApexHeights apex_heights(const FramedMesh& mesh) {
             for (uint32_t e = 0; e < 3; ++e) {
                 const dvec3 edge = corner[(e + 1) % 3] - corner[e];
                 perimeter += length(edge);
-                // Half-edges are numbered as the source winds them: flipped, edge e starts where edge 2 - e ended.
+                // Half-edges are numbered in the source's winding; if that is flipped, edge e is the source's edge 2 -
+                // e.
                 const uint32_t own = 3 * t + (topology.flipped ? 2 - e : e);
                 for (uint32_t h = topology.next_along_edge[own]; h != own; h = topology.next_along_edge[h]) {
                     const auto other = mesh.corners(h / 3);
@@ -160,8 +161,8 @@ uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& 
                     lower /= 2;
                     ++more;
                 }
-                // What goes through the triangle itself blocks every apex: none is better than that of its other
-                // neighbors.
+                // A triangle that passes through the base blocks every apex; no height is better than the one that the
+                // other neighbors allow.
                 through |= !free;
                 if (!free) continue;
                 height = lower;
@@ -175,7 +176,7 @@ uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& 
         std::vector<Neighbor> around;
         std::vector<const Neighbor*> near;
         for (uint32_t g = range.begin(); g != range.end(); ++g) {
-            Box reach;  // of the apexes and corners of the whole group
+            Box reach;  // box of the apexes and corners of the whole group
             float highest = 0;
             for (uint32_t i = groups.first[g]; i < groups.first[g + 1]; ++i) {
                 const uint32_t t = groups.order[i];

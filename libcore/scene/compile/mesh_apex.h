@@ -1,5 +1,5 @@
-// Where leaving rays start toward (docs/rules.md, 2): an apex over every side of every triangle, so low that nothing of
-// the mesh stands between it and the triangle.
+// Apex points that keep rays leaving a triangle off its mesh (docs/rules.md, 2): an apex over each side of every
+// triangle, so low that no part of the mesh lies between it and the triangle.
 #pragma once
 
 #include <vector>
@@ -9,20 +9,22 @@
 
 namespace cistula {
 
-/// Heights per kept triangle: [0] inside (the side that normals point away from), [1] outside. Lengths in the frame.
+/// Apex heights of the kept triangles: [0] inside (the side that normals point away from), [1] outside. Lengths in the
+/// frame.
 struct ApexHeights {
     std::vector<float> side[2];
 };
 
-/// inradius / 8 * min(1, tan(a / 2)), a the least dihedral angle on that side; edges without a neighbor do not count.
+/// Initial heights: inradius / 8 * min(1, tan(a / 2)), a the smallest dihedral angle on that side; edges without a
+/// neighbor are ignored.
 ApexHeights apex_heights(const FramedMesh& mesh);
 
-/// An apex is halved at most this often, so 2^-24 of its first height is the floor.
+/// Greatest number of times an apex is halved; its lowest height is 2^-24 of the first.
 inline constexpr int most_halvings = 24;
 
-/// Halves heights until no other triangle of the mesh reaches between a triangle and its apexes: not across the
-/// segments to the corners, not through the sides between them. What blocks even the lowest apex goes through the
-/// triangle itself and is passed over. Returns how many sides of triangles have that.
+/// Halves heights until no other triangle of the mesh intersects the tetrahedra over a triangle: neither the edges to
+/// the apex nor the sides between them. A triangle that still intersects at the lowest height passes through the base
+/// itself and is ignored. Returns the number of triangle sides for which that happened.
 uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights);
 
 }  // namespace cistula

@@ -13,7 +13,7 @@ namespace {
 using glm::dvec3;
 constexpr uint32_t no_vertex = 0xffffffffu;
 
-/// For every vertex the least-numbered one at its position; no_vertex where it is not finite.
+/// For every vertex the lowest-numbered one at its position; no_vertex if it is not finite.
 std::vector<uint32_t> weld(const MeshSource& mesh) {
     const auto& v = mesh.vertices;
     std::vector<uint32_t> order, welded(v.size(), no_vertex);
@@ -40,7 +40,7 @@ bool has_zero_area(const MeshSource& mesh, const std::array<uint32_t, 3>& t) {
     return normal.x == 0 && normal.y == 0 && normal.z == 0;
 }
 
-/// Fills the list of kept triangles and the counts of others.
+/// Fills the list of kept triangles and counts those left out.
 void keep_triangles(const MeshSource& mesh, const std::vector<uint32_t>& welded, bool drop_zero_area,
                     MeshTopology& topology) {
     topology.kept.clear();
@@ -70,7 +70,7 @@ void keep_triangles(const MeshSource& mesh, const std::vector<uint32_t>& welded,
     topology.count = topology.all_kept ? total : static_cast<uint32_t>(topology.kept.size());
 }
 
-/// A half-edge in the bucket of its lower vertex: eight bytes, since there are three a triangle.
+/// A half-edge, stored in the bucket of its lower vertex. Only eight bytes, since there are three per triangle.
 struct HalfEdge {
     uint32_t high_vertex, number;
 };
@@ -119,7 +119,7 @@ void link_edges(const MeshSource& mesh, const std::vector<uint32_t>& welded, Mes
     topology.open_edges = open;
 }
 
-/// Six times the signed volume about the first vertex; 0 where rounding alone could have made its sign.
+/// Six times the signed volume about the first vertex; 0 if its sign could be due to rounding.
 double signed_volume(const MeshSource& mesh, const MeshTopology& topology) {
     const dvec3 origin = mesh.vertices[mesh.triangles[topology.source_triangle(0)][0]];
     double sum = 0, magnitudes = 0;
@@ -154,7 +154,7 @@ MeshTopology find_topology(const MeshSource& mesh) {
     keep_triangles(mesh, welded, true, topology);
     link_edges(mesh, welded, topology);
     if (topology.open_edges > 0 && topology.zero_area > 0) {
-        // Slivers of no area may be what seals a mesh along edges that others divide.
+        // Zero-area triangles may close a mesh along edges that their neighbors subdivide.
         MeshTopology sealed;
         keep_triangles(mesh, welded, false, sealed);
         link_edges(mesh, welded, sealed);

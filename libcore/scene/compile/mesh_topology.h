@@ -1,4 +1,4 @@
-// How the triangles of a mesh hang together: what is degenerate, what shares an edge, whether there is an inside.
+// Topology of a mesh: degenerate triangles, shared edges, whether it encloses an inside.
 #pragma once
 
 #include <array>
@@ -12,28 +12,29 @@
 
 namespace cistula {
 
-/// Vertices at one position count as one. A mesh is closed if every edge is shared by exactly two triangles in opposite
-/// directions and the volume is not zero. Triangles are numbered among the kept ones, half-edges 3 triangle + corner
-/// that they start from, both as the source winds them.
+/// Topology of a mesh, in which vertices at one position count as one. A mesh is closed if every edge is shared by
+/// exactly two triangles in opposite directions and the volume is not zero. Triangles are numbered among the kept ones;
+/// half-edge 3 triangle + corner starts at that corner, in the source's winding.
 struct MeshTopology {
     bool closed = false;
     bool flipped = false;  // closed, but wound clockwise seen from outside
-    uint32_t count = 0;    // of kept triangles
+    uint32_t count = 0;    // number of kept triangles
     bool all_kept = true;
     std::vector<uint32_t> kept;  // source numbers of the kept triangles, ascending; empty where all are
-    /// Rings of half-edges along one edge, each naming the next; itself where the edge has no other triangle.
+    /// For each half-edge the next one along the same edge, in a ring; itself where the edge has no other triangle.
     std::vector<uint32_t> next_along_edge;
 
     uint32_t repeated_vertex = 0, not_finite = 0, zero_area = 0;  // triangles left out
-    uint32_t open_edges = 0;                                      // edges that keep it from being closed
+    uint32_t open_edges = 0;                                      // edges that prevent it from being closed
 
     uint32_t source_triangle(uint32_t triangle) const { return all_kept ? triangle : kept[triangle]; }
-    /// "left out 3 triangles with a repeated vertex and 1 of zero area"; empty where none was.
+    /// A summary: "left out 3 triangles with a repeated vertex and 1 of zero area"; empty if there are none.
     std::string left_out() const;
 };
 
-/// Triangles that repeat a vertex or are not finite are left out. Zero-area ones stay only in a mesh that would not be
-/// closed without them. Never throws for broken meshes. `vertices` of triangles must be in range.
+/// The topology of a mesh. Triangles with a repeated vertex or a coordinate that is not finite are left out. Zero-area
+/// ones stay only in a mesh that would not be closed without them. Never throws for broken meshes. `vertices` of
+/// triangles must be in range.
 MeshTopology find_topology(const MeshSource& mesh);
 
 /// A mesh as it is rendered: in the frame, rounded to the scene's precision, wound counter-clockwise seen from outside.
@@ -45,7 +46,7 @@ class FramedMesh {
     uint32_t size() const { return topology_.count; }
     const MeshTopology& topology() const { return topology_; }
 
-    /// Source vertex numbers of a kept triangle's corners.
+    /// Source indices of the vertices of a kept triangle.
     std::array<uint32_t, 3> corners(uint32_t triangle) const {
         std::array<uint32_t, 3> c = source_.triangles[topology_.source_triangle(triangle)];
         if (topology_.flipped) std::swap(c[1], c[2]);

@@ -21,11 +21,11 @@ double distance_to_box(const Box& box, const dvec3& p) {
     return length(d);
 }
 
-/// The most light that reaches any point of a box.
+/// Upper bound on the sum of the lights' contributions at any point of a box.
 dvec3 falloff_light(const std::vector<const FramedLight*>& lights, const Box& box) {
     dvec3 sum{0};
     for (const FramedLight* light : lights) {
-        // The box is that of exact corners: rounded ones may be a little nearer.
+        // The box is that of the exact corners; rounded ones may be slightly nearer.
         const double distance = greatest(distance_to_box(box, light->position) - 0x1p-18, light->radius);
         sum += light->color / (distance * distance);
     }

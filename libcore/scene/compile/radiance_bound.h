@@ -1,4 +1,4 @@
-// The radiance bound B (docs/rules.md, 7): no ray of a scene carries more. Inside libcore/scene.
+// The radiance bound B (docs/rules.md, 7): no ray of a scene carries more. Private to libcore/scene.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace cistula {
 
-/// B is multiplied by this for the rounding of shading.
+/// Factor on B for the rounding of shading.
 inline constexpr double bound_slack = 1 + 0x1p-10;
 
-/// Per channel, without slack, in scene units. `boxes` are those of the solids, in the frame.
+/// The bound per channel, without slack, in scene units. `boxes` are the solids' boxes in the frame.
 glm::dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, const std::vector<FramedLight>& lights,
                           const std::vector<Box>& boxes);
 
@@ -19,8 +19,8 @@ struct RadianceScale {
     glm::dvec3 bound{0};  // slack included, at most 1 after scaling
     int exponent = 0;     // radiances are divided by 2^exponent
 };
-/// The power of two that brings the largest channel of the bound to (1/2, 1]; a pinned bound takes its place, and must
-/// not be less. Throws Error for bounds that the precision cannot scale.
+/// The power of two that scales the largest channel of the bound to (1/2, 1]. A bound given in the scene replaces the
+/// computed one and must not be less. Throws Error for bounds that the precision cannot scale.
 RadianceScale radiance_scale(const SceneDescription& scene, const glm::dvec3& bound, bool single_precision);
 
 }  // namespace cistula

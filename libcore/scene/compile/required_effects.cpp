@@ -41,17 +41,17 @@ std::vector<SceneLight> all_lights(const SceneDescription& scene) {
     return lights;
 }
 
-/// What must hold of the whole scene before a material or a light can call for an effect.
+/// A condition on the whole scene that must hold before a material or a light can require an effect.
 enum class Premise { none, lamp, shown_light, passing_rays };
 
-/// What holds of the whole scene.
+/// Facts about the whole scene.
 struct Facts {
     bool ambient = false;       // there is ambient light
     bool lamp = false;          // a light has an intensity
-    bool shown_light = false;   // a surface shows light of a lamp
-    bool passing_rays = false;  // a material lets rays pass
+    bool shown_light = false;   // a surface shows light of a point light
+    bool passing_rays = false;  // a material transmits rays
 
-    /// Says why a premise does not hold; null where it holds.
+    /// The reason why a premise does not hold; null if it holds.
     const char* against(Premise premise) const {
         if (premise == Premise::none) return nullptr;
         if (premise == Premise::passing_rays) return passing_rays ? nullptr : "no material lets rays pass";
@@ -60,7 +60,7 @@ struct Facts {
     }
 };
 
-/// A material on an object of a scene of which `facts` hold.
+/// A material on an object, with the facts about its scene.
 struct Use {
     const Facts& facts;
     const MaterialDescription& material;
@@ -116,7 +116,7 @@ Text because_of_transmission(const Use& use) {
     return transmission > 0 ? "has kt " + number(transmission) : "splits its light by Fresnel's terms";
 }
 
-/// An effect that materials call for. `because` goes on after the name of the first one that does.
+/// An effect required by materials. `because` continues the sentence after the name of the first such material.
 struct MaterialRow {
     uint32_t effect;
     Premise premise;
@@ -160,7 +160,7 @@ const MaterialRow material_rows[] = {
      "no closed body lets rays pass; a camera in one adds it"},
 };
 
-/// An effect that lights call for. `one` or `several` goes on after the name of the first that does.
+/// An effect required by lights. `one` or `several` continues the sentence after the name of the first such light.
 struct LightRow {
     uint32_t effect;
     Premise premise;
@@ -176,7 +176,7 @@ const LightRow light_rows[] = {
      "falls off with distance", "fall off with distance", "no light falls off with distance"},
 };
 
-/// Names the first material that calls for the effect; empty: none does.
+/// A sentence with the first material that requires the effect; empty if none does.
 Text cause(const MaterialRow& row, const std::vector<MaterialUse>& uses, const Facts& facts) {
     for (const MaterialUse& one : uses) {
         const Use use{facts, *one.material, one.closed, one.convex};
@@ -185,7 +185,7 @@ Text cause(const MaterialRow& row, const std::vector<MaterialUse>& uses, const F
     return "";
 }
 
-/// Names the first light that calls for the effect; empty: none does.
+/// A sentence with the first light that requires the effect; empty if none does.
 Text cause(const LightRow& row, const std::vector<SceneLight>& lights) {
     for (const SceneLight& light : lights)
         if (row.needed(light)) return light.name + " " + (light.several ? row.several : row.one);

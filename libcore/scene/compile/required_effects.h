@@ -1,4 +1,4 @@
-// Which effects a scene calls for, and because of what.
+// The effects that a scene requires, with reasons.
 #pragma once
 
 #include <string>
@@ -10,25 +10,24 @@
 
 namespace cistula {
 
-/// A material as it is used: by which object, and of what kind that is.
+/// A material in use: the object that uses it and the kind of that object.
 struct MaterialUse {
     const MaterialDescription* material = nullptr;
     std::string place;    // "/objects/2"
     bool closed = true;   // it has an inside
-    bool convex = false;  // a solid of planes; else triangles
+    bool convex = false;  // a solid given by planes; else triangles
 };
 
-/// One entry per effect, in the order of the bits. `uses` in file order; lights are those that light or are seen.
-/// `lamp_on_face`: which lamp lies on a face, and where ("the light /lights/0 lies on a face of /objects/2"); empty:
-/// none.
+/// The reasons for all effects, in bit order. `uses` in file order; the lights considered give light or are visible.
+/// `lamp_on_face`: which light lies on which face ("the light /lights/0 lies on a face of /objects/2"); empty: none.
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
                                           const std::string& lamp_on_face);
 
-/// Opens the meshes that the scene names, but no textures. What lies on a face does so in single precision. Throws
-/// Error as compile_scene does.
+/// The reasons for all effects of a scene. Opens its meshes but no textures; whether a light lies on a face is decided
+/// in single precision. Throws Error as compile_scene does.
 std::vector<EffectReason> explain_effects(const SceneDescription& scene);
 
-/// The names of the effects in a mask, in the order of the bits.
+/// The names of the effects in a mask, in bit order.
 std::vector<std::string> names_of_effects(uint32_t mask);
 
 uint32_t required_effects(const std::vector<EffectReason>& reasons);

@@ -1,4 +1,4 @@
-// A compiled scene as one block of bytes: one upload, and a view of it wherever it lies.
+// A compiled scene as one block of bytes, to be uploaded in one copy and viewed at any address.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-/// Holds what view's spans point to, each at an offset that suits wide loads.
+/// The arrays of a scene view in one block, each at an offset aligned for wide loads.
 template <class Real>
 class SceneArena {
   public:
@@ -18,12 +18,12 @@ class SceneArena {
 
     const std::vector<std::byte>& bytes() const { return bytes_; }
 
-    /// The scene, its arrays in a copy of bytes() that begins at `base`, which need not be readable here.
+    /// The scene view for a copy of bytes() at `base`, which need not be readable here (device memory).
     SceneView<Real> at(const void* base) const;
 
   private:
     std::vector<std::byte> bytes_;
-    SceneView<Real> offsets_;  // the spans' data are offsets
+    SceneView<Real> offsets_;  // its spans' data pointers are offsets into the block
 };
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// The hash of what an image depends on. Inside libcore/scene.
+// Hash of everything in a scene that affects its image. Private to libcore/scene.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -11,13 +11,13 @@ namespace cistula {
 class SceneHash {
   public:
     void add_bytes(const void* data, size_t size) { hash_.add_bytes(data, size); }
-    /// -0 counts as 0.
+    /// Adds a number's bits; -0 counts as 0.
     void add(double value) { hash_.add(value + 0.0); }
     void add(uint32_t value) { hash_.add(value); }
     void add(const glm::dvec3& v) { add(v.x), add(v.y), add(v.z); }
     void add(const MaterialDescription& m);
 
-    /// 32 lower-case digits.
+    /// The hash as 32 lower-case hexadecimal digits.
     std::string hex() const { return hash_.hex(); }
 
   private:

@@ -23,7 +23,7 @@ SceneNames name_scene(const SceneDescription& description) {
     SceneNames names;
     for (const SourceSolid& solid : source.solids) names.solids.push_back({solid.name, solid.place});
     for (const MaterialDescription& material : source.materials) names.materials.push_back({material.name, ""});
-    // In the order of frame_lights.
+    // Lights in the order of frame_lights.
     for (size_t i = 0; i < description.lights.size(); ++i) {
         const LightDescription& light = description.lights[i];
         add_light(names, "light " + std::to_string(i), light.place, light.color, light.radius);

@@ -1,4 +1,4 @@
-// What the numbers of a compiled scene are called in its file, for those who report on it.
+// Names in the scene file for the indices of a compiled scene, for reports.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace cistula {
 struct SceneNames {
     struct Named {
         std::string name;
-        std::string place;  // where it stands in the file: "/objects/2"; empty: not in it by itself
+        std::string place;  // JSON pointer in the file, "/objects/2"; empty: it has no entry of its own
     };
     std::vector<Named> solids;       // as CompiledScene::solids
     std::vector<Named> materials;    // as CompiledScene::materials
@@ -20,7 +20,7 @@ struct SceneNames {
     std::vector<Named> seen_lights;  // as CompiledScene::seen_lights
 };
 
-/// Opens the meshes that the scene names, as compile_scene does. Throws Error as that.
+/// The names of a scene's parts. Opens its meshes and throws Error as compile_scene does.
 SceneNames name_scene(const SceneDescription& description);
 
 }  // namespace cistula

@@ -75,7 +75,7 @@ void check_triangles(const SceneDescription& scene, const TrianglesObject& objec
         if (!is_finite(uv.x) || !is_finite(uv.y)) throw scene_error(scene, place, "a uv is not finite");
 }
 
-/// All parts as one, where that closes what the file's materials cut apart.
+/// Merges all parts into one if that closes a mesh that the file splits by materials.
 bool join_closed(std::vector<MeshPart>& parts) {
     const bool with_uvs =
         std::all_of(parts.begin(), parts.end(), [](const MeshPart& p) { return !p.mesh.uvs.empty(); });

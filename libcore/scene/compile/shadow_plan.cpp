@@ -12,26 +12,28 @@ namespace {
 
 using dvec3 = Vec3<double>;
 
-/// Far above the rounding of the tests that are spared, of where shadow rays start, and of the corners below.
+/// Margin of the plan's tests in the frame: far above the rounding of shadow tests, of shadow ray origins, and of the
+/// corners below.
 constexpr double margin = 0x1p-9;
-/// Solids of more slabs count as the balls around them: corners are looked for among all triples of planes.
+/// Solids with more slabs are replaced by bounding balls, since corners are found by trying all triples of planes.
 constexpr uint32_t most_slabs = 16;
-/// Steps toward the axis that separates two bodies; what is not found apart by then counts as near.
+/// Iterations of the search for a separating axis; bodies not separated by then count as near.
 constexpr int most_steps = 64;
 
-/// The hull of balls of one radius about some points.
+/// The convex hull of balls of equal radius around some points.
 struct Body {
     std::vector<dvec3> points;
     double radius = 0;
 
-    /// The point that is farthest along `axis`.
+    /// The point with the largest coordinate along `axis`.
     const dvec3& farthest(const dvec3& axis) const {
         return *std::max_element(points.begin(), points.end(),
                                  [&](const dvec3& a, const dvec3& b) { return dot(a, axis) < dot(b, axis); });
     }
 };
 
-/// Whether a plane separates them with room to spare (Gilbert 1966: the point of their difference next to the origin).
+/// Whether a plane separates two bodies by the margin (Gilbert 1966: the point of their difference nearest to the
+/// origin).
 bool apart(const Body& a, const Body& b) {
     dvec3 between = b.points[0] - a.points[0];
     for (int step = 0; step < most_steps; ++step) {
@@ -48,7 +50,7 @@ bool apart(const Body& a, const Body& b) {
     return false;
 }
 
-/// The points of three planes that lie clearly outside of none: all corners, and perhaps a few close to them.
+/// Intersections of three planes that lie clearly outside no plane: all corners, and perhaps some points near them.
 std::vector<dvec3> corners_of(const std::vector<SolidPlane>& planes) {
     std::vector<dvec3> corners;
     for (size_t i = 0; i < planes.size(); ++i)
@@ -56,7 +58,7 @@ std::vector<dvec3> corners_of(const std::vector<SolidPlane>& planes) {
             for (size_t k = 0; k < j; ++k) {
                 const SolidPlane &p = planes[i], &q = planes[j], &r = planes[k];
                 const double volume = dot(p.normal, cross(q.normal, r.normal));
-                if (std::abs(volume) < 0x1p-40) continue;  // more of a needle than any rounding resolves
+                if (std::abs(volume) < 0x1p-40) continue;  // nearly parallel beyond what rounding resolves
                 const dvec3 corner = (cross(q.normal, r.normal) * p.offset + cross(r.normal, p.normal) * q.offset +
                                       cross(p.normal, q.normal) * r.offset) /
                                      volume;

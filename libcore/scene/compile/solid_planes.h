@@ -1,4 +1,4 @@
-// A convex solid as the half-spaces of its faces.
+// A convex solid as an intersection of half-spaces.
 #pragma once
 
 #include <vector>
@@ -7,14 +7,14 @@
 
 namespace cistula {
 
-/// normal.x <= offset. `face` as in keys: 2 slab + side.
+/// The half-space normal.x <= offset. `face` is numbered as in hit keys: 2 slab + side.
 struct SolidPlane {
     Vec3<double> normal;
     double offset;
     uint32_t face;
 };
 
-/// By face. Slabs without a lower side have one.
+/// The half-spaces of a solid in face order. Slabs without a lower side give one.
 template <class Real>
 std::vector<SolidPlane> solid_planes(const SceneView<Real>& scene, const Solid& solid) {
     std::vector<SolidPlane> planes;

@@ -12,8 +12,8 @@ struct CameraFrame {
     Camera camera;  // scene units
 };
 
-/// The camera at a frame: t = frame * time_step, sinusoids through elementary.h. Throws Error (usage) where position
-/// and target coincide or the view is along `up`.
+/// The camera at frame number `frame`, t = frame * time_step. Its sinusoids are those of elementary.h. Throws Error
+/// (usage) where position and target coincide or the view direction is parallel to `up`.
 CameraFrame camera_at(const CameraDescription& description, int frame);
 
 }  // namespace cistula

@@ -1,5 +1,6 @@
-// A scene as people write it, after parsing: names resolved to indices, files not yet opened (but for meshes and
-// textures, see their fields), lengths in scene units, angles in degrees unless said otherwise, colours linear RGB.
+// A scene as its author writes it, after parsing: names are resolved to indices; files are not opened yet, except
+// meshes and textures where their fields say so. Lengths in scene units, angles in degrees unless said otherwise,
+// colours linear RGB.
 #pragma once
 
 #include <array>
@@ -30,19 +31,19 @@ struct MaterialDescription {
 
 struct TextureDescription {
     std::string name;
-    std::string file;  // absolute or relative to the working directory; empty: a checker
+    std::string file;  // absolute or relative to the working directory; empty: a checkerboard
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
-    bool bilinear = true;  // a checker is always nearest
-    glm::dvec2 repeat{1};  // uv are multiplied by this; a checker's period is one unit of uv, two cells
+    bool bilinear = true;  // ignored by a checkerboard, which is always nearest
+    glm::dvec2 repeat{1};  // factor on uv; a checkerboard's period is 1 in uv: two cells
 };
 
 enum class PlatonicSolid { tetrahedron, cube, octahedron, dodecahedron, icosahedron };
 
 struct EdgeLights {
-    int count = 0;  // on every edge, at (i + 1) / (count + 1) of it
+    int count = 0;  // lights on every edge, at (i + 1) / (count + 1) of its length
     glm::dvec3 color{1};
-    std::optional<glm::dvec3> glow;  // radiance of the seen sphere; default: color
-    double radius = 0;               // 0: not seen
+    std::optional<glm::dvec3> glow;  // radiance of the visible sphere; default: color
+    double radius = 0;               // 0: not visible
     bool falloff = false;
 };
 
@@ -54,16 +55,16 @@ struct SolidObject {
     EdgeLights edge_lights;
 };
 
-/// Quads and triangle lists. Closed ones become solids with an inside, others are sheets seen from both sides.
+/// A mesh given in the scene file. Closed meshes become solids with an inside, others are sheets seen from both sides.
 struct TrianglesObject {
     std::vector<glm::dvec3> vertices;
     std::vector<std::array<uint32_t, 3>> triangles;
-    std::vector<glm::dvec2> uvs;  // one a vertex, or none
+    std::vector<glm::dvec2> uvs;  // one per vertex, or none
 };
 
 struct MeshObject {
     std::string file;      // PLY or OBJ
-    glm::dvec3 center{0};  // added last
+    glm::dvec3 center{0};  // translation, applied last
     double scale = 1;
     glm::dvec3 rotation{0};
 };
@@ -72,19 +73,20 @@ struct ObjectDescription {
     std::string name;
     int material = -1;  // -1 only for a mesh that brings its own
     std::variant<SolidObject, TrianglesObject, MeshObject> shape;
-    std::string place;  // where it stands in the file, for messages: "/objects/2"
+    std::string place;  // JSON pointer of the object in the file, for messages: "/objects/2"
 };
 
 struct LightDescription {
     glm::dvec3 position{0};
-    glm::dvec3 color{1};  // intensity; 0: lights nothing, may still be seen
+    glm::dvec3 color{1};  // intensity; 0: gives no light, may still be visible
     std::optional<glm::dvec3> glow;
-    double radius = 0;     // 0: not seen
-    bool falloff = false;  // 1/r^2, clamped at radius, which must then be above 0
+    double radius = 0;     // 0: not visible
+    bool falloff = false;  // 1 / distance^2, clamped at radius, which must then be positive
     std::string place;
 };
 
-/// c(t) = r, phi, z by the seed's sinusoids: r = r0 + Ar sin(wr t + pr), z alike, phi = phi0 + wphi t; radians.
+/// A path of the camera in cylindrical coordinates, in the seed's sinusoids of time: r = r0 + Ar sin(wr t + pr), z
+/// likewise, phi = phi0 + wphi t. Angles in radians.
 struct CylindricalPath {
     double r0 = 0, z0 = 0, phi0 = 0, Ar = 0, Az = 0, wr = 0, wz = 0, wphi = 0, pr = 0, pz = 0;
 };
@@ -94,20 +96,20 @@ struct CameraDescription {
     std::optional<CylindricalPath> position_path, target_path;  // replace position and target
     glm::dvec3 up{0, 0, 1};
     double field_of_view = 60;  // horizontal, degrees
-    double time_step = 1;       // t advances by this a frame
+    double time_step = 1;       // increase of t per frame
 };
 
 struct FilmDescription {
     int width = 640, height = 480;
     int frames = 1;
     int supersample = 1;
-    std::string output;  // the seed's output pattern; empty: none given
+    std::string output;  // the seed's pattern for output files; empty: none given
 };
 
 struct FrameOfReference {
     glm::dvec3 center{0};
     int scale = 0;                // coordinates are multiplied by 2^scale
-    std::optional<double> bound;  // pins the radiance bound
+    std::optional<double> bound;  // the radiance bound, instead of the computed one
 };
 
 struct SceneDescription {
@@ -119,10 +121,10 @@ struct SceneDescription {
     glm::dvec3 ambient{0.1}, background{0};
     std::vector<TextureDescription> textures;
     std::vector<MaterialDescription> materials;
-    std::vector<ObjectDescription> objects;  // file order is the priority of their media
+    std::vector<ObjectDescription> objects;  // in file order, which is the priority order of their media
     std::vector<LightDescription> lights;
     std::optional<FrameOfReference> frame;
-    bool seed_format = false;  // came from the seed's text input
+    bool seed_format = false;  // read from the seed's text input
 };
 
 }  // namespace cistula

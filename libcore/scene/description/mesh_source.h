@@ -11,11 +11,12 @@
 
 namespace cistula {
 
-/// Triangles in scene units, owned (read from a file) or lent by the description. Moves keep the spans valid.
+/// Triangles in scene units: owned (read from a file) or borrowed from the description. Moving it keeps the spans
+/// valid.
 struct MeshSource {
     std::span<const glm::dvec3> vertices;
     std::span<const std::array<uint32_t, 3>> triangles;
-    std::span<const glm::dvec2> uvs;  // one a vertex, or none
+    std::span<const glm::dvec2> uvs;  // one per vertex, or none
 
     std::vector<glm::dvec3> owned_vertices;
     std::vector<std::array<uint32_t, 3>> owned_triangles;

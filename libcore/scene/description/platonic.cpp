@@ -10,7 +10,7 @@ namespace {
 
 using glm::dvec3;
 
-/// (x, y, z), (z, x, y), (y, z, x) with every choice of signs of the coordinates that are not zero.
+/// Adds (x, y, z), (z, x, y), (y, z, x) with all signs of their nonzero coordinates.
 void add_cyclic(std::vector<dvec3>& points, double x, double y, double z) {
     for (int turn = 0; turn < 3; ++turn) {
         for (int signs = 0; signs < 8; ++signs) {
@@ -40,7 +40,8 @@ std::vector<dvec3> cube_points() {
 
 const double golden = (1 + std::sqrt(5.0)) / 2;
 
-// (0, 1, golden) and its turns: an icosahedron; the other handedness holds the face normals of our dodecahedron.
+// Cyclic permutations of (0, 1, golden ratio): an icosahedron. `turned`: its mirror image, whose vertices are the face
+// normals of our dodecahedron.
 std::vector<dvec3> icosahedron_points(bool turned) {
     const double r = std::sqrt(1 + golden * golden);
     std::vector<dvec3> points;
@@ -69,7 +70,7 @@ PlatonicShape::Face face_across(const PlatonicShape& shape, uint32_t id, const d
     std::vector<uint32_t> on;
     for (uint32_t i = 0; i < shape.vertices.size(); ++i)
         if (dot(normal, shape.vertices[i]) > shape.inradius - 1e-9) on.push_back(i);
-    // Walk round: the next vertex is the one with all others to the left of the line to it.
+    // Walk around the face: the next vertex is the one with all others to the left of the line to it.
     uint32_t at = on[0];
     do {
         face.vertices.push_back(at);

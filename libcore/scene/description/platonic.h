@@ -11,19 +11,19 @@
 
 namespace cistula {
 
-/// Octahedron: vertices on the axes. Cube: faces across the axes. Dodecahedron and icosahedron: golden-ratio
-/// coordinates.
+/// Vertices, faces and edges of a Platonic solid. Octahedron: vertices on the axes. Cube: faces across the axes.
+/// Dodecahedron and icosahedron: golden-ratio coordinates.
 struct PlatonicShape {
-    /// A pair of opposite planes, -distance <= normal.x <= distance; a single one (tetrahedron): only normal.x <=
-    /// distance.
+    /// A pair of opposite faces' planes: -distance <= normal.x <= distance. The tetrahedron has single ones: normal.x
+    /// <= distance.
     struct Planes {
         glm::dvec3 normal;  // unit
         bool single;
     };
     struct Face {
-        uint32_t id;                     // 2 * planes + (0: the low side, 1: the high side)
+        uint32_t id;                     // 2 * index into planes + (0: the low side, 1: the high side)
         glm::dvec3 normal;               // outward
-        std::vector<uint32_t> vertices;  // counter-clockwise seen from outside, the least number first
+        std::vector<uint32_t> vertices;  // counter-clockwise seen from outside, the lowest number first
     };
     struct Edge {
         std::array<uint32_t, 2> vertices;  // ascending
@@ -40,7 +40,7 @@ struct PlatonicShape {
 const PlatonicShape& platonic_shape(PlatonicSolid solid);
 const char* platonic_name(PlatonicSolid solid);
 
-/// The faces as triangles, counter-clockwise from outside, each face a fan about its first vertex.
+/// The faces as triangles, counter-clockwise seen from outside; each face is a fan about its first vertex.
 std::vector<std::array<uint32_t, 3>> triangulated(const PlatonicShape& shape);
 
 }  // namespace cistula

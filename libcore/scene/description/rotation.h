@@ -11,7 +11,7 @@ struct SineCosine {
     double sine, cosine;
 };
 
-/// Multiples of 90 degrees give 0 and +-1 exactly.
+/// Sine and cosine of an angle in degrees; exactly 0 or +-1 for multiples of 90.
 inline SineCosine sine_cosine_of_degrees(double degrees) {
     const double turned = degrees - 360 * floor_of(degrees / 360);
     const double quarter = floor_of(turned / 90 + 0.5);
@@ -29,7 +29,7 @@ inline SineCosine sine_cosine_of_degrees(double degrees) {
     }
 }
 
-/// Degrees about x, then y, then z, counter-clockwise seen from the axis' tip.
+/// A rotation about x, then y, then z, by angles in degrees, counter-clockwise seen from the axis' tip.
 class Rotation {
   public:
     explicit Rotation(const glm::dvec3& degrees)

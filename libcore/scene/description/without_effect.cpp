@@ -16,14 +16,14 @@ void take_from(MaterialDescription& m, uint32_t effect) {
     if (effect == effect_tint) m.tint = glm::dvec3{1};
 }
 
-/// A light that falls off is as bright as a sphere of its radius, which is then seen too.
+/// Removes a light's visible sphere or its falloff. Falloff needs the radius of the sphere, so it goes with it.
 template <class Light>
 void take_from_light(Light& light, uint32_t effect) {
     if (effect == effect_visible_lights) light.radius = 0;
     if (effect == effect_visible_lights || effect == effect_light_falloff) light.falloff = false;
 }
 
-/// They are only seen then.
+/// Makes the lights give no light, so that they are only visible.
 void put_out(EdgeLights& lights) {
     lights.glow = lights.glow.value_or(lights.color);
     lights.color = glm::dvec3{0};

@@ -1,4 +1,4 @@
-// A scene that no longer calls for one of its effects: what that effect costs is the difference in time.
+// A scene without one of its effects, to measure what that effect costs in time.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace cistula {
 
-/// The scene with `effect`, one bit, taken out of its materials, lights or objects and as little else as that allows
-/// (docs/effects.md); lamps that a scene places on a face by hand stay. Nothing for shadows, which no description
-/// leaves out (FrameSettings::unshadowed), and where nothing would be left to render.
+/// The scene with `effect` (one bit) removed from its materials, lights or objects, and otherwise as little changed as
+/// possible (docs/effects.md). Lights placed on a face explicitly stay. Nothing for shadows, which no description can
+/// leave out (use FrameSettings::unshadowed), and where nothing would be left to render.
 std::optional<SceneDescription> without_effect(const SceneDescription& scene, uint32_t effect);
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// What a backend fills and the programs write: sums in integers, from which every channel of a file is made.
+// A rendered frame as the backends fill it: integer sums, from which every channel of a file is made.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ struct PixelRect {
     bool operator==(const PixelRect&) const = default;
 };
 
-/// Leaves trivial elements unset: the threads that render the pixels touch their memory first.
+/// Allocator that leaves trivial elements uninitialized, so that the rendering threads touch their memory first.
 template <class T>
 struct UnsetAllocator : std::allocator<T> {
     template <class U>
@@ -42,12 +42,12 @@ struct Film {
     int radiance_exponent = 0;  // radiances were divided by 2^radiance_exponent
     int samples = 1;            // per pixel
     int fixed_shift = 0;        // s of the fixed sums
-    double rounding = 0;        // how far rounding moves points, in widths of a pixel at distance 1 (scene units)
+    double rounding = 0;  // bound on how far rounding moves points, in widths of a pixel at distance 1 (scene units)
     std::vector<PixelRecord, UnsetAllocator<PixelRecord>> pixels;
     RayCounts rays;
     uint32_t flags = 0;  // RenderFlag bits of all pixels
 
-    /// What one unit of a pixel's sums adds to its mean, in the scene's units of radiance.
+    /// Contribution of one unit of a pixel's sums to its mean, in the scene's units of radiance.
     double unit() const { return std::ldexp(1.0, radiance_exponent - fixed_shift) / samples; }
 };
 

@@ -6,9 +6,9 @@
 namespace cistula {
 namespace {
 
-constexpr uint64_t values_of_pixel = 18, values_of_frame = 5;  // ... of a frame: ray counts and flags
+constexpr uint64_t values_of_pixel = 18, values_of_frame = 5;  // of a frame: ray counts and flags
 
-/// Integers and floats of a pixel that are not the same, bit for bit.
+/// Number of a pixel's integers and floats that differ in any bit.
 uint64_t differing_values(const PixelRecord& a, const PixelRecord& b) {
     uint64_t count = 0;
     for (int c = 0; c < 3; ++c)

@@ -1,4 +1,4 @@
-// Two films, integer by integer.
+// Bitwise comparison of two films.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@ namespace cistula {
 
 struct FilmDifference {
     uint64_t compared = 0, differing = 0;
-    std::optional<size_t> first;  // the first pixel that differs, if the films are of one size
+    std::optional<size_t> first;  // the first pixel that differs, if the films have the same size
 };
 
-/// The sums, counts, ids and the bits of the floats of every pixel, then the counts and flags of the frame. Films of
+/// Compares every pixel's sums, counts, id and the bits of its floats, then the frame's counts and flags. Films of
 /// different sizes differ in everything.
 FilmDifference film_difference(const Film& a, const Film& b);
 

@@ -24,7 +24,7 @@ float radiance(const Film& film, const PixelRecord& pixel, int c) {
                           film.radiance_exponent);
 }
 
-/// The ledger's mean, rounded up to a unit of the fixed sums and then to a float.
+/// A pixel's error bound: the mean of its ledger, rounded up to a unit of the fixed sums and then to a float.
 float ledger_bound(const Film& film, const PixelRecord& pixel, int c) {
     const uint64_t total = static_cast<uint64_t>(pixel.pruned[c]) + static_cast<uint64_t>(pixel.cut[c]);
     const uint64_t samples = static_cast<uint64_t>(film.samples);
@@ -38,7 +38,7 @@ float ledger_bound(const Film& film, const PixelRecord& pixel, int c) {
     return static_cast<double>(nearest) >= exact ? nearest : bits_as<float>(bits_as<uint32_t>(nearest) + 1);
 }
 
-/// The least half that is not below a value >= 0.
+/// The smallest half that is not below `value`, which must be >= 0.
 float rounded_up_to_half(float value) {
     half nearest(value);
     if (static_cast<float>(nearest) < value) nearest.setBits(static_cast<uint16_t>(nearest.bits() + 1));
@@ -69,7 +69,7 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
         if (channels.normal) add(name, half);
     for (LayeredPicture::Channel& channel : picture.channels) channel.values.resize(film.pixels.size());
 
-    // Every channel of some pixels before the next ones: those are then still in a cache.
+    // All channels of one block of pixels before the next block, while its pixels are still in a cache.
     constexpr size_t block = 1024;
     for (size_t begin = 0; begin < film.pixels.size(); begin += block) {
         const PixelRecord* first = film.pixels.data() + begin;

@@ -1,4 +1,4 @@
-// Pixels into a film past the caches: nobody reads them soon, and what lies in the caches is wanted.
+// Non-temporal stores of pixels into a film: they are not read soon, so they should not displace the caches' contents.
 #pragma once
 
 #include <immintrin.h>
@@ -9,7 +9,7 @@
 
 namespace cistula {
 
-/// Writes pixels one after the other; what one object has written is there for other threads once it is gone.
+/// Writes consecutive pixels; they are visible to other threads after the object is destroyed.
 class PixelWriter {
   public:
     PixelWriter() = default;

@@ -9,15 +9,16 @@
 namespace cistula {
 namespace {
 
-/// Hulls are cut this share of that in front of the camera. What they have nearer, in a view no wider than the above,
-/// is so near that the grown hull holds the camera, and is cut to an outline wider than the view.
+/// Distance of the near plane that clips hulls, as a share of their growth. Any part of a hull that is nearer, in a
+/// view allowed by margins_suffice, is so near that the grown hull contains the camera and its outline is wider than
+/// the view.
 constexpr double share_of_growth = 0x1p-12;
 
 double cross(double ax, double ay, double bx, double by) {
     return ax * by - ay * bx;
 }
 
-/// The corners of the convex hull, in order (Andrew's monotone chain, 1979). Reorders `points`.
+/// The corners of the convex hull in order (Andrew's monotone chain, 1979). Reorders `points`.
 template <class Point>
 std::vector<Point> convex_outline(std::vector<Point>& points) {
     std::sort(points.begin(), points.end(),
@@ -56,8 +57,8 @@ void FrameCover::add(size_t number, const Hull& hull, double extent, const Frame
     add(filled(number, points->empty() ? *points : convex_outline(*points)));
 }
 
-/// The corners of what shows of a hull, and points between them; none where it is all behind the camera. Nothing where
-/// they are in doubt.
+/// The projected corners of a hull, clipped in front of the camera, and points between them; no points if it is all
+/// behind the camera. Nothing if they are in doubt.
 std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& hull, double extent,
                                                                     const FrameView& frame) const {
     const Camera& camera = frame.camera;
@@ -70,7 +71,7 @@ std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& 
         const Vec3<double> p(dot(there, camera.right), dot(there, camera.up), dot(there, camera.forward));
         for (const Vec3<double>& q : Box{p - reach, p + reach}.corners()) (q.z < nearest ? behind : ahead).push_back(q);
     }
-    const double pixels = frame.width / (2 * camera.tan_half_width);  // to tangent 1
+    const double pixels = frame.width / (2 * camera.tan_half_width);  // of a tangent of 1
     std::vector<Point> points;
     const auto put = [&](const Vec3<double>& p) {
         points.push_back(
@@ -89,7 +90,7 @@ std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& 
 }
 
 FrameCover::Outline FrameCover::filled(size_t number, const std::vector<Point>& corners) const {
-    double highest = RealTraits<double>::infinity, lowest = -highest;  // rows count down
+    double highest = RealTraits<double>::infinity, lowest = -highest;  // rows are numbered downward
     for (const Point& p : corners) {
         highest = std::min(highest, p.y - picture_margin);
         lowest = std::max(lowest, p.y + picture_margin);
@@ -108,7 +109,7 @@ FrameCover::Outline FrameCover::filled(size_t number, const std::vector<Point>& 
         const double first = std::max(std::floor((top - picture_margin) / band_rows), first_band);
         const double last = std::min(std::floor((bottom + picture_margin) / band_rows), last_band);
         for (double band = first; band <= last; ++band) {
-            // The part of the side in the band's rows and a margin above and below.
+            // The part of the side within the band's rows and a margin above and below.
             const auto x_at = [&](double y) {
                 if (y <= top || y >= bottom) return (y <= top) == (a.y <= b.y) ? a.x : b.x;
                 return a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
@@ -140,7 +141,7 @@ void FrameCover::add(Outline outline) {
         PixelRun run = outline.runs[i];
         if (run.begin == run.end) continue;
         std::vector<PixelRun>& runs = bands_[size_t(outline.first_band) + i];
-        // Those that it meets become part of it.
+        // Runs that overlap the new one are merged with it.
         const auto begin =
             std::find_if(runs.begin(), runs.end(), [&](const PixelRun& r) { return r.end >= run.begin; });
         const auto end = std::find_if(begin, runs.end(), [&](const PixelRun& r) { return r.begin > run.end; });

@@ -1,4 +1,4 @@
-// Which pixels of a frame can show anything but background: none outside the outlines of the scene's hulls.
+// The pixels of a frame that can show anything but background: those inside the outlines of the scene's hulls.
 #pragma once
 
 #include <algorithm>
@@ -19,32 +19,32 @@ struct PixelRun {
     bool operator==(const PixelRun&) const = default;
 };
 
-/// By bands of rows of a frame's rectangle, the columns whose pixels may show something. Conservative: hulls are grown
-/// by far more than rounding moves a ray or a face (some u M). No ray is needed anywhere else.
+/// Columns whose pixels may show something, for each band of rows of a frame's rectangle. Conservative: hulls are
+/// enlarged by far more than rounding moves a ray or a face (a few u M). All other pixels need no ray.
 class FrameCover {
   public:
     static constexpr int band_rows = 4;
 
-    /// Covers nothing.
+    /// A cover of no pixels.
     explicit FrameCover(const PixelRect& rect)
         : rect_(rect), bands_(size_t((rect.height + band_rows - 1) / band_rows)) {}
 
     const PixelRect& rect() const { return rect_; }
-    /// Pixels of its bands, whole ones.
+    /// Number of covered pixels, rounded up to whole bands.
     size_t pixels() const;
 
-    /// Ascending and apart; `row` counts from the top of the rectangle.
+    /// The runs of a row, ascending and disjoint; `row` counts from the top of the rectangle.
     std::span<const PixelRun> runs(int row) const { return bands_[size_t(row / band_rows)]; }
 
-    /// The outline of one hull: a run, maybe empty, for each of some bands.
+    /// The cover by one hull: one run, possibly empty, for each of a range of bands.
     struct Outline {
         static constexpr size_t all = ~size_t{0};
 
-        size_t hull;  // its number, or all: it holds whatever the scene has
+        size_t hull;  // the hull's number, or `all` for everything in the scene
         int first_band;
         std::vector<PixelRun> runs;
 
-        /// The run in a row of the rectangle; empty beyond the bands.
+        /// The run of a row of the rectangle; empty outside the bands.
         PixelRun run(int row) const {
             const int band = row / band_rows - first_band;
             return band < 0 || band >= int(runs.size()) ? PixelRun() : runs[size_t(band)];
@@ -52,7 +52,7 @@ class FrameCover {
     };
     const std::vector<Outline>& outlines() const { return outlines_; }
 
-    /// visit(begin, end, covered) for all columns from `from` to `to` of a row, from left to right.
+    /// Calls visit(begin, end, covered) for the columns [from, to) of a row, from left to right.
     template <class Visit>
     void for_each_part(int row, int from, int to, const Visit& visit) const {
         for (const PixelRun& run : runs(row)) {
@@ -64,9 +64,9 @@ class FrameCover {
         if (to > from) visit(from, to, false);
     }
 
-    /// Covers everything, for a hull that holds the camera.
+    /// Covers the whole rectangle, for hull `number` that contains the camera.
     void add_all(size_t number);
-    /// Covers what hull `number` may show; `extent`: the scene's M.
+    /// Covers the outline of hull `number`; `extent`: the scene's M.
     void add(size_t number, const Hull& hull, double extent, const FrameView& frame);
 
   private:

@@ -6,7 +6,8 @@
 namespace cistula {
 namespace {
 
-/// Scenes of more hulls are covered by one box: to outline each would take longer than it spares.
+/// Most hulls that are outlined one by one; a scene of more gets a single box, since outlining each would cost more
+/// time than it saves.
 constexpr size_t most_hulls = 64;
 
 Hull box_around(const std::vector<Hull>& hulls) {

@@ -1,4 +1,4 @@
-// Where a frame may show something, and what is everywhere else.
+// Precomputed hints for a frame: which pixels may show something, and the result of all others.
 #pragma once
 
 #include "scene/compile/compiled_scene.h"
@@ -7,12 +7,12 @@
 
 namespace cistula {
 
-/// What rendering leaves of a pixel that shows background alone.
+/// The result for a pixel that shows only background.
 struct BackgroundPixel {
     PixelRecord record;
     PixelWork work;
 
-    /// Adds what so many of them count.
+    /// Adds the ray counts and flags of `pixels` such pixels.
     void count(uint64_t pixels, RayCounts& rays, uint32_t& flags) const {
         if (pixels == 0) return;
         rays.primary += pixels * work.rays.primary;
@@ -20,7 +20,7 @@ struct BackgroundPixel {
     }
 };
 
-/// `cover` is over settings.crop.
+/// Hints for a frame; `cover` is over settings.crop.
 struct FrameHints {
     FrameCover cover;
     BackgroundPixel background;

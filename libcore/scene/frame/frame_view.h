@@ -1,4 +1,4 @@
-// From a frame's settings to what every pixel needs, the same for all backends.
+// The constants of a frame that every pixel needs, from its settings; shared by all backends.
 #pragma once
 
 #include "cistula/transport/pixel.h"
@@ -8,10 +8,10 @@
 
 namespace cistula {
 
-/// Sets what a frame with a target error asks of every pixel's lattice.
+/// The parameters of adaptive sampling for a frame with a target error.
 template <class Real>
 void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings, LatticeSettings& lattice) {
-    /// Above this share of the bound a pixel's four corners do.
+    /// For targets above this share of the radiance bound, a pixel's four corners suffice as first samples.
     constexpr double coarse = 0x1p-8;
     const double target = least(elementary::scaled(settings.target_error, -scene.radiance_exponent), 4.0);
     lattice.target = greatest(int64_t(floor_of(elementary::scaled(target, color_bits))), int64_t(1));
@@ -20,7 +20,7 @@ void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings
     lattice.significant = target / 4;
 }
 
-/// All but the solids around the camera, which need an intersector (camera_solids).
+/// The view of a frame, except the solids around the camera, which need an intersector (camera_solids).
 template <class Real>
 FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera, const FrameSettings& settings) {
     const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, what); };
@@ -48,15 +48,15 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     const int shift = fixed_shift(uint32_t(frame.supersample * frame.supersample));
     frame.tree.fixed_scale = float(fixed_scale(shift));
     frame.tree.fixed_unit = float(fixed_scale(-shift));
-    // A budget beyond the bound itself prunes everything either way.
+    // A budget above the radiance bound prunes everything either way.
     const double budget = least(elementary::scaled(settings.truncation(), -scene.radiance_exponent), 16.0);
     frame.tree.budget = int64_t(floor_of(least(budget * fixed_scale(shift), 0x1p62)));
     if (settings.adaptive()) set_lattice(scene, settings, frame.lattice);
     return frame;
 }
 
-/// The index in effect_masks of what renders a frame of a scene that calls for `effects`. After camera_solids, since a
-/// camera in a body adds to them. Adaptive sampling runs with all effects.
+/// Index in effect_masks of the kernel for a scene that requires `effects`. Call it after camera_solids: a camera
+/// inside a body adds effects. Adaptive sampling runs with all effects.
 inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.unshadowed) return unshadowed_mask;
     if (settings.adaptive()) return effect_mask_count - 1;
@@ -64,7 +64,7 @@ inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const Fr
     return least_mask(settings.effects | effects | of_camera);
 }
 
-/// A film of the right size for a frame, its pixels unset.
+/// A film of the frame's size, with uninitialized pixels.
 template <class Real>
 void prepare_film(Film& film, const FrameSettings& settings, const CompiledScene<Real>& scene,
                   const CameraFrame& camera) {

@@ -1,4 +1,4 @@
-// By how much outlines in a picture are drawn too large, so that rounding moves nothing out of them. Inside
+// Margins by which projected outlines are enlarged, so that rounding moves nothing out of them. Private to
 // libcore/scene.
 #pragma once
 
@@ -8,17 +8,17 @@
 
 namespace cistula {
 
-/// Around what is projected, in pixels: it is rounded in double.
+/// Margin around projected outlines in pixels, for the rounding of the projection in double.
 inline constexpr double picture_margin = 0x1p-6;
 
-/// What bodies in a picture grow by: far more than rays and faces are off by rounding, in either precision
+/// Growth of projected bodies in the frame of reference: far above the rounding of rays and faces in either precision
 /// (docs/rules.md, 1 and 2). `extent`: the scene's M.
 inline double picture_growth(const FrameView& frame, double extent) {
     constexpr double share_of_extent = 0x1p-16, share_of_distance = 0x1p-44;
     return share_of_extent * extent + share_of_distance * length(frame.camera.position);
 }
 
-/// Whether that is enough: not for cameras very far away, or very wide.
+/// Whether the margins suffice; they do not for cameras very far away or with very wide views.
 inline bool margins_suffice(const FrameView& frame, double extent) {
     constexpr double farthest = 0x1p40, widest_tangent = 256;
     return length(frame.camera.position) <= farthest * extent &&

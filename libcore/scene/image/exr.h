@@ -1,4 +1,4 @@
-// OpenEXR files: written with layers, whole or not at all; read back for comparisons, for --resume and as textures.
+// OpenEXR files: written with layers and atomically; read for comparisons, for --resume and as textures.
 #pragma once
 
 #include <string>
@@ -7,26 +7,27 @@
 
 namespace cistula {
 
-/// Writes a scan line file with ZIP compression. Equal pictures become equal files: no dates, no trace of the machine
-/// or of the number of threads (see set_exr_threads). Half channels round to nearest even. Attributes:
-/// string, int, double, 16 floats -> m44f, 8 floats named "chromaticities" -> chromaticities (red, green, blue, white
-/// xy), other lengths -> floatvector. Throws Error(ExitCode::file) if it cannot be written, std::invalid_argument if
-/// the picture is inconsistent or an attribute's name is one that OpenEXR keeps for itself ("compression", "version",
-/// ...).
+/// Writes a scan line file with ZIP compression. Equal pictures give equal files: no dates, nothing of the machine or
+/// the number of threads (see set_exr_threads). Half channels round to nearest even. Attributes: string, int, double,
+/// 16 floats -> m44f, 8 floats named "chromaticities" -> chromaticities (red, green, blue, white xy), other lengths ->
+/// floatvector. Throws Error(ExitCode::file) if it cannot be written, std::invalid_argument if the picture is
+/// inconsistent or an attribute has a name that OpenEXR reserves ("compression", "version", ...).
 void write_exr(const std::string& path, const LayeredPicture& picture);
 
-/// OpenEXR's own threads, for the whole process and all files together: they compress what callers of write_exr write,
-/// a few for each file. 0, as at the start: every caller compresses by itself. Not while a file is written or read.
+/// Sets the number of OpenEXR's own threads, shared by all files of the process: they compress what callers of
+/// write_exr write, a few for each file. 0, the default: every caller compresses by itself. Not while a file is written
+/// or read.
 void set_exr_threads(int threads);
 
-/// All channels as floats, in the order of the file (by name), with the attributes of the types that write_exr writes,
-/// float among the doubles. Scan line and tiled files, one part. Throws Error(ExitCode::file).
+/// Reads all channels as floats, in the order of the file (by name), with the attributes of the types that write_exr
+/// writes; float attributes become doubles. Scan line and tiled files of one part. Throws Error(ExitCode::file).
 LayeredPicture read_exr(const std::string& path);
 
-/// True if it is an OpenEXR file in which every chunk of pixels is present. False for whatever else, no file included.
+/// True for an OpenEXR file in which every chunk of pixels is present; false for anything else, also if there is no
+/// file.
 bool exr_is_complete(const std::string& path);
 
-/// R, G, B, or Y alone, of the data window; half, float or uint. Throws Error(ExitCode::file).
+/// Reads R, G, B, or Y alone, of the data window; half, float or uint. Throws Error(ExitCode::file).
 ColorPicture read_exr_texture(const std::string& path);
 
 }  // namespace cistula

@@ -20,7 +20,7 @@
 namespace cistula {
 namespace {
 
-/// Runs `read`; what the library throws becomes an Error that names the file.
+/// Runs `read`; the library's exceptions become an Error that names the file.
 template <class Read>
 auto with_file_errors(const std::string& path, Read read) {
     try {
@@ -34,7 +34,7 @@ auto with_file_errors(const std::string& path, Read read) {
     }
 }
 
-/// Before the library opens a file: a damaged header must not ask for more memory than any picture needs.
+/// Limits picture sizes before the library opens a file, so that a damaged header cannot make it allocate huge arrays.
 void limit_sizes() {
     static const bool once = [] {
         Imf::Header::setMaxImageSize(static_cast<int>(largest_picture_side), static_cast<int>(largest_picture_side));
@@ -64,8 +64,8 @@ int lines_per_chunk(Imf::Compression compression) {
     }
 }
 
-/// Throws unless every chunk is there. The table of offsets alone does not tell: it stands before the pixels, so a file
-/// that was cut short has it whole. Tiles are left to the reading of the pixels.
+/// Throws unless every chunk is present. The table of offsets is not enough: it precedes the pixels, so a truncated
+/// file has all of it. Tiles are checked when their pixels are read.
 void check_chunks(Imf::InputFile& file) {
     if (!file.isComplete()) throw std::runtime_error("the file is not complete: chunks of pixels are missing");
     if (file.header().hasTileDescription()) return;

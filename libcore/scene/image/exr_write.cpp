@@ -23,11 +23,11 @@
 namespace cistula {
 namespace {
 
-/// Enough for one file, which keeps twice as many blocks of lines in work. Files written at once share the threads in
-/// the order of their blocks, so that none should queue all it has.
+/// Enough threads for one file, which queues twice as many blocks of lines. Files written at the same time share the
+/// threads in the order of their blocks, so no file should queue all of its own.
 constexpr int most_threads_of_a_file = 4;
 
-/// OpenEXR's destructor swallows errors; this stream keeps them, so that a full disk never passes for a file.
+/// A stream that reports write errors, so that a full disk is noticed: OpenEXR's destructor ignores them.
 class CheckedStream : public Imf::OStream {
   public:
     explicit CheckedStream(const std::string& path)
@@ -52,7 +52,7 @@ class CheckedStream : public Imf::OStream {
         if (file_ && std::fclose(file_) != 0) keep(errno);
         file_ = nullptr;
     }
-    /// errno of the first failure; 0: none.
+    /// errno of the first failure; 0 if none.
     int error_number() const { return error_number_; }
 
   private:
@@ -80,7 +80,7 @@ void check(const LayeredPicture& picture) {
         if (channel.values.size() != pixels)
             throw std::invalid_argument("write_exr: channel " + channel.name + " must have width * height values");
     }
-    // Other types under these names make files that readers refuse.
+    // Attributes of other types under these names make files that readers reject.
     static const std::set<std::string> kept = {"channels",
                                                "chunkCount",
                                                "compression",
@@ -120,7 +120,7 @@ Imf::Header header_of(const LayeredPicture& picture) {
     const Imath::Box2i data(Imath::V2i(picture.x, picture.y),
                             Imath::V2i(picture.x + picture.width - 1, picture.y + picture.height - 1));
     Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
-    header.zipCompressionLevel() = 4;  // named, because the default differs between versions
+    header.zipCompressionLevel() = 4;  // explicit, because the default differs between versions
     for (const auto& [name, value] : picture.attributes) {
         if (const auto* text = std::get_if<std::string>(&value))
             header.insert(name.c_str(), Imf::StringAttribute(*text));

@@ -13,16 +13,16 @@
 
 namespace cistula {
 
-/// Linear RGB, row-major from the top left. What textures are read into.
+/// A picture in linear RGB, row-major from the top left; textures are read into it.
 struct ColorPicture {
     uint32_t width = 0, height = 0;
     std::vector<glm::vec3> texels;
 };
 
-/// What is written to an EXR: named channels of width x height floats each, row-major from the top left.
+/// The contents of an EXR file: named channels of width x height floats each, row-major from the top left.
 struct LayeredPicture {
     int width = 0, height = 0;  // of the data window
-    int x = 0, y = 0;           // its top left in the display window
+    int x = 0, y = 0;           // top left corner in the display window
     int display_width = 0, display_height = 0;
     struct Channel {
         std::string name;   // "R", "error.R", "Z", "N.X", ...

@@ -24,7 +24,7 @@ ColorPicture read_any(const std::string& path) {
     return oiio_read(path);
 }
 
-/// The radiance bound of a scene holds only for such texels.
+/// Throws unless all texels are finite and not negative; a scene's radiance bound holds only for such textures.
 void check_texels(const std::string& path, const ColorPicture& picture) {
     for (size_t i = 0; i < picture.texels.size(); ++i)
         for (int c = 0; c < 3; ++c) {

@@ -1,4 +1,4 @@
-// Textures in, previews out, whatever the format.
+// Reads textures and writes previews in any supported format.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace cistula {
 /// Every texel is finite and not negative. Throws Error(ExitCode::file).
 ColorPicture read_texture(const std::string& path);
 
-/// Writes a PNG, whole or not at all: clamped to [0, 1], sRGB, 8 bits. Throws Error(ExitCode::file).
+/// Writes an 8-bit sRGB PNG atomically, clamped to [0, 1]. Throws Error(ExitCode::file).
 void write_preview(const std::string& path, const ColorPicture& linear);
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// The module that knows OpenImageIO; nothing else links it.
+// The module that uses OpenImageIO; nothing else links that library.
 #include <OpenImageIO/imageio.h>
 
 #include <exception>
@@ -16,7 +16,7 @@ bool fail(const OiioHost& host, const std::string& reason) {
     return false;
 }
 
-/// Runs `work`, turning what it throws into a reason.
+/// Runs `work` and reports what it throws through `failed`.
 template <class Work>
 bool guarded(const OiioHost& host, Work work) noexcept {
     try {
@@ -66,7 +66,7 @@ bool read_opened(OIIO::ImageInput& input, const OiioHost& host) {
 
 bool read(const char* path, const OiioHost* host) noexcept {
     return guarded(*host, [&] {
-        // Colors as stored: multiplying by alpha would darken texels, and before decoding it would be wrong besides.
+        // Colors as stored: premultiplied colors would be darker, and wrong if multiplied before decoding from sRGB.
         OIIO::ImageSpec settings;
         settings["oiio:UnassociatedAlpha"] = 1;
         const auto input = OIIO::ImageInput::open(path, &settings);

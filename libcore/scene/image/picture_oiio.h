@@ -1,4 +1,4 @@
-// The image formats that OpenImageIO reads; the one place that a build without it (CISTULA_WITH_OIIO=OFF) replaces.
+// Image formats read by OpenImageIO. A build without it (CISTULA_WITH_OIIO=OFF) replaces only this.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace cistula {
 
-/// 8- and 16-bit samples are decoded from sRGB, half, float and double are taken as linear; one or two channels are
-/// gray, alpha is left out. Throws Error(ExitCode::file).
+/// Reads a picture as linear RGB: 8- and 16-bit samples are decoded from sRGB; half, float and double are taken as
+/// linear; one or two channels are gray; alpha is ignored. Throws Error(ExitCode::file).
 ColorPicture oiio_read(const std::string& path);
 
 }  // namespace cistula

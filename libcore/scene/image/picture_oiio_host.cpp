@@ -1,4 +1,4 @@
-// Textures through the module: samples become linear colors on this side.
+// Reads textures through the module for OpenImageIO: conversion of samples to linear colors.
 #include <exception>
 #include <new>
 #include <utility>
@@ -12,7 +12,7 @@
 namespace cistula {
 namespace {
 
-/// What the module's calls leave here.
+/// The state that the module's callbacks fill.
 struct Exchange {
     uint32_t width = 0, height = 0, channels = 0;
     std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> samples;
@@ -24,13 +24,13 @@ struct Exchange {
     }
 };
 
-/// Runs work(exchange); where it throws, the exchange keeps that in mind.
+/// Runs work(exchange); an exception is recorded in the exchange.
 template <class Work>
 auto kept(void* self, Work work) noexcept -> decltype(work(std::declval<Exchange&>())) {
     Exchange& exchange = *static_cast<Exchange*>(self);
     try {
         return work(exchange);
-    } catch (const std::exception&) {  // nothing but the allocation of memory can fail
+    } catch (const std::exception&) {  // only memory allocation can fail
         exchange.out_of_memory = true;
         return {};
     }

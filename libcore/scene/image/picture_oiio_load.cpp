@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* module_file = CISTULA_OIIO_MODULE;
 
-/// Libraries built for fast arithmetic switch subnormal numbers off where they are loaded.
+/// Saves and restores the floating-point control register: libraries built with fast-math flush subnormal numbers to
+/// zero once they are loaded.
 class KeptFloatingPoint {
   public:
     KeptFloatingPoint() { std::fegetenv(&state_); }
@@ -34,11 +35,11 @@ const OiioModule* open_module(const std::string& name, std::string& reason) {
     if (entry) return reinterpret_cast<OiioModuleEntry>(entry)();
     const char* const text = dlerror();
     reason = text ? text : "no reason given";
-    if (library) dlclose(library);  // of another version of Cistula
+    if (library) dlclose(library);  // belongs to another version of Cistula
     return nullptr;
 }
 
-/// Where a module may lie beside the program, nearest first.
+/// Directories relative to the program that may hold the module, nearest first.
 std::vector<fs::path> directories_of_program() {
     std::error_code failure;
     const fs::path program = fs::read_symlink("/proc/self/exe", failure);
@@ -54,7 +55,7 @@ const OiioModule* find_module(const std::string& path) {
         const fs::path file = directory / module_file;
         places += ", " + directory.string();
         std::error_code failure;
-        if (!fs::exists(file, failure)) continue;  // the reason of one that is there says more
+        if (!fs::exists(file, failure)) continue;  // an existing file's reason is more helpful
         if (const OiioModule* module = open_module(file.string(), reason)) return module;
     }
     throw file_error(path, "read",

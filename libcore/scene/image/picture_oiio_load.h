@@ -1,4 +1,4 @@
-// Finds the module for OpenImageIO and loads it, once; a program that needs no such picture never pays for it.
+// Loads the module for OpenImageIO when the first picture needs it.
 #pragma once
 
 #include <string>
@@ -7,10 +7,9 @@
 
 namespace cistula {
 
-/// The module, which stays until the program ends. It is looked for on the search path of the program's libraries (its
-/// RUNPATH among them), then in the program's own directory and in ../lib/cistula and ../lib beside it.
-/// Throws Error(ExitCode::file) about the picture `path`, with the loader's reason, where there is none that can be
-/// loaded.
+/// The module, which stays loaded until the program ends. It is searched on the search path of the program's libraries
+/// (its RUNPATH among them), then in the program's own directory and in ../lib/cistula and ../lib beside it.
+/// Throws Error(ExitCode::file) about the picture `path`, with the loader's reason, if none can be loaded.
 const OiioModule& load_oiio_module(const std::string& path);
 
 }  // namespace cistula

@@ -9,7 +9,7 @@
 namespace cistula {
 namespace {
 
-/// `format`: one of libpng's, of 8 bits; `colors`: the map of an indexed one.
+/// Encodes a PNG. `format`: an 8-bit format of libpng; `colors`: the color map of an indexed one.
 std::string encode(uint32_t width, uint32_t height, uint32_t format, const std::vector<uint8_t>& pixels,
                    const std::vector<uint8_t>& colors) {
     png_image image = {};

@@ -1,4 +1,4 @@
-// PNG files through libpng, encoded in memory: whoever has one writes it whole or not at all (atomic_file.h).
+// PNG files through libpng, encoded in memory; write them with atomic_file.h.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace cistula {
 
-/// A PNG of 8-bit sRGB from linear RGB, clamped to [0, 1]. Throws std::runtime_error with libpng's reason, among others
-/// for pictures of 4 GiB and more.
+/// An 8-bit sRGB PNG of a linear RGB picture, clamped to [0, 1]. Throws std::runtime_error with libpng's reason, for
+/// instance for pictures of 4 GiB and more.
 std::string encode_png(const ColorPicture& linear);
 
-/// A PNG of `pixels`, row-major from the top left: each is an index into `colors`, 1 to 256 of them, three bytes of
-/// sRGB each. Throws std::runtime_error with libpng's reason.
+/// An indexed PNG. `pixels`: row-major from the top left, indices into `colors`, which are 1 to 256 sRGB triples of
+/// bytes. Throws std::runtime_error with libpng's reason.
 std::string encode_indexed_png(uint32_t width, uint32_t height, const std::vector<uint8_t>& pixels,
                                const std::vector<uint8_t>& colors);
 

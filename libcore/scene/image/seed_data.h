@@ -1,4 +1,4 @@
-// The raw pictures of the course work: two little-endian int32, width and height, then RGBA bytes, top row first.
+// The seed's raw picture format: two little-endian int32, width and height, then RGBA bytes, top row first.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace cistula {
 
-/// Reads a .data (or .out) file; its sRGB bytes become linear, its alpha is left out. Throws Error(ExitCode::file).
+/// Reads a .data (or .out) file; its sRGB bytes become linear, its alpha is ignored. Throws Error(ExitCode::file).
 ColorPicture read_seed_data(const std::string& path);
 
-/// Writes a frame, whole or not at all: clamped to [0, 1], sRGB bytes, alpha 255. Throws Error(ExitCode::file).
+/// Writes a frame atomically: clamped to [0, 1], sRGB bytes, alpha 255. Throws Error(ExitCode::file).
 void write_seed_frame(const std::string& path, const ColorPicture& linear);
 
 }  // namespace cistula

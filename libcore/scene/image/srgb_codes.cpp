@@ -30,7 +30,8 @@ float linear_from_srgb16(uint16_t code) {
 }
 
 uint8_t srgb8_from_linear(float linear) {
-    // Entry i is where code i + 1 begins: the linear value of i + 1/2. A search is exact and needs no power per pixel.
+    // Entry i is the lowest linear value of code i + 1, that of i + 1/2. A search is exact and needs no power per
+    // pixel.
     static const std::array<double, 255> starts = [] {
         std::array<double, 255> table;
         for (int i = 0; i < 255; ++i) table[i] = elementary::srgb_to_linear((i + 0.5) / 255.0);

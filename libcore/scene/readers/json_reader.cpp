@@ -12,7 +12,7 @@
 namespace cistula {
 namespace {
 
-/// False where `json` is no number in range. -0 becomes 0, so that equal scenes are equal bits.
+/// Reads a number; false if `json` is not a number in range. -0 becomes 0, so that equal scenes have equal bits.
 bool number_from(const Json& json, const Range& range, double& value) {
     if (!json.is_number()) return false;
     value = json.get<double>() + 0.0;
@@ -27,7 +27,7 @@ bool numbers_from(const Json& json, const Range& range, glm::vec<n, double, glm:
     return true;
 }
 
-/// Says which of the n numbers is at fault where only one can be.
+/// An array of n numbers. If exactly one of them is wrong, the error names it.
 template <int n>
 glm::vec<n, double, glm::defaultp> numbers_of(const JsonValue& value, const Key& key) {
     glm::vec<n, double, glm::defaultp> numbers{0};
@@ -61,7 +61,7 @@ JsonValue JsonValue::member(const std::string& key) const {
 
 std::string JsonValue::place_of(std::string_view key) const {
     std::string place = place_ + "/";
-    for (const char c : key) {  // RFC 6901
+    for (const char c : key) {  // escapes of RFC 6901
         if (c == '~')
             place += "~0";
         else if (c == '/')

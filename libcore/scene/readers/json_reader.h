@@ -1,4 +1,4 @@
-// Checked access to JSON: what is read is of the right type and in range, or the error says where and what would be.
+// Checked access to JSON: values of the wrong type or out of range give an error with the place and the expected value.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace cistula {
 
-using Json = nlohmann::ordered_json;  // names keep the order of the file
+using Json = nlohmann::ordered_json;  // keeps the order of keys in the file
 
-/// Parses JSON with comments. Throws Error (usage): "source:line:column: ..." for syntax and numbers beyond double,
-/// "source: /place: duplicate key" for keys given twice. Columns count bytes from 1.
+/// Parses JSON with comments. Throws Error (usage): "source:line:column: ..." for syntax errors and numbers out of
+/// double's range, "source: /place: duplicate key" for repeated keys. Columns count bytes from 1.
 Json parse_json(const std::string& text, const std::string& source);
 
-/// A value and the JSON pointer that leads to it. A view: tree and source must outlive it.
+/// A value and its JSON pointer. A view: tree and source must outlive it.
 class JsonValue {
   public:
     JsonValue(const Json& json, const std::string& source, std::string place = {})
@@ -32,7 +32,7 @@ class JsonValue {
     JsonValue item(size_t index) const;
     JsonValue member(const std::string& key) const;
 
-    /// Where a key of this object stands, or would.
+    /// JSON pointer of a key of this object, present or not.
     std::string place_of(std::string_view key) const;
 
     /// Throws unless this object's comment, if it has one, is a string or an array of strings.
@@ -42,13 +42,13 @@ class JsonValue {
     [[noreturn]] void fail(const std::string& message) const { fail_at(place_, message); }
     [[noreturn]] void fail_at(const std::string& place, const std::string& message) const;
 
-    /// Throws "expected ..., found ...".
+    /// Throws Error (usage): "expected ..., found ...".
     [[noreturn]] void fail_expected(const std::string& expected) const;
 
-    /// The elements of an array of at least `least`; `expected` is for the message.
+    /// Length of an array, which must be `least` or more; `expected` is for the message.
     size_t array_size(size_t least, const std::string& expected) const;
 
-    /// The value as a type of a table; `key` gives range and choices.
+    /// The value as the type that a table asks for; `key` gives range and choices.
     double number(const Key& key) const;
     int64_t whole(const Key& key) const;
     bool boolean(const Key& key) const;
@@ -64,8 +64,8 @@ class JsonValue {
     std::string place_;
 };
 
-/// An object whose keys a table lists. The constructor throws for anything but an object, for keys that the table does
-/// not know, but for comments, and for required ones that are missing. read() leaves `value` alone where the key is
+/// An object whose keys are listed in a table. The constructor throws unless it is an object, and for keys that are
+/// neither in the table nor comments, and for missing required keys. read() leaves `value` unchanged where the key is
 /// absent.
 class JsonObject {
   public:
@@ -84,12 +84,12 @@ class JsonObject {
     void read(std::string_view key, std::optional<glm::dvec3>& value);
     void read(std::string_view key, std::optional<double>& value);
 
-    /// Index into the key's choices, or -1 where it is absent.
+    /// The choice as an index into the key's choices, or -1 if the key is absent.
     int read_choice(std::string_view key);
 
     [[noreturn]] void fail(std::string_view key, const std::string& message) const;
 
-    /// Call last: throws std::logic_error if the reader never asked for one of the table's keys.
+    /// Call it last: throws std::logic_error if the reader skipped one of the table's keys.
     void finish() const;
 
   private:
@@ -101,7 +101,7 @@ class JsonObject {
     uint64_t asked_ = 0;
 };
 
-/// "an array of 3", "'glas'", "3.5".
+/// A short text for a JSON value in messages: "an array of 3", "'glas'", "3.5".
 std::string found_text(const Json& json);
 
 }  // namespace cistula

@@ -1,5 +1,5 @@
-// Text to a tree of JSON, with what nlohmann's own tree builder leaves out: duplicate keys are errors, and every error
-// has a line and a column or a place.
+// Parses JSON text into a tree. Beyond nlohmann's own tree builder, duplicate keys are errors, and every error has a
+// line and a column or a place.
 #include <algorithm>
 #include <unordered_set>
 #include <utility>
@@ -14,7 +14,7 @@
 namespace cistula {
 namespace {
 
-/// nlohmann's message without its own prefix, and with what was read last cut to its end.
+/// nlohmann's message without its prefix, and with the quoted last token shortened to its end.
 std::string plain_message(std::string message) {
     if (const size_t bracket = message.find("] "); message.starts_with("[json.exception.") && bracket != message.npos)
         message.erase(0, bracket + 2);
@@ -43,7 +43,7 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     bool number_unsigned(number_unsigned_t value) override { return add(value); }
     bool number_float(number_float_t value, const string_t&) override { return add(value); }
     bool string(string_t& value) override { return add(std::move(value)); }
-    bool binary(binary_t&) override { return false; }  // JSON text holds none
+    bool binary(binary_t&) override { return false; }  // cannot occur in JSON text
 
     bool start_object(std::size_t) override {
         open(Json::object());
@@ -111,7 +111,7 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     const std::string& text_;
     const std::string& source_;
     Json root_;
-    std::vector<Json*> open_;  // from the root inward; what they point to moves only once it is closed
+    std::vector<Json*> open_;  // from the root inward; an element is moved only after it is closed
     std::vector<std::unordered_set<std::string>> names_;
 };
 

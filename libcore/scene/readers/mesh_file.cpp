@@ -24,7 +24,7 @@ using glm::dvec3;
     throw Error(ExitCode::file, place + ": mesh " + file + ": " + what);
 }
 
-/// Assimp 5.2 never returns from a PLY header with a line that it does not know, or without an end.
+/// Throws for a PLY header with an unknown line or without an end, for which Assimp 5.2 never returns.
 void check_ply_header(const std::string& place, const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     std::string line;
@@ -50,7 +50,7 @@ dvec3 color_of(const aiColor3D& c) {
     return {c.r, c.g, c.b};
 }
 
-/// The mapping of docs/meshes.md.
+/// A material from an OBJ's library, mapped as docs/meshes.md says.
 MaterialDescription material_of(const aiMaterial& from) {
     MaterialDescription m;
     aiString name;
@@ -72,7 +72,7 @@ MaterialDescription material_of(const aiMaterial& from) {
         m.specular = strongest;
         m.specular_color = specular / strongest;
     }
-    if (illum == 0) {  // color alone, whatever the light
+    if (illum == 0) {  // constant color, independent of the lights
         m.diffuse = 0;
         m.specular = 0;
     }
@@ -81,7 +81,7 @@ MaterialDescription material_of(const aiMaterial& from) {
     m.fresnel = illum == 5 || illum == 7;
     if (m.transmission > 0) m.tint = m.color;
     for (int c = 0; c < 3; ++c) m.tint[c] = m.tint[c] > 1 ? 1 : m.tint[c];
-    // d comes first: what is let through cannot be reflected as well.
+    // d (opacity) takes precedence: transmitted light cannot be reflected as well.
     if (m.reflection + m.transmission > 1) m.reflection = 1 - m.transmission;
     return m;
 }
@@ -107,7 +107,7 @@ MeshPart part_of(const aiMesh& from, const MeshObject& object) {
     }
     if (from.HasTextureCoords(0)) {
         mesh.owned_uvs.reserve(from.mNumVertices);
-        // In files v = 0 is the bottom of the picture, here it is the top.
+        // Files have v = 0 at the bottom of the picture, Cistula at the top.
         for (unsigned i = 0; i < from.mNumVertices; ++i)
             mesh.owned_uvs.push_back({from.mTextureCoords[0][i].x, 1.0 - from.mTextureCoords[0][i].y});
     }
@@ -129,9 +129,8 @@ std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& pla
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                                             aiComponent_COLORS | aiComponent_BONEWEIGHTS);
-    // Not aiProcess_Triangulate: Debian's build of it ends the program on some broken files. Nor
-    // aiProcess_JoinIdenticalVertices, which joins some that are up to 1e-5 apart: find_topology joins those that are
-    // equal.
+    // Not aiProcess_Triangulate: Debian's build of it crashes on some broken files. Not
+    // aiProcess_JoinIdenticalVertices: it joins vertices up to 1e-5 apart; find_topology joins equal ones.
     const aiScene* scene = importer.ReadFile(object.file, aiProcess_RemoveComponent);
     if (!scene) refuse(place, object.file, "cannot be read: " + one_line(importer.GetErrorString()));
 
@@ -140,7 +139,7 @@ std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& pla
         const aiMesh& mesh = *scene->mMeshes[i];
         MeshPart part = part_of(mesh, object);
         if (part.mesh.triangles.empty()) continue;  // points or lines
-        // Assimp makes up a material where there is none; only those of an OBJ's library have names of their own.
+        // Assimp invents a material where there is none; only those of an OBJ's library have names of their own.
         if (kind == ".obj" && mesh.mMaterialIndex < scene->mNumMaterials) {
             MaterialDescription material = material_of(*scene->mMaterials[mesh.mMaterialIndex]);
             if (material.name != AI_DEFAULT_MATERIAL_NAME) part.material = std::move(material);

@@ -1,4 +1,4 @@
-// PLY and OBJ files, read with Assimp. docs/meshes.md says what is taken from them.
+// PLY and OBJ files, read with Assimp; docs/meshes.md says which of their contents are used.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,15 @@
 
 namespace cistula {
 
-/// The triangles of one material of a file; uvs where the file has them.
+/// The triangles of a file that share one material; with uvs where the file has them.
 struct MeshPart {
     std::string name;
     MeshSource mesh;
     std::optional<MaterialDescription> material;  // OBJ with a material library
 };
 
-/// Parts in file order, transformed: rotated, scaled, moved. `place` opens the messages. Throws Error(ExitCode::file).
+/// Reads a mesh file; its parts in file order, rotated, scaled and translated. `place` opens the messages. Throws
+/// Error(ExitCode::file).
 std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place);
 
 }  // namespace cistula

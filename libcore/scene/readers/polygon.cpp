@@ -7,7 +7,7 @@ namespace {
 
 using glm::dvec3;
 
-/// Newell's normal: twice the area, whatever the corners' order of convexity.
+/// Newell's normal, of length twice the area; valid for convex and concave polygons.
 dvec3 polygon_normal(std::span<const dvec3> vertices, const std::vector<uint32_t>& corners) {
     dvec3 sum{0};
     for (size_t i = 0; i < corners.size(); ++i) {
@@ -22,7 +22,7 @@ class EarTest {
     EarTest(std::span<const dvec3> vertices, const std::vector<uint32_t>& corners)
         : vertices_(vertices), corners_(corners), normal_(polygon_normal(vertices, corners)) {}
 
-    /// Whether corner i is convex and no other corner lies in the triangle that it spans with its neighbors.
+    /// Whether corner i is an ear: convex, with no other corner in the triangle that it spans with its neighbors.
     bool is_ear(size_t i) const {
         const size_t n = corners_.size(), before = (i + n - 1) % n, after = (i + 1) % n;
         const dvec3 &a = at(before), &b = at(i), &c = at(after);
@@ -51,7 +51,7 @@ void append_polygon(std::span<const dvec3> vertices, std::vector<uint32_t> corne
                     std::vector<std::array<uint32_t, 3>>& triangles) {
     if (corners.size() < 3) return;
     const EarTest test(vertices, corners);
-    // Cutting after the first corner each time makes a fan of a convex polygon.
+    // Always clipping right after the first corner makes a fan of a convex polygon.
     while (corners.size() > 3) {
         const size_t n = corners.size();
         size_t ear = 1;

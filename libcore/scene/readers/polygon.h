@@ -1,4 +1,4 @@
-// Polygons in space to triangles.
+// Triangulation of polygons in space.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace cistula {
 
-/// Appends size - 2 triangles with the polygon's winding, by cutting ears; convex ones become a fan about their first
-/// corner. `corners` are numbers of `vertices`; fewer than 3 give nothing. Never fails: where no ear is found (a
-/// polygon that crosses itself), the next corner is cut all the same.
+/// Appends size - 2 triangles with the polygon's winding, by ear clipping; convex polygons become a fan about their
+/// first corner. `corners` are indices into `vertices`; fewer than 3 give nothing. Never fails: if there is no ear (the
+/// polygon crosses itself), the next corner is clipped all the same.
 void append_polygon(std::span<const glm::dvec3> vertices, std::vector<uint32_t> corners,
                     std::vector<std::array<uint32_t, 3>>& triangles);
 

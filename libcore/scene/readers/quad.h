@@ -1,4 +1,4 @@
-// Four points in space to two triangles.
+// Conversion of a quad (four points in space) to two triangles.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 
 namespace cistula {
 
-/// How far a quad may be from a plane, and how blunt its corners, relative to its longer diagonal.
+/// Tolerance for a quad's planarity and convexity, relative to its longer diagonal.
 inline constexpr double quad_tolerance = 1e-6;
 
-/// What is wrong with the corners, nothing where they make a planar and strictly convex quad.
+/// An error text unless the corners make a planar and strictly convex quad.
 std::optional<std::string> quad_problem(const std::array<glm::dvec3, 4>& corners);
 
-/// Triangles (0, 1, 2) and (0, 2, 3); the corners' uv are (0, 0), (1, 0), (1, 1), (0, 1), so a texture's top row runs
+/// Triangles (0, 1, 2) and (0, 2, 3). The corners' uv are (0, 0), (1, 0), (1, 1), (0, 1), so a texture's top row runs
 /// from the first corner to the second.
 TrianglesObject quad_triangles(const std::array<glm::dvec3, 4>& corners);
 

@@ -13,7 +13,7 @@ namespace {
 
 using NameIndices = std::unordered_map<std::string, int>;
 
-// Sums that should be 1 may come out a little above it in decimal.
+// Tolerance for shares that should add up to 1 but exceed it a little when written in decimal.
 constexpr double share_slack = 1e-6;
 
 FilmDescription read_film(const JsonValue& value) {
@@ -152,7 +152,7 @@ FrameOfReference read_frame(const JsonValue& value) {
     return frame;
 }
 
-/// Calls read(name, value) for every member of an object whose keys are names, but for its comment.
+/// Calls read(name, value) for every member of an object whose keys are names, except its comment.
 template <class Read>
 void for_each_name(const JsonValue& value, const std::string& kind, Read read) {
     if (!value.json().is_object()) value.fail_expected(fmt::format("an object of {}s by name", kind));

@@ -1,4 +1,4 @@
-// The elements of "objects": solids, quads, triangle lists and mesh files.
+// Reads the elements of "objects": solids, quads, triangle lists and mesh files.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ void read_common(JsonObject& keys, const ObjectContext& context, ObjectDescripti
     if (keys.has("material")) object.material = index_of_name(keys.at("material"), context.materials, "material");
 }
 
-/// Textures need uv, which solids and triangle lists without "uvs" do not have.
+/// Throws for a texture on an object without uv: solids, and triangle lists without "uvs".
 void refuse_texture(JsonObject& keys, const ObjectContext& context, const ObjectDescription& object,
                     const std::string& reason) {
     const MaterialDescription& material = context.scene.materials[static_cast<size_t>(object.material)];
@@ -126,7 +126,7 @@ void read_mesh(const JsonValue& value, const ObjectContext& context, ObjectDescr
 }
 
 struct Form {
-    const char* key;  // the key that tells the form
+    const char* key;  // the key that identifies the form
     const KeyTable& keys;
     void (*read)(const JsonValue&, const ObjectContext&, ObjectDescription&);
 };
@@ -138,7 +138,7 @@ const Form forms[] = {
     {"mesh", mesh_keys, read_mesh},
 };
 
-/// An object that has the key of no form: most likely it is misspelled.
+/// Throws for an object with no form's key, most likely because it is misspelled.
 [[noreturn]] void fail_without_form(const JsonValue& value) {
     std::vector<std::string_view> known;
     for (const Form& form : forms)

@@ -1,4 +1,4 @@
-// From a scene file, JSON or the text input of the seed, to its description. Meshes and textures are not opened here.
+// Reads a scene file (JSON or the seed's text) into a description. Meshes and textures are not opened here.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 namespace cistula {
 
 /// Reads a scene file; "-" is standard input. Files named in it are relative to the file's folder, or to the working
-/// directory for standard input. Throws Error: file where it cannot be read, usage where it is wrong.
+/// directory for standard input. Throws Error: `file` if it cannot be read, `usage` if its contents are wrong.
 SceneDescription read_scene(const std::string& path);
 
-/// Reads a scene from a text in memory. `source_name` is for messages; `base_dir` is what file names are relative to
-/// (empty: the working directory). JSON if the first character that is not white is '{', else the text input.
+/// Parses a scene file's text. `source_name` is for messages; `base_dir` is the folder that file names are relative to
+/// (empty: the working directory). JSON if the first non-white character is '{', else the seed's text.
 SceneDescription read_scene_text(const std::string& text, const std::string& source_name, const std::string& base_dir);
 
 }  // namespace cistula

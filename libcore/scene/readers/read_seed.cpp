@@ -11,19 +11,19 @@
 namespace cistula {
 namespace {
 
-// Where the input is silent, the public programs of its family.
+// Defaults for what the input leaves out, taken from the public programs of its family.
 constexpr double ambient_light = 0.5;
 constexpr double phong_exponent = 110;
 constexpr double glass_index = 1.5;
 constexpr double floor_reflection = 0.5;
-constexpr double seen_radius = 0.1;  // a ray that passes a light closer than this returned white
+constexpr double seen_radius = 0.1;  // such programs return white for a ray that passes a light closer than this
 constexpr double share_slack = 1e-6;
 constexpr Range light_count{0, 100000};
 
 struct SeedSolid {
     PlatonicSolid solid;
     const char* name;
-    double edge;  // length of an edge where the circumscribed sphere has radius 1
+    double edge;  // edge length for a circumradius of 1
 };
 
 constexpr SeedSolid seed_solids[] = {
@@ -64,7 +64,7 @@ CylindricalPath read_path(SeedTokens& tokens, const std::string& what) {
     return path;
 }
 
-/// One "%d" or "%04d", nothing else that begins with a percent sign.
+/// Whether the pattern has exactly one "%d" or "%04d" and no other percent sign.
 bool is_pattern(std::string_view pattern) {
     const size_t percent = pattern.find('%');
     if (percent == std::string_view::npos || pattern.find('%', percent + 1) != std::string_view::npos) return false;
@@ -73,7 +73,7 @@ bool is_pattern(std::string_view pattern) {
     return rest.starts_with('d');
 }
 
-/// Apart enough that neighbors on an edge stay points: at most a quarter of their distance.
+/// Lights on the edges. Their radius keeps neighbors apart: at most a quarter of their distance.
 EdgeLights edge_lights(int count, double edge_length) {
     EdgeLights lights;
     lights.count = count;

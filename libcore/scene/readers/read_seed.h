@@ -1,5 +1,5 @@
-// The text input of the program that Cistula grew from (docs/scene.md, "The text input"). Scenes are read through
-// read_scene.h.
+// The seed's text input: the format of the program that Cistula grew from (docs/scene.md, "The seed's text"). Private:
+// scenes are read through read_scene.h.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace cistula {
 
-/// Throws Error (usage): "label:line: expected ..., found ...". Does not set `source`.
+/// Parses the seed's text. Throws Error (usage): "label:line: expected ..., found ...". Does not set `source`.
 SceneDescription read_seed_scene(const std::string& text, const std::string& label, const std::string& base_dir);
 
-/// A valid input in the seed's text format, its most colorful one; reading it gives scenes/seed.json.
+/// A valid, colorful input in the seed's text format; it describes the same scene as scenes/seed.json.
 std::string seed_template();
 
 }  // namespace cistula

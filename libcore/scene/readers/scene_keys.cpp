@@ -5,7 +5,7 @@
 namespace cistula {
 namespace {
 
-// Squares and cubes of lengths stay in the range of a double; radiances above 2^100 have no place in a float.
+// Limits on numbers: squares and cubes of lengths must stay in double's range, radiances up to 2^100 in float's.
 constexpr double most = 1e30;
 constexpr double least_length = 1e-30;
 constexpr double most_angle = 1e6;

@@ -1,5 +1,5 @@
-// Every key of a JSON scene, once: the reader takes names, ranges and choices from these tables, and a test holds
-// docs/scene.schema.json and docs/scene.md to them.
+// Tables of all keys of a JSON scene. The reader takes names, ranges and choices from them, and a test compares
+// docs/scene.schema.json and docs/scene.md with them.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@ namespace cistula {
 
 struct Range {
     double low = 0, high = 0;
-    bool above = false;  // low itself is out of range
-    bool below = false;  // high itself is out of range
+    bool above = false;  // low itself is excluded
+    bool below = false;  // high itself is excluded
 
-    /// False for NaN.
+    /// Whether `value` lies in the range; false for NaN.
     bool contains(double value) const {
         return (above ? value > low : value >= low) && (below ? value < high : value <= high);
     }
@@ -29,23 +29,23 @@ enum class KeyType {
     color,   // a number (gray) or three of them
     point,   // three numbers
     pair,    // two numbers
-    other,   // an object or array with a table or a reader of its own
+    other,   // an object or array with its own table or reader
 };
 
 struct Key {
     std::string_view name;
     KeyType type = KeyType::other;
-    Range range;                // of every number in it
+    Range range;                // of every number in the value
     std::string_view fallback;  // the default as JSON text; empty: none
     bool required = false;
     std::span<const std::string_view> choices;
 };
 
 struct KeyTable {
-    std::string_view name;  // in "$defs" of the schema
+    std::string_view name;  // its name in "$defs" of the schema
     std::span<const Key> keys;
 
-    /// nullptr: no such key.
+    /// The entry of a key, or nullptr.
     const Key* find(std::string_view key) const;
     std::vector<std::string_view> names() const;
 };
@@ -54,23 +54,22 @@ extern const KeyTable scene_keys, film_keys, camera_keys, path_keys, cylindrical
     texture_checker_keys, material_keys, solid_keys, edge_lights_keys, quad_keys, triangles_keys, triangle_list_keys,
     mesh_keys, light_keys, frame_keys;
 
-/// Every object of a scene may have this key besides those of its table: a string or an array of strings, which only
-/// people read.
+/// A key that every object of a scene may have besides those of its table: a string or an array of strings, ignored.
 inline constexpr std::string_view comment_key = "$comment";
 
 /// All of the tables above.
 std::span<const KeyTable* const> all_key_tables();
 
-/// In the order of the enumeration PlatonicSolid.
+/// Names of the Platonic solids, in the order of the enumeration PlatonicSolid.
 extern const std::span<const std::string_view> platonic_names;
 
-/// Shortest decimal text, "1e30" rather than "1e+30".
+/// The shortest decimal text of a number, with "1e30" rather than "1e+30".
 std::string number_text(double value);
 
-/// "1 to 65536", "above 0, under 180".
+/// The text of a range: "1 to 65536", "above 0, under 180".
 std::string range_text(const Range& range);
 
-/// What a message says would be right: "a whole number from 1 to 65536".
+/// The expected value of a key, for messages: "a whole number from 1 to 65536".
 std::string expected_text(const Key& key);
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// Words and numbers of the seed's text input, with the lines that they stand on.
+// Tokenizer of the seed's text input: words and numbers with their line numbers.
 #pragma once
 
 #include <string>
@@ -16,20 +16,20 @@ class SeedTokens {
     /// The next word; `what` names it in messages. Throws Error (usage) at the end of the text.
     std::string_view word(const std::string& what);
 
-    /// The next number, in range. Decimal; no "nan", no "inf", no hexadecimal.
+    /// The next number, which must lie in `range`: decimal; no "nan", no "inf", no hexadecimal.
     double number(const std::string& what, const Range& range);
     int whole(const std::string& what, const Range& range);
 
-    /// True if there is one more word on the line of the last one, and no more than that.
+    /// Whether exactly one more word follows on the line of the last word.
     bool one_more_on_line() const;
 
-    /// How many words the line of the next word has, if that is the first of them; else 0.
+    /// Number of words on the next word's line if that word is the first of its line; else 0.
     size_t words_on_new_line() const;
 
-    /// Throws if anything is left.
+    /// Throws Error (usage) if any word is left.
     void finish() const;
 
-    /// Line of the last word, from 1; the first line before any is read.
+    /// Line of the last word, from 1; 1 before any is read.
     int line() const { return next_ == 0 ? 1 : tokens_[next_ - 1].line; }
 
     /// Throws Error (usage): "label:line: message", on one line.

@@ -1,4 +1,4 @@
-// Embree's headers, version 3 or 4, and its objects as owners.
+// Embree's headers (version 3 or 4) and owning handles to its objects.
 #pragma once
 
 #include <memory>

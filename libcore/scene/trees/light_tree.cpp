@@ -7,7 +7,7 @@
 namespace cistula {
 namespace {
 
-/// Half of a binary node: another node, or `count` items from ~child on.
+/// A child of a binary node: another node, or `count` items from ~child on.
 struct Part {
     float low[3], high[3];
     int32_t child;
@@ -31,7 +31,7 @@ class Widening {
   public:
     explicit Widening(const Tree& binary) : binary_(binary) {}
 
-    /// Both halves of a part that is no single light.
+    /// Both children of a part that is not a single light.
     std::pair<Part, Part> halves(const Part& part) const {
         if (part.child >= 0) {
             const TreeNode& node = binary_.nodes[static_cast<size_t>(part.child)];
@@ -44,7 +44,7 @@ class Widening {
         return {first, rest};
     }
 
-    /// Opens the largest parts first, which most rays meet.
+    /// Adds a wide node. Its largest parts, which most rays enter, are opened first.
     uint32_t add(const Part& top) {
         std::vector<Part> parts{top};
         while (parts.size() < LightNode::width) {
@@ -64,7 +64,8 @@ class Widening {
                 const float center = is_there ? (parts[i].low[k] + parts[i].high[k]) / 2 : 0;
                 nodes[index].center[k].of[i] = center;
                 const float half = is_there ? std::max(parts[i].high[k] - center, center - parts[i].low[k]) : -INFINITY;
-                nodes[index].half[k].of[i] = is_there ? std::nextafter(half, INFINITY) : half;  // whatever was rounded
+                nodes[index].half[k].of[i] =
+                    is_there ? std::nextafter(half, INFINITY) : half;  // a margin for the rounding of half
             }
             nodes[index].children.of[i] = 0;
         }

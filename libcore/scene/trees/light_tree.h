@@ -1,11 +1,11 @@
-// The tree over seen lights, from a binary one.
+// The tree over visible lights, made from a binary tree.
 #pragma once
 
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
 
-/// Item i of `binary` is light i.
+/// The light tree with the nodes of `binary` collapsed; item i of `binary` is light i.
 std::vector<LightNode> light_tree(const Tree& binary);
 
 }  // namespace cistula

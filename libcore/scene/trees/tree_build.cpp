@@ -37,13 +37,13 @@ float rounded_up(double x) {
 // ---- groups
 
 struct GroupLeaves {
-    const RTCBuildPrimitive* begin;  // of the array, which the builder partitions in place
+    const RTCBuildPrimitive* begin;  // start of the array, which the builder partitions in place
     std::vector<uint64_t> leaves;    // first << 32 | count
     std::atomic<uint32_t> leaf_count{0};
 };
 
 void* group_node(RTCThreadLocalAllocator, unsigned, void* user) {
-    return user;  // nodes are not kept; any pointer that is not null will do
+    return user;  // nodes are not kept; any non-null pointer will do
 }
 void group_children(void*, void**, unsigned, void*) {}
 void group_bounds(void*, const RTCBounds**, unsigned, void*) {}
@@ -59,7 +59,7 @@ void* group_leaf(RTCThreadLocalAllocator, const RTCBuildPrimitive* primitives, s
 struct BuildNode {
     RTCBounds bounds[2];
     BuildNode* child[2];
-    uint32_t count;  // of items; 0: not a leaf
+    uint32_t count;  // number of items; 0: not a leaf
     uint32_t items[2];
 };
 
@@ -95,7 +95,7 @@ void set_leaf(Tree& tree, uint32_t node, int side, const BuildNode& leaf) {
     tree.items.insert(tree.items.end(), leaf.items, leaf.items + leaf.count);
 }
 
-/// Depth first, so that a node's first child follows it.
+/// Stores nodes depth first, so that a node's first child follows it.
 uint32_t flatten(Tree& tree, const BuildNode& from) {
     const auto index = static_cast<uint32_t>(tree.nodes.size());
     tree.nodes.emplace_back();
@@ -113,7 +113,7 @@ uint32_t flatten(Tree& tree, const BuildNode& from) {
     return index;
 }
 
-/// A root needs two children: the second is a leaf of nothing, whose box no ray meets.
+/// A tree of a single leaf. The root needs two children: the second is an empty leaf, whose box no ray hits.
 Tree single_leaf(const BuildNode& leaf, const RTCBounds& bounds) {
     Tree tree;
     tree.nodes.emplace_back();
@@ -164,7 +164,7 @@ Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives) {
     arguments.userPtr = &leaves;
     run_builder(arguments, device.get());
 
-    // Threads finish leaves in any order; by their place in the array they stand as in the tree, neighbors together.
+    // Threads finish leaves in any order; sorted by position in the array they are in tree order, neighbors together.
     leaves.leaves.resize(leaves.leaf_count);
     std::sort(leaves.leaves.begin(), leaves.leaves.end());
     groups.order.reserve(primitives.size());

@@ -1,4 +1,4 @@
-// Trees of boxes from Embree's builder. Inside libcore/scene.
+// Bounding volume hierarchies from Embree's builder. Private to libcore/scene.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace cistula {
 
-/// A box and its number, rounded outward to float and pushed out by `pad`.
+/// A box for Embree's builder, with its item's number: rounded outward to float and grown by `pad`.
 RTCBuildPrimitive padded_primitive(const Box& box, double pad, uint32_t number);
 
 /// Items in groups of at most eight neighbors: group g is order[first[g]] to order[first[g + 1] - 1], ascending.
@@ -18,18 +18,18 @@ struct Groups {
     std::vector<uint32_t> order, first;
     uint32_t size() const { return first.empty() ? 0 : static_cast<uint32_t>(first.size()) - 1; }
 };
-/// Groups of neighbors, equal from run to run. Reorders `primitives`.
+/// Groups of neighboring primitives, deterministic. Reorders `primitives`.
 Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives);
 
 struct Tree {
     std::vector<TreeNode> nodes;
     std::vector<uint32_t> items;
 };
-/// A binary tree whose leaves hold one or two items; primitive i stands for item i. At most max_tree_depth deep.
-/// quality 0: quick, 1: the builder's best without splitting primitives. Reorders `primitives`.
+/// A binary tree whose leaves hold one or two items; item i is primitive i. At most max_tree_depth deep. quality 0:
+/// quick; 1: the builder's best without splitting primitives. Reorders `primitives`.
 Tree build_tree(std::vector<RTCBuildPrimitive>& primitives, int quality);
 
-/// Calls visit(item) for the items whose leaf's box meets `box`.
+/// Calls visit(item) for the items of all leaves whose box overlaps `box`.
 template <class Visit>
 void for_each_in_box(const Tree& tree, const Box& box, const Visit& visit) {
     if (tree.nodes.empty()) return;

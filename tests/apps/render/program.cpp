@@ -207,7 +207,7 @@ TEST_F(RenderProgram, TheSeedsInputGivesTheSeedsFrames) {
     std::memcpy(size, bytes.data(), 8);
     EXPECT_EQ(size[0], 32);
     EXPECT_EQ(size[1], 20);
-    // As a file, and to OpenEXR: the same picture before it was rounded to bytes.
+    // The scene from a file and written as OpenEXR: the same picture before rounding to bytes.
     put_bytes(file("input.txt"), seed_text);
     expect_done({"input.txt", "-q", "-o", "frame.exr"});
     const LayeredPicture image = read_exr(file("frame.exr"));
