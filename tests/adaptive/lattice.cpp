@@ -254,6 +254,9 @@ TEST(Lattice, WhatAPixelShowsIsTakenToHideElsewhereInIt) {
     const auto side = [&](int x, int y) { return uint32_t(strip(x, y)); };
     EXPECT_EQ(sampled(lattice(0.003, true), values(16, 16), one_kind).samples, 256u);
     EXPECT_LE(sampled(lattice(0.003, true), values(16, 16), side).samples, 88u);
+    // Cells whose corners met different things are not left alone.
+    const auto all_unlike = [&](int x, int y) { return unlike(x, y) + 16 * side(x, y); };
+    EXPECT_GT(sampled(lattice(0.003, true), values(16, 16), all_unlike).samples, 88u);
     EXPECT_LE(sampled(lattice(0.03, true), values(16, 16), one_kind).samples, 72u);
 }
 
