@@ -238,6 +238,7 @@ TEST(Lattice, WhatAPixelShowsIsTakenToHideElsewhereInIt) {
             return strip(x, y) || patch ? fixed(0.5) : fixed(0.2);
         };
     };
+    const auto unlike = [](int x, int y) { return uint32_t(x / 4 + 4 * (y / 4)); };
     for (const bool fine : {true, false})
         for (int left = 4; left <= 11; ++left)
             for (int top = 1; top <= 11; ++top) {
@@ -247,11 +248,15 @@ TEST(Lattice, WhatAPixelShowsIsTakenToHideElsewhereInIt) {
                 };
                 EXPECT_LE(off(sampled(lattice(0.003, fine), values(left, top), one_kind)), 0.003)
                     << left << ", " << top;
+                EXPECT_LE(off(sampled(lattice(0.003, fine), values(left, top), unlike)), 0.003) << left << ", " << top;
             }
     // Borders of things rather than of textures leave cells of one kind alone, as does what is not worth the target.
     const auto side = [&](int x, int y) { return uint32_t(strip(x, y)); };
     EXPECT_EQ(sampled(lattice(0.003, true), values(16, 16), one_kind).samples, 256u);
     EXPECT_LE(sampled(lattice(0.003, true), values(16, 16), side).samples, 88u);
+    // Cells whose corners met different things are not left alone.
+    const auto all_unlike = [&](int x, int y) { return unlike(x, y) + 16 * side(x, y); };
+    EXPECT_GT(sampled(lattice(0.003, true), values(16, 16), all_unlike).samples, 88u);
     EXPECT_LE(sampled(lattice(0.03, true), values(16, 16), one_kind).samples, 72u);
 }
 
@@ -264,6 +269,27 @@ TEST(Lattice, WhatComesInThroughASideIsSeenFromBesideIt) {
         lattice(0.004, true), [&](int x, int y) { return notch(x, y) ? fixed(0.05) : fixed(0.35); },
         [&](int x, int y) { return uint32_t(notch(x, y)); }, [](int, int) { return LargeTrees::large_tree; });
     EXPECT_NEAR(double(record.radiance[0]) * 0x1p-54 / 256, truth, 0.001);
+}
+
+TEST(Lattice, ShadingThatComesInSteeplyBendsBetweenCornersThatAgree) {
+    // A groove between rows whose ends agree, and the slope that goes on beyond it.
+    const std::array<int, 16> rows = {261, 247, 232, 227, 226, 231, 245, 258, 269, 278, 286, 294, 301, 307, 311, 315};
+    double truth = 0;
+    for (int row : rows) truth += row * 0.001 / 16;
+    const auto groove = [&](int x, int y) { return fixed(rows[size_t(y)] * 0.001 + x * 1e-5); };
+    const auto across = [&](int x, int y) { return groove(y, x); };
+    truth += 7.5e-5;
+    EXPECT_NEAR(double(sampled(lattice(0.004, true), groove, one_kind).radiance[0]) * 0x1p-54 / 256, truth, 0.004);
+    EXPECT_NEAR(double(sampled(lattice(0.004, true), across, one_kind).radiance[0]) * 0x1p-54 / 256, truth, 0.004);
+    // A texture's border between two quarters is no slope, nor is one of things.
+    const auto border = [](double by) { return [by](int x, int) { return fixed(x < 8 ? 0.5 : 0.5 + by); }; };
+    const auto side = [](int x, int) { return uint32_t(x < 8); };
+    const auto taken = [&](double by, const auto& hash) {
+        return sampled(lattice(0.004, true), border(by), hash).samples;
+    };
+    EXPECT_GT(taken(0.0155, one_kind), 16u);
+    EXPECT_EQ(taken(0.0165, one_kind), 16u);
+    EXPECT_EQ(taken(0.0155, side), 16u);
 }
 
 TEST(Lattice, WhereColorsSpanMuchNoLargeCellStands) {
@@ -287,13 +313,6 @@ TEST(Lattice, WhereColorsSpanMuchNoLargeCellStands) {
         return sampled(lattice(0.004, true), plain, met, [&](int, int) { return rays; }).samples;
     };
     EXPECT_GT(taken(WideColors::some_rays), taken(WideColors::some_rays - 1));
-}
-
-TEST(Lattice, FiveSamplesThatMetDifferentThingsAreNotEnough) {
-    const auto flat = [](int, int) { return fixed(0.5); };
-    const auto middle = [](int x, int y) { return uint32_t(x > 4 && x < 12 && y > 4 && y < 12); };
-    EXPECT_EQ(sampled(lattice(0.004, true), flat, middle).samples, 16u);
-    EXPECT_EQ(sampled(lattice(0.004, false), flat, middle).samples, 4u);
 }
 
 TEST(Lattice, TargetsOfFewUnitsOfTheBoundStillCount) {

@@ -76,12 +76,34 @@ struct CornersDisagree {
     }
 };
 
-/// For small targets: the pixel's first five samples met different things. They say too little of it, however alike
-/// they are in color.
-struct FirstSamplesDiffer {
-    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeCell& cell,
-                                      const CornerFindings& found) {
-        return settings.fine && cell.is_whole() && found.differs;
+/// Samples right beside a cell, along one of its sides: 0 left, 1 right, 2 upper, 3 lower. They lie beyond the pixel
+/// where the cell ends with it.
+struct CellSide {
+    bool upright;
+    int x, y, length;  // of the first; how many
+    int size;          // of the cell, away from the side
+    int first, last;   // corners at the side's ends
+    int opposite;      // what to turn in a corner's number for the one across the cell
+
+    CISTULA_INLINE static CellSide of(const LatticeCell& cell, int side) {
+        CellSide s;
+        s.upright = side < 2;
+        const bool far = side % 2 != 0;
+        s.size = s.upright ? cell.width : cell.height;
+        s.length = s.upright ? cell.height : cell.width;
+        s.x = cell.x + (s.upright ? (far ? s.size : -1) : 0);
+        s.y = cell.y + (s.upright ? 0 : (far ? s.size : -1));
+        s.first = far ? (s.upright ? 1 : 2) : 0;
+        s.last = far ? 3 : s.upright ? 2 : 1;
+        s.opposite = s.upright ? 1 : 2;
+        return s;
+    }
+
+    CISTULA_INLINE bool is_inside() const { return x >= 0 && y >= 0 && x < lattice_side && y < lattice_side; }
+    CISTULA_INLINE int slot(int k) const { return upright ? (y + k) * lattice_side + x : y * lattice_side + x + k; }
+    /// Whether sample k is among those of `rows`, a bit a column.
+    CISTULA_INLINE bool is_in(const uint16_t* rows, int k) const {
+        return (rows[slot(k) / lattice_side] >> slot(k) % lattice_side & 1) != 0;
     }
 };
 
@@ -92,18 +114,13 @@ struct SideCrossed {
     /// `rows`: the samples to look at, by row, a bit a column.
     CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeSample* samples,
                                       const LatticeCell& cell, const uint16_t* rows) {
-        for (int side = 0; side < 4; ++side) {  // left, right, upper, lower
-            const bool upright = side < 2, far = side % 2 != 0;
-            const int size = upright ? cell.width : cell.height, length = upright ? cell.height : cell.width;
-            const int beside = (upright ? cell.x : cell.y) + (far ? size : -1);
-            if (beside < 0 || beside >= lattice_side) continue;
-            const LatticeSample& a = samples[cell.corner(far ? (upright ? 1 : 2) : 0)];
-            const LatticeSample& b = samples[cell.corner(far ? 3 : upright ? 2 : 1)];
-            for (int k = 1; k < length - 1; ++k) {
-                const int x = upright ? beside : cell.x + k, y = upright ? cell.y + k : beside;
-                if ((rows[y] >> x & 1) != 0 && stands_out(settings, a, b, samples[y * lattice_side + x], cell.area()))
-                    return true;
-            }
+        for (int i = 0; i < 4; ++i) {
+            const CellSide side = CellSide::of(cell, i);
+            if (!side.is_inside()) continue;
+            const LatticeSample& a = samples[cell.corner(side.first)];
+            const LatticeSample& b = samples[cell.corner(side.last)];
+            for (int k = 1; k < side.length - 1; ++k)
+                if (side.is_in(rows, k) && stands_out(settings, a, b, samples[side.slot(k)], cell.area())) return true;
         }
         return false;
     }
@@ -115,6 +132,44 @@ struct SideCrossed {
             const int64_t one = a.color(c), other = b.color(c), there = beside.color(c);
             const int64_t beyond = greatest(least(one, other) - there, there - greatest(one, other));
             if (3 * beyond * area > 2 * settings.target * lattice_samples) return true;
+        }
+        return false;
+    }
+};
+
+/// For small targets: a sample taken right beside a corner tells of a slope which, going on, would be so far from the
+/// corner across the cell that this, all over the cell, would be worth the target. All three met the same: there is a
+/// groove between, though the corners agree.
+struct SlopeBends {
+    static constexpr int steepest = 4;  // targets between neighbors; more is a texture's border
+
+    /// `rows`: the samples to look at, by row, a bit a column.
+    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeSample* samples,
+                                      const LatticeCell& cell, const uint16_t* rows) {
+        if (!settings.fine) return false;
+        for (int i = 0; i < 4; ++i) {
+            const CellSide side = CellSide::of(cell, i);
+            if (!side.is_inside() || side.size <= 2) continue;
+            for (int end = 0; end < 2; ++end) {
+                const int k = end == 0 ? 0 : side.length - 1, near = end == 0 ? side.first : side.last;
+                if (side.is_in(rows, k) &&
+                    bends(settings, samples[side.slot(k)], samples[cell.corner(near)],
+                          samples[cell.corner(near ^ side.opposite)], side.size - 1, cell.area()))
+                    return true;
+            }
+        }
+        return false;
+    }
+
+  private:
+    /// `steps`: samples from the first to the last.
+    CISTULA_INLINE static bool bends(const LatticeSettings& settings, const LatticeSample& before,
+                                     const LatticeSample& first, const LatticeSample& last, int steps, int64_t area) {
+        if (before.path_hash != first.path_hash || first.path_hash != last.path_hash) return false;
+        for (int c = 0; c < 3; ++c) {
+            const int64_t from = first.color(c), slope = from - before.color(c);
+            if (magnitude(slope) > steepest * settings.target) continue;
+            if (settings.exceeded_by(magnitude(from + steps * slope - last.color(c)), area)) return true;
         }
         return false;
     }
@@ -142,6 +197,15 @@ struct TextureJumps {
 
     CISTULA_INLINE static bool splits(const LatticeSettings& settings, const PixelFindings& pixel, int64_t area) {
         return eighths * pixel.jump * area > 8 * settings.target * lattice_samples;
+    }
+};
+
+/// The cell's corners met different things, and half of it, differing as much as the corners of any cell of the pixel,
+/// would be worth the target. What a pixel shows in one place it may hide in another.
+struct UnlikeCorners {
+    CISTULA_INLINE static bool splits(const LatticeSettings& settings, const PixelFindings& pixel,
+                                      const LatticeCell& cell) {
+        return cell.differs && settings.exceeded_by(pixel.range, cell.area() / 2);
     }
 };
 

@@ -46,7 +46,8 @@ class LatticePixel {
         const uint16_t* beside = cell.is_new ? taken_ : fresh_;
         if (cell.is_new) judge_corners(settings, samples, cell);
         if (!cell.wants_split && cell.area() > 4)
-            cell.wants_split = SideCrossed::splits(settings, samples, cell, beside);
+            cell.wants_split = SideCrossed::splits(settings, samples, cell, beside) ||
+                               SlopeBends::splits(settings, samples, cell, beside);
     }
 
     /// Splits those of the cells that should be and still may.
@@ -58,7 +59,9 @@ class LatticePixel {
         for (int y = 0; y < lattice_side; ++y) fresh_[y] = 0;
         for (int i = 0; i < count; ++i) {
             const LatticeCell cell = cells_[i];
-            if (cell.area() == 4 || !(cell.wants_split || splits_by_pixel(settings, now.seen, cell.area()))) continue;
+            const bool splits = cell.wants_split || UnlikeCorners::splits(settings, now.seen, cell) ||
+                                splits_by_pixel(settings, now.seen, cell.area());
+            if (cell.area() == 4 || !splits) continue;
             const bool first = settings.fine && cell.is_whole();
             const int in_four = first ? 11 : 12, in_two = 4;  // of the first the middle is there
             if ((first || wants_four(settings, now.seen, cell)) && now.due + in_four <= settings.most) {
@@ -123,8 +126,7 @@ class LatticePixel {
                                              LatticeCell& cell) {
         const CornerFindings found = CornerFindings::of(samples, cell, settings.fine && cell.is_whole());
         cell.is_new = false;
-        cell.wants_split =
-            CornersDisagree::splits(settings, cell, found) || FirstSamplesDiffer::splits(settings, cell, found);
+        cell.wants_split = CornersDisagree::splits(settings, cell, found);
         cell.across = is_split_across(cell, found.across, found.down);
         cell.differs = found.differs;
         cell.rays = found.most_rays;
