@@ -1,4 +1,4 @@
-// The seed's text input: the format of the program that Cistula grew from (docs/scene.md, "The seed's text"). Private:
+// The seed's text input: the format of the program that Cistula grew from (docs/scene.md, "The text input"). Private:
 // scenes are read through read_scene.h.
 #pragma once
 
