@@ -62,7 +62,7 @@ struct Plus {
 /// A pixel's sums over its samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
 struct PixelRecord {
     int64_t radiance[3];
-    uint32_t hits;          // samples whose primary ray hit anything (a seen light too)
+    uint32_t hits;          // samples whose primary ray hit anything (visible lights included)
     uint32_t rays;          // rays of all kinds
     int32_t id;             // 1 + solid under the sample nearest the pixel's center; 0: none
     float z;                // that sample's distance along the view axis in scene units; infinity: none
