@@ -17,7 +17,7 @@ void add_quad(std::vector<std::array<uint32_t, 3>>& triangles, uint32_t a, uint3
     triangles.push_back({a, c, d});
 }
 
-/// splitmix64.
+/// The splitmix64 generator.
 struct Random {
     uint64_t state;
     double operator()() {  // in [0, 1)

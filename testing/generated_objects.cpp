@@ -11,7 +11,7 @@
 namespace cistula::generated {
 namespace {
 
-/// The mirror image of a solid beyond one of its faces, whose corners are exactly the same.
+/// The mirror image of a solid at one of its faces, with exactly the same corners there.
 TrianglesObject beyond_face(const SolidObject& solid, const PlatonicShape::Face& face) {
     TrianglesObject mesh = triangulated_solid(solid);
     const dvec3 normal = Rotation(solid.rotation)(face.normal), on = mesh.vertices[face.vertices[0]];
@@ -44,7 +44,7 @@ class Objects : Part {
             const dvec3 center = random_.in_cube(0.5);
             add(placed(std::move(bowl), center, 1, shapes_.degrees()), true);
         } else if (sheets < 0.24) {
-            TrianglesObject pane;  // a fan, across what stands there
+            TrianglesObject pane;  // a fan through what stands there
             pane.vertices = {{0, 0.1, 0}, {2, 0, -0.9}, {1.2, 0.3, 2}, {-1, 0, 2.2}, {-2.1, -0.2, 0.3}};
             pane.uvs = {{0.5, 0.5}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
             pane.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
@@ -93,7 +93,7 @@ class Objects : Part {
         scene_.objects.push_back(std::move(object));
     }
 
-    /// By its planes, or else as a mesh.
+    /// Adds a solid as planes or as a mesh.
     void add_of(bool planes, const SolidObject& solid) {
         add(planes ? Shape(solid) : Shape(triangulated_solid(solid)), true);
     }
@@ -108,7 +108,7 @@ class Objects : Part {
         lights.falloff = random_.chance(0.4);
     }
 
-    /// Convex solids that do not touch, in a grid: more than a plain loop takes, or fewer.
+    /// Adds convex solids that do not touch, in a grid: sometimes more than the plain loop takes, sometimes fewer.
     void add_apart() {
         const uint32_t nx = 2 + random_.below(3), ny = 1 + random_.below(3), nz = 1 + random_.below(2);
         const bool lattice = random_.chance(0.3);
@@ -175,13 +175,13 @@ class Objects : Part {
                 if (!twin_first) add(std::move(twin), true);
                 break;
             }
-            case 3: {  // two in the same place
+            case 3: {  // two solids in the same place
                 const SolidObject s = shapes_.solid(center, 0.9);
                 add(s, true);
                 add_of(random_.chance(0.5), s);
                 break;
             }
-            case 4: {  // faces in one plane that overlap in part
+            case 4: {  // coplanar faces that overlap in part
                 SolidObject s = shapes_.solid(center, 0.7);
                 const auto& shape = platonic_shape(s.solid);
                 const dvec3 normal = Rotation(s.rotation)(shape.faces.back().normal);
@@ -191,7 +191,7 @@ class Objects : Part {
                 add(s, true);
                 break;
             }
-            case 5: {  // cubes that lie on the floor and on one another
+            case 5: {  // cubes on the floor and on one another
                 const double half = platonic_shape(PlatonicSolid::cube).inradius;
                 const double lower = random_.between(0.7, 1.1), upper = random_.between(0.3, 0.7);
                 const dvec3 on_floor = center + dvec3(0, 0, floor_height + lower * half);
@@ -199,7 +199,7 @@ class Objects : Part {
                 add(cube(on_floor + dvec3(0.1, 0, (lower + upper) * half), upper, dvec3(0, 0, 30)), true);
                 break;
             }
-            default: {  // corners on the faces, or on the corners, of what is around
+            default: {  // corners on the faces or corners of a surrounding solid
                 const dvec3 turn = shapes_.degrees();
                 const double half = platonic_shape(PlatonicSolid::cube).inradius;
                 const bool octahedron = random_.chance(0.5);
@@ -214,7 +214,7 @@ class Objects : Part {
     Materials materials_;
     Shapes shapes_;
     int reused_ = -1;           // a material without a texture
-    int edge_lights_left_ = 2;  // solids that may still carry them
+    int edge_lights_left_ = 2;  // solids that may still get edge lights
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A scene that is being made by number: its state, and the makers of its parts. Inside libcore/scene.
+// The state of a scene that is being generated, and the makers of its parts. Uses internals of libcore/scene.
 #pragma once
 
 #include <random>
@@ -13,8 +13,8 @@ namespace cistula::generated {
 
 using glm::dvec3;
 
-/// The standard's engine, our own conversions. Two draws never stand in one expression but in braces: their
-/// order is defined there.
+/// Random numbers with the standard library's engine and our own conversions. Two draws never stand in one expression,
+/// except in braces, where their order is defined.
 class Random {
   public:
     explicit Random(uint64_t seed) : engine_(seed) {}
@@ -40,12 +40,12 @@ class Random {
     std::mt19937_64 engine_;
 };
 
-/// What materials and lights may do; each calls for another mask of effects.h.
+/// The range of a scene's materials and lights; each palette needs another mask of effects.h.
 enum class Palette { plain, mirrors, lamps, everything };
 
 constexpr double floor_height = -1;
 
-struct Core {  // of a solid: a ball of a third of the radius lies inside
+struct Core {  // of a solid, which contains a ball of a third of this radius
     dvec3 center;
     double radius;
 };
@@ -58,12 +58,12 @@ struct State {
     const std::string files;  // the folder of the repository's scenes, or empty
     Palette palette = Palette::plain;
     std::vector<Core> cores;
-    std::vector<dvec3> centers;  // of groups
-    double reach = 1;            // how far the camera stands off
-    bool heavy = false;          // a mesh of thousands of triangles: the plain loop takes its time
+    std::vector<dvec3> centers;  // centers of groups
+    double reach = 1;            // distance of the camera
+    bool heavy = false;          // has a mesh of thousands of triangles, slow with the plain loop
 };
 
-/// What every maker of a part has at hand.
+/// Data that every maker of a part needs.
 class Part {
   protected:
     explicit Part(State& state)
@@ -86,7 +86,8 @@ class Part {
     bool& heavy_;
 };
 
-/// Adds a material, which may let light through more often than not, or have a texture; its number.
+/// Adds materials, and returns their numbers; a material may be required to transmit light more often than not, or to
+/// have a texture.
 class Materials : Part {
   public:
     explicit Materials(State& state) : Part(state) {}
@@ -100,7 +101,7 @@ class Materials : Part {
 
 using Shape = std::variant<SolidObject, TrianglesObject, MeshObject>;
 
-/// Draws shapes.
+/// Draws random shapes.
 class Shapes : Part {
   public:
     explicit Shapes(State& state) : Part(state) {}
@@ -113,7 +114,7 @@ class Shapes : Part {
 SolidObject cube(const dvec3& center, double radius, const dvec3& rotation);
 TrianglesObject placed(TrianglesObject mesh, const dvec3& center, double scale, const dvec3& degrees);
 
-/// Adds a floor, walls and sheets, and then groups of closed bodies.
+/// Adds a floor, walls and sheets, then groups of closed bodies.
 void add_objects(State& state);
 
 }  // namespace cistula::generated

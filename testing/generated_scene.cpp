@@ -12,7 +12,7 @@ namespace cistula {
 namespace generated {
 namespace {
 
-/// All but the objects and what they are made of.
+/// Makes everything but objects and materials.
 class Maker : Part {
   public:
     explicit Maker(State& state) : Part(state), state_(state) {}
@@ -25,7 +25,7 @@ class Maker : Part {
                                        : Palette::everything;
         add_objects(state_);
         if (random_.chance(0.2))
-            std::reverse(scene_.objects.begin(), scene_.objects.end());  // another priority of media
+            std::reverse(scene_.objects.begin(), scene_.objects.end());  // reverses the priority of media
         add_lights();
         set_camera();
         set_frame();
@@ -125,13 +125,13 @@ class Maker : Part {
         if (!(length(cross(camera.up, view)) > 0.01 * length(view))) camera.up = {0, 1, 0.5};
     }
 
-    /// Other units and another origin; a frame that is pinned.
+    /// Changes units and origin, and pins the frame at times.
     void set_frame() {
         const double scale = random_.chance(0.2) ? random_.of({0.01, 0.25, 137.5}) : 1;
         dvec3 offset(0);
         if (random_.chance(0.2))
             offset = {random_.between(-1000, 1000), random_.between(-10, 10), random_.of({0, 77.125})};
-        if (scene_.camera.position_path) offset = dvec3(0);  // paths go round the origin
+        if (scene_.camera.position_path) offset = dvec3(0);  // camera paths are around the origin
         const bool pinned = random_.chance(0.12), bound = random_.chance(0.5);
         if (scale != 1 || offset != dvec3(0)) move(scale, offset);
         if (!pinned) return;

@@ -9,14 +9,14 @@
 namespace cistula {
 namespace {
 
-/// Blocks side by side. A picture of more is rendered in columns of so many or fewer, one after the other among blocks
-/// of one weight: what is at work at a time then lies close together and shares the instructions that are fetched. 16
-/// took 1 to 4 % less time than whole rows on an H200, 8 and 32 up to 1 % more than that.
+/// The maximum number of blocks side by side. Wider pictures are rendered in columns of at most so many, among blocks
+/// of equal weight: blocks that run at the same time then lie close together and share fetched instructions. 16 took 1
+/// to 4 % less time than whole rows on an H200; 8 and 32 took up to 1 % more than 16.
 constexpr int most_side_by_side = 16;
 
-/// Blocks of more weight come first: what takes longest, so that no block is long at work alone in the end. Where
-/// solids may show trees fork, and the more that may show the longer rays take. With one sample at 1280x720
-/// benchmark.json took 14 % less time so in float, and 4 % with 4x4.
+/// The maximum weight of a block, its estimated cost. Heavier blocks start first, so that no single block runs long at
+/// the end. Trees fork where solids may be visible, and rays take longer the more primitives may be. With one sample at
+/// 1280x720 benchmark.json took 14 % less time in float; with 4x4 samples, 4 % less.
 constexpr int heaviest = 32;
 int weight_of(uint32_t in_view) {
     constexpr uint32_t solids = (1u << ShadowPlan::first_cluster) - 1;
@@ -33,7 +33,7 @@ BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primi
     const int all = strips.count * (strip_rows / shape.height);
     listed_.assign(size_t(all) * size_t(columns_), 0);
     std::vector<uint32_t> in_view(listed_.size());
-    int rows = 0;  // that lie in the rectangle
+    int rows = 0;  // rows of blocks that lie in the rectangle
     for (int i = 0; i < all && row_of(i) * shape.height < rect_.height; rows = ++i) {
         for_each_met(cover, i, [&](size_t block, size_t hull) {
             listed_[block] = 1;

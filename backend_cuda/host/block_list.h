@@ -1,4 +1,4 @@
-// The blocks of a part of a frame that are rendered: those that its cover meets.
+// The blocks of a part of a frame that are rendered: those where the scene may be visible (FrameCover).
 #pragma once
 
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace cistula {
 
-/// Rows of a frame come in strips of this many, so that several devices can take turns.
+/// The number of rows in a strip; strips are dealt out to several devices in turn.
 inline constexpr int strip_rows = 16;
 static_assert(strip_rows % BlockPlan{PixelMapping::own_tiles, most_warps}.shape().height == 0 &&
               tile_height % FrameCover::band_rows == 0);
 
-/// Strips first, first + step, ... of a frame's rectangle: `count` of them.
+/// A device's strips of a frame's rectangle: first, first + step, ..., `count` of them.
 struct Strips {
     int first = 0, step = 1, count = 0;
 };
@@ -21,19 +21,20 @@ struct Strips {
 class BlockList {
   public:
     BlockList() = default;
-    /// primitives[h]: what the cover's hull h shows, as in BlockPlace::in_view; all primitives where it has no such
-    /// number.
+    /// primitives[h]: mask of primitives that hull h of the cover shows, as in BlockPlace::in_view; all primitives
+    /// where there is no entry.
     BlockList(const FrameCover& cover, const std::vector<uint32_t>& primitives, const Strips& strips,
               const BlockPlan& plan);
 
-    /// In the order in which they are rendered.
+    /// The blocks in the order in which they are rendered.
     const std::vector<BlockPlace>& places() const { return places_; }
     const BlockPlan& plan() const { return plan_; }
     BlockShape shape() const { return plan_.shape(); }
 
-    /// Rows of blocks; visit(row, begin, end) for the pixels in the i-th that no block renders, row by row of the
-    /// rectangle.
+    /// The number of rows of blocks in this part.
     int rows() const { return int(listed_.size()) / std::max(columns_, 1); }
+    /// Calls visit(row, begin, end) for the pixels in row i of blocks that no block renders, one row of pixels after
+    /// the other.
     template <class Visit>
     void for_each_gap(int i, const Visit& visit) const {
         const BlockShape shape = this->shape();
@@ -48,18 +49,18 @@ class BlockList {
     }
 
   private:
-    /// visit(block, hull) for each block of the i-th row of blocks and each hull whose outline meets it, perhaps
-    /// several times.
+    /// Calls visit(block, hull) for each block in row i of blocks and each hull whose outline meets it, perhaps several
+    /// times.
     template <class Visit>
     void for_each_met(const FrameCover& cover, int i, const Visit& visit) const;
 
-    /// In the rectangle, of the i-th row of blocks of the part.
+    /// The number, in the whole rectangle, of this part's row i of blocks.
     int row_of(int i) const {
         const int in_strip = strip_rows / shape().height;
         return (strips_.first + i / in_strip * strips_.step) * in_strip + i % in_strip;
     }
 
-    /// ... and the other way round; -1: another device's.
+    /// The inverse of row_of(); -1 if that row of blocks is another device's.
     int index_of(int row) const {
         const int in_strip = strip_rows / shape().height, strip = row / in_strip - strips_.first;
         return strip < 0 || strip % strips_.step != 0 ? -1 : strip / strips_.step * in_strip + row % in_strip;

@@ -1,4 +1,4 @@
-// Every call of the CUDA runtime is checked; errors carry the call and CUDA's own words.
+// Error checks for calls of the CUDA runtime; errors name the call and carry CUDA's message.
 #pragma once
 
 #include <cuda_runtime_api.h>

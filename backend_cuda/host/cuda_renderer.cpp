@@ -14,7 +14,7 @@
 namespace cistula {
 namespace {
 
-/// Samples of a part: what is copied while the next is in the kernels.
+/// The number of samples in a part of a frame: one part is copied back while the next is rendered.
 constexpr size_t part_samples = size_t{1} << 25;
 
 bool same(const CameraFrame& a, const CameraFrame& b) {
@@ -45,7 +45,7 @@ class CudaRenderer : public Renderer {
 
     ~CudaRenderer() override {
         try {
-            drop();  // or freeing memory would wait for a frame that nobody wants
+            drop();  // else freeing memory would wait for an unwanted frame
         } catch (...) {
         }
     }
@@ -99,7 +99,7 @@ class CudaRenderer : public Renderer {
                                                       known[size_t(index)].obstacle));
     }
 
-    /// Plans a frame and sets its first part on its way.
+    /// Plans a frame and starts its first part.
     FramePlan begin(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) {
         FramePlan plan;
         plan.camera = camera;
@@ -122,7 +122,7 @@ class CudaRenderer : public Renderer {
         return plan;
     }
 
-    /// Divides a frame into parts for which there is memory.
+    /// Divides a frame into parts that fit into memory.
     void divide(FramePlan& plan) {
         const PixelRect& rect = plan.settings.crop;
         constexpr int width = BlockPlan::width;
@@ -135,7 +135,7 @@ class CudaRenderer : public Renderer {
         plan.parts = (most + plan.part_strips - 1) / plan.part_strips;
     }
 
-    /// Takes memory for parts of `strips`, or of half as many until it is enough: of how many.
+    /// Allocates memory for parts of `strips` strips, or of half as many until it fits; returns the number.
     int reserve(int strips, const FramePlan& plan) {
         const int wanted = strips;
         const auto has_room = [&] {
@@ -165,11 +165,11 @@ class CudaRenderer : public Renderer {
                 workers_[d]->start(plan, strips, (plan.first_slot + part) % DeviceWorker<Real>::slots);
     }
 
-    /// Starts what comes after a part and puts the part into the film; false if that was stopped.
+    /// Starts the next part and puts this one into the film; false if that was stopped.
     bool finish(const FramePlan& plan, int part, Film& film, RenderProgress& progress) {
         if (part + 1 < plan.parts)
             start(plan, part + 1);
-        else if (expected_ && expected_->settings == plan.settings)  // others may need memory that this one still has
+        else if (expected_ && expected_->settings == plan.settings)  // others may need memory still in use
             begun_ = begin(expected_->camera, expected_->settings, plan.first_slot + part + 1);
         const int slot = (plan.first_slot + part) % DeviceWorker<Real>::slots;
         std::atomic<bool> stopped{false};
@@ -186,7 +186,8 @@ class CudaRenderer : public Renderer {
         return true;
     }
 
-    /// Ends all that was begun and forgets it. All workers first: one GPU may have several.
+    /// Stops and forgets everything that was started. All workers are stopped before any is waited for, since one GPU
+    /// may have several.
     void drop() {
         for (auto& worker : workers_) worker->stop();
         for (auto& worker : workers_) worker->wait();

@@ -1,4 +1,4 @@
-// The GPU backend: libcore's traversal and kernel body on NVIDIA GPUs. Never another processor instead.
+// The GPU backend: libcore's traversal and shading on NVIDIA GPUs. It never falls back to the CPU.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace cistula {
 
-/// A GPU as the driver numbers it. `obstacle` is empty where this build's kernels run on it.
+/// A GPU with the driver's number. `obstacle` is empty if this build's kernels run on it, else it says why not.
 struct CudaDevice {
     int index = 0;
     std::string name;
@@ -21,34 +21,35 @@ struct CudaDevice {
     std::string obstacle;
 };
 
-/// All GPUs of this machine. Throws Error (device) where there is none: no driver, a driver too old, no device.
+/// All GPUs of this machine. Throws Error (device) if there is none: no driver, a driver too old, no device.
 std::vector<CudaDevice> list_cuda_devices();
 
-/// The version that the driver supports, "13.0"; for records.
+/// The CUDA version that the driver supports, such as "13.0", for records.
 std::string cuda_driver_version();
 
 struct CudaOptions {
     std::vector<int> devices = {0};  // CudaDevice::index; all share every frame, by interleaved tiles
-    // None of these changes the image:
-    size_t memory_limit = 0;   // bytes of a device that pixels may take; 0: what is free
-    bool always_tree = false;  // a tree even where a plain loop would do; for tests
+    // The following options never change the image.
+    size_t memory_limit = 0;   // bytes of device memory for pixels; 0: all that is free
+    bool always_tree = false;  // use a tree even where a plain loop is faster; for tests
 };
 
-/// What a kernel takes of this thread's current device.
+/// The resources that a kernel takes on this thread's current device.
 struct KernelResources {
     const char* name;              // "render_pixels", ...
     const char *precision, *path;  // "float", "double"; "loop", "tree"
-    uint32_t mask;                 // of effects
-    int registers;                 // of a thread
-    size_t local_bytes;            // of a thread: its stack of branches, and what found no register
-    int blocks;                    // that share a multiprocessor
-    double occupancy;              // their threads, as a share of those that a multiprocessor has room for
+    uint32_t mask;                 // effect mask
+    int registers;                 // per thread
+    size_t local_bytes;            // per thread: its branch stack and spilled registers
+    int blocks;                    // resident blocks per multiprocessor
+    double occupancy;              // resident threads as a share of the maximum
 };
 
-/// What all kernels in this program take. Throws Error (device).
+/// The resources of all kernels in this program. Throws Error (device).
 std::vector<KernelResources> kernel_resources();
 
-/// Uploads the scene. Throws Error (device) with CUDA's own words where a device cannot be used.
+/// A renderer on GPUs, to which it uploads the scene. Throws Error (device) with CUDA's message if a device cannot be
+/// used.
 template <class Real>
 std::unique_ptr<Renderer> make_cuda_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                              const CudaOptions& options = {});

@@ -1,4 +1,4 @@
-// What the CUDA runtime hands out, owned. All belong to the device that is current when they are made.
+// Owners of CUDA runtime resources. Each belongs to the device that is current when it is made.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-/// Memory of a device, or page-locked memory of the host that devices copy to at full speed.
+/// Device memory, or page-locked host memory, which devices copy to at full speed.
 template <bool on_device>
 class CudaMemory {
   public:
@@ -20,19 +20,19 @@ class CudaMemory {
         return *this;
     }
 
-    /// At least `bytes`, contents undefined. Throws Error (device); the memory is then empty.
+    /// Reserves at least `bytes`, with undefined contents. Throws Error (device); the memory is then empty.
     void reserve(size_t bytes) {
         if (!try_reserve(bytes))
             fail_cuda(cudaErrorMemoryAllocation, "no room for " + std::to_string(bytes) + " bytes");
     }
 
-    /// At least `bytes`, contents undefined; false where there is no room for it. Other errors throw.
+    /// Reserves at least `bytes`, with undefined contents; false if there is not enough memory. Other errors throw.
     bool try_reserve(size_t bytes) {
         if (bytes <= bytes_) return true;
         free();
         const cudaError_t error = on_device ? cudaMalloc(&data_, bytes) : cudaMallocHost(&data_, bytes);
         if (error == cudaErrorMemoryAllocation) {
-            cudaGetLastError();  // it is no longer news
+            cudaGetLastError();  // clears the error, which is handled here
             data_ = nullptr;
             return false;
         }
@@ -88,11 +88,11 @@ class CudaEvent {
         const cudaError_t error = cudaEventQuery(event_);
         if (error == cudaSuccess) return true;
         if (error != cudaErrorNotReady) fail_cuda(error, "cudaEventQuery");
-        cudaGetLastError();  // or the next launch would be told
+        cudaGetLastError();  // clears the error, which the next launch would report
         return false;
     }
 
-    /// Milliseconds from `earlier`; both must have happened.
+    /// Milliseconds since `earlier`; both events must have completed.
     double since(const CudaEvent& earlier) const {
         float milliseconds = 0;
         CISTULA_CUDA_CHECK(cudaEventElapsedTime(&milliseconds, earlier.event_, event_));

@@ -11,18 +11,19 @@
 namespace cistula {
 namespace {
 
-/// Blocks of a kernel that samples adaptively that a multiprocessor has at work, at the most.
+/// The maximum number of blocks per multiprocessor of the kernel for adaptive sampling.
 constexpr int most_blocks = 6;
-/// Bytes of FrameJob::next.
+/// Bytes allocated for FrameJob::next.
 constexpr size_t next_bytes = 16;
-/// So long the host asks again and again whether a part is done, then every hundredth of the time that it has waited.
+/// The time for which the host polls for the end of a part without pausing, and its longest pause after that; pauses
+/// are a hundredth of the time waited.
 constexpr double patience = 5e-3, longest_nap = 1e-3;  // seconds
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Waits for an event; false once `stop` is set, which no call of CUDA's would look at.
+/// Waits for an event; false once `stop` is set, which CUDA's own waiting functions would not notice.
 bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
     const auto start = std::chrono::steady_clock::now();
     while (!done.happened()) {
@@ -54,7 +55,8 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
 }
 
-/// Takes memory for as many blocks as the device can have at work, or half as many until there is some.
+/// Allocates adaptive sampling's storage for as many blocks as the device can run at once, or half as many until it
+/// fits.
 template <class Real>
 void DeviceWorker<Real>::reserve_storage() {
     if (storage_blocks_ != 0) return;
@@ -67,7 +69,7 @@ void DeviceWorker<Real>::reserve_storage() {
     storage_blocks_ = blocks;
 }
 
-/// A job without pixels, with all that belongs to the worker.
+/// A job without pixels, with all data that belong to the worker.
 template <class Real>
 FrameJob DeviceWorker<Real>::job_for(const PartSlot& slot) const {
     FrameJob job;
@@ -80,9 +82,9 @@ FrameJob DeviceWorker<Real>::job_for(const PartSlot& slot) const {
     return job;
 }
 
-/// Runs a kernel on nothing. Its first launch takes memory for its threads' stacks, over a gigabyte on a large device,
-/// which must come before the pixels', which can do with less. It may also wait for other kernels, which must not be
-/// endless then.
+/// Launches a kernel on no pixels. A kernel's first launch allocates its threads' stacks, over a gigabyte on a large
+/// device; that must happen before the pixels' memory is allocated, which can do with less. It may also wait for other
+/// kernels, which must then not run indefinitely.
 template <class Real>
 void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
     const int kernel = 2 * mask + int(sampling);
@@ -90,7 +92,7 @@ void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
     if (sampling == Sampling::adaptive) reserve_storage();
     PartSlot& slot = slots_[0];
     slot.records.reserve(most_warps * warp_threads * sizeof(PixelRecord));
-    FrameJob job = job_for(slot);  // of a rectangle without height: no pixel of its block is rendered
+    FrameJob job = job_for(slot);  // its rectangle has no height, so its block renders no pixel
     job.blocks = next_.as<BlockPlace>();
     job.block_count = 1;
     CISTULA_CUDA_CHECK(cudaMemsetAsync(next_.as<void>(), 0, next_bytes, compute_));
@@ -106,14 +108,14 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, Sampling sa
     const size_t bytes = pixels * sizeof(PixelRecord);
     if (memory_limit != 0 && slots * bytes > memory_limit) return false;
     bool room = true;
-    // A block a tile at the most.
+    // At most one block per tile.
     const size_t list_bytes = pixels / (tile_width * tile_height) * sizeof(BlockPlace);
     for (PartSlot& slot : slots_) {
         room = room && slot.records.try_reserve(bytes) && slot.blocks.try_reserve(list_bytes);
         slot.blocks_copy.reserve(list_bytes);
     }
     if (room) return true;
-    // What one has got would be missing when the others ask for less.
+    // Frees what was allocated: it would be missing when less is requested.
     for (PartSlot& slot : slots_) slot.records.free();
     return false;
 }
@@ -186,7 +188,7 @@ void DeviceWorker<Real>::wait() {
     stop_.lower(compute_);
 }
 
-/// Fills what no block renders with background.
+/// Fills the pixels that no block renders with background.
 template <class Real>
 void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
     const BackgroundPixel& background = slot.hints->background;

@@ -1,4 +1,4 @@
-// One GPU's share of frames: a part at a time on its way through the kernels while the one before is read back.
+// One GPU's share of frames: one part is rendered while the previous one is read back.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace cistula {
 
-/// "7.5 or later": what this build's kernels run on.
+/// The compute capabilities that this build's kernels run on, such as "7.5 or later".
 std::string kernel_architectures();
 bool kernels_run_on_capability(int capability);
 
@@ -23,30 +23,29 @@ void use_device(int device);
 template <class Real>
 class DeviceWorker {
   public:
-    static constexpr int slots = 2;  // parts on their way at once
+    static constexpr int slots = 2;  // parts that are in progress at once
 
-    /// `here`: the scene of the arena, where this program can read it. The device is current.
+    /// `here`: a view of the arena's scene in host memory. The device must be current.
     DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path);
 
-    /// Takes memory for parts of that many pixels, those of whole blocks, in both slots, beside what a mask's kernel
-    /// takes for itself. False where there is none.
+    /// Allocates memory for parts of `pixels` pixels, counting whole blocks, in both slots, beside what a mask's kernel
+    /// allocates for itself. False if there is not enough.
     bool reserve(size_t pixels, size_t memory_limit, Sampling sampling, int mask);
 
-    /// Enqueues a part of a frame; nothing is waited for. Its slot must be free.
+    /// Enqueues a part of a frame without waiting. Its slot must be free.
     void start(const FramePlan& plan, const Strips& strips, int slot);
 
-    /// Waits for the part in a slot and puts its pixels where they belong in the film. False, the part still under way,
-    /// once `stop` is set.
+    /// Waits for the part in a slot and puts its pixels into the film. False once `stop` is set; the part is then still
+    /// being rendered.
     bool fetch(int slot, Film& film, const std::atomic<bool>& stop);
 
-    /// Makes all that was started end soon, whatever is left to do; nothing is waited for. Until wait() nothing may
-    /// start.
+    /// Makes all that was started end soon, without waiting. Nothing may be started until wait() returns.
     void stop();
 
     /// Waits for all that was started.
     void wait();
 
-    /// Counts of all parts fetched since the caller reset them.
+    /// Totals over all parts fetched since the caller reset them.
     struct Totals {
         double kernel_seconds = 0, transfer_seconds = 0;
         RayCounts rays;
@@ -55,11 +54,11 @@ class DeviceWorker {
     Totals totals;
 
   private:
-    /// A part on its way.
+    /// A part that is being rendered.
     struct PartSlot {
         DeviceMemory records, blocks, tally;
         PinnedMemory blocks_copy, tally_copy;
-        CudaEvent begin, end, done;  // of the kernels; of all, the tally's copy too
+        CudaEvent begin, end, done;  // around the kernel; after the tally's copy too
         std::shared_ptr<const FrameHints> hints;
         BlockList list;
     };
@@ -78,7 +77,7 @@ class DeviceWorker {
     DeviceMemory next_;                // FrameJob::next
     DeviceMemory storage_;             // FrameJob::storage
     unsigned int storage_blocks_ = 0;  // 0: storage_ is empty
-    uint32_t primed_ = 0;              // bit 2 m + s: that mask m's kernel of Sampling s has run
+    uint32_t primed_ = 0;              // bit 2 m + s: mask m's kernel for Sampling s has run
     PartSlot slots_[slots];
 };
 

@@ -54,7 +54,7 @@ std::string kernel_architectures() {
 }
 
 bool kernels_run_on_capability(int capability) {
-    return capability >= CISTULA_LEAST_CAPABILITY;  // the PTX of the least one runs on every later GPU
+    return capability >= CISTULA_LEAST_CAPABILITY;  // the PTX of the lowest capability runs on every later GPU
 }
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// How a frame is dealt out to GPUs: in strips of rows, part after part.
+// The distribution of a frame to GPUs: in parts, each of several strips of rows per device.
 #pragma once
 
 #include <algorithm>
@@ -18,15 +18,15 @@ struct FramePlan {
     BlockPlan blocks;
     Sampling sampling = Sampling::uniform;
     int mask = 0;             // index of effect_masks
-    bool fits = true;         // whether the camera's list of media had room
-    int devices = 1;          // strip s of the rectangle is device s % devices's
+    bool fits = true;         // whether the camera's medium stack had room
+    int devices = 1;          // strip s of the rectangle belongs to device s % devices
     int strips = 0;           // of the whole rectangle
-    size_t strip_pixels = 0;  // those of whole blocks
+    size_t strip_pixels = 0;  // of whole blocks
     int part_strips = 0;      // of a part, per device
     int parts = 0;
-    int first_slot = 0;  // where the first part goes
+    int first_slot = 0;  // slot of the first part
 
-    /// Strips of the device that has most.
+    /// The number of strips of the device that has most.
     int strips_per_device() const { return (strips + devices - 1) / devices; }
 
     Strips strips_of(int part, int device) const {
@@ -39,7 +39,7 @@ struct FramePlan {
         return uint64_t(std::clamp(height - part * rows, 0, rows)) * uint64_t(settings.crop.width);
     }
 
-    /// Samples of a pixel, more or less.
+    /// Samples of a pixel; an estimate if sampling is adaptive.
     size_t samples() const {
         constexpr size_t adaptive = 16;
         return settings.adaptive() ? adaptive : size_t(settings.supersample) * size_t(settings.supersample);

@@ -12,13 +12,13 @@ namespace cistula {
 namespace {
 
 constexpr size_t staging_bytes = size_t{32} << 20;
-constexpr int blocks_together = 16;  // that a thread of the host unpacks
+constexpr int blocks_together = 16;  // that a host thread unpacks at a time
 
-constexpr size_t most_records = most_warps * warp_threads;  // of a block
+constexpr size_t most_records = most_warps * warp_threads;  // records of a block
 using RecordOrder = std::array<uint8_t, most_records>;
 static_assert(most_records - 1 <= UINT8_MAX);
 
-/// The numbers of a block's records, row by row of its pixels.
+/// The numbers of a block's records in row order of its pixels.
 RecordOrder rows_of_records(const BlockPlan& plan) {
     const BlockShape shape = plan.shape();
     RecordOrder records{};
@@ -29,7 +29,7 @@ RecordOrder rows_of_records(const BlockPlan& plan) {
     return records;
 }
 
-/// Puts a block's records into the film.
+/// Writes a block's records to the film.
 void unpack(const PixelRecord* from, const RecordOrder& records, BlockShape shape, const BlockPlace& block, Film& film,
             const PixelWriter& writer) {
     const int left = block.column * shape.width, top = block.row * shape.height;
@@ -50,7 +50,7 @@ void Readback::copy(const PixelRecord* records, const BlockList& list, Film& fil
     const auto order = rows_of_records(list.plan());
     const size_t in_block = size_t(shape.pixels());
     const int count = int(places.size());
-    // No more than there is: to lock pages takes longer than to render a small frame.
+    // Staging buffers no larger than needed: locking pages takes longer than rendering a small frame.
     const int batch = std::min(int(staging_bytes / (in_block * sizeof(PixelRecord))), count);
     for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * in_block * sizeof(PixelRecord));
     const auto fill = [&](int first, int buffer) {

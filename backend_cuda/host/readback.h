@@ -1,4 +1,4 @@
-// Records of blocks from a GPU's memory into a film.
+// Copies the records of blocks from a GPU's memory to a film.
 #pragma once
 
 #include "backend_cuda/host/block_list.h"
@@ -7,11 +7,11 @@
 
 namespace cistula {
 
-/// Belongs to the device that is current when it is made.
+/// Copies records through page-locked buffers. Belongs to the device that is current when it is made.
 class Readback {
   public:
-    /// Copies the records of all blocks of a list, which lie at `records` on the device, to where they belong in the
-    /// film. Through two page-locked buffers: one is filled while threads spread the other over the film.
+    /// Copies the records of all blocks of a list, stored at `records` on the device, to the film. It uses two
+    /// page-locked buffers: one is filled while threads distribute the other over the film.
     void copy(const PixelRecord* records, const BlockList& list, Film& film);
 
     cudaStream_t stream() const { return stream_; }

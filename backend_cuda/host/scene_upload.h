@@ -1,4 +1,4 @@
-// A scene in a GPU's memory, and the forms in which kernels take it.
+// A scene in a GPU's memory, in the forms that kernels take.
 #pragma once
 
 #include <vector>
@@ -9,18 +9,18 @@
 
 namespace cistula {
 
-/// The path for a scene: up to 16 primitives a plain loop is faster than any tree.
+/// The path for a scene: with up to 16 primitives a plain loop is faster than any tree.
 template <class Real>
 DevicePath path_for(const SceneView<Real>& scene);
 
 template <class Real>
 class SceneUpload {
   public:
-    /// Copies to the current device. `here`: the scene of the arena, where this program can read it.
+    /// Copies a scene to the current device. `here`: a view of the arena's scene in host memory.
     SceneUpload(const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path, cudaStream_t stream);
 
     const DeviceScene<Real>& scene() const { return scene_; }
-    /// The primitives of each solid, as in BlockPlace::in_view; empty where kernels do not ask.
+    /// The primitive mask of each solid, as in BlockPlace::in_view; empty where kernels do not use it.
     const std::vector<uint32_t>& primitives() const { return primitives_; }
 
   private:

@@ -1,11 +1,11 @@
-// What kernels look at to end soon.
+// The flag by which the host ends running kernels.
 #pragma once
 
 #include "backend_cuda/host/cuda_resources.h"
 
 namespace cistula {
 
-/// A word in the memory of the device that is current when it is made: 1 while its kernels are to end.
+/// A word in the memory of the device that is current when it is made; 1 tells its kernels to end.
 class StopFlag {
   public:
     explicit StopFlag(cudaStream_t compute) {
@@ -17,7 +17,7 @@ class StopFlag {
 
     const unsigned int* on_device() const { return flag_.as<unsigned int>(); }
 
-    /// Sets it, past the kernels: by a copy on another stream, as a kernel that did so might have to wait for others.
+    /// Sets the flag by a copy on another stream: a kernel that set it might have to wait for the running ones.
     void raise(cudaStream_t copy) {
         CISTULA_CUDA_CHECK(
             cudaMemcpyAsync(flag_.as<void>(), one_.as<void>(), sizeof(unsigned int), cudaMemcpyHostToDevice, copy));

@@ -1,5 +1,5 @@
-// The device's launcher of adaptively sampled pixels. They want from 4 samples to 256 of trees of all sizes: a warp has
-// a few pixels at work, next to each other, and its lanes take what these want at the time, so that no lane waits for
+// The kernel for adaptively sampled pixels, which take from 4 to 256 samples with ray trees of all sizes. A warp works
+// on several neighboring pixels, and its lanes take the samples that these want at the time, so that no lane waits for
 // one pixel.
 #pragma once
 
@@ -11,11 +11,11 @@ namespace cistula {
 inline constexpr int warp_pixels = pixels_at_work / adaptive_shape.warps;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
 
-/// Deals the pieces of work of a warp's pixels to its lanes: lane s knows how many pieces come before pixel s's.
+/// Distributes the work items of a warp's pixels over its lanes: lane s holds the number of items before pixel s's.
 struct WarpScheduler {
     int before, total;
 
-    /// `count`: lane s's is pixel s's, others' are 0.
+    /// `count`: in lane s the number of items of pixel s; in the remaining lanes 0.
     __device__ static WarpScheduler of(int count) {
         const int lane = threadIdx.x % warp_threads;
         int sum = count;
@@ -26,7 +26,7 @@ struct WarpScheduler {
         return {sum - count, __shfl_sync(whole_warp, sum, warp_pixels - 1)};
     }
 
-    /// Piece j < total is piece i of `pixel`. All lanes must ask.
+    /// Finds the pixel and the index in it of work item j < total. All lanes must call it.
     __device__ void find(int j, int& pixel, int& i) const {
         for (int s = 0; s < warp_pixels; ++s) {
             const int first = __shfl_sync(whole_warp, before, s);
@@ -34,7 +34,7 @@ struct WarpScheduler {
         }
     }
 
-    /// visit(pixel, i) for all pieces, each in one lane.
+    /// Calls visit(pixel, i) for all items, each in one lane.
     template <class Visit>
     __device__ void for_each(const Visit& visit) const {
         for (int j = threadIdx.x % warp_threads; __any_sync(whole_warp, j < total); j += warp_threads) {
@@ -46,7 +46,7 @@ struct WarpScheduler {
     }
 };
 
-/// Adds to what other lanes add to.
+/// An atomic addition, for sums to which several lanes add.
 struct AtomicAdd {
     __device__ void operator()(int64_t& to, int64_t value) const {
         if (value != 0) atomicAdd(reinterpret_cast<unsigned long long*>(&to), (unsigned long long)value);
@@ -56,7 +56,7 @@ struct AtomicAdd {
     }
 };
 
-/// The pixels that a warp has at work: lane s < warp_pixels has the s-th.
+/// The pixels that a warp works on: lane s < warp_pixels holds the s-th.
 class WarpPixels {
   public:
     __device__ WarpPixels(const FrameJob& job)
@@ -67,7 +67,7 @@ class WarpPixels {
           at_once_(clamped(int(places_ / (gridDim.x * adaptive_shape.warps)), 1, warp_pixels)),
           storage_(job.storage + (blockIdx.x * adaptive_shape.warps + threadIdx.x / warp_threads) * warp_pixels) {}
 
-    /// New pixels for those that are done, while less than a sample a lane is wanted.
+    /// Starts new pixels in place of finished ones while fewer samples are wanted than there are lanes.
     __device__ void refill() {
         while (more_) {
             const int waiting = int(warp_sum(unsigned(wanted_ - given_)));
@@ -86,7 +86,7 @@ class WarpPixels {
         __syncwarp();
     }
 
-    /// Calls take(x, y, storage, slot, record) for one wanted sample a lane; false if there is none for any.
+    /// Calls take(x, y, storage, slot, record) for one wanted sample per lane; false if no lane has any.
     template <class Take>
     __device__ bool take_samples(const Take& take) {
         const WarpScheduler pieces = WarpScheduler::of(wanted_ - given_);
@@ -102,7 +102,8 @@ class WarpPixels {
         return true;
     }
 
-    /// Lets those that have all that they wanted in their round decide what they want next.
+    /// Lets pixels that have all samples of their round decide which samples they want next, and writes the sums of
+    /// those that are finished.
     __device__ void finish_round() {
         const bool ready = wanted_ != 0 && given_ == wanted_;
         if (!__any_sync(whole_warp, ready)) return;
@@ -122,7 +123,7 @@ class WarpPixels {
             standing.find(j, pixel, i);
             PixelRecord& to = records_[__shfl_sync(whole_warp, record, pixel)];
             if (j >= standing.total) continue;
-            // In one sum: to read the next sample after adding where others add would be to wait for it.
+            // Summed locally: reading the next sample right after an atomic addition would wait for it.
             PixelRecord cell = PixelRecord();
             storage_[pixel].pixel.accumulate(
                 settings, i, [&](int slot, int weight) { storage_[pixel].samples[slot].give(cell, weight, Plus()); });
@@ -140,7 +141,7 @@ class WarpPixels {
         const PixelPlace in_tile = BlockPlan{PixelMapping::shared_tile}.place_of(int(place % warp_threads));
         const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
         record_ = place;
-        records_[record_] = PixelRecord();  // beyond the rectangle too: all of a tile are copied
+        records_[record_] = PixelRecord();  // also beyond the rectangle: whole tiles are copied
         if (column >= job_.width || row >= job_.height) return;
         x_ = job_.x + column;
         y_ = job_.y + row;
@@ -148,7 +149,7 @@ class WarpPixels {
         note_wishes();
     }
 
-    /// Right after the pixel has decided, while it is at hand.
+    /// Reads the pixel's wishes right after it has decided, while they are in cache.
     __device__ void note_wishes() {
         given_ = 0;
         wanted_ = storage_[lane_].pixel.wanted();
@@ -158,13 +159,13 @@ class WarpPixels {
     const FrameJob& job_;
     PixelRecord* const records_;
     const int lane_;
-    const unsigned int places_;  // of pixels: blocks are tiles
-    const int at_once_;          // pixels: of a small frame fewer, so that all warps have some
+    const unsigned int places_;  // number of pixels: a block is a tile
+    const int at_once_;          // pixels; fewer in a small frame, so that all warps have some
     LatticeStorage* const storage_;
-    bool more_ = true;  // pixels that nobody has begun
+    bool more_ = true;  // whether there are pixels that no warp has started
     int x_ = 0, y_ = 0;
     unsigned int record_ = 0;
-    int given_ = 0, wanted_ = 0;  // samples of this round that lanes took, and all of them; none wanted: no pixel
+    int given_ = 0, wanted_ = 0;  // samples of this round: taken by lanes, and all; wanted 0: no pixel
     int cells_ = 0;
 };
 
@@ -185,7 +186,7 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
     WarpPixels pixels(job);
     for (;;) {
         pixels.refill();
-        const bool ends = stack.stopped();  // asked ahead: the answer takes a while
+        const bool ends = stack.stopped();  // read early: the load takes a while
         const bool any = pixels.take_samples([&](int x, int y, LatticeStorage& pixel, int slot, PixelRecord& record) {
             const uint32_t hash =
                 take_sample(PixelTask<E, Intersector, Stack>{scene, job.frame, intersector, x, y, own, stack}, slot,

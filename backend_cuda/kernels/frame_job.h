@@ -1,4 +1,4 @@
-// What the host asks of a device for a part of a frame, and the kernels' launcher.
+// A kernel's job, a part of a frame, and the function that launches it.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -13,57 +13,57 @@
 
 namespace cistula {
 
-/// Ray counts and flags, added up by many blocks: spread over slots, so that they do not queue for one.
+/// Ray counts and error flags, added up by many blocks; several slots reduce contention between them.
 struct DeviceTally {
     static constexpr int slots = 64;
     unsigned long long rays[slots][4];  // in the order of RayCounts
     unsigned int flags;
 };
 
-/// What a pixel that is sampled adaptively keeps until it is done.
+/// The state of an adaptively sampled pixel until it is finished.
 struct LatticeStorage {
     LatticePixel pixel;
     LatticeSample samples[lattice_samples];
 };
-/// Such pixels that a block has at work at a time. At first they want a sample for most of its threads, later for all.
-/// With twice as many platonic.json takes 15 % longer at 320x180 (H200), as the last warps are longer alone with
-/// theirs.
+/// The number of adaptively sampled pixels that a block works on at a time. At first they want a sample for most of its
+/// threads, later for all. With twice as many platonic.json takes 15 % longer at 320x180 (H200), as the last warps take
+/// longer to finish theirs.
 inline constexpr int pixels_at_work = 16;
 
-/// Blocks of the frame's rectangle.
+/// A kernel's parameters: the blocks of a frame's rectangle to render.
 struct FrameJob {
     FrameView frame;
-    PixelRecord* records = nullptr;  // by blocks; those beyond the rectangle are unset
+    PixelRecord* records = nullptr;  // ordered by blocks; unset beyond the rectangle
     int x = 0, y = 0;                // of the rectangle in the frame
     int width = 0, height = 0;       // of the rectangle
     const BlockPlace* blocks = nullptr;
     unsigned int block_count = 0;
     PixelMapping mapping = PixelMapping::own_tiles;
     DeviceTally* tally = nullptr;
-    const unsigned int* stop = nullptr;  // to a 1: the kernel ends, and what it has written means nothing
-    unsigned int* next = nullptr;        // of adaptive sampling: the pixel that the next free warp takes,
+    const unsigned int* stop = nullptr;  // points to 1: the kernel ends, and its output is invalid
+    unsigned int* next = nullptr;        // adaptive sampling: the pixel that the next free warp takes,
     LatticeStorage* storage = nullptr;   // ... pixels_at_work for each of storage_blocks
     unsigned int storage_blocks = 0;
 };
 
-/// The scene in both forms; `constant` is set for the plain loop only.
+/// A scene in both forms; `constant` is set for the plain loop only.
 template <class Real>
 struct DeviceScene {
     SceneView<Real> view;  // in device memory
     ConstantScene<Real> constant;
 };
 
-/// What a kernel renders: all pixels of the job with their grid of samples, or those of a frame with a target error.
+/// How a kernel samples: every pixel on its uniform grid, or adaptively in a frame with a target error.
 enum class Sampling { uniform, adaptive };
 
-/// Enqueues a job's kernel. `mask` is an index of effect_masks; adaptive sampling runs with all effects, the last that
-/// scenes run with. Throws Error (device).
+/// Enqueues a job's kernel. `mask` is an index of effect_masks; adaptive sampling is compiled only for all effects, the
+/// last mask of scenes. Throws Error (device).
 template <class Real>
 void launch(Sampling sampling, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
             cudaStream_t stream);
 
-/// launch() and kernel_resources() of one mask: defined in frame_kernels.cuh, instantiated one mask and precision a
-/// source (frame_kernels.cu.in), so that they compile side by side.
+/// launch() and kernel_resources() for one mask, defined in frame_kernels.cuh. Each mask and precision is instantiated
+/// in its own source file (frame_kernels.cu.in), so that they compile in parallel.
 template <class Real, int mask>
 void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
                  cudaStream_t stream);

@@ -1,4 +1,5 @@
-// The device's launcher: render_pixel over the pixels of a job, a thread a pixel.
+// The kernel for uniformly sampled pixels, which runs render_pixel's loop with a thread per pixel, and the launches of
+// both kernels.
 #pragma once
 
 #include "backend_cuda/host/cuda_check.h"
@@ -6,7 +7,7 @@
 
 namespace cistula {
 
-/// Copies a block's first records from shared memory to where they belong.
+/// Copies a block's first `count` records from shared memory to global memory.
 template <int count, int threads>
 __device__ void write_records(const PixelRecord* staged, PixelRecord* to) {
     constexpr int words = count * int(sizeof(PixelRecord)) / int(sizeof(uint4));
@@ -45,8 +46,8 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);
     for (int round = 0; round < samples; round += warps) {
-        // Samples begin together: the warps of a block then do much the same at a time and share the instructions and
-        // constants that are fetched.
+        // Samples start together, so that the warps of a block do much the same at a time and share the instructions
+        // and constants that are fetched.
         if (round != 0) __syncthreads();
         const int i = round + (shares ? warp : 0);
         if (is_inside && i < samples) add_sample(task, i, record);
@@ -74,7 +75,7 @@ inline int device_attribute(cudaDeviceAttr attribute) {
     return value;
 }
 
-/// Blocks of a kernel that share a multiprocessor.
+/// The number of a kernel's blocks that are resident on a multiprocessor.
 template <class Kernel>
 int sharing_blocks(const Kernel& kernel, int threads) {
     int blocks = 0;
@@ -82,7 +83,7 @@ int sharing_blocks(const Kernel& kernel, int threads) {
     return blocks;
 }
 
-/// Blocks of a kernel that fill the device.
+/// The number of a kernel's blocks that fill the device.
 template <class Kernel>
 unsigned int filling_blocks(const Kernel& kernel, int threads) {
     return unsigned(device_attribute(cudaDevAttrMultiProcessorCount)) *
@@ -102,7 +103,7 @@ KernelResources resources_of(const char* name, const Kernel& kernel, int threads
     return r;
 }
 
-/// Whether adaptive sampling runs with this mask: with all effects.
+/// Whether adaptive sampling is compiled for this mask: for all effects only.
 constexpr bool samples_adaptively(int mask) {
     return mask == effect_mask_count - 1;
 }

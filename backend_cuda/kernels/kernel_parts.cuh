@@ -1,4 +1,4 @@
-// What the kernels share: the shape of blocks, the intersectors of a path, counting.
+// Parts that the kernels share: storage of blocks, the intersector of each path, counting.
 #pragma once
 
 #include <algorithm>
@@ -8,27 +8,27 @@
 
 namespace cistula {
 
-/// What a block keeps of its pixels while it renders them: registers are dearer.
+/// A block's records and working data in shared memory, which saves registers.
 template <int threads>
 struct alignas(16) BlockStorage {
     PixelRecord records[threads];
     PixelWork work[threads];
 };
 
-/// Shared memory, unset: what it holds would be set by its constructors, of which the language allows none there.
+/// Uninitialized storage: __shared__ variables must not have constructors.
 template <class T>
 struct alignas(T) Unset {
     unsigned char bytes[sizeof(T)];
     __device__ T& get() { return reinterpret_cast<T&>(bytes); }
 };
 
-/// Threads that a multiprocessor has room for: 1,024 of capability 7.5, later ones 1,536 and more.
+/// The number of resident threads per multiprocessor: 1,024 at capability 7.5; 1,536 or more on later devices.
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
 inline constexpr int most_threads = 1024;
 #else
 inline constexpr int most_threads = 1536;
 #endif
-/// Blocks that a multiprocessor is to hold at least, for __launch_bounds__.
+/// The minimum number of resident blocks per multiprocessor, for __launch_bounds__.
 template <class Real>
 constexpr int least_blocks(const KernelShape& shape, DevicePath path) {
     return std::min(shape.blocks(path, sizeof(Real) == sizeof(float)), most_threads / shape.threads());
@@ -50,18 +50,18 @@ struct PathTraits<Real, DevicePath::tree> {
     __device__ static Intersector intersector(const Scene& scene, uint32_t) { return {scene}; }
 };
 
-/// Ends trees once the host wants the kernel to end. Read past the caches, which would keep what was there first.
+/// Whether the host wants the kernel to end. The flag is read past the caches, which would keep its first value.
 struct JobStop {
     const unsigned int* flag;  // FrameJob::stop
 
     CISTULA_INLINE bool operator()() const { return *static_cast<const volatile unsigned int*>(flag) != 0; }
 };
 
-/// The stack of a kernel's trees.
+/// The stack of a kernel's ray trees.
 template <class Real, class E, DevicePath path>
 using DeviceStack = StoppableStack<StackOf<Real, E, typename PathTraits<Real, path>::Intersector::Media>, JobStop>;
 
-/// Over all lanes, for every one.
+/// The sum over a warp's lanes, in every lane.
 __device__ inline unsigned int warp_sum(unsigned int value) {
 #if __CUDA_ARCH__ >= 800
     return __reduce_add_sync(0xffffffffu, value);
@@ -71,7 +71,8 @@ __device__ inline unsigned int warp_sum(unsigned int value) {
 #endif
 }
 
-/// Sums over the warp first, two in a word; where they could overflow, each lane by itself.
+/// Adds ray counts and flags to the tally. Counts are summed over the warp first, two in a word; where they could
+/// overflow, each lane adds its own.
 __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, unsigned int flags) {
     constexpr int half = 16;
     const unsigned int counts[4] = {rays.primary, rays.reflected, rays.transmitted, rays.shadow};
@@ -88,7 +89,7 @@ __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, u
     if (flags != 0) atomicOr(&tally.flags, flags);
 }
 
-/// What a block noted down, by one warp of it, after all are done.
+/// Adds the counts and flags of a whole block to the tally; called by one warp after all are done.
 template <int threads>
 __device__ void add_block_to_tally(DeviceTally& tally, const PixelWork (&work)[threads]) {
     PixelRays rays;

@@ -1,4 +1,4 @@
-// The shapes of kernels: one row for each mask of effects, as measured on an H200 (docs/modules/backend_cuda.md).
+// Block sizes of the kernels, one row per effect mask, as measured on an H200 (docs/modules/backend_cuda.md).
 #pragma once
 
 #include "cistula/model/effects.h"
@@ -7,15 +7,15 @@ namespace cistula {
 
 inline constexpr int warp_threads = 32;
 
-/// Which intersector and which form of media the kernels use. Never changes the image.
+/// The intersector and the form of scene and media that a kernel uses. Never changes the image.
 enum class DevicePath {
-    plain_loop,  // a ConstantScene of few primitives, closed solids all convex and apart
-    tree,        // any scene
+    plain_loop,  // a loop over a ConstantScene: few primitives, closed solids all convex and apart
+    tree,        // tree traversal, for any scene
 };
 
-/// The blocks in which a mask's pixels are rendered. Warps that begin together share the instructions that are fetched,
-/// so large blocks pay where the code is much more than the instruction caches hold. The number of blocks that a
-/// multiprocessor is to hold bounds the registers of a thread.
+/// The blocks of a mask's kernel. Warps that start together share fetched instructions, so large blocks pay off where
+/// the code far exceeds the instruction caches. The number of resident blocks per multiprocessor limits the registers
+/// of a thread.
 struct KernelShape {
     int warps;
     int loop_blocks[2];  // blocks a multiprocessor, plain loop: in float, in double
@@ -39,7 +39,7 @@ static_assert(sizeof kernel_shapes / sizeof kernel_shapes[0] == compiled_mask_co
 
 inline constexpr int most_warps = 8;  // of a block
 
-/// The shape of adaptive sampling's kernel.
+/// The block size of the kernel for adaptive sampling.
 inline constexpr KernelShape adaptive_shape = {4, {6, 4}, {6, 4}};
 
 }  // namespace cistula

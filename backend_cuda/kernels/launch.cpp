@@ -1,4 +1,4 @@
-// From a mask's index to its kernels, which are compiled apart.
+// Launches kernels, which are compiled separately, by the index of their mask.
 #include <array>
 #include <utility>
 

@@ -1,4 +1,4 @@
-// Embree 3 and 4, which differ in how a query passes its context.
+// A common interface to Embree 3 and 4, which differ in how a query passes its context.
 #pragma once
 
 #include "scene/trees/embree_handles.h"

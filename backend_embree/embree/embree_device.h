@@ -1,4 +1,4 @@
-// Embree's device: what it allocates is counted, its errors become ours.
+// Embree's device, with its memory counted and its errors turned into Error.
 #pragma once
 
 #include <atomic>
@@ -10,19 +10,19 @@ namespace cistula {
 
 class EmbreeDevice {
   public:
-    /// Throws Error (device) where Embree does not know the configuration.
+    /// Makes a device. Throws Error (device) if Embree does not accept the configuration.
     explicit EmbreeDevice(const std::string& config);
     EmbreeDevice(const EmbreeDevice&) = delete;
     EmbreeDevice& operator=(const EmbreeDevice&) = delete;
 
     RTCDevice get() const { return device_.get(); }
-    size_t memory() const { return size_t(memory_.load()); }  // bytes that it holds now
+    size_t memory() const { return size_t(memory_.load()); }  // bytes that the device holds now
 
-    /// Throws Error (device) where anything has failed since the last call; `doing` says what was done.
+    /// Throws Error (device) if anything has failed since the last call; `doing` names the operation for the message.
     void check(const char* doing) const;
 
   private:
-    std::atomic<ssize_t> memory_{0};  // first, since the device counts in it until it is gone
+    std::atomic<ssize_t> memory_{0};  // declared first: the device counts in it until it is destroyed
     DevicePointer device_;
 };
 

@@ -1,4 +1,5 @@
-// Embree walks its tree over user geometry with a float ray; libcore's tests decide in Real.
+// The intersector of the CPU backend: Embree traverses its tree over user geometry with a float ray, and libcore's
+// primitive tests decide in Real.
 #pragma once
 
 #include "backend_embree/embree/embree_api.h"
@@ -6,7 +7,7 @@
 
 namespace cistula {
 
-/// A query's context, which the callbacks get back. `context` must stay first.
+/// The context of a closest-hit query, which Embree passes to the callbacks. `context` must stay first.
 template <class Real>
 struct ClosestQuery {
     EmbreeContext context;
@@ -16,7 +17,7 @@ struct ClosestQuery {
     Hit<Real> best;
 };
 
-/// A shadow query's context; `visit` adds one primitive to the sum and tells whether no light is left then.
+/// The context of a shadow query. `visit` adds one primitive to the sum and tells whether no light is left.
 template <class Real>
 struct ShadowQuery {
     EmbreeContext context;
@@ -47,7 +48,7 @@ void set_ray(RTCRay& out, const Ray<Real>& ray, float near_t, float far_t) {
     out.flags = 0;
 }
 
-/// Calls back for what may lie after ray.after.
+/// Traverses the tree: on_intersect is called for primitives that the ray may meet after ray.after.
 template <class Real>
 void walk_closest(RTCScene tree, EmbreeContext& context, const Ray<Real>& ray) {
     RTCRayHit rayhit;
@@ -56,7 +57,7 @@ void walk_closest(RTCScene tree, EmbreeContext& context, const Ray<Real>& ray) {
     embree_intersect(tree, context, rayhit);
 }
 
-/// Calls back for what may lie before the light.
+/// Traverses the tree: on_occluded is called for primitives that may lie before the light.
 template <class Real>
 void walk_shadow(RTCScene tree, EmbreeContext& context, const ShadowRay<Real>& shadow) {
     RTCRay ray;
@@ -71,7 +72,7 @@ struct EmbreeIntersector {
     const SceneView<Real>& scene;
     RTCScene tree;
 
-    template <class = Effects<all_effects>>  // none matters to it
+    template <class = Effects<all_effects>>  // no effect changes the closest hit
     Hit<Real> closest(const Ray<Real>& ray) const {
         ClosestQuery<Real> query;
         query.best = Hit<Real>();
@@ -103,7 +104,7 @@ struct EmbreeIntersector {
         return query.sum.template share<Real>(scene);
     }
 
-    /// RTCIntersectFunctionN of the one user geometry.
+    /// The RTCIntersectFunctionN of the only user geometry.
     static void on_intersect(const RTCIntersectFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<ClosestQuery<Real>*>(arguments->context);
@@ -115,7 +116,8 @@ struct EmbreeIntersector {
         rayhit->hit.geomID = arguments->geomID;
     }
 
-    /// RTCOccludedFunctionN: sums all crossings, so nothing ever occludes until every channel is dark.
+    /// The RTCOccludedFunctionN of the only user geometry. It sums all crossings, so it reports an occlusion only once
+    /// every channel is dark.
     static void on_occluded(const RTCOccludedFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<ShadowQuery<Real>*>(arguments->context);

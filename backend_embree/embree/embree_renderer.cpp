@@ -33,7 +33,7 @@ class EmbreeRenderer : public Renderer {
     std::shared_ptr<const CompiledScene<Real>> scene_;
     SceneView<Real> view_;
     std::shared_ptr<const EmbreeTree<Real>> tree_;
-    std::unique_ptr<Renderer> plain_;  // where a loop over the few primitives there are does without a tree
+    std::unique_ptr<Renderer> plain_;  // set if a loop over few primitives replaces the tree
     uint32_t effects_ = 0;
 };
 

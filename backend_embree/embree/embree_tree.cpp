@@ -8,7 +8,7 @@ namespace cistula {
 
 namespace {
 
-/// Up to this many primitives a plain loop is faster than any tree.
+/// The maximum number of primitives for which a plain loop is faster than any tree.
 constexpr uint32_t plain_loop_primitives = 16;
 
 }  // namespace
@@ -16,7 +16,7 @@ constexpr uint32_t plain_loop_primitives = 16;
 template <class Real>
 EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options)
     : device_(options.device_config) {
-    // Boxes are made here, before the commit, whose threads may run with flush-to-zero.
+    // Boxes are computed before the commit, whose threads may run with flush-to-zero.
     const uint32_t primitives = scene.convex.size + scene.clusters.size;
     std::vector<PaddedBox> boxes(primitives);
     tbb::parallel_for(tbb::blocked_range<uint32_t>(0, primitives), [&](const auto& range) {

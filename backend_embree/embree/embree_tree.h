@@ -9,7 +9,7 @@
 
 namespace cistula {
 
-/// Owns the device and the scene. Throws Error (device) with Embree's words.
+/// Embree's device and scene for a SceneView. Throws Error (device) with Embree's message.
 template <class Real>
 class EmbreeTree {
   public:
@@ -25,11 +25,11 @@ class EmbreeTree {
     ScenePointer scene_;
 };
 
-/// The tree that a renderer of the scene walks; null where a plain loop does.
+/// The tree for a renderer of the scene; null where a plain loop is used.
 template <class Real>
 std::shared_ptr<const EmbreeTree<Real>> embree_tree(const SceneView<Real>& scene, const EmbreeOptions& options);
 
-/// A renderer over a tree of the scene, which it shares.
+/// A renderer that shares an existing tree of the scene.
 template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                std::shared_ptr<const EmbreeTree<Real>> tree);

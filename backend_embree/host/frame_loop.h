@@ -1,4 +1,4 @@
-// The host's launcher: render_pixel for any intersector, over tiles that TBB spreads.
+// The host's frame loop: render_pixel for any intersector, over tiles that TBB distributes.
 #pragma once
 
 #include <immintrin.h>
@@ -18,20 +18,20 @@
 
 namespace cistula {
 
-/// Rounds to nearest, no flush to zero: other libraries' threads may have left these set otherwise.
+/// Sets the rounding mode to nearest and turns flush-to-zero off: other libraries may have left this thread otherwise.
 inline void use_default_rounding() {
     _mm_setcsr(0x1f80);
 }
 
-/// Ends trees once a render is stopped.
+/// Whether the render was stopped, so that ray trees end early.
 struct RenderStop {
     const std::atomic<bool>& flag;  // RenderProgress::stop
 
     bool operator()() const { return flag.load(std::memory_order_relaxed); }
 };
 
-/// Whether an intersector runs with the mask that the scene calls for. The device's traversal and the plain loop over a
-/// SceneView run here as references: with all effects, which spares the compiler the other masks.
+/// Whether an intersector is compiled for every effect mask. The device's traversal and the plain loop over a SceneView
+/// are references here and compiled with all effects only, to save compile time.
 template <class Intersector>
 inline constexpr bool runs_every_mask = true;
 template <class Real>
@@ -39,14 +39,14 @@ inline constexpr bool runs_every_mask<BvhIntersector<Real>> = false;
 template <class Real>
 inline constexpr bool runs_every_mask<BruteIntersector<Real>> = false;
 
-/// One frame on the host.
+/// The rendering of one frame on the host.
 template <class Real, class Intersector>
 class FrameTask {
   public:
     using Scene = typename Intersector::Scene;
     using Media = typename Intersector::Media;
 
-    /// Sets up the film; all that is given must outlive the task. The intersector's scene is a form of `compiled`.
+    /// Sets up the film. All arguments must outlive the task. The intersector's scene is a form of `compiled`.
     FrameTask(const CompiledScene<Real>& compiled, const Intersector& intersector, const CameraFrame& camera,
               const FrameSettings& settings, Film& film, RenderProgress& progress)
         : scene_(intersector.scene),
@@ -64,7 +64,7 @@ class FrameTask {
         if (!runs_every_mask<Intersector> && mask_ != unshadowed_mask) mask_ = effect_mask_count - 1;
     }
 
-    /// The effects that run: the least mask that contains what the scene and the settings ask for.
+    /// The effects that are compiled in: the smallest mask that contains those of the scene and the settings.
     uint32_t effects() const { return effect_masks[mask_]; }
 
     /// Renders the frame; false if it was stopped.
@@ -114,13 +114,13 @@ class FrameTask {
         });
     }
 
-    /// What a tile adds to the film's counts.
+    /// A tile's contribution to the film's counts.
     struct Counts {
         RayCounts rays;
         uint32_t flags = 0;
     };
 
-    /// Calls render(x, y, record, work) for each pixel of the film that may show something, in tiles.
+    /// Calls render(x, y, record, work) for each pixel of the film where the scene may be visible, in tiles.
     template <class Render>
     bool for_each_pixel(const Render& render) {
         const PixelRect rect = film_.rect;
@@ -144,7 +144,7 @@ class FrameTask {
         return !progress_.stop.load();
     }
 
-    /// `tile` counts from the film's first pixel.
+    /// `tile` is relative to the film's first pixel.
     template <class Render>
     Counts render_tile(const PixelRect& tile, const Render& render) {
         Counts counts;

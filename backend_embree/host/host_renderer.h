@@ -1,4 +1,4 @@
-// The Renderer over an intersector that needs nothing but a form of the scene: a SceneView, or a ConstantScene.
+// A Renderer over an intersector that needs only a form of the scene: a SceneView or a ConstantScene.
 #pragma once
 
 #include "backend_embree/embree/embree_renderer.h"

@@ -1,7 +1,7 @@
-// What a renderer does that takes Embree's own triangles: floats decide the hits, approximately at edges. For previews,
-// and to show what exact intersection costs. The state of the ray tree is used where a comparison is all it takes: a
-// face is not hit by the line that leaves it, a solid is entered from outside and left from inside. Beyond that nothing
-// is done about rounding: lines may slip through an edge or hit both faces there.
+// An approximate intersector over Embree's own triangles, where floats decide the hits. For previews, and to measure
+// what exact intersection costs. It uses the state of a ray where a comparison suffices: a ray does not hit the face
+// that it leaves, and enters a solid only from outside and leaves it only from inside. It does nothing else about
+// rounding: rays may slip through an edge or hit both faces there.
 #pragma once
 
 #include "backend_embree/embree/embree_intersector.h"
@@ -9,9 +9,9 @@
 
 namespace cistula {
 
-/// Whether a hit is where the line starts: on the face that it leaves, on the same flat sheet, on the outside of the
-/// same convex solid, or, for triangles, within the rounding of Embree's floats of any face. (Solids of planes have no
-/// such margin: a line inside would miss the nearby face by an edge.)
+/// Whether a hit lies at the ray's origin: on the face that it leaves, on the same flat sheet, on the outside of the
+/// same convex solid, or, for triangles, within the rounding of Embree's floats of any face. (Convex solids have no
+/// such margin: near an edge, a ray inside would miss the adjacent face.)
 template <class Real>
 bool leaves_behind(const SceneView<Real>& scene, const Ray<Real>& ray, const NativeTriangle& triangle, Real t) {
     if (ray.from_solid == no_solid) return false;
@@ -22,7 +22,7 @@ bool leaves_behind(const SceneView<Real>& scene, const Ray<Real>& ray, const Nat
     return ray.from_face == triangle.face || solid.flat != 0 || (convex && !ray.media.contains(triangle.solid));
 }
 
-/// The context of a query for the next hit; `context` must stay first.
+/// The context of a closest-hit query; `context` must stay first.
 template <class Real>
 struct NativeClosest {
     EmbreeContext context;
@@ -46,7 +46,7 @@ struct NativeClosest {
     }
 };
 
-/// A shadow query against native triangles: all hits before the light, in any order.
+/// The context of a shadow query, which gets all hits before the light in any order.
 template <class Real>
 struct NativeShadow {
     EmbreeContext context;
@@ -72,7 +72,7 @@ struct SummedNativeShadow : NativeShadow<Real> {
                 sum.absorb_rest(material, shadow.distance - t, enters ? 1 : -1, scene.extent);
     }
 
-    /// What solids that contain the start of the ray add.
+    /// Adds the absorption of solids that contain the ray's origin.
     void start() {
         if constexpr (E::has(effect_absorption))
             shadow.ray.media.for_each([&](uint32_t index, int count) {
@@ -90,7 +90,7 @@ struct NativeIntersector {
     const SceneView<Real>& scene;
     RTCScene tree;
 
-    template <class = Effects<all_effects>>  // none matters to it
+    template <class = Effects<all_effects>>  // no effect changes the closest hit
     Hit<Real> closest(const Ray<Real>& ray) const {
         NativeClosest<Real> query{{}, scene, ray, {}};
         if (!is_finite(ray)) return query.best;
@@ -114,7 +114,7 @@ struct NativeIntersector {
         return query.sum.template share<Real>(scene);
     }
 
-    /// RTCFilterFunctionN of rtcIntersect1: refused hits do not end the search.
+    /// The RTCFilterFunctionN of rtcIntersect1: a refused hit does not end the search.
     static void on_intersect(const RTCFilterFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<NativeClosest<Real>*>(arguments->context);
@@ -122,7 +122,8 @@ struct NativeIntersector {
         if (!query.take(found.triangle, found.hit, found.t, found.enters())) arguments->valid[0] = 0;
     }
 
-    /// RTCFilterFunctionN of rtcOccluded1: sums all hits, so nothing ever occludes until every channel is dark.
+    /// The RTCFilterFunctionN of rtcOccluded1. It sums all hits, so it reports an occlusion only once every channel is
+    /// dark.
     static void on_occluded(const RTCFilterFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<NativeShadow<Real>*>(arguments->context);

@@ -6,7 +6,7 @@
 namespace cistula {
 namespace {
 
-/// Embree's tree over its own triangles.
+/// Embree's tree over its own triangle geometry.
 template <class Real>
 class NativeTree {
   public:
@@ -16,7 +16,8 @@ class NativeTree {
             throw Error(ExitCode::device, "--intersector native: this Embree was built without filter functions");
         const GeometryPointer owner(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
         const RTCGeometry geometry = owner.get();
-        // Not high: that cuts triangles, and Embree may then report one several times, which a shadow would count.
+        // Medium quality: high quality splits triangles, and Embree may then report one several times, which a shadow
+        // would count.
         const RTCBuildQuality quality = options.tree_quality > 0 ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW;
         rtcSetGeometryBuildQuality(geometry, quality);
         const size_t count = triangles_.size();

@@ -8,8 +8,8 @@ namespace {
 using Point = Vec3<double>;
 using Polygon = std::vector<Point>;
 
-/// A square in the plane about the point below `center`, larger than any solid, counter-clockwise seen against the
-/// normal.
+/// A square in the plane, around the projection of `center` on it and larger than any solid; counter-clockwise seen
+/// against the normal.
 Polygon square_on(const SolidPlane& plane, const Point& center, double half) {
     const Point& n = plane.normal;
     const Point axis = magnitude(n.x) < 0.5 ? Point(1, 0, 0) : Point(0, 1, 0);
@@ -18,7 +18,7 @@ Polygon square_on(const SolidPlane& plane, const Point& center, double half) {
     return {middle - (a + b) * half, middle + (a - b) * half, middle + (a + b) * half, middle - (a - b) * half};
 }
 
-/// What of a convex polygon is in the half-space (Sutherland and Hodgman 1974).
+/// The part of a convex polygon in a half-space (Sutherland and Hodgman 1974).
 Polygon clipped(const Polygon& polygon, const SolidPlane& by) {
     Polygon kept;
     for (size_t i = 0; i < polygon.size(); ++i) {
@@ -30,7 +30,8 @@ Polygon clipped(const Polygon& polygon, const SolidPlane& by) {
     return kept;
 }
 
-/// A solid's corners. Rounded planes give each a little differently for every face; triangles are to share it.
+/// The corners of a solid. Rounded planes give slightly different coordinates for each face at a corner, but triangles
+/// must share them.
 class Corners {
   public:
     explicit Corners(double tolerance) : square_(tolerance * tolerance) {}

@@ -1,4 +1,4 @@
-// All solids of a scene as plain triangles of floats, as Embree takes them.
+// All solids of a scene as float triangles, for Embree's triangle geometry.
 #pragma once
 
 #include <vector>
@@ -10,11 +10,11 @@ namespace cistula {
 struct NativeTriangle {
     Vec3<float> corner[3];  // counter-clockwise from outside
     uint32_t solid;
-    uint32_t face;  // 2 slab + side, or the scene-wide triangle number: what a key holds
+    uint32_t face;  // 2 slab + side, or the scene-wide triangle number, as in a key
     uint32_t slot;  // meshes and sheets: 8 cluster + lane
 };
 
-/// Those of the clusters, then the faces of the convex solids as fans.
+/// The triangles of the clusters, followed by the faces of convex solids as fans.
 template <class Real>
 std::vector<NativeTriangle> native_triangles(const SceneView<Real>& scene);
 

@@ -1,4 +1,4 @@
-// From what a branch of a ray tree asked and was answered to what it met: libcore's own functions, called once more on
+// Reconstructs a branch of a ray tree from its recorded queries and answers, by calling libcore's functions again on
 // the same numbers.
 #pragma once
 
@@ -22,14 +22,14 @@ inline FixedColor less(const FixedColor& a, const FixedColor& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-/// A pixel's sums at some moment.
+/// A snapshot of a pixel's sums.
 struct Sums {
     FixedColor radiance{}, pruned{}, cut{};
 
     static Sums of(const PixelRecord& r) { return {colors_of(r.radiance), colors_of(r.pruned), colors_of(r.cut)}; }
 };
 
-/// All that one branch asked of its intersector and of its stack, in order.
+/// All queries of one branch to its intersector and its stack, in order.
 template <class Real>
 struct BranchSeen {
     struct Look {
@@ -39,7 +39,7 @@ struct BranchSeen {
     struct Shadow {
         ShadowRay<Real> shadow;
         Vec3<Real> arrives;
-        FixedColor before;  // the radiance until then
+        FixedColor before;  // radiance sum before the query
     };
     struct Push {
         Branch<Real> branch;
@@ -51,10 +51,10 @@ struct BranchSeen {
     Vec3<Real> weight{Real(1)};
     Sums begin, end;
     uint32_t flags = 0;
-    double start = 0;  // primary rays: how far from the camera they begin
+    double start = 0;  // primary rays: distance of the origin from the camera
 };
 
-/// Gives the answers once more, in their order.
+/// An intersector that replays the recorded hits in their order.
 template <class Real>
 struct ReplayedIntersector {
     const std::vector<typename BranchSeen<Real>::Look>& looks;
@@ -63,7 +63,8 @@ struct ReplayedIntersector {
     Hit<Real> closest(const Ray<Real>&) const { return next < looks.size() ? looks[next++].hit : Hit<Real>(); }
 };
 
-/// Gives the shadows once more, in their order; `agrees` becomes false where others are asked for.
+/// An intersector that replays the recorded shadow rays in their order; `agrees` becomes false if other ones are
+/// queried.
 template <class Real>
 struct ReplayedShadows {
     const std::vector<typename BranchSeen<Real>::Shadow>& shadows;
@@ -80,7 +81,7 @@ struct ReplayedShadows {
     }
 };
 
-/// Sums that were added before.
+/// A sink for radiance that was added before.
 struct DiscardedSums {
     template <class Radiance>
     void add(const Radiance&) const {}
@@ -96,7 +97,7 @@ class BranchReader {
                  const FrameView& frame)
         : compiled_(compiled), scene_(scene), intersector_(intersector), frame_(frame) {}
 
-    /// Fills the branch's node and adds those of its children; `waiting` gets those that the stack has.
+    /// Fills the branch's node and adds nodes for its children; `waiting` gets those that are on the stack.
     void read(const Seen& seen, SampleTree& tree, uint32_t node, std::vector<uint32_t>& waiting) const {
         PixelBranch branch = std::move(tree.branches[node]);
         if (seen.looks.empty()) {
@@ -117,11 +118,11 @@ class BranchReader {
         SampleTree& tree;
         std::vector<uint32_t>& waiting;
         Vec3<Real> weight;
-        double ahead;  // what a distance on the line is to be lengthened by, in the frame
+        double ahead;  // added to distances along the line, in frame units
     };
 
-    /// What is read has to agree with what was seen; where the pixel is flagged all the same, it is read as far as it
-    /// goes.
+    /// Throws if the reconstruction disagrees with the recording, unless the pixel is flagged; then the branch is read
+    /// as far as possible.
     void require(const Seen& seen, bool holds, const char* what) const {
         if (!holds && seen.flags == 0)
             throw std::logic_error(std::string("internal error: the ray tree does not add up: ") + what);
@@ -159,7 +160,7 @@ class BranchReader {
             }
             note_passed(walk, ray, meeting);
             for (int i = 0; i < meeting.count; ++i) absorption.cross(scene_, meeting.taken[i].key, meeting.taken[i].t);
-            for (; next < after; ++next) {  // those before it that count from here on (RayTree::count_passed_over)
+            for (; next < after; ++next) {  // refused crossings, as in NextSurface::count_passed_over
                 const Hit<Real>& over = looks[next].hit;
                 if (!Crossing<Real>{over.t, over.key}.before(meeting.taken[0].t, meeting.taken[0].key)) break;
                 if (!lies_at_start(scene_, ray, over)) absorption.cross(scene_, over.key, over.t);
@@ -170,7 +171,7 @@ class BranchReader {
         walk.branch.adds = less(walk.seen.end.radiance, walk.seen.begin.radiance);
     }
 
-    /// The question that goes on from a crossing, if there is one: nothing was shaded there then.
+    /// The query that continues straight from a crossing, if there is one: nothing was shaded there then.
     static size_t next_on_line(const std::vector<typename Seen::Look>& looks, size_t from, const Crossing<Real>& last) {
         while (from < looks.size() && !(looks[from].ray.after.t == last.t && looks[from].ray.after.key == last.key))
             ++from;
@@ -259,7 +260,7 @@ class BranchReader {
         }
     }
 
-    /// Lights the surface once more, with the shadows that were seen.
+    /// Evaluates the surface's local light again, with the recorded shadows.
     void read_light(Walk& walk, const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s) const {
         PixelSurface& out = walk.branch.surface;
         const auto& shadows = walk.seen.shadows;
@@ -278,7 +279,7 @@ class BranchReader {
         require(walk.seen, next == shadows.size(), "the number of shadow rays");
     }
 
-    /// Notes down what each light adds to a surface. `next`: of the shadows seen, the one that is asked for next.
+    /// Records what each light adds to a surface. `next`: the index of the next recorded shadow ray.
     struct Local {
         const BranchReader& reader;
         Walk& walk;
@@ -305,7 +306,7 @@ class BranchReader {
         }
         void arrives(uint32_t i, const ShadowRay<Real>& shadow, const Vec3<Real>& arrives) const {
             const auto& shadows = walk.seen.shadows;
-            if (next == 0) return;  // it was never asked for
+            if (next == 0) return;  // no shadow ray was traced
             LightShare& to = share(i);
             to.arrives = Vec3<double>(arrives);
             to.adds =
@@ -317,7 +318,7 @@ class BranchReader {
 
     double radiance_unit() const { return elementary::power_of_two(compiled_.radiance_exponent); }
 
-    /// Which solids take light from a shadow ray, in the order in which it meets them; the first eight.
+    /// The first eight solids that take light from a shadow ray, in the order in which it meets them.
     std::vector<uint32_t> solids_on_the_way(const ShadowRay<Real>& shadow) const {
         std::vector<uint32_t> solids;
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);

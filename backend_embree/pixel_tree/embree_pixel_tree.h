@@ -1,4 +1,4 @@
-// One pixel's ray trees, as the CPU backend follows them.
+// The ray trees of one pixel, as the CPU backend traces them.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace cistula {
 
-/// The ray trees of pixel (x, y) of the frame; settings.crop plays no part. Throws std::logic_error where the trees are
-/// not what the renderer gives for that pixel, bit for bit, and Error as a render does.
+/// The ray trees of pixel (x, y) of the frame; settings.crop is ignored. Throws std::logic_error if the trees do not
+/// give the renderer's result for that pixel bit for bit, and Error as a render does.
 template <class Real>
 PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<Real>> scene, const CameraFrame& camera,
                             const FrameSettings& settings, int x, int y);

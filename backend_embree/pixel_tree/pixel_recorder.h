@@ -1,5 +1,5 @@
-// Watches render_pixel at work: what it asks of its intersector and of its stack tells the whole ray tree, and the sums
-// between two questions tell what each part of it adds.
+// Records render_pixel's work: its queries to the intersector and the stack determine the ray tree, and the sums
+// between two queries tell what each part of it adds.
 #pragma once
 
 #include <utility>
@@ -9,7 +9,7 @@
 
 namespace cistula {
 
-/// Notes down one sample. A branch lasts from one pop to the next; its node is made when that ends.
+/// Records one sample. A branch lasts from one pop to the next; its node is made at its end.
 template <class Real, class Intersector>
 class SampleRecorder {
   public:
@@ -25,7 +25,7 @@ class SampleRecorder {
     }
     void pushed(const Branch<Real>& branch, bool fits) { seen_.pushed.push_back({branch, fits}); }
 
-    /// The branch under way is done.
+    /// Ends the current branch.
     void finish() {
         seen_.end = Sums::of(record_);
         seen_.flags = work_.flags;
@@ -49,7 +49,7 @@ class SampleRecorder {
     const PixelWork& work_;
     SampleTree& tree_;
     BranchSeen<Real> seen_;
-    std::vector<uint32_t> waiting_;  // the nodes of what is in the stack
+    std::vector<uint32_t> waiting_;  // nodes of the branches on the stack
     uint32_t current_ = 0;
 };
 
@@ -100,7 +100,7 @@ class ObservedStack {
     BranchStack<Branch<Real>> inner_;
 };
 
-/// What is below each branch, from what each is by itself.
+/// Computes the total of each branch's subtree from what each branch adds by itself.
 inline void sum_up(std::vector<PixelBranch>& branches) {
     for (size_t i = branches.size(); i-- > 0;)
         for (const uint32_t child : branches[i].children)
@@ -138,7 +138,7 @@ PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real
                              double(2 * (y * k + tree.row) + 1 - frame.height * k), frame.half_sample);
         primary.origin = camera.camera.position;
         primary.direction = direction;
-        if (tree.rays.total() == 1 && primary.end == BranchEnd::background) {  // it may pass the scene by
+        if (tree.rays.total() == 1 && primary.end == BranchEnd::background) {  // the ray may miss the scene
             primary.distance = RealTraits<double>::infinity;
             primary.adds = colors_of(tree.record.radiance);
         }

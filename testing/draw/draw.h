@@ -1,6 +1,6 @@
-// Inputs of the function parity check, drawn from (index, seed) alone: host and device make the same ones in place.
-// Only integers, exact conversions and IEEE operations. Draws are statements of their own: C++ leaves the order of
-// operands and arguments open, and compilers differ in it.
+// Random inputs of the function parity check, generated from (index, seed) alone, so that host and device generate the
+// same ones. They use only integers, exact conversions and IEEE operations. Each draw is its own statement: C++ leaves
+// the order of operands and arguments open, and compilers differ in it.
 #pragma once
 
 #include "cistula/numerics/vec.h"
@@ -30,14 +30,14 @@ CISTULA_HD inline uint64_t mixed(uint64_t z) {
     return z ^ z >> 31;
 }
 
-/// `steps` numbers up or down in magnitude; past infinity come NaNs.
+/// The number `steps` representable numbers away in magnitude; beyond infinity come NaNs.
 template <class Real>
 CISTULA_HD inline Real stepped(Real x, int steps) {
     using Bits = typename Layout<Real>::Bits;
     return bits_as<Real>(Bits(bits_as<Bits>(x) + Bits(int64_t(steps))));
 }
 
-/// 2^exponent, subnormal too.
+/// 2^exponent, including subnormal results.
 template <class Real>
 CISTULA_HD inline Real two_to(int exponent) {
     using Bits = typename Layout<Real>::Bits;
@@ -55,30 +55,31 @@ class Draw {
     CISTULA_HD bool one_in(uint32_t n) { return below(n) == 0; }
     CISTULA_HD int between(int low, int high) { return low + int(below(uint32_t(high - low + 1))); }
     CISTULA_HD int sign() { return one_in(2) ? -1 : 1; }
-    /// Integers of every size.
+    /// An integer of random size: random bits shifted right by low to high.
     CISTULA_HD uint64_t shifted(int low, int high) {
         const int shift = between(low, high);
         return bits() >> shift;
     }
-    /// A number and those next to it. NaN stays: its bits are not the same everywhere.
+    /// A number within `steps` representable numbers of x. NaN is returned unchanged, since its bits differ between
+    /// machines.
     template <class Real>
     CISTULA_HD Real near(Real x, int steps) {
         const Real beside = stepped(x, between(-steps, steps));
         return x == x ? beside : x;
     }
 
-    /// In [0, 1).
+    /// A number in [0, 1).
     template <class Real>
     CISTULA_HD Real unit() {
         constexpr int digits = Layout<Real>::digits;
         return Real(int64_t(bits() >> (63 - digits))) * two_to<Real>(-digits - 1);
     }
-    /// In [-half, half).
+    /// A number in [-half, half).
     template <class Real>
     CISTULA_HD Real centered(Real half) {
         return (unit<Real>() - Real(0.5)) * (half + half);
     }
-    /// Any digits, either sign, an exponent in [low, high].
+    /// A number with random digits, random sign and an exponent in [low, high].
     template <class Real>
     CISTULA_HD Real scaled(int low, int high) {
         using Bits = typename Layout<Real>::Bits;
@@ -87,13 +88,13 @@ class Draw {
         const Real power = two_to<Real>(between(low, high));
         return bits_as<Real>(Bits((random & (keep | sign)) | bits_as<Bits>(power)));
     }
-    /// Any bits at all: most exponents are far out; infinities, NaNs and subnormals are among them.
+    /// A random bit pattern: most exponents are extreme; infinities, NaNs and subnormals occur.
     template <class Real>
     CISTULA_HD Real pattern() {
         return bits_as<Real>(typename Layout<Real>::Bits(bits()));
     }
 
-    /// Where functions change their ways.
+    /// A value at which functions change their behavior.
     template <class Real>
     CISTULA_HD Real special() {
         using Bits = typename Layout<Real>::Bits;
@@ -113,14 +114,14 @@ class Draw {
         const Real value = size[below(sizeof(size) / sizeof(size[0]))];
         return one_in(2) ? -value : value;
     }
-    /// A power of two or a neighbor of one; every exponent, of subnormals too.
+    /// A power of two or a neighbor of one, with any exponent, subnormal ones included.
     template <class Real>
     CISTULA_HD Real power() {
         const Real value = two_to<Real>(between(1 - Layout<Real>::bias - Layout<Real>::digits, Layout<Real>::bias));
         const Real beside = near(value, 2);
         return one_in(2) ? -beside : beside;
     }
-    /// Everything: ordinary numbers, random bits, powers of two, special values.
+    /// A number of any kind: ordinary numbers, random bits, powers of two, special values.
     template <class Real>
     CISTULA_HD Real any() {
         switch (below(5)) {
@@ -136,7 +137,7 @@ class Draw {
                 return special<Real>();
         }
     }
-    /// A finite number of at most 2^60 or so, often simple.
+    /// A finite number of magnitude up to about 2^60, often a simple one.
     template <class Real>
     CISTULA_HD Real tame() {
         switch (below(4)) {
@@ -164,7 +165,7 @@ class Draw {
         for (int k = 0; k < 3; ++k) v[k] = tame_ones ? tame<Real>() : any<Real>();
         return v;
     }
-    /// Unit to within rounding; at times along an axis, in a plane of two, or a hair off one.
+    /// A unit vector to within rounding; at times along an axis, in an axis plane, or slightly off one.
     template <class Real>
     CISTULA_HD Vec3<Real> direction() {
         Vec3<Real> v = in_cube<Real>(Real(1));

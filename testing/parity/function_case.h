@@ -1,4 +1,4 @@
-// A case of the function parity check: what it returns, as words that can be compared.
+// The form of a case of the function parity check, and its results as words that can be compared.
 #pragma once
 
 #include "cistula/numerics/double_double.h"
@@ -6,8 +6,8 @@
 
 namespace cistula::parity {
 
-/// Takes the bits of a case's outputs. All NaNs count as one: IEEE 754 leaves their sign and payload open, x86 and
-/// NVIDIA differ in them, and no image holds one.
+/// Collects the bits of a case's results. All NaNs count as equal: IEEE 754 leaves their sign and payload open, x86 and
+/// NVIDIA differ in them, and no image contains one.
 class Words {
   public:
     CISTULA_HD explicit Words(uint64_t* out) : out_(out) {}
@@ -17,7 +17,7 @@ class Words {
     CISTULA_HD void real(Real x) {
         bits(x == x ? uint64_t(bits_as<typename Layout<Real>::Bits>(x)) : 0x7ff8000000000000u);
     }
-    /// For values whose zero may have either sign, as of a greatest or least over several: consumers do not see it.
+    /// Adds a value whose zero may have either sign, such as a maximum over several; callers do not see the sign.
     template <class Real>
     CISTULA_HD void unsigned_zero(Real x) {
         real(x == Real(0) ? Real(0) : x);
@@ -39,7 +39,8 @@ class Words {
 
 inline constexpr int most_words = 16;
 
-/// Case, a functor: `name`, `Number` (float or double), `words`, `Input`, make(Draw&) and run(Input, Words&).
+/// Runs one input of a case. A Case has `name`, `Number` (float or double), `words`, `Input`, make(Draw&) and
+/// run(Input, Words&).
 template <class Case>
 CISTULA_HD inline void run_case(uint64_t index, uint64_t seed, uint64_t* out) {
     Draw draw(index, seed);

@@ -1,4 +1,4 @@
-// All cases of the function parity check: what host and GPU must agree on to the bit, by function and precision.
+// All cases of the function parity check, in which host and GPU must agree to the bit, by function and precision.
 #pragma once
 
 #include "testing/parity/function_cases_convex.h"

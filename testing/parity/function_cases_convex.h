@@ -69,7 +69,7 @@ CISTULA_HD inline void compile_convex(const ConvexShape& shape, ConvexInput<Real
     in.solid.padded_square = float(shape.radius * shape.radius) + sphere_padding;
 }
 
-/// A corner, a point of an edge, a point close to one, the middle of a face, any point inside.
+/// A point to aim at: a corner, a point on or close to an edge, the middle of a face, or any point inside.
 CISTULA_HD inline Vec3<double> draw_target(Draw& draw, const ConvexShape& shape) {
     const PlatonicTables tables = platonic_tables(shape.kind);
     const uint32_t a = draw.below(tables.corners);
@@ -136,14 +136,14 @@ CISTULA_HD inline void draw_convex_ray(Draw& draw, const ConvexShape& shape, Con
     if (draw.one_in(16)) ray.origin[axis] = draw.scaled<Real>(1 - Layout<Real>::bias, 20);
 }
 
-/// `in_three`: of three rays so many start inside.
+/// `in_three`: how many of three rays start inside.
 template <class Real>
 CISTULA_HD inline ConvexShape draw_convex_input(Draw& draw, uint32_t in_three, ConvexInput<Real>& in) {
     const ConvexShape shape = draw_convex_shape(draw);
     compile_convex(shape, in);
     draw_convex_ray(draw, shape, in);
     in.skipped = draw.below(2 * in.solid.slab_count);
-    if (shape.kind == 0) in.skipped |= 1u;  // low sides are no faces there
+    if (shape.kind == 0) in.skipped |= 1u;  // a tetrahedron's low sides are no faces
     const bool inside = draw.below(3) < in_three;
     if (inside) in.ray.media.add(0, 1);
     if (draw.one_in(inside ? 2 : 16)) {
@@ -163,7 +163,7 @@ CISTULA_HD inline SceneView<Real> view_of(const ConvexInput<Real>& in) {
     return scene;
 }
 
-/// The first two crossings of a straight line, and the first again where something just before or behind lies at its t.
+/// Case: the first two crossings of a straight ray, and the first one again with `after` just before or behind its t.
 template <class Real>
 struct ConvexCase {
     static constexpr const char* name = "convex";
@@ -198,8 +198,8 @@ struct ConvexCase {
     }
 };
 
-/// Ends of the interval may be a zero of either sign: host and device meet the slabs in another order, and no caller
-/// looks.
+/// Case: intervals. Their ends may be zeros of either sign: host and device test the slabs in different orders, and no
+/// caller looks at the sign.
 template <class Real>
 struct ConvexIntervalCase {
     static constexpr const char* name = "convex_interval";
@@ -220,7 +220,7 @@ struct ConvexIntervalCase {
         out.unsigned_zero(all.leave);
         out.unsigned_zero(rest.t);
         out.bits(is_met(all, scene.extent));
-        // Misses, and lies beyond half the way to it.
+        // Whether the ray misses the sphere, and whether the solid lies beyond half the distance to it.
         const bool misses = passes_by(Ball<Real>::of(in.solid), o, d, RealTraits<Real>::infinity);
         const bool beyond = passes_by(Ball<Real>::of(in.solid), o, d, all.enter * Real(0.5));
         out.bits(4 * uint64_t(beyond) + 2 * uint64_t(inside_convex(scene, in.solid, o)) + uint64_t(misses));

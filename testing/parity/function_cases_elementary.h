@@ -32,7 +32,7 @@ struct Exp2Case {
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(elementary::exp2(in.x)); }
 };
 
-/// Around 1, around the square root of 1/2 times powers of two, everything else.
+/// An argument of a logarithm: near 1, near sqrt(1/2) times powers of two, or anything.
 CISTULA_HD inline double logarithm_input(Draw& draw) {
     switch (draw.below(5)) {
         case 0:
@@ -86,11 +86,11 @@ struct PowCase {
                 in.x = 4 * draw.unit<double>();
                 in.y = draw.centered(40.0);
                 break;
-            case 1:  // near 1 to a great power
+            case 1:  // near 1, to a great power
                 in.x = draw.near(1.0, 100000);
                 in.y = draw.scaled<double>(30, 60);
                 break;
-            case 2:  // exact
+            case 2:  // exact results
                 in.x = draw.between(0, 50);
                 in.y = draw.between(-20, 40);
                 break;
@@ -111,7 +111,7 @@ struct PowCase {
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(elementary::pow(in.x, in.y)); }
 };
 
-/// Multiples of a quarter turn and their neighbors, the step between the two reductions, huge ones.
+/// An angle: near multiples of a quarter turn, near the limit between the two reductions, or huge.
 CISTULA_HD inline double angle_input(Draw& draw) {
     switch (draw.below(6)) {
         case 0:

@@ -1,4 +1,5 @@
-// Function parity, what is seen: Phong, the camera, textures, seen lights, where rays start from a triangle.
+// Function parity, lighting and camera: Phong, camera rays, textures, visible lights, origins of rays that leave a
+// triangle.
 #pragma once
 
 #include "cistula/lights/seen_light.h"
@@ -121,7 +122,7 @@ struct TextureCase {
     }
 };
 
-/// Two spheres, often at equal distances, and a ray that passes near their rims.
+/// Case: two spheres, often at equal distances, and a ray that passes near their outlines.
 template <class Real>
 struct SeenLightCase {
     static constexpr const char* name = "seen_light";
@@ -160,7 +161,7 @@ struct SeenLightCase {
     }
 };
 
-/// Where rays start from a triangle that was hit.
+/// Case: origins of rays that leave a triangle.
 template <class Real>
 struct ApexCase {
     static constexpr const char* name = "apex";

@@ -1,11 +1,11 @@
-// Function parity, portable.h: what the device computes by instructions of its own.
+// Function parity, portable.h: functions with device instructions of their own.
 #pragma once
 
 #include "testing/parity/function_case.h"
 
 namespace cistula::parity {
 
-/// Where reciprocal() is correctly rounded: powers of two, both included.
+/// The range in which reciprocal() is correctly rounded: magnitudes from 2^-120 to 2^120, inclusive.
 inline constexpr int reciprocal_range = 120;
 
 template <class Real>
@@ -23,7 +23,7 @@ struct ReciprocalCase {
                 return magnitude(draw.scaled<Real>(-2, 1));
             case 1:  // around powers of two, where quotients are hardest to round
                 return draw.near(two_to<Real>(draw.between(1 - last, last - 1)), 8);
-            case 2:  // the ends
+            case 2:  // ends of the range
                 return draw.one_in(2) ? stepped(two_to<Real>(-last), draw.between(0, 3))
                                       : stepped(two_to<Real>(last), draw.between(-3, 0));
             default:
@@ -37,7 +37,7 @@ struct ReciprocalCase {
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(reciprocal(in.x)); }
 };
 
-/// Not NaN and not both zero.
+/// Case: lesser() and greater() of numbers that are not NaN and not both zero.
 template <class Real>
 struct LesserGreaterCase {
     static constexpr const char* name = "lesser_greater";

@@ -42,8 +42,8 @@ struct Arrival {
     double from, to;
 };
 
-/// At any angle, on either side of the critical one, grazing, head on, and from behind; indices equal, nearly equal,
-/// ordinary and at the ends of their range.
+/// A random arrival: any angle, near the critical one, grazing, head on, or from behind; indices equal, nearly equal,
+/// ordinary, or at the ends of their range.
 template <class Real>
 CISTULA_HD inline Arrival<Real> arrival(Draw& draw) {
     Arrival<Real> a;
@@ -62,7 +62,7 @@ CISTULA_HD inline Arrival<Real> arrival(Draw& draw) {
         a.direction = draw.direction<Real>();  // perhaps from behind
         return a;
     }
-    // In double: d = sine * tangent - cosine * N.
+    // Computed in double: d = sine * tangent - cosine * N.
     const Vec3<double> n(a.normal);
     Vec3<double> tangent = cross(n, draw.in_cube<double>(1.0));
     const double size = length(tangent);
@@ -105,7 +105,7 @@ struct FresnelCase {
     using Input = Arrival<Real>;
     static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) {
-        draw.bits();  // other inputs than refract's
+        draw.bits();  // makes the inputs differ from those of the refraction case
         Input in = arrival<Real>(draw);
         if (draw.one_in(8)) in.direction = draw.any_vector<Real>();
         return in;

@@ -7,7 +7,7 @@
 
 namespace cistula::parity {
 
-/// The shift of a number of samples of any size.
+/// A number of samples of any size.
 CISTULA_HD inline uint32_t samples_input(Draw& draw) {
     switch (draw.below(3)) {
         case 0:
@@ -54,7 +54,7 @@ struct ToFixedCase {
     CISTULA_HD static void run(const Input& in, Words& out) {
         const int shift = fixed_shift(in.samples);
         const double scale = fixed_scale(shift);
-        int64_t down = -1, up = -1;  // what is refused is left alone
+        int64_t down = -1, up = -1;  // a refused value leaves these unchanged
         const bool down_fits = to_fixed(in.x, scale, down), up_fits = to_fixed_up(in.x, scale, up);
         out.bits(down_fits);
         out.bits(uint64_t(down));
@@ -120,7 +120,7 @@ struct ShareCase {
     };
     static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) {
-        constexpr int last = Layout<Real>::bias - 1;  // the greatest loss that leaves anything
+        constexpr int last = Layout<Real>::bias - 1;  // the greatest loss with a transmittance above 0
         const uint64_t near = uint64_t(int64_t(draw.between(-3, 3)));
         switch (draw.below(6)) {
             case 0:

@@ -1,4 +1,4 @@
-// Function parity, triangles: a cluster and a ray aimed at its corners, edges and planes; the next crossings, shadows.
+// Function parity, triangles: clusters, and rays aimed at their corners, edges and planes; next crossings and shadows.
 #pragma once
 
 #include "cistula/shading/shadow.h"
@@ -6,8 +6,8 @@
 
 namespace cistula::parity {
 
-/// Corners: on a lattice, anywhere, tiny, in one plane, mostly degenerate; shared by the cluster's triangles as a fan
-/// or a tetrahedron has them, or at random.
+/// A cluster with corners on a lattice, anywhere, tiny, coplanar or mostly degenerate; corners are shared as in a fan
+/// or a tetrahedron, or at random.
 template <class Real>
 CISTULA_HD inline void draw_cluster(Draw& draw, Cluster<Real>& cluster) {
     constexpr int points = 6;
@@ -46,8 +46,8 @@ CISTULA_HD inline Vec3<Real> corner_of(const Cluster<Real>& cluster, uint32_t la
     return {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
 }
 
-/// At a corner, a point of an edge or its middle, a centroid, or anywhere; along an axis, from afar, from the very
-/// point.
+/// A ray aimed at a corner, a point of an edge or its middle, a centroid, or anywhere; along an axis, from afar, or
+/// from the very point.
 template <class Real>
 CISTULA_HD inline void draw_aimed_ray(Draw& draw, const Cluster<Real>& cluster, Ray<Real>& ray) {
     const uint32_t lane = draw.below(cluster.count), c = draw.below(3);
@@ -128,7 +128,7 @@ CISTULA_HD inline SceneView<Real> view_of(const ClusterInput<Real>& in) {
     return scene;
 }
 
-/// The first three crossings of a straight line.
+/// Case: the first three crossings of a straight ray.
 template <class Real>
 struct TriangleCase {
     static constexpr const char* name = "triangle";
@@ -162,7 +162,7 @@ struct TriangleCase {
     }
 };
 
-/// What a light's ray meets, apart from the shapes.
+/// Inputs of the shadow cases besides the shapes.
 template <class Real>
 struct ShadowInput {
     Material<Real> material;

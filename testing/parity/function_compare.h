@@ -45,7 +45,7 @@ inline FunctionParity compare_case(const CaseRunner& host, const CaseRunner& dev
     std::vector<uint64_t> ours(std::min(inputs, inputs_at_once) * words), theirs(ours.size());
     for (uint64_t first = 0; first < inputs; first += inputs_at_once) {
         const uint64_t count = std::min(inputs_at_once, inputs - first);
-        // What neither side writes must not look equal.
+        // Different initial values, so that outputs that neither side writes do not compare equal.
         std::fill(ours.begin(), ours.end(), ~uint64_t{0});
         std::fill(theirs.begin(), theirs.end(), 0);
         device.run(seed, first, count, theirs.data());

@@ -1,4 +1,4 @@
-// The host's results come from g++ with the contract's flags, as the CPU backends' do.
+// Function parity, the host's side: compiled by g++ with the flags of cistula::contract, as the CPU backend is.
 #include "testing/parity/function_parity.h"
 
 #include "testing/parity/function_compare.h"

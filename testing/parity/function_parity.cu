@@ -1,4 +1,4 @@
-// Function parity, the GPU's side: a thread an input, made in place.
+// Function parity, the GPU's side: one thread per input, which it generates itself.
 #include "backend_cuda/host/cuda_check.h"
 #include "testing/parity/function_cases.h"
 #include "testing/parity/function_parity.h"
@@ -12,7 +12,7 @@ __global__ void run_cases(uint64_t seed, uint64_t first, uint64_t count, uint64_
     if (i < count) run_case<Case>(first + i, seed, out + i * Case::words);
 }
 
-/// Pattern by pattern: those out of range are passed over.
+/// Tests bit patterns in turn, skipping those out of range.
 __global__ void try_reciprocals(float low, float high, ReciprocalTally* tally) {
     const uint64_t threads = uint64_t(gridDim.x) * blockDim.x;
     unsigned long long equal = 0;

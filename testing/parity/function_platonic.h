@@ -1,4 +1,4 @@
-// The Platonic solids in code that host and device share: for inputs of the function parity check.
+// The Platonic solids in code for host and device, for inputs of the function parity check.
 #pragma once
 
 #include "cistula/model/scene_view.h"
@@ -14,7 +14,7 @@ struct PlatonicTables {
     double inradius;  // of circumradius 1
 };
 
-/// Tetrahedron, cube, octahedron, dodecahedron, icosahedron.
+/// Counts and inradius of a solid: tetrahedron, cube, octahedron, dodecahedron, icosahedron.
 CISTULA_HD inline PlatonicTables platonic_tables(uint32_t kind) {
     constexpr double root = 0x1.279a74590331cp-1, golden = 0.7946544722917661;
     switch (kind) {
@@ -31,12 +31,12 @@ CISTULA_HD inline PlatonicTables platonic_tables(uint32_t kind) {
     }
 }
 
-/// (+-1, +-1, +-1) / sqrt(3), signs by the bits of i.
+/// Corner i of a cube, (+-1, +-1, +-1) / sqrt(3), with signs by the bits of i.
 CISTULA_HD inline Vec3<double> cube_corner(uint32_t i) {
     constexpr double k = 0x1.279a74590331cp-1;
     return {i & 1u ? k : -k, i & 2u ? k : -k, i & 4u ? k : -k};
 }
-/// (0, +-a, +-b) and its cyclic permutations.
+/// Corner i among (0, +-a, +-b) and its cyclic permutations.
 CISTULA_HD inline Vec3<double> rectangle_corner(uint32_t i, double a, double b) {
     const int axis = int(i / 4);
     Vec3<double> v(0.0);
@@ -55,7 +55,7 @@ CISTULA_HD inline Vec3<double> axis_vector(uint32_t i) {
     v[int(i / 2)] = i & 1u ? 1.0 : -1.0;
     return v;
 }
-/// The corners of a cube of which every edge has one.
+/// Corner i of a tetrahedron: those corners of a cube of which every edge has one.
 CISTULA_HD inline Vec3<double> tetrahedron_corner(uint32_t i) {
     const uint32_t corner[] = {0, 3, 5, 6};
     return cube_corner(corner[i]);
@@ -76,7 +76,7 @@ CISTULA_HD inline Vec3<double> platonic_corner(uint32_t kind, uint32_t i) {
     }
 }
 
-/// The normal of a slab: one of each two opposite corners of the dual solid.
+/// The normal of slab i: one of each two opposite corners of the dual solid.
 CISTULA_HD inline Vec3<double> platonic_normal(uint32_t kind, uint32_t i) {
     switch (kind) {
         case 0:

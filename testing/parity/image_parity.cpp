@@ -52,7 +52,7 @@ void check(GpuRecord& record, const std::string& name, const SceneDescription& s
     }
 }
 
-/// Small frames, as their pixels take many samples.
+/// Compares adaptive sampling, on small frames since their pixels take many samples.
 void check_adaptive(GpuRecord& record, const std::string& name, const SceneDescription& scene, FrameSettings settings,
                     double target) {
     settings.set_size(settings.full_width / 2, settings.full_height / 2);

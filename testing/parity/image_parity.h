@@ -1,4 +1,4 @@
-// Frames of the GPU against the CPU's, in the integers of their sums.
+// Compares frames of the GPU with the CPU's, in the integers of their sums.
 #pragma once
 
 #include <string>
@@ -7,11 +7,12 @@
 
 namespace cistula::bench {
 
-/// Every scene in FOLDER/scenes and the folders inside it by both backends, and each against its golden hash, in both
-/// precisions; a plain loop and a tree, split trees and whole ones.
+/// Compares every scene in FOLDER/scenes and the folders inside it between both backends and with its golden hash, in
+/// both precisions; with the chosen path and always with a tree, with the needed and with all effects.
 void check_scenes(GpuRecord& record, const std::string& folder);
 
-/// generated_scene(0) to generated_scene(count - 1), with the pictures and meshes of FOLDER/scenes, in both precisions.
+/// Compares generated_scene(0) to generated_scene(count - 1), with the pictures and meshes of FOLDER/scenes, in both
+/// precisions.
 void check_generated(GpuRecord& record, const std::string& folder, uint64_t count);
 
 }  // namespace cistula::bench

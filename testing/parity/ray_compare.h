@@ -1,4 +1,4 @@
-// The ray benchmark on the host: every ray again, and whether the device's are the same bits.
+// The ray benchmark on the host: traces every ray again and compares the device's results bit for bit.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -12,10 +12,10 @@
 
 namespace cistula::bench {
 
-/// What a comparison of one kind of ray found.
+/// The result of comparing one kind of ray.
 struct RayTally {
-    uint64_t rays = 0, hits = 0;  // the host's; hits of shadow rays: those that are stopped
-    uint64_t differing = 0;       // rays or findings
+    uint64_t rays = 0, hits = 0;  // of the host; for shadow rays, hits are those that are blocked
+    uint64_t differing = 0;       // rays or results
     uint32_t first_differing = ~uint32_t{0};
 
     void add(uint32_t index, bool exists, bool hit, bool same) {
@@ -64,7 +64,7 @@ void compare_ray(const SceneView<Real>& scene, const FrameView& frame, uint32_t 
                        same_bits(shadow, theirs.shadow[at]) && light == theirs.light[at]);
 }
 
-/// Rays [first, first + count); theirs begin at 0.
+/// Compares rays [first, first + count) with `theirs`, which begins at 0.
 template <class Real>
 RayTallies compare_rays(const SceneView<Real>& scene, const FrameView& frame, uint32_t first, uint32_t count,
                         const RayArrays<Real>& theirs) {

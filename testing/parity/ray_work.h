@@ -1,5 +1,5 @@
-// What the ray benchmark does with one ray, the same on host and device: primary rays, rays that bounce off where they
-// hit, rays from there to a light.
+// The work of the ray benchmark for one ray, for host and device: primary rays, rays that bounce off their hits, and
+// shadow rays from there.
 #pragma once
 
 #include "cistula/numerics/trigonometry.h"
@@ -13,26 +13,27 @@ namespace cistula::bench {
 inline constexpr int picture_width = 3840, picture_height = 2160;
 inline constexpr uint32_t ray_count = uint32_t(picture_width) * uint32_t(picture_height);
 
-/// A block of threads takes 2 x 2 tiles of 8 x 4 pixels, a warp one: neighbors see the same things.
+/// Layout: a block of threads takes 2 x 2 tiles of 8 x 4 pixels and a warp one tile, since neighbors see the same
+/// things.
 inline constexpr int warp_rays = 32, block_rays = 128, tile_width = 8, tile_height = 4;
 inline constexpr int blocks_across = picture_width / (2 * tile_width);
 static_assert(picture_width % (2 * tile_width) == 0 && picture_height % (2 * tile_height) == 0);
 
-/// Which ray is whose: the pixel of ray `index`.
+/// The pixel of ray `index`.
 CISTULA_HD inline void ray_pixel(uint32_t index, int& x, int& y) {
     const int block = int(index / block_rays), tile = int(index / warp_rays) % 4, lane = int(index % warp_rays);
     x = block % blocks_across * 2 * tile_width + tile % 2 * tile_width + lane % tile_width;
     y = block / blocks_across * 2 * tile_height + tile / 2 * tile_height + lane / tile_width;
 }
 
-/// A ray outside of all solids, as it lies in memory.
+/// A ray outside of all solids, as stored in memory.
 template <class Real>
 struct alignas(16) StoredRay {
     Vec3<Real> origin{Real(0)};
-    Real distance = -1;  // how far it goes; below 0: there is no such ray
+    Real distance = -1;  // length; below 0: there is no such ray
     Vec3<Real> direction{Real(0)};
-    uint32_t from_face = no_face;  // of solid 0; no_face: it starts in the open
-    static constexpr size_t used_bytes = 7 * sizeof(Real) + sizeof(uint32_t);  // without what pads it
+    uint32_t from_face = no_face;  // face of solid 0; no_face: it starts on none
+    static constexpr size_t used_bytes = 7 * sizeof(Real) + sizeof(uint32_t);  // without padding
 
     CISTULA_HD bool exists() const { return distance >= Real(0); }
     CISTULA_HD Ray<Real> ray() const {
@@ -51,14 +52,14 @@ struct StoredHit {
     uint32_t slot = 0;
     static constexpr size_t used_bytes = sizeof(uint64_t) + 3 * sizeof(Real) + sizeof(uint32_t);
 
-    /// Whether something was hit from outside, where further rays start.
+    /// Whether something was hit from outside; further rays start there.
     CISTULA_HD bool enters() const { return key != no_key && key_kind(key) == CrossingKind::enter; }
     CISTULA_HD Hit<Real> hit() const { return {t, key, u, v, slot, enters()}; }
 };
 
 inline constexpr uint8_t light_arrives = 1, light_is_stopped = 0, no_light_ray = 2;
 
-/// The rays and what they found, ray by ray, in memory of either side.
+/// The rays and their results, ray by ray, in memory of either side.
 template <class Real>
 struct RayArrays {
     StoredRay<Real>*primary = nullptr, *bounced = nullptr, *shadow = nullptr;
@@ -66,7 +67,7 @@ struct RayArrays {
     uint8_t* light = nullptr;
 };
 
-/// Through the middle of a pixel.
+/// The ray through the middle of a pixel.
 template <class Real, class Scene>
 CISTULA_HD inline StoredRay<Real> primary_ray_of(const Scene& scene, const FrameView& frame, uint32_t index) {
     int x, y;
@@ -82,8 +83,8 @@ CISTULA_HD inline StoredRay<Real> primary_ray_of(const Scene& scene, const Frame
     return stored;
 }
 
-/// About the unit normal, its density proportional to the cosine; of the index alone. The axes beside the normal are
-/// those of Duff et al. 2017, JCGT 6(1).
+/// A random direction around the unit normal with a density proportional to the cosine, determined by the index alone.
+/// The tangent axes are those of Duff et al. 2017, JCGT 6(1).
 template <class Real>
 CISTULA_HD inline Vec3<Real> cosine_direction(const Vec3<Real>& normal, uint32_t index) {
     constexpr double full_turn = 6.28318530717958647692;
@@ -98,7 +99,7 @@ CISTULA_HD inline Vec3<Real> cosine_direction(const Vec3<Real>& normal, uint32_t
     return Vec3<Real>(normalized(flat + n * square_root(1 - square)));
 }
 
-/// From the place of a hit: one that bounces, and one to the scene's first light, whichever side that is on.
+/// The rays from a hit point: one that bounces, and one to the scene's first light, whichever side that is on.
 template <class Real, class Scene>
 CISTULA_HD inline void further_rays_of(const Scene& scene, const StoredRay<Real>& primary, const StoredHit<Real>& found,
                                        uint32_t index, StoredRay<Real>& bounced, StoredRay<Real>& shadow) {

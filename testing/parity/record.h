@@ -1,4 +1,4 @@
-// What gpu_check writes: Google Benchmark's JSON, with the parity of host and device beside the times.
+// The record that gpu_check writes: Google Benchmark's JSON, with the parity of host and device beside the times.
 #pragma once
 
 #include <string>
@@ -12,19 +12,19 @@ using Json = nlohmann::ordered_json;
 
 class GpuRecord {
   public:
-    /// The context: GPU, driver, host, compiler, flags, commit.
+    /// Starts a record with its context: GPU, driver, host, compiler, flags, commit.
     explicit GpuRecord(const std::string& program = "gpu_check");
 
-    /// One benchmark of several runs: median, least and most, all runs. Prints a line.
+    /// Adds a benchmark of several runs: median, least and most, all runs. Prints a line.
     void add_times(const std::string& name, const std::vector<double>& milliseconds, Json more = Json::object());
 
-    /// One comparison of host and device. Prints a line where they differ.
+    /// Adds a comparison of host and device. Prints a line if they differ.
     void add_parity(const std::string& name, uint64_t compared, uint64_t differing, Json more = Json::object());
 
-    /// Anything else that a check has to say.
+    /// Adds any other value.
     void add(const std::string& key, Json value) { all_[key] = std::move(value); }
 
-    /// Whether every comparison found nothing.
+    /// Whether no comparison found a difference.
     bool equal() const { return differing_ == 0; }
     uint64_t compared() const { return compared_; }
     void write(const std::string& path) const;

@@ -1,4 +1,4 @@
-// One adaptively sampled pixel: what both backends do where a frame has a target.
+// Rendering of one adaptively sampled pixel, in frames with a target error, for both backends.
 #pragma once
 
 #include "cistula/adaptive/lattice.h"
@@ -7,9 +7,9 @@
 
 namespace cistula {
 
-/// Takes sample `slot` of a pixel into `record`, and gives its path hash. A tree of more than most_branches is
-/// followed again with four times the budget, and so on: the ledger says so. `gradual`: shades_gradually(scene), found
-/// once. The task's work is the thread's own.
+/// Renders sample `slot` of a pixel into `record` and returns its path hash. If its tree has more than most_branches,
+/// it is traced again with four times the budget, and so on; the ledger contains what that drops. `gradual`:
+/// shades_gradually(scene), computed once. task.work is the thread's own.
 template <class E, class Intersector, class Stack>
 CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task, int slot, bool gradual,
                                     PixelRecord& record) {
@@ -31,15 +31,15 @@ CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task
     }
 }
 
-/// Copies what is one sample's alone.
+/// Copies the data that belong to a single sample: id, depth and normal.
 CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel) {
     pixel.id = sample.id;
     pixel.z = sample.z;
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
 }
 
-/// Takes all samples that the pixel wants, with room of its own for them, into `record`. take(slot, taken): a sample's
-/// record; gives its path hash.
+/// Takes all samples that the pixel wants into `record`, with local storage for them. take(slot, taken) renders a
+/// sample into `taken` and returns its path hash.
 template <class Take>
 CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, PixelRecord& record, const Take& take) {
     LatticeSample samples[lattice_samples];

@@ -1,19 +1,20 @@
-// The rules of adaptive sampling: each says whether a cell of the lattice is split rather than left to its corners.
-// What each earns, and which were given up: docs/decisions/0007-adaptive-rules.md.
+// The rules of adaptive sampling. Each decides whether a cell of the sample lattice is split instead of being
+// represented by its corners. docs/decisions/0007-adaptive-rules.md tells what each gains, and which rules were given
+// up.
 #pragma once
 
 #include "cistula/adaptive/lattice_cell.h"
 
 namespace cistula {
 
-/// What the corners of a cell show, and the middle of a whole pixel where that was taken. Differences of colors are the
-/// greatest of any channel.
+/// Statistics of a cell's corner samples, and of the middle sample of a whole pixel if it was taken. Color differences
+/// are maxima over the channels.
 struct CornerFindings {
-    bool differs = false;          // whether the samples met different things
-    uint32_t most_rays = 0;        // of the largest tree
-    int64_t range = 0;             // between the darkest and the brightest
-    int64_t bend = 0;              // of the diagonals' means from each other, times two; with a middle, from it
-    int64_t across = 0, down = 0;  // along the upper or lower side; along the left or right one
+    bool differs = false;          // whether the path hashes differ
+    uint32_t most_rays = 0;        // rays of the largest tree
+    int64_t range = 0;             // between the darkest and the brightest corner
+    int64_t bend = 0;              // difference of the diagonals' means (or of the middle from them), times two
+    int64_t across = 0, down = 0;  // along the upper or lower side; along the left or right side
 
     CISTULA_INLINE static CornerFindings of(const LatticeSample* samples, const LatticeCell& cell, bool has_middle) {
         const LatticeSample* at[4];
@@ -29,7 +30,8 @@ struct CornerFindings {
                 const int64_t m = samples[lattice_middle].color(c);
                 low = least(low, m);
                 high = greatest(high, m);
-                // Beside the mean of the corners; four times that, of which half as much counts as without it.
+                // The difference of the middle from the mean of the corners, times four. It counts half: as much as the
+                // diagonals' difference without a middle.
                 found.bend = greatest(found.bend, magnitude(4 * m - a - b - d - e) / 2);
             } else {
                 found.bend = greatest(found.bend, magnitude(a + e - b - d));
@@ -48,11 +50,11 @@ struct CornerFindings {
     }
 };
 
-/// What a pixel shows so far: the greatest of what its cells do.
+/// Statistics of a pixel so far: the maxima over its cells.
 struct PixelFindings {
-    uint32_t rays = 0, first_rays = 0;  // of the largest tree; of the largest of its first samples
-    int64_t range = 0;                  // of colors in a cell
-    int64_t jump = 0;                   // between corners of a small cell that met the same
+    uint32_t rays = 0, first_rays = 0;  // of the largest tree; of the largest among the first samples
+    int64_t range = 0;                  // of the colors in a cell
+    int64_t jump = 0;                   // between corners of a small cell with equal path hashes
 
     CISTULA_INLINE void add(const LatticeCell& cell) {
         rays = greatest(rays, cell.rays);
@@ -62,10 +64,11 @@ struct PixelFindings {
     }
 };
 
-/// The corners disagree: the range of their colors, times the cell's area, is what a border through it can be worth.
-/// Where they met different things, that may be an eighth of the target, in a whole pixel and for coarse targets a
-/// quarter. Where they met the same, shading is gradual unless a texture makes it otherwise, and three eighths are left
-/// to it, for coarse targets three quarters. The diagonals may bend from each other by the target itself.
+/// Splits a cell whose corners disagree. The range of their colors times the cell's area bounds the error of an edge
+/// through the cell. If the corners have different path hashes, that may be an eighth of the target (a quarter in a
+/// whole pixel and for coarse targets). If they have equal ones, shading varies gradually unless it is textured, and
+/// the limit is three eighths of the target (three quarters for coarse targets). The means of the two diagonals may
+/// differ by the target itself.
 struct CornersDisagree {
     CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeCell& cell,
                                       const CornerFindings& found) {
@@ -76,14 +79,14 @@ struct CornersDisagree {
     }
 };
 
-/// Samples right beside a cell, along one of its sides: 0 left, 1 right, 2 upper, 3 lower. They lie beyond the pixel
-/// where the cell ends with it.
+/// The row or column of samples right beside a cell, on side 0 left, 1 right, 2 upper or 3 lower. It lies outside the
+/// pixel where the cell ends at the pixel's border.
 struct CellSide {
     bool upright;
-    int x, y, length;  // of the first; how many
-    int size;          // of the cell, away from the side
-    int first, last;   // corners at the side's ends
-    int opposite;      // what to turn in a corner's number for the one across the cell
+    int x, y, length;  // position of the first sample; number of samples
+    int size;          // of the cell, perpendicular to the side
+    int first, last;   // the cell's corners at the ends of the side
+    int opposite;      // bit of a corner's number that selects the side or the one opposite
 
     CISTULA_INLINE static CellSide of(const LatticeCell& cell, int side) {
         CellSide s;
@@ -101,17 +104,17 @@ struct CellSide {
 
     CISTULA_INLINE bool is_inside() const { return x >= 0 && y >= 0 && x < lattice_side && y < lattice_side; }
     CISTULA_INLINE int slot(int k) const { return upright ? (y + k) * lattice_side + x : y * lattice_side + x + k; }
-    /// Whether sample k is among those of `rows`, a bit a column.
+    /// Whether sample k is among those of `rows`, one bit per column.
     CISTULA_INLINE bool is_in(const uint16_t* rows, int k) const {
         return (rows[slot(k) / lattice_side] >> slot(k) % lattice_side & 1) != 0;
     }
 };
 
-/// A sample taken right beside the cell, between the corners of one of its sides, is brighter or darker than both by so
-/// much that two thirds of the cell would be worth the target. What comes in through that side, such as the tip of a
-/// mirrored edge or a texture's stripe, may end before it meets a corner.
+/// Splits a cell if a sample right beside it, between two of its corners, is brighter or darker than both by so much
+/// that two thirds of the cell would exceed the target. A feature that enters through that side, such as the tip of a
+/// mirrored edge or a stripe of a texture, may end before it reaches a corner.
 struct SideCrossed {
-    /// `rows`: the samples to look at, by row, a bit a column.
+    /// `rows`: the samples to look at, by row, one bit per column.
     CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeSample* samples,
                                       const LatticeCell& cell, const uint16_t* rows) {
         for (int i = 0; i < 4; ++i) {
@@ -137,13 +140,13 @@ struct SideCrossed {
     }
 };
 
-/// For small targets: a sample taken right beside a corner tells of a slope which, going on, would be so far from the
-/// corner across the cell that this, all over the cell, would be worth the target. All three met the same: there is a
-/// groove between, though the corners agree.
+/// For small targets: splits a cell if a sample right beside a corner gives a slope that, extrapolated across the cell,
+/// misses the opposite corner by so much that the difference over the whole cell would exceed the target. All three
+/// samples must have equal path hashes: shading then bends inside the cell, although its corners agree.
 struct SlopeBends {
-    static constexpr int steepest = 4;  // targets between neighbors; more is a texture's border
+    static constexpr int steepest = 4;  // targets between neighbors; more is an edge in a texture
 
-    /// `rows`: the samples to look at, by row, a bit a column.
+    /// `rows`: the samples to look at, by row, one bit per column.
     CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeSample* samples,
                                       const LatticeCell& cell, const uint16_t* rows) {
         if (!settings.fine) return false;
@@ -162,7 +165,7 @@ struct SlopeBends {
     }
 
   private:
-    /// `steps`: samples from the first to the last.
+    /// `steps`: lattice steps from `first` to `last`.
     CISTULA_INLINE static bool bends(const LatticeSettings& settings, const LatticeSample& before,
                                      const LatticeSample& first, const LatticeSample& last, int steps, int64_t area) {
         if (before.path_hash != first.path_hash || first.path_hash != last.path_hash) return false;
@@ -175,14 +178,15 @@ struct SlopeBends {
     }
 };
 
-/// The pixel shows a jump of color between near samples that met the same, which three eighths of the cell, that much
-/// brighter or darker, would bring beyond the target. So near to each other gradual shading differs little, a texture's
-/// border as much as ever, and its stripes, seen through curved glass or from afar, fall between corners that agree.
+/// Splits a cell if the pixel has a color jump, between nearby samples with equal path hashes, that would exceed the
+/// target over three eighths of the cell. At such small distances gradual shading differs little but an edge in a
+/// texture by its full contrast, and the texture's stripes, seen through curved glass or from afar, may lie between
+/// corners that agree.
 struct TextureJumps {
     static constexpr int eighths = 3;
-    static constexpr int near_area = 8;  // samples of the largest cell whose corners are near each other
+    static constexpr int near_area = 8;  // maximum area, in samples, of a cell whose corners are nearby
 
-    /// The greatest difference of colors between corners that met the same and are near, 0 if none are.
+    /// The greatest color difference between nearby corners with equal path hashes; 0 if there are none.
     CISTULA_INLINE static int64_t jump_in(const LatticeSample* samples, const LatticeCell& cell) {
         int64_t jump = 0;
         if (cell.area() > near_area) return jump;
@@ -200,8 +204,8 @@ struct TextureJumps {
     }
 };
 
-/// The cell's corners met different things, and half of it, differing as much as the corners of any cell of the pixel,
-/// would be worth the target. What a pixel shows in one place it may hide in another.
+/// Splits a cell whose corners have different path hashes if half of it, with the greatest color range of any cell of
+/// the pixel, would exceed the target. A feature that one place of the pixel shows may be hidden in another.
 struct UnlikeCorners {
     CISTULA_INLINE static bool splits(const LatticeSettings& settings, const PixelFindings& pixel,
                                       const LatticeCell& cell) {
@@ -209,9 +213,9 @@ struct UnlikeCorners {
     }
 };
 
-/// For small targets: the pixel met a large tree, and something unseen in the cell, brighter or darker by 1/192 of the
-/// bound, would be worth the target. Large trees see so much that some of it lies between samples that agree, be their
-/// own trees large or not: the image of a light ends a tree early, and hides between others.
+/// For small targets: splits a cell if the pixel has a large ray tree and an unseen change of 1/192 of the radiance
+/// bound would exceed the target in the cell. Large trees see so much that some of it lies between samples that agree,
+/// even if their own trees are small: the image of a light ends a tree early.
 struct LargeTrees {
     static constexpr uint32_t large_tree = 96;  // rays
     static constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 192;
@@ -221,8 +225,8 @@ struct LargeTrees {
     }
 };
 
-/// For small targets: one of the pixel's first five trees has some rays, colors in it span many targets, and the cell
-/// is no small one. A highlight may lie between its corners.
+/// For small targets: splits a cell that is not small if one of the pixel's first five trees has several rays and the
+/// pixel's colors span many targets. A highlight may lie between its corners.
 struct WideColors {
     static constexpr uint32_t some_rays = 5;
     static constexpr int wide_range = 16;  // targets
@@ -234,8 +238,8 @@ struct WideColors {
     }
 };
 
-/// Whether what the pixel shows elsewhere makes it doubtful that corners stand for a cell of `area` samples, however
-/// alike they are.
+/// Whether the rest of the pixel makes it doubtful that the corners represent a cell of `area` samples, however alike
+/// they are.
 CISTULA_INLINE bool splits_by_pixel(const LatticeSettings& settings, const PixelFindings& pixel, int64_t area) {
     return LargeTrees::splits(settings, pixel, area) || WideColors::splits(settings, pixel, area) ||
            TextureJumps::splits(settings, pixel, area);

@@ -1,23 +1,23 @@
-// Adaptive sampling of one fixed lattice of 16 x 16 samples a pixel (docs/rules.md, 10): which of them a pixel needs.
-// Decided in integers from the pixel's own samples, so that crops, tiles and backends agree.
+// Adaptive sampling of a pixel on a fixed lattice of 16 x 16 samples (docs/rules.md, 10): decides in integers, from the
+// pixel's own samples only, which of them to take, so that crops, tiles and backends agree.
 #pragma once
 
 #include "cistula/adaptive/adaptive_rules.h"
 
 namespace cistula {
 
-/// A pixel, in rounds: all samples that it wants are taken, all new cells judged and those that differ divided, whose
-/// children want the next. A cell, a rectangle of samples, is known by its four corners; where these differ too much it
-/// is split, else they stand for all of it, unless what the pixel shows elsewhere by then makes that doubtful
-/// (adaptive_rules.h). A straight border through a rectangle parts its corners, so that it is never overlooked. All 256
-/// samples give what the uniform 16 x 16 grid does. The children of a split share no sample. In each of a round's steps
-/// the work on one sample or cell may be any thread's. The samples lie with the caller, by slot.
+/// A pixel that is being sampled adaptively, in rounds: all wanted samples are taken, the new cells are judged, and
+/// those that need it are split; their children want the next samples. A cell is a rectangle of samples, known by its
+/// four corners. It is split if the corners differ too much, or if the rest of the pixel makes them doubtful
+/// (adaptive_rules.h); otherwise the corners stand for all of it. A straight edge through a rectangle separates its
+/// corners, so it is never missed. With all 256 samples the result is that of the uniform 16 x 16 grid. Cells share no
+/// samples. In each step of a round, any thread may work on any sample or cell. The caller stores the samples, by slot.
 class LatticePixel {
   public:
     CISTULA_INLINE void begin(const LatticeSettings& settings) {
         const LatticeCell whole = LatticeCell::whole_pixel();
         cells_[0] = whole;
-        // As want() would the corners and the middle, but that nothing is read: a device would wait for each.
+        // Equals want() for the corners and the middle, but reads nothing: a device would wait for every read.
         const int middle_row = settings.fine ? lattice_middle / lattice_side : lattice_side;
         for (int y = 0; y < lattice_side; ++y) {
             const bool is_outer = y == 0 || y == lattice_side - 1;
@@ -33,14 +33,14 @@ class LatticePixel {
         tally_ = now;
     }
 
-    /// The slots of the samples that this round wants, none if the pixel is done: wanted(0) to wanted(wanted() - 1).
+    /// The slots of the samples that this round wants: wanted(0) to wanted(wanted() - 1). None if the pixel is done.
     CISTULA_INLINE int wanted() const { return tally_.wanted; }
     CISTULA_INLINE int wanted(int i) const { return slots_[i]; }
 
-    /// Cells that the pixel consists of, to be judged once all that was wanted is there.
+    /// The number of the pixel's cells, to be judged once all wanted samples are taken.
     CISTULA_INLINE int cells() const { return tally_.cells; }
 
-    /// What the corners of the index-th cell, if it is new, tell of it and of its pixel, and what was taken beside it.
+    /// Judges cell `index` by its corners, if it is new, and by the samples right beside it.
     CISTULA_INLINE void judge(const LatticeSettings& settings, const LatticeSample* samples, int index) {
         LatticeCell& cell = cells_[index];
         const uint16_t* beside = cell.is_new ? taken_ : fresh_;
@@ -50,7 +50,7 @@ class LatticePixel {
                                SlopeBends::splits(settings, samples, cell, beside);
     }
 
-    /// Splits those of the cells that should be and still may.
+    /// Splits the cells that should be split, as far as the number of samples allows.
     CISTULA_INLINE void divide(const LatticeSettings& settings) {
         Tally now = tally_;
         const int count = now.cells;
@@ -63,7 +63,7 @@ class LatticePixel {
                                 splits_by_pixel(settings, now.seen, cell.area());
             if (cell.area() == 4 || !splits) continue;
             const bool first = settings.fine && cell.is_whole();
-            const int in_four = first ? 11 : 12, in_two = 4;  // of the first the middle is there
+            const int in_four = first ? 11 : 12, in_two = 4;  // the first split has its middle sample already
             if ((first || wants_four(settings, now.seen, cell)) && now.due + in_four <= settings.most) {
                 now.due += in_four;
                 for (int q = 0; q < 4; ++q) add_child(now, i, q, cell.part(q & 1 ? 1 : -1, q & 2 ? 1 : -1));
@@ -78,25 +78,24 @@ class LatticePixel {
         tally_ = now;
     }
 
-    /// add(slot, weight): samples that stand for cell i once the pixel is done.
+    /// Calls add(slot, weight) for the samples that represent cell i once the pixel is done.
     template <class Add>
     CISTULA_INLINE void accumulate(const LatticeSettings& settings, int i, const Add& add) const {
         const LatticeCell& cell = cells_[i];
         int each = cell.area() / 4;
         if (settings.fine && cell.is_whole()) {
-            // Simpson's rule, near enough, where all is smooth.
+            // Close to Simpson's rule where the pixel is smooth.
             each = cell.differs ? 32 : 24;
             add(lattice_middle, lattice_samples - 4 * each);
         }
         for (int c = 0; c < 4; ++c) add(cell.corner(c), each);
     }
 
-    /// Samples taken.
+    /// The number of samples taken.
     CISTULA_INLINE int taken() const { return tally_.due; }
     CISTULA_INLINE bool unmet() const { return tally_.unmet; }
 
-    /// Whether the sample is the one that stands for the pixel where no mean makes sense: of those taken the one in its
-    /// middle, else the first.
+    /// Whether this sample gives the pixel's id, depth and normal: the middle one if it is taken, else the first.
     CISTULA_INLINE static bool is_chosen(const LatticeSettings& settings, int slot) {
         return slot == lattice_middle || (slot == 0 && !settings.fine);
     }
@@ -104,15 +103,15 @@ class LatticePixel {
   private:
     static constexpr int most_cells = lattice_samples / 4;
 
-    /// Counts of the pixel. Worked on in a copy, which stays in registers: stores of slots, being bytes, could be to
-    /// any member.
+    /// Counters of a pixel. They are updated in a local copy, which stays in registers: the compiler must assume that
+    /// stores of bytes, such as slots, alias any member.
     struct Tally {
-        int cells, due, wanted;  // samples due: taken and wanted
+        int cells, due, wanted;  // due: samples taken and wanted
         bool unmet;
         PixelFindings seen;
     };
 
-    /// Unless it is there.
+    /// Adds a sample to those that this round wants, unless it is taken already.
     CISTULA_INLINE void want(Tally& now, int slot) {
         const int y = slot / lattice_side;
         const uint16_t bit = uint16_t(1u << slot % lattice_side);
@@ -134,29 +133,30 @@ class LatticePixel {
         cell.jump = TextureJumps::jump_in(samples, cell);
     }
 
-    /// Where the colors differ more, unless that makes needles.
+    /// Whether to split across the direction in which colors differ more, unless that makes cells too narrow.
     CISTULA_INLINE static bool is_split_across(const LatticeCell& cell, int64_t across, int64_t down) {
         if (cell.width == 2 || cell.height == 2) return cell.width > 2;
         if (cell.width >= 4 * cell.height || cell.height >= 4 * cell.width) return cell.width > cell.height;
         return across != down ? across > down : cell.width >= cell.height;
     }
 
-    /// Whether a cell that is split is so in four at once, which spares a round: where its halves would be too,
-    /// whatever they show.
+    /// Whether a cell is split in four at once, which saves a round: where its halves would be split too, whatever they
+    /// show.
     CISTULA_INLINE static bool wants_four(const LatticeSettings& settings, const PixelFindings& seen,
                                           const LatticeCell& cell) {
         return cell.width >= 4 && cell.height >= 4 && splits_by_pixel(settings, seen, cell.area() / 2);
     }
 
-    /// Puts part `nth` of cell i in its place, the first, or behind all; wants the corners that are not there.
+    /// Stores part `nth` of cell i, the first in place of the cell and the others at the end, and wants its missing
+    /// corners.
     CISTULA_INLINE void add_child(Tally& now, int i, int nth, const LatticeCell& child) {
         for (int c = 0; c < 4; ++c) want(now, child.corner(c));
         cells_[nth == 0 ? i : now.cells++] = child;
     }
 
     Tally tally_;
-    uint16_t taken_[lattice_side], fresh_[lattice_side];  // samples by row, a bit a column: all, and this round's
-    uint8_t slots_[lattice_samples * 3 / 4];              // no split wants more than three of four new samples
+    uint16_t taken_[lattice_side], fresh_[lattice_side];  // samples by row, one bit per column: all, and this round's
+    uint8_t slots_[lattice_samples * 3 / 4];              // a split wants at most three new samples of four
     LatticeCell cells_[most_cells];
 };
 

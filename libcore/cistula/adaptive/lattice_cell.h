@@ -1,5 +1,4 @@
-// The lattice of 16 x 16 samples a pixel that adaptive sampling draws from: its samples, and rectangles of them
-// (docs/rules.md, 10).
+// Samples and cells of the lattice of 16 x 16 samples per pixel from which adaptive sampling draws (docs/rules.md, 10).
 #pragma once
 
 #include "cistula/model/lattice_settings.h"
@@ -8,15 +7,16 @@
 
 namespace cistula {
 
-/// Sample (column, row) is slot 16 row + column; the middle of the pixel is the corner of all quadrants.
+/// The slot of the sample next to the pixel's middle, a corner of its lower right quadrant. Sample (column, row) has
+/// slot 16 row + column.
 inline constexpr int lattice_middle = lattice_side / 2 * (lattice_side + 1);
-/// What one sample of a pixel adds, in units of 2^-54 (fixed_sum.h, 256 samples), and what it met.
+/// One sample of a pixel: its contribution in units of 2^-54 (fixed_sum.h, 256 samples), and what it met.
 struct LatticeSample {
     int64_t radiance[3], pruned[3], cut[3];
     uint32_t hits, rays;
-    uint32_t path_hash;  // of its ray tree (path_hash.h)
+    uint32_t path_hash;  // hash of its ray tree (path_hash.h)
 
-    /// In units of 2^-color_bits.
+    /// A channel's radiance in units of 2^-color_bits.
     CISTULA_INLINE int64_t color(int channel) const { return radiance[channel] >> color_shift; }
 
     CISTULA_INLINE void keep(const PixelRecord& record, uint32_t hash) {
@@ -30,7 +30,7 @@ struct LatticeSample {
         path_hash = hash;
     }
 
-    /// add(to, value) for all that the sample is worth to its pixel if it stands for `weight` of the lattice.
+    /// Calls add(to, value) for the sample's sums, as if it represented `weight` samples of the lattice.
     template <class Add>
     CISTULA_INLINE void give(PixelRecord& record, int weight, const Add& add) const {
         for (int c = 0; c < 3; ++c) {
@@ -42,14 +42,14 @@ struct LatticeSample {
     }
 };
 
-/// Rectangle of samples, known by its four corners, the whole pixel by its middle too for small targets.
+/// A rectangle of samples that is known by its four corners; for small targets, the whole pixel by its middle too.
 struct LatticeCell {
     uint8_t x, y, width, height;
     bool is_new, wants_split;
-    bool across;          // to be split into a left and a right half, not an upper and a lower
-    bool differs;         // whether the samples met different things
-    uint32_t rays;        // of the largest tree
-    int64_t range, jump;  // of colors: of all corners; in a small cell, of those that met the same
+    bool across;          // split into a left and a right half, not an upper and a lower one
+    bool differs;         // whether the path hashes differ
+    uint32_t rays;        // rays of the largest tree
+    int64_t range, jump;  // of colors: all corners; corners with equal path hashes
 
     CISTULA_INLINE static LatticeCell whole_pixel() {
         LatticeCell cell = LatticeCell();
@@ -65,7 +65,8 @@ struct LatticeCell {
         return (y + (c & 2 ? height - 1 : 0)) * lattice_side + x + (c & 1 ? width - 1 : 0);
     }
 
-    /// The left or right half (-1, 1; 0: both) of the upper or lower half, not yet judged.
+    /// A half or a quarter of the cell, not yet judged: left (-1), right (1) or both (0); upper (-1), lower (1) or both
+    /// (0).
     CISTULA_INLINE LatticeCell part(int right, int lower) const {
         LatticeCell child = *this;
         child.is_new = true;

@@ -1,5 +1,5 @@
-// What a sample met, as a number: samples with equal ones are alike but for gradual change. It is the sum of what is
-// asked of an intersector, so that the order of work does not show.
+// A hash of what a sample's rays met: samples with equal hashes differ only by gradual changes. It is a sum over the
+// queries to the intersector, so it does not depend on their order.
 #pragma once
 
 #include "cistula/model/effects.h"
@@ -7,12 +7,13 @@
 
 namespace cistula {
 
-/// Hash of the ray tree under way. Branches too faint to matter leave it alone.
+/// The hash of the ray tree that is being traced. Branches of negligible throughput do not count.
 struct PathHash {
     uint32_t value = 0;
-    bool counts = true;  // whether the branch under way matters
+    bool counts = true;  // whether the current branch counts
 
-    /// Any change of a, b or c changes all of what is added (Appleby's final mix of MurmurHash3, public domain).
+    /// Adds a term of which any change of a, b or c changes all bits (Appleby's final mix of MurmurHash3, public
+    /// domain).
     CISTULA_INLINE void add(uint32_t a, uint32_t b, uint32_t c) {
         uint32_t h = a * 0x9e3779b1u + b * 0x85ebca77u + c * 0xc2b2ae3du + 0x27d4eb2fu;
         h = (h ^ h >> 16) * 0x85ebca6bu;
@@ -21,8 +22,8 @@ struct PathHash {
     }
 };
 
-/// Intersector that adds to a hash the faces that are hit and what arrives from lights: of what changes gradually only
-/// whether any does.
+/// An intersector that adds the faces that are hit and the transmittance toward lights to a hash; of a transmittance
+/// that varies gradually only whether it is above zero.
 template <class Inner>
 struct HashingIntersector {
     using Media = typename Inner::Media;
@@ -35,7 +36,7 @@ struct HashingIntersector {
     template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         const Hit<Real> hit = inner.template closest<E>(ray);
-        // A ray from the camera that meets nothing tells no more than one that passes the scene by.
+        // A primary ray that hits nothing counts like one that misses the scene.
         if (hash.counts && (hit.found() || ray.from_solid != no_solid))
             hash.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
         return hit;
@@ -58,11 +59,11 @@ struct HashingIntersector {
     }
 };
 
-/// Branches of a tree that are followed while a frame has a target. Where little is lost at every bounce and much goes
-/// both ways, a tree is as good as endless: then more is dropped (take_sample).
+/// The maximum number of branches followed in a tree while a frame has a target. A tree that loses little light at
+/// every bounce and splits often is practically endless; more of it is then dropped (take_sample).
 inline constexpr uint32_t most_branches = 1u << 12;
 
-/// Stack that tells a hash which branches matter, and ends trees that are too large.
+/// A stack that tells a PathHash which branches count, and ends trees that are too large.
 template <class Inner, class Real>
 class HashingStack {
   public:
@@ -84,7 +85,7 @@ class HashingStack {
     CISTULA_INLINE void clear() { inner_.clear(); }
     CISTULA_INLINE bool stopped() const { return inner_.stopped(); }
 
-    /// Empties the stack. False if it was: the tree was followed to its end.
+    /// Empties the stack. False if it was empty: the tree was followed to its end.
     CISTULA_INLINE bool drop() {
         const bool any = !inner_.empty();
         inner_.clear();

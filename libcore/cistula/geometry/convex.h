@@ -1,5 +1,6 @@
-// Convex solids as slabs (Kay and Kajiya 1986), with state instead of epsilons: a ray that is inside leaves through the
-// least leaving plane, one that left does not come back, whatever rounding says about where it stands.
+// Convex solids as intersections of slabs (Kay and Kajiya 1986), with state in place of epsilons (docs/rules.md, 3): a
+// ray inside leaves through the nearest leaving plane, and a ray that has left a solid does not hit it again, whatever
+// rounding says about its origin.
 #pragma once
 
 #include "cistula/geometry/convex_device.h"
@@ -13,8 +14,8 @@ namespace convex_here = convex_device;
 namespace convex_here = convex_host;
 #endif
 
-/// Whether a ray that starts outside surely misses, or meets the solid only beyond `limit`: spares most rays the slabs,
-/// decides no hit.
+/// Bounding sphere test: whether a ray from outside surely misses the solid or meets it only beyond `limit`. A quick
+/// rejection that never decides a hit.
 template <class Real>
 CISTULA_INLINE bool passes_by(const Ball<Real>& ball, const Vec3<Real>& origin, const Vec3<Real>& direction,
                               Real limit) {
@@ -24,8 +25,8 @@ CISTULA_INLINE bool passes_by(const Ball<Real>& ball, const Vec3<Real>& origin, 
     return rest > (ahead > limit ? beyond : beside);
 }
 
-/// The way out of a convex solid that the ray is inside, if that is less than `best`: before the face is looked up,
-/// what the time alone decides.
+/// The crossing by which a ray leaves the convex solid that it is inside, if it is less than `best`. The face is looked
+/// up only if the time does not reject it.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
     const Solid& solid = scene.solids[index];
@@ -38,9 +39,9 @@ CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<R
     if (best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, false);
 }
 
-/// Whether a line from within the planes of a solid that it is not inside goes toward a face that it starts on, give or
-/// take rounding: at a slant it would go far in the film before it is out. Asked where solids touch. By value, as it is
-/// called.
+/// Whether a ray that is within all planes of a touching solid, but not inside it by its media, goes toward a face on
+/// which it starts, to within rounding; at a slant it would otherwise stay long in that film. Not inlined, so its
+/// arguments are by value.
 template <class Real, class Scene>
 CISTULA_SELDOM bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real> origin, Vec3<Real> direction) {
     const Solid& solid = scene.solids[index];
@@ -53,14 +54,14 @@ CISTULA_SELDOM bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real>
     return false;
 }
 
-/// Whether a line from outside meets the solid. One that ends where the line starts, give or take the rounding of a
+/// Whether a ray from outside meets the solid. An interval that ends at the ray's origin, to within the rounding of a
 /// point on a shared face, is behind it.
 template <class Interval, class Real>
 CISTULA_INLINE bool is_met(const Interval& interval, Real extent) {
     return interval.enter <= interval.leave && interval.leave > incidence<Real> * extent;
 }
 
-/// The way into a convex solid that the ray neither is inside nor left, nor passes by.
+/// The crossing by which a ray enters a convex solid that it is not inside, has not just left and does not pass by.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Solid& solid, const Ray<Real, Media>& ray,
                                   Hit<Real>& best) {
@@ -85,14 +86,15 @@ CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray
         closest_entry(scene, index, scene.solids[index], ray, best);
 }
 
-/// The solid around a ray that meets its own way out next, since it stands alone; no_solid for any other ray.
+/// The solid around a ray whose next hit is surely that solid's own face, since its box meets no other primitive;
+/// no_solid for any other ray.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE uint32_t enclosing(const Scene& scene, const Ray<Real, Media>& ray) {
     const uint32_t solid = ray.media.only();
     return solid != no_solid && scene.solids[solid].alone ? solid : no_solid;
 }
 
-/// The next crossing of a ray inside such a solid; false for any other ray.
+/// The next crossing of a ray for which enclosing() gives a solid; false for any other ray.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool closest_enclosed(const Scene& scene, const Ray<Real, Media>& ray, Hit<Real>& best) {
     const uint32_t solid = enclosing(scene, ray);
@@ -101,7 +103,7 @@ CISTULA_INLINE bool closest_enclosed(const Scene& scene, const Ray<Real, Media>&
     return true;
 }
 
-/// Strictly inside all planes.
+/// Whether a point is strictly inside all planes of a convex solid.
 template <class Real, class Scene>
 CISTULA_HD inline bool inside_convex(const Scene& scene, const Solid& solid, const Vec3<Real>& point) {
     for (uint32_t i = 0; i < solid.slab_count; ++i) {

@@ -1,25 +1,26 @@
-// Lines against convex solids on the device: one slab after the other, as every thread of a warp has a line of its own.
+// Rays against convex solids on the device: a loop over single slabs, since every thread of a warp has its own ray.
 #pragma once
 
 #include "cistula/geometry/slab.h"
 
 namespace cistula::convex_device {
 
-/// Where a line is inside all slabs. A line beside a slab that it is parallel to has enter = infinity.
+/// The interval of t in which a line is inside all slabs. A line parallel to a slab and outside it has enter =
+/// infinity.
 template <class Real>
 struct Interval {
     Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
-    uint32_t enter_slab = 0;  // number in the scene of the first slab with this value
+    uint32_t enter_slab = 0;  // scene-wide number of the first slab with this value
 };
 
-/// The least time at which a line leaves a slab.
+/// The smallest t at which a line leaves a slab.
 template <class Real>
 struct Exit {
     Real t = RealTraits<Real>::infinity;
-    uint32_t face = 0;  // the first with this value
+    uint32_t face = 0;  // the first face with this value
 };
 
-/// The crossings of both sides of a slab, for a line that is not parallel to it.
+/// The crossings of both planes of a slab, for a line that is not parallel to it.
 template <class Real>
 struct SlabCrossing {
     Real slope, at_low, at_high;
@@ -35,7 +36,7 @@ struct SlabCrossing {
     CISTULA_INLINE Real leave() const { return greater(at_low, at_high); }
 };
 
-/// Whether a line is parallel to any of the slabs that were taken in.
+/// Whether a line is parallel to any slab whose slope was given to take().
 template <class Real>
 class ParallelSlab {
   public:
@@ -45,7 +46,8 @@ class ParallelSlab {
   private:
     Real least_ = Real(1);
 };
-/// By the upper halves, which decide it: integers, whose least is one instruction where that of doubles is four.
+/// Specialization that compares only the upper 32 bits of doubles, which decide the question: an integer minimum is one
+/// instruction, one of doubles four.
 template <>
 class ParallelSlab<double> {
   public:
@@ -61,7 +63,7 @@ class ParallelSlab<double> {
     uint32_t least_ = 0x7fffffffu;
 };
 
-/// The interval of a line that may be parallel to slabs.
+/// The interval of a line, with the test for parallel slabs.
 template <class Real, class Scene>
 CISTULA_INLINE Interval<Real> careful_interval(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                                const Vec3<Real>& direction) {
@@ -77,8 +79,8 @@ CISTULA_INLINE Interval<Real> careful_interval(const Scene& scene, const Solid& 
     return interval;
 }
 
-/// The interval of a line: first as if no slab were parallel to it, with more care where one was. `may_stop`: where the
-/// solid is sure not to be met, that is all that is known of the interval.
+/// The interval of a line, computed as if no slab were parallel to it, and again by careful_interval() if one was.
+/// `may_stop`: the loop may end once the line surely misses, with an interval that only says so.
 template <class Real, class Scene>
 CISTULA_INLINE Interval<Real> interval_of(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                           const Vec3<Real>& direction, bool may_stop) {
@@ -95,7 +97,7 @@ CISTULA_INLINE Interval<Real> interval_of(const Scene& scene, const Solid& solid
     return parallel.found() ? careful_interval(scene, solid, origin, direction) : interval;
 }
 
-/// Where a line from inside leaves: by another face than `skipped`, whatever rounding says about where it starts.
+/// Where a ray from inside leaves the solid: by any face but `skipped`, whatever rounding says about its origin.
 template <class Real, class Scene>
 CISTULA_INLINE Exit<Real> exit_of(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                   const Vec3<Real>& direction, uint32_t skipped) {
@@ -109,7 +111,7 @@ CISTULA_INLINE Exit<Real> exit_of(const Scene& scene, const Solid& solid, const 
     return exit;
 }
 
-/// The first face by which the line enters.
+/// The face by which the line enters; the first one of several.
 template <class Real, class Scene>
 CISTULA_INLINE uint32_t face_of(const Scene& scene, const Solid& solid, const Vec3<Real>&, const Vec3<Real>& direction,
                                 const Interval<Real>& interval) {
@@ -117,7 +119,7 @@ CISTULA_INLINE uint32_t face_of(const Scene& scene, const Solid& solid, const Ve
     return leaving_face(i - solid.first_slab, dot(scene.slabs.data[i].normal, direction)) ^ 1u;
 }
 
-/// The first face by which the line leaves.
+/// The face by which the line leaves; the first one of several.
 template <class Real, class Scene>
 CISTULA_INLINE uint32_t face_of(const Scene&, const Solid&, const Vec3<Real>&, const Vec3<Real>&,
                                 const Exit<Real>& exit, uint32_t) {

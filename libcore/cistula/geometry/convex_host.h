@@ -1,24 +1,25 @@
-// Lines against convex solids on the host: eight slabs at once, in vectors that the compiler makes of plain loops.
-// Which face a time belongs to is looked up where it counts.
+// Rays against convex solids on the host: eight slabs at once, in plain loops that the compiler vectorizes. The face of
+// a crossing is looked up only when it is needed.
 #pragma once
 
 #include "cistula/geometry/slab.h"
 
 namespace cistula::convex_host {
 
-/// Where a line is inside all slabs. A line beside a slab that it is parallel to has enter = infinity.
+/// The interval of t in which a line is inside all slabs. A line parallel to a slab and outside it has enter =
+/// infinity.
 template <class Real>
 struct Interval {
     Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
 };
 
-/// The least time at which a line leaves a slab.
+/// The smallest t at which a line leaves a slab.
 template <class Real>
 struct Exit {
     Real t = RealTraits<Real>::infinity;
 };
 
-/// Where a line crosses each of eight slabs.
+/// The times at which a line enters and leaves each of eight slabs.
 template <class Real>
 CISTULA_INLINE void cross_slabs(const SlabGroup<Real>& group, const Vec3<Real>& origin, const Vec3<Real>& direction,
                                 Real (&enter)[slab_lanes], Real (&leave)[slab_lanes]) {
@@ -28,7 +29,7 @@ CISTULA_INLINE void cross_slabs(const SlabGroup<Real>& group, const Vec3<Real>& 
                    enter[i], leave[i]);
 }
 
-/// The greatest of eight values. In halves, which are vectors too.
+/// Maximum of eight lanes, by vectorized halves.
 template <class Real>
 CISTULA_INLINE Real greatest_lane(const Real (&a)[slab_lanes]) {
     alignas(32) Real half[4];
@@ -36,7 +37,7 @@ CISTULA_INLINE Real greatest_lane(const Real (&a)[slab_lanes]) {
     for (int i = 0; i < 4; ++i) half[i] = greatest(a[i], a[i + 4]);
     return greatest(greatest(half[0], half[2]), greatest(half[1], half[3]));
 }
-/// The least of eight values.
+/// Minimum of eight lanes, by vectorized halves.
 template <class Real>
 CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
     alignas(32) Real half[4];
@@ -45,7 +46,7 @@ CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
     return least(least(half[0], half[2]), least(half[1], half[3]));
 }
 
-/// The interval of a line.
+/// The interval of t in which a line is inside a solid; the unnamed parameter is convex_device's may_stop.
 template <class Real, class Scene>
 CISTULA_INLINE Interval<Real> interval_of(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                           const Vec3<Real>& direction, bool) {
@@ -59,7 +60,7 @@ CISTULA_INLINE Interval<Real> interval_of(const Scene& scene, const Solid& solid
     return interval;
 }
 
-/// Where a line from inside leaves: by another face than `skipped`, whatever rounding says about where it starts.
+/// Where a ray from inside leaves the solid: by any face but `skipped`, whatever rounding says about its origin.
 template <class Real, class Scene>
 CISTULA_INLINE Exit<Real> exit_of(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                   const Vec3<Real>& direction, uint32_t skipped) {
@@ -76,7 +77,7 @@ CISTULA_INLINE Exit<Real> exit_of(const Scene& scene, const Solid& solid, const 
     return exit;
 }
 
-/// The first face by which the line enters.
+/// The face by which the line enters; the first one of several.
 template <class Real, class Scene>
 CISTULA_INLINE uint32_t face_of(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                 const Vec3<Real>& direction, const Interval<Real>& interval) {
@@ -89,7 +90,7 @@ CISTULA_INLINE uint32_t face_of(const Scene& scene, const Solid& solid, const Ve
     return 0;
 }
 
-/// The first face by which the line leaves.
+/// The face by which the line leaves; the first one of several.
 template <class Real, class Scene>
 CISTULA_INLINE uint32_t face_of(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                 const Vec3<Real>& direction, const Exit<Real>& exit, uint32_t skipped) {

@@ -1,21 +1,21 @@
-// A hit: ids and parameters first; points, normals and colors are computed from them afterwards (surface.h).
+// A ray's hit: ids and parameters. The point, normal and color are computed from them afterwards (surface.h).
 #pragma once
 
 #include "cistula/numerics/vec.h"
 
 namespace cistula {
 
-/// Which kind of crossing, in the order in which crossings at one t are taken.
+/// The kind of a crossing, in the order in which crossings at equal t are taken.
 enum class CrossingKind : uint32_t { enter = 0, leave = 1, sheet = 2 };
 
-/// kind, solid (24 bits), face (32 bits), so that comparing keys compares (kind, solid, face).
+/// Packs kind (8 bits), solid (24 bits) and face (32 bits), so that comparing keys compares (kind, solid, face).
 CISTULA_INLINE uint64_t make_key(CrossingKind kind, uint32_t solid, uint32_t face) {
     return uint64_t(kind) << 56 | uint64_t(solid) << 32 | face;
 }
 CISTULA_INLINE CrossingKind key_kind(uint64_t key) {
     return CrossingKind(key >> 56);
 }
-/// What a crossing adds to the count of its solid.
+/// The change of a solid's entry count at a crossing: 1 on entering, -1 on leaving, 0 for a sheet.
 CISTULA_INLINE int media_change(CrossingKind kind) {
     return kind == CrossingKind::enter ? 1 : kind == CrossingKind::leave ? -1 : 0;
 }
@@ -27,18 +27,18 @@ CISTULA_INLINE uint32_t key_face(uint64_t key) {
 }
 inline constexpr uint64_t no_key = ~uint64_t(0);
 
-/// A place on a ray. Crossings are ordered by (t, key).
+/// A position along a ray. Crossings are ordered by (t, key).
 template <class Real>
 struct Crossing {
     Real t = -1;
     uint64_t key = 0;
 
     CISTULA_INLINE bool before(Real other_t, uint64_t other_key) const {
-        return (t < other_t) | ((t == other_t) & (key < other_key));  // without jumps
+        return (t < other_t) | ((t == other_t) & (key < other_key));  // without branches
     }
 };
 
-/// key == no_key: nothing was hit, and t is infinite.
+/// A hit; key == no_key means a miss, with infinite t.
 template <class Real>
 struct Hit {
     Real t = RealTraits<Real>::infinity;
@@ -46,12 +46,12 @@ struct Hit {
     Real u = 0, v = 0;   // triangles: weights of the second and third corner
     uint32_t slot = 0;   // triangles: 8 cluster + lane
     bool enters = true;  // triangles: against the normal; the sign of det, not of a rounded dot product
-    /// The least t of crossings of meshes that came from the wrong side for the first on a line (triangle.h).
+    /// The smallest t of mesh crossings that were refused because they come from the wrong side (triangle.h).
     Real passed_over = RealTraits<Real>::infinity;
 
     CISTULA_INLINE bool found() const { return key != no_key; }
 
-    /// Another crossing in the place of this one; `passed_over` stays.
+    /// Replaces the hit by another crossing, keeping `passed_over`.
     CISTULA_INLINE void take(Real other_t, uint64_t other_key, Real other_u, Real other_v, uint32_t other_slot,
                              bool other_enters) {
         t = other_t;
@@ -62,7 +62,7 @@ struct Hit {
         enters = other_enters;
     }
 
-    /// The one hit rule: keep the least (t, key).
+    /// Whether another crossing comes first: the hit with the smallest (t, key) is kept.
     CISTULA_INLINE bool improves(Real other_t, uint64_t other_key) const {
         return (other_t < t) | ((other_t == t) & (other_key < key));
     }

@@ -1,4 +1,4 @@
-// A ray and what it knows about where it is: the solids around it, the face it left, the crossings it has behind it.
+// A ray and its state: the media around it, the face that it left, and the last crossing behind it.
 #pragma once
 
 #include "cistula/geometry/hit.h"
@@ -7,10 +7,11 @@ namespace cistula {
 
 inline constexpr uint32_t no_solid = 0xffffffu;
 
-/// The solids that contain a point, each with a signed count of entries less exits. Straight rays take every crossing
-/// of a mesh in the order of their t, which rounding may turn round at a grazed edge, so that -1 is legal.
+/// The medium stack: the solids that contain a point, each with its signed count of entries minus exits. A straight ray
+/// takes every crossing of a mesh in order of t, which rounding may reverse at a grazed edge, so a count of -1 is
+/// legal.
 struct MediaList {
-    static constexpr bool contacts = true;  // a point may be in several solids at once
+    static constexpr bool contacts = true;  // a point may be inside several solids
     static constexpr bool meshes = true;    // some may be meshes
     static constexpr int capacity =
         8;  // solids inside one another; going over it fails the render (flag_media_overflow)
@@ -30,18 +31,18 @@ struct MediaList {
     CISTULA_INLINE bool contains(uint32_t solid) const { return size != 0 && count(solid) > 0; }
     CISTULA_INLINE bool empty() const { return size == 0; }
 
-    /// The one solid in the list, if it contains the point and nothing else is listed; else no_solid.
+    /// The only solid in the list, if the point is inside it; else no_solid.
     CISTULA_INLINE uint32_t only() const {
         return size == 1 && count_of(entries[0]) > 0 ? solid_of(entries[0]) : no_solid;
     }
 
-    /// Calls visit(solid, count) for all that is listed.
+    /// Calls visit(solid, count) for every entry.
     template <class Visit>
     CISTULA_INLINE void for_each(const Visit& visit) const {
         for (uint32_t i = 0; i < size; ++i) visit(solid_of(entries[i]), count_of(entries[i]));
     }
 
-    /// Adds +-1 to the solid's count. False if the list is full (it is then unchanged).
+    /// Adds +-1 to the solid's count. False if the list is full, which leaves it unchanged.
     CISTULA_INLINE bool add(uint32_t solid, int change) {
         for (uint32_t i = 0; i < size; ++i) {
             if (solid_of(entries[i]) != solid) continue;
@@ -68,8 +69,8 @@ struct MediaList {
     }
 };
 
-/// The solid that contains a point, where all closed solids are convex and none touches another: a ray is inside one at
-/// most, and its state lets it enter only from outside and leave only from inside.
+/// The medium stack of scenes whose closed solids are all convex and do not touch, so that a ray is inside at most one.
+/// Its state lets a ray enter only from outside and leave only from inside.
 struct OneMedium {
     static constexpr bool contacts = false, meshes = false;
 
@@ -80,7 +81,7 @@ struct OneMedium {
     CISTULA_INLINE uint32_t only() const { return solid; }
     CISTULA_INLINE uint32_t medium() const { return solid; }
 
-    /// False, and nothing done, where the solids touch after all.
+    /// Records a crossing. False, without a change, where the solids touch after all.
     CISTULA_INLINE bool add(uint32_t index, int change) {
         if (solid != (change > 0 ? no_solid : index)) return false;
         solid = change > 0 ? index : no_solid;
@@ -93,7 +94,7 @@ struct OneMedium {
     }
 };
 
-/// Converts one form of the solids around a point into another.
+/// Converts a MediaList to the form of `to`.
 CISTULA_INLINE void assign(MediaList& to, const MediaList& from) {
     to = from;
 }
@@ -101,25 +102,24 @@ CISTULA_INLINE void assign(OneMedium& to, const MediaList& from) {
     to.solid = from.medium();
 }
 
-/// A straight line of light. Where it passes a face without bending it keeps origin and direction, and `after` moves
-/// on.
+/// A ray. Where it passes a face without bending it keeps its origin and direction, and `after` moves on.
 template <class Real, class Media = MediaList>
 struct Ray {
     Vec3<Real> origin;
     Vec3<Real> direction;            // unit to within a few u
-    uint32_t from_solid = no_solid;  // where the line starts on a face: its solid
-    uint32_t from_face = 0;          // ... and the face: 2 slab + side, or the scene-wide triangle number
-    Crossing<Real> after;            // crossings up to and including this one are behind
-    Media media;                     // around the point `after`
+    uint32_t from_solid = no_solid;  // the solid on whose face the ray starts, if any
+    uint32_t from_face = 0;          // that face: 2 slab + side, or the scene-wide triangle number
+    Crossing<Real> after;            // the last crossing that the ray has passed
+    Media media;                     // the medium stack at `after`
 
     CISTULA_INLINE bool fresh() const { return after.t < Real(0); }
-    /// Whether the line's first crossing of a mesh has to come from the side on which the line starts.
+    /// Whether the ray's first crossing of a mesh must come from the side on which the ray starts.
     CISTULA_INLINE bool by_side() const { return after.t <= Real(-1); }
-    /// The line is to meet all crossings, from whichever side: for those who count.
+    /// Makes the ray meet all crossings, from whichever side; used to count them.
     CISTULA_INLINE void meet_all() { after.t = Real(-0.5); }
 };
 
-/// A line that is not finite meets nothing.
+/// Whether a ray is finite; one that is not meets nothing.
 template <class Real>
 CISTULA_INLINE bool is_finite(const Vec3<Real>& origin, const Vec3<Real>& direction) {
     return nothing_of(origin) + nothing_of(direction) == Real(0);

@@ -1,4 +1,4 @@
-// Where a line crosses a slab, the space between two parallel planes (Kay and Kajiya 1986).
+// The crossings of a line and a slab, the space between two parallel planes (Kay and Kajiya 1986).
 #pragma once
 
 #include "cistula/geometry/ray.h"
@@ -8,13 +8,13 @@ namespace cistula {
 
 inline constexpr uint32_t no_face = 0xffffffffu;
 
-/// A line at less of a slope counts as parallel to a slab: times stay finite.
+/// Lines with less slope than this count as parallel to a slab, which keeps times finite.
 template <class Real>
 inline constexpr Real least_slope = Real(0x1p-100);
 
-/// The times at which a line enters and leaves one slab. A line that is parallel to the slab leaves it at infinity; it
-/// enters at infinity if it runs beside the slab, else at -infinity. Selects only, since which slab decides is
-/// unpredictable; all callers use these operations, so that the face of a value can be looked up afterwards.
+/// The times at which a line enters and leaves a slab. A line parallel to the slab leaves at infinity; it enters at
+/// infinity if it lies outside the slab, else at -infinity. Uses selects only, since branches would be unpredictable.
+/// All callers use the same operations, so that the face of a value can be looked up afterwards.
 template <class Real>
 CISTULA_INLINE void cross_slab(const Vec3<Real>& normal, Real low, Real high, const Vec3<Real>& origin,
                                const Vec3<Real>& direction, Real& enter, Real& leave) {
@@ -28,7 +28,7 @@ CISTULA_INLINE void cross_slab(const Vec3<Real>& normal, Real low, Real high, co
     leave = parallel ? RealTraits<Real>::infinity : last;
 }
 
-/// The face of a convex solid by which a line of this slope leaves its slab.
+/// The face of a convex solid by which a line with this slope leaves a slab.
 template <class Real>
 CISTULA_INLINE uint32_t leaving_face(uint32_t slab, Real slope) {
     return 2 * slab + (slope > Real(0) ? 1 : 0);

@@ -1,5 +1,6 @@
-// Triangles, hit exactly once: shear to the ray (Woop, Benthin, Wald 2013, JCGT 2(1)), edge functions whose signs are
-// exact, and zero edges owned by one of the two triangles beside them (the top-left rule of rasterizers).
+// Watertight ray-triangle intersection in which every point belongs to exactly one triangle: shear to ray space (Woop,
+// Benthin, Wald 2013, JCGT 2(1)), edge functions with exact signs, and the top-left rule of rasterizers for edges that
+// are hit exactly.
 #pragma once
 
 #include "cistula/geometry/ray.h"
@@ -7,13 +8,14 @@
 
 namespace cistula {
 
-/// a[k] by selects: an index would put `a` into memory.
+/// a[k] by selects: an index would force `a` into memory on the device.
 template <class Real>
 CISTULA_INLINE Real component(const Vec3<Real>& a, int k) {
     return k == 0 ? a.x : k == 1 ? a.y : a.z;
 }
 
-/// A ray's shear. Axes are permuted so that the direction is longest along kz and winding is kept: det > 0 enters.
+/// A ray's shear. Axes are permuted so that kz is the axis of the largest direction component and winding is preserved:
+/// det > 0 means that the ray enters.
 template <class Real>
 struct TriangleRay {
     int kx, ky, kz;
@@ -32,7 +34,7 @@ struct TriangleRay {
             r.kx = r.ky;
             r.ky = k;
         }
-        r.sz = Real(1) / along_z;  // of any size: functions are compared beyond what renders ask
+        r.sz = Real(1) / along_z;  // not reciprocal(): the parity check also tests arguments outside its range
         r.sx = component(direction, r.kx) * r.sz;
         r.sy = component(direction, r.ky) * r.sz;
         r.ox = component(origin, r.kx);
@@ -42,8 +44,8 @@ struct TriangleRay {
     }
 };
 
-/// Coordinates whose products could lose digits to underflow, and with them their sign, count as 0, for all triangles
-/// alike: below 2^-51 in float the last digit of a product is below 2^-149.
+/// Sheared coordinates below this count as 0, since their products could underflow and lose their sign. (In float, the
+/// last digit of a product of numbers below 2^-51 is below 2^-149.)
 template <class Real>
 inline constexpr Real least_sheared = sizeof(Real) == sizeof(float) ? Real(0x1p-51) : Real(0x1p-60);
 
@@ -53,7 +55,7 @@ CISTULA_INLINE Real sheared(Real across, Real shear, Real depth) {
     return magnitude(s) < least_sheared<Real> ? Real(0) : s;
 }
 
-/// An accepted crossing of one triangle. The weights of the corners are edge functions over their sum.
+/// An accepted crossing of a triangle. The barycentric weights are the edge functions divided by their sum, det.
 template <class Real>
 struct TriangleCrossing {
     Real t, edge_u, edge_v, det;
@@ -63,7 +65,8 @@ struct TriangleCrossing {
     CISTULA_INLINE Real v() const { return edge_v / det; }
 };
 
-/// Corners relative to the ray and sheared along it, and edge functions opposite to each.
+/// A triangle in ray space: corners relative to the origin and sheared along the ray, and the edge function opposite to
+/// each corner.
 template <class Real>
 struct ShearedTriangle {
     Real x[3], y[3], z[3], edge[3];
@@ -103,7 +106,8 @@ struct ShearedTriangle {
                (edge[0] <= Real(0) && edge[1] <= Real(0) && edge[2] <= Real(0));
     }
 
-    /// Whether every edge that the ray meets belongs to this triangle. `sign` is det's.
+    /// Whether every edge that the ray hits exactly belongs to this triangle (top-left rule). `sign` is the sign of
+    /// det.
     CISTULA_INLINE bool owns_zero_edges(Real sign) const {
         for (int c = 0; c < 3; ++c) {
             if (edge[c] != Real(0)) continue;
@@ -115,13 +119,13 @@ struct ShearedTriangle {
     }
 };
 
-/// What the eight-lane test leaves for the lanes that it names: edge functions and corners' distances along kz.
+/// Results of the eight-lane edge test, for the lanes that pass: edge functions and the corners' distances along kz.
 template <class Real>
 struct alignas(32) CandidateLanes {
     Real edge[3][cluster_lanes], z[3][cluster_lanes];
 };
 
-/// The lanes that a ray may hit, as bits: the inclusive edge tests only, eight at once.
+/// The lanes that a ray may hit, as a bit mask: only the inclusive edge tests, eight at once.
 template <class Real>
 CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const TriangleRay<Real>& ray,
                                            CandidateLanes<Real>& lanes) {
@@ -133,7 +137,7 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
         mask |= uint32_t(s.within()) << lane;
     }
 #else
-    // Straight code over lanes, so that the compiler fills vectors with it: same operations, same bits.
+    // A loop over lanes that the compiler vectorizes: the operations, and so the bits, are those of ShearedTriangle.
     const Real *px[3], *py[3], *pz[3];
     for (int c = 0; c < 3; ++c) {
         px[c] = cluster.corner[c][ray.kx];
@@ -162,8 +166,8 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
     return mask;
 }
 
-/// The exact test of one candidate, given its edge functions and its corners' distances along kz; t is not yet compared
-/// with anything. shear() gives the whole of it, which zero edges need.
+/// The exact test of a candidate from its edge functions and its corners' distances along kz; t is not compared with
+/// anything yet. shear() gives the ShearedTriangle, which is needed only if an edge function is zero.
 template <class Real, class Shear>
 CISTULA_INLINE bool cross_triangle(const TriangleRay<Real>& ray, const Real (&edge)[3], const Real (&z)[3],
                                    const Shear& shear, TriangleCrossing<Real>& crossing) {
@@ -191,11 +195,11 @@ CISTULA_INLINE bool cross_triangle(const ShearedTriangle<Real>& s, const Triangl
                              ray, s.edge, s.z, [&]() -> const ShearedTriangle<Real>& { return s; }, crossing);
 }
 
-/// Calls visit(lane, crossing) for every triangle of a cluster that the ray's line crosses, wherever.
+/// Calls visit(lane, crossing) for every triangle of a cluster that the ray's line crosses, at any t.
 template <class Real, class Visit>
 CISTULA_INLINE void for_each_crossing(const Cluster<Real>& cluster, const TriangleRay<Real>& ray, const Visit& visit) {
 #if CISTULA_ON_DEVICE
-    // One after the other in registers: a buffer of lanes would be memory here.
+    // One triangle after the other, in registers: a buffer of lanes would lie in memory here.
     for (uint32_t lane = 0; lane < cluster.count; ++lane) {
         TriangleCrossing<Real> c;
         if (cross_triangle(ShearedTriangle<Real>::of(cluster, int(lane), ray), ray, c)) visit(lane, c);
@@ -210,28 +214,28 @@ CISTULA_INLINE void for_each_crossing(const Cluster<Real>& cluster, const Triang
 #endif
 }
 
-/// Whether a line starts on the flat sheet to which a cluster belongs.
+/// Whether a ray starts on the flat sheet to which a cluster belongs.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool leaves_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray) {
     const uint32_t solid = scene.clusters[cluster].solid;
     return solid == ray.from_solid && scene.solids[solid].flat != 0;
 }
 
-/// Whether a line from a place well off the plane of a flat sheet surely stays off it up to `limit`: spares most rays
-/// the triangles, decides no hit. Lines that stay so far off at a slant below plane_padding / 4 M have all of the sheet
-/// far beside them. `off`: of the origin from the plane; `slant`: of the direction.
+/// Whether a ray from a point well off a flat sheet's plane surely does not reach the plane before `limit`. A quick
+/// rejection that never decides a hit. (A ray so flat that slant < plane_padding / 4 M stays clear of the whole sheet.)
+/// `off`: signed distance of the origin from the plane; `slant`: direction . normal.
 template <class Real>
 CISTULA_INLINE bool stays_off(Real off, Real slant, Real limit) {
     const Real ahead = off < Real(0) ? -slant : slant, far_off = magnitude(off);
     return (far_off > Real(plane_padding)) & (far_off + ahead * limit > Real(plane_padding));
 }
 
-/// A line at less of a slant to a sheet's plane may cross it far from where rounding says.
+/// Minimum slant for crosses_beside(): a flatter line may cross the plane far from its computed crossing.
 template <class Real>
 inline constexpr Real least_slant = Real(0x1p-6);
 
-/// Whether a line surely crosses the plane of a flat sheet beside the sheet. Where it crosses is off by the rounding of
-/// a few u M over the slant, 2^-13 M at most, and the box is padded by more.
+/// Whether a line surely crosses a flat sheet's plane outside the sheet's box. The crossing point is accurate to a few
+/// u M over the slant, at most 2^-13 M; the box is padded by more.
 template <class Real>
 CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction,
                                    Real off, Real slant) {
@@ -240,23 +244,23 @@ CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Rea
                                                    (magnitude(at.z) > plane.half.z));
 }
 
-/// Whether a line surely meets nothing of a flat sheet up to `limit`. `from`: the solid that it leaves.
+/// Whether a ray surely misses a flat sheet up to `limit`. `from`: the solid that it leaves.
 template <class Real>
 CISTULA_INLINE bool misses_flat(const SheetPlane<Real>& plane, uint32_t from, const Vec3<Real>& origin,
                                 const Vec3<Real>& direction, Real limit) {
     const Real off = dot(plane.normal, origin) - plane.offset, slant = dot(plane.normal, direction);
-    // Two questions without branches of their own: what each asks is there at once.
+    // Both tests without branches between them, so that their values are computed at once.
     if ((plane.flat != 0) & ((from == plane.solid) | stays_off(off, slant, limit))) return true;
     return (plane.flat != 0) & crosses_beside(plane, origin, direction, off, slant);
 }
 
-/// Whether a ray misses a cluster that belongs to a flat sheet; false where the cluster belongs to none.
+/// Whether a ray surely misses a cluster of a flat sheet; false where the cluster belongs to none.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
     return misses_flat(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
 }
 
-/// Takes an accepted crossing if it is the ray's next.
+/// Takes an accepted crossing as `best` if it is the ray's next.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_t triangle, uint32_t slot,
                                      const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray, Hit<Real>& best) {
@@ -268,7 +272,7 @@ CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_
     } else if (scene.solids[solid].kind == SolidKind::sheet) {
         kind = CrossingKind::sheet;
     } else if (ray.by_side() && c.enters() == ray.media.contains(solid)) {
-        // A line first crosses a mesh from the side on which it starts.
+        // A ray's first crossing of a mesh is from the side on which the ray starts.
         best.passed_over = lesser(c.t, best.passed_over);
         return;
     }
@@ -276,7 +280,7 @@ CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_
     if (ray.after.before(c.t, key) && best.improves(c.t, key)) best.take(c.t, key, c.u(), c.v(), slot, c.enters());
 }
 
-/// The ray's next crossing of a cluster's triangles, if it is less than `best`. For a ray that does not start on the
+/// The ray's next crossing of a cluster's triangles, if it is less than `best`, for a ray that does not start on the
 /// cluster's flat sheet.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_triangles(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
@@ -294,7 +298,8 @@ CISTULA_INLINE void closest_cluster(const Scene& scene, uint32_t index, const Ra
     if (!leaves_flat(scene, index, ray)) closest_triangles(scene, index, ray, triangle_ray, best);
 }
 
-/// Takes one facet's crossing if it is the ray's next; `left` is the flat sheet on which the ray starts, or no_solid.
+/// Takes the crossing of one facet as `best` if it is the ray's next; `left` is the flat sheet on which the ray starts,
+/// or no_solid.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_facet(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                   const TriangleRay<Real>& triangle_ray, uint32_t left, Hit<Real>& best) {
@@ -304,7 +309,7 @@ CISTULA_INLINE void closest_facet(const Scene& scene, uint32_t index, const Ray<
         closest_crossing(scene, facet.solid, facet.triangle, facet.slot, c, ray, best);
 }
 
-/// The flat sheet on which a line starts, or no_solid.
+/// The flat sheet on which a ray starts, or no_solid.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE uint32_t flat_start(const Scene& scene, const Ray<Real, Media>& ray) {
     return ray.from_solid != no_solid && scene.solids[ray.from_solid].flat != 0 ? ray.from_solid : no_solid;

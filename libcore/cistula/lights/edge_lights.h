@@ -1,16 +1,16 @@
-// Seen lights along the edges of convex solids, of which there may be hundreds: a line that is near two faces of no
-// solid at a time meets none of them, and looks for none. For the host, which tests eight slabs at once; a thread of a
-// device takes as long for that as for the tree over the lights.
+// A quick rejection for visible lights along the edges of convex solids, of which there may be hundreds: a ray that is
+// nowhere near two faces of one solid at once meets none of them. Used on the host, which tests eight slabs at once; on
+// the device it takes as long as traversing the tree over the lights.
 #pragma once
 
 #include "cistula/geometry/convex.h"
 
 namespace cistula {
 
-/// Up to this many solids are asked, of up to so many slabs.
+/// The maximum number of solids that are tested, and of slabs of each.
 inline constexpr uint32_t most_solids_of_edge_lights = 16, most_slabs_of_edge_lights = 32;  // a bit each
 
-/// Whether the line between `from` and `to` passes the sphere around a solid's lights by.
+/// Whether a line between `from` and `to` misses the bounding sphere of a solid's edge lights.
 template <class Real>
 CISTULA_INLINE bool passes_edge_lights(const Solid& solid, Real square, const Vec3<Real>& origin,
                                        const Vec3<Real>& direction, Real from, Real to) {
@@ -20,7 +20,7 @@ CISTULA_INLINE bool passes_edge_lights(const Solid& solid, Real square, const Ve
     return rest > nearest * (Real(2) * ahead - nearest);
 }
 
-/// Bit i: whether a[i] >= limit, or a[i] <= limit.
+/// A lane mask: bit i is set if a[i] >= limit (lanes_from) or a[i] <= limit (lanes_to).
 CISTULA_INLINE uint32_t lanes_from(const float (&a)[slab_lanes], float limit) {
     alignas(32) int32_t is[slab_lanes];
     CISTULA_VECTORS
@@ -34,9 +34,9 @@ CISTULA_INLINE uint32_t lanes_to(const float (&a)[slab_lanes], float limit) {
     return sign_bits(is);
 }
 
-/// Whether a line is within `reach` of two faces of a solid at once, somewhere between `from` and `to`, which come
-/// closer to where. Of an entering plane a line is near up to some time, of a leaving one from some time on. In single
-/// precision for either: `reach` is 2^-14 M beyond the lights, and what is rounded here is under 2^-19 M.
+/// Whether a line comes within `reach` of two faces of a solid at once between `from` and `to`, which are narrowed to
+/// where it does. The line is near an entering plane up to some t and near a leaving plane from some t on. Single
+/// precision suffices for either Real: `reach` exceeds the lights by 2^-14 M, and rounding errors are under 2^-19 M.
 template <class Real>
 CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, float reach, const Vec3<float>& origin,
                                const Vec3<float>& direction, float& from, float& to) {
@@ -50,7 +50,7 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
         for (int i = 0; i < slab_lanes; ++i) {
             const Vec3<float> normal(float(group.nx[i]), float(group.ny[i]), float(group.nz[i]));
             const float nd = dot(normal, direction), no = dot(normal, origin);
-            // Of a slab that it is parallel to, a line is near from very early to very late or not at all.
+            // A line parallel to a slab is near its planes almost everywhere or nowhere.
             const float inverse = 1.0f / (magnitude(nd) < 0x1p-60f ? 0x1p-60f : nd);
             const float at_low = (float(group.low[i]) - no) * inverse, at_high = (float(group.high[i]) - no) * inverse;
             const float half = reach * magnitude(inverse), in = lesser(at_low, at_high), out = greater(at_low, at_high);
@@ -63,7 +63,7 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
         to = least(convex_host::least_lane(leave), to);
     }
     if (!(from <= to)) return false;
-    uint32_t entering = 0, leaving = 0;  // planes
+    uint32_t entering = 0, leaving = 0;  // masks of planes near which the line is at `from`, at `to`
     float first = to, last = from;
     for (int g = 0; g < count; ++g) {
         entering |= lanes_from(past[g], from) << g * slab_lanes;
@@ -78,7 +78,7 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
     return from <= to;
 }
 
-/// A solid of a list of convex ones, which holds copies or numbers.
+/// The solid of an entry of scene.convex, which holds copies or indices.
 template <class Real, class Scene>
 CISTULA_INLINE const Solid& listed(const Scene&, const NumberedSolid<Real>& copy) {
     return copy.solid;
@@ -88,7 +88,7 @@ CISTULA_INLINE const Solid& listed(const Scene& scene, uint32_t index) {
     return scene.solids[index];
 }
 
-/// Whether a ray may meet a seen light between `from` and `to`, which come closer to where.
+/// Whether a ray may meet a visible light between `from` and `to`, which are narrowed to where it may.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& ray, Real& from, Real& to) {
     if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return true;
@@ -101,7 +101,7 @@ CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& r
         near_to = last_near;
         return nears;
     };
-    const bool ends = to < RealTraits<Real>::infinity;  // at the face by which the ray leaves, or before
+    const bool ends = to < RealTraits<Real>::infinity;  // at a hit; inside a solid, at its exit or before
     if (const uint32_t around = ends ? enclosing(scene, ray) : no_solid; around != no_solid) {
         const SlabGroup<Real>& first = scene.slab_groups[scene.solids[around].first_group];
         if (first.lights_apart) return near(scene.solids[around], first, from, to);

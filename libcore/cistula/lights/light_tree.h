@@ -1,19 +1,20 @@
-// Walks the tree over seen lights, four boxes at a time, nearest or not: most rays meet none.
+// Traversal of the tree over visible lights, four boxes at a time and in no particular order, since most rays meet no
+// light.
 #pragma once
 
 #include "cistula/traversal/bvh.h"
 
 namespace cistula {
 
-/// Fewer lights than these have no tree: a walk looks at all of them.
+/// The minimum number of lights for a tree; fewer are all tested.
 inline constexpr uint32_t fewest_in_light_tree = 9;
 
-/// Which boxes a line meets between its limits, which are finite and not negative. Devices ask from 0 on: some more,
-/// perhaps.
+/// Tests a ray against a node's boxes between its limits, which are finite and not negative. The device tests from t =
+/// 0 on, so it may accept more boxes.
 CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, bool (&meets)[LightNode::width]) {
     constexpr int width = LightNode::width;
     float near_t[3][width], far_t[3][width];
-    for (int k = 0; k < 3; ++k) {  // copies of all lanes: wide loads
+    for (int k = 0; k < 3; ++k) {  // copies whole lanes, for wide loads
         const LightNode::Lanes center = node.center[k], half = node.half[k];
         const float pace = magnitude(box_ray.inverse[k]);
         CISTULA_VECTORS
@@ -24,8 +25,8 @@ CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, boo
         }
     }
 #if CISTULA_ON_DEVICE
-    // None is NaN: as integers they compare alike but for two that are negative, and the limits are not. Of integers
-    // one instruction tells the greatest of three.
+    // Floats compare as integers here: none is NaN, and the limits are not negative. One instruction gives the maximum
+    // of three integers.
     for (int i = 0; i < width; ++i) {
         const int near_bits =
             __vimax3_s32_relu(__float_as_int(near_t[0][i]), __float_as_int(near_t[1][i]), __float_as_int(near_t[2][i]));
@@ -41,21 +42,21 @@ CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, boo
 #endif
 }
 
-/// What a walk has yet to look at, the latest first: nodes, or ~light.
+/// The stack of a traversal; an entry is a node or ~light.
 class LightStack {
   public:
     static constexpr int32_t none = INT32_MIN, root = 0;
     static constexpr int capacity = (LightNode::width - 1) * (max_tree_depth + 1) + 1;
     using Room = int32_t[capacity];
 
-    /// The room apart, so that the rest stays in registers.
+    /// Keeps the entries in `room`, apart, so that the rest stays in registers.
     CISTULA_INLINE explicit LightStack(Room& room) : waiting_(room) {}
 
     CISTULA_INLINE void push(int32_t item) {
         if (next_ != none) waiting_[size_++] = next_;
         next_ = item;
     }
-    /// The latest; none where there is nothing.
+    /// Pops the latest entry; `none` if the stack is empty.
     CISTULA_INLINE int32_t pop() {
         if (next_ == none && size_ != 0) next_ = waiting_[--size_];
         const int32_t item = next_;
@@ -66,13 +67,13 @@ class LightStack {
   private:
     Room& waiting_;
     int size_ = 0;
-    int32_t next_ = none;  // what was pushed last, if it was not popped
+    int32_t next_ = none;  // top of the stack
 };
 
-/// Calls visit(light) for the candidates of box_ray among what `stack` holds; visit returns the new far limit.
+/// Calls visit(light) for the candidates of box_ray among the entries of `stack`; visit returns the new far limit.
 template <class Visit>
 CISTULA_INLINE void walk_lights(const Span<LightNode>& nodes, BoxRay box_ray, LightStack& stack, const Visit& visit) {
-    // Finite, as least and greatest of boxes beside which a line runs are not.
+    // The far limit must be finite, since boxes beside which a ray runs give infinite times.
     const auto limited = [](float far_limit) { return least(far_limit, RealTraits<float>::largest); };
     box_ray.far_limit = limited(box_ray.far_limit);
     for (int32_t next = stack.pop(); next != LightStack::none; next = stack.pop()) {

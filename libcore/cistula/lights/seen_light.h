@@ -1,4 +1,4 @@
-// Lights that are seen: spheres of constant radiance that end a ray and cast no shadow.
+// Visible lights: spheres of constant radiance that end a ray and cast no shadow.
 #pragma once
 
 #include "cistula/lights/edge_lights.h"
@@ -14,8 +14,8 @@ struct SeenHit {
     uint32_t light = no_light;
 };
 
-/// The front of one sphere, by the ray's closest approach (Haines et al., Ray Tracing Gems, ch. 7). From inside:
-/// nothing.
+/// Intersects the front of a sphere, using the ray's closest approach to its center (Haines et al., Ray Tracing Gems,
+/// ch. 7). A ray that starts inside meets nothing.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, SeenHit<Real>& best) {
     const SeenLight<Real>& light = scene.seen_lights[index];
@@ -29,13 +29,13 @@ CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real
     if (t >= ray.after.t && (t < best.t || (t == best.t && index < best.light))) best = {t, index};
 }
 
-/// The nearest seen light at or after ray.after and before t_limit.
+/// The nearest visible light at or after ray.after and before t_limit.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit) {
     SeenHit<Real> best;
     best.t = t_limit;
     if (!is_finite(ray)) return best;
-    // Lights that have no tree are looked at by the code that walks one.
+    // Without a tree, all lights are put on the stack of the traversal.
     static_assert(fewest_in_light_tree <= LightStack::capacity);
     LightStack::Room room;
     LightStack stack(room);

@@ -1,5 +1,5 @@
-// A scene small enough to travel with a kernel's parameters: its arrays lie in constant memory, which all threads of a
-// warp read at once. The same names as in SceneView, so that the same code reads either.
+// A scene small enough to be passed as a kernel parameter: its arrays lie in constant memory, which all threads of a
+// warp read at once. Members have the names of SceneView's, so that the same code reads either.
 #pragma once
 
 #include "cistula/model/triangle_sides.h"
@@ -7,10 +7,10 @@
 
 namespace cistula {
 
-/// Bytes of a line of the cache of constants, which holds few of them.
+/// Bytes of a line of the constant cache, which holds few lines.
 inline constexpr int constant_line = 64;
 
-/// Up to `capacity` elements in place.
+/// A Span with inline storage for up to `capacity` elements.
 template <class T, uint32_t capacity>
 struct InlineSpan {
     alignas(constant_line) T data[capacity];
@@ -21,7 +21,7 @@ struct InlineSpan {
     CISTULA_INLINE const T* end() const { return data + size; }
     CISTULA_INLINE bool empty() const { return size == 0; }
 
-    /// False if they do not fit. `from` must be readable here.
+    /// Copies the elements; false if they do not fit. `from` must be readable on this side (host or device).
     bool assign(const Span<T>& from) {
         return assign(from.size, [&](uint32_t i) { return from[i]; });
     }
@@ -34,7 +34,8 @@ struct InlineSpan {
     }
 };
 
-/// What is known of shadow rays before they are shot (libcore/scene, plan_shadows).
+/// Which primitives a shadow ray may meet, precomputed for each pair of solid and light (plan_shadows in
+/// libcore/scene).
 struct ShadowPlan {
     static constexpr uint32_t solids = 24, lights = 8, convex = 16, clusters = 4;
     static constexpr uint32_t first_cluster = convex;
@@ -42,9 +43,9 @@ struct ShadowPlan {
 
     uint32_t all_convex, all_clusters;  // bit p: convex[p]; bit first_cluster + p: clusters[p]
     uint32_t beyond[lights];            // bit i: the light is well outside of convex solid i
-    uint32_t near[solids][lights];      // the primitives that may lie between that solid's surface and that light
+    uint32_t near[solids][lights];      // mask of primitives that may lie between that solid's surface and that light
 
-    /// Nothing is known.
+    /// Sets the plan to exclude nothing.
     void clear(uint32_t convex_count, uint32_t cluster_count) {
         all_convex = (1u << convex_count) - 1;
         all_clusters = ((1u << cluster_count) - 1) << first_cluster;
@@ -61,17 +62,17 @@ struct ConstantScene {
 
     InlineSpan<Solid, ShadowPlan::solids> solids;
     InlineSpan<Slab<Real>, most_slabs> slabs;
-    InlineSpan<NumberedSolid<Real>, ShadowPlan::convex> convex;  // copies: a look at one needs no other first
-    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;   // of the clusters: such copies too
+    InlineSpan<NumberedSolid<Real>, ShadowPlan::convex> convex;  // copies, to avoid an indirection
+    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;   // of the clusters, also copies
     InlineSpan<Cluster<Real>, ShadowPlan::clusters> clusters;
     InlineSpan<TriangleSides<Real>, ShadowPlan::clusters * cluster_lanes> sides;  // by slot
     InlineSpan<Material<Real>, most_materials> materials;
     InlineSpan<Light<Real>, ShadowPlan::lights> lights;
-    KnownShare<Real> known_shares[4];  // of light that has crossed one face or more of the transparent materials
+    KnownShare<Real> known_shares[4];  // precomputed for crossings of transparent faces
     ShadowPlan plan;
-    uint32_t clear_solids, transmitting_solids;  // bit i: solid i is of a clear material, or of one that transmits
+    uint32_t clear_solids, transmitting_solids;  // bit i: solid i's material is clear; transmits
     InlineSpan<Texture, 8> textures;
-    // Elsewhere, as in the view that it was made of:
+    // Arrays outside of this struct, as in the view that it was made from:
     Span<SlabGroup<Real>> slab_groups;
     Span<Facet<Real>> facets;
     Span<Vec2<Real>> uvs;

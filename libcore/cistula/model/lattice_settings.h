@@ -1,27 +1,27 @@
-// What a frame asks of adaptive sampling, for whoever makes frames: lattice.h samples by it.
+// Settings of adaptive sampling, for code that makes frames; lattice.h does the sampling.
 #pragma once
 
 #include "cistula/numerics/portable.h"
 
 namespace cistula {
 
-/// Samples along a pixel's side, and in a pixel.
+/// Samples along a pixel's side, and samples of a pixel.
 inline constexpr int lattice_side = 16, lattice_samples = lattice_side * lattice_side;
-/// The fewest samples that a pixel can do with: its corners and its middle.
+/// The minimum number of samples of an adaptively sampled pixel: its four corners and its middle.
 inline constexpr int least_lattice_samples = 5;
-/// Colors are compared in units of 2^-44 of the radiance bound's power of two: a target may be 2^-32 of that, as in
-/// closed-box.json. What is computed of them takes at most 13 bits more.
+/// Fraction bits of the colors that the rules compare: units of 2^-44 of the radiance bound's power of two, since a
+/// target may be as small as 2^-32 of it (closed-box.json). Products in the rules need at most 13 bits more.
 inline constexpr int color_bits = 44, color_shift = 54 - color_bits;
 
-/// The error that a frame allows its pixels, and how to look for it.
+/// A frame's target error for its pixels, and how samples are placed to reach it.
 struct LatticeSettings {
-    int64_t target = 0;          // error that sampling may leave, in units of 2^-color_bits; 0: no adaptive sampling
-    int most = lattice_samples;  // samples of a pixel
-    bool fine = true;            // also looks at the middle of every pixel, and splits in four first: for small targets
-    double significant = 0;      // branches of less weight than this do not tell samples apart
+    int64_t target = 0;          // target error in units of 2^-color_bits; 0: no adaptive sampling
+    int most = lattice_samples;  // maximum number of samples of a pixel
+    bool fine = true;            // for small targets: also samples every pixel's middle, and splits it in four first
+    double significant = 0;      // branches of less throughput than this do not enter the path hash
 
-    /// Whether an error of `color` in `area` samples, in units of 2^-color_bits, is worth more than the target to the
-    /// pixel.
+    /// Whether an error of `color` (in units of 2^-color_bits) over `area` samples changes the pixel by more than the
+    /// target.
     CISTULA_INLINE bool exceeded_by(int64_t color, int64_t area) const {
         return color * area > target * lattice_samples;
     }

@@ -1,19 +1,19 @@
-// What one pixel leaves behind: integer sums, so that the order of work never shows, and the first sample's data.
+// The result of one pixel: integer sums, which do not depend on the order of work, and the data of its first hit.
 #pragma once
 
 #include "cistula/numerics/portable.h"
 
 namespace cistula {
 
-/// Reasons to distrust a render; any bit set in a film fails it with a message.
+/// Errors found while rendering; any bit set in a film fails the render with a message.
 enum RenderFlag : uint32_t {
     flag_not_finite = 1u << 0,          // a radiance was infinite or NaN
-    flag_media_overflow = 1u << 1,      // more solids inside one another than a ray can list
-    flag_stack_overflow = 1u << 2,      // a ray tree needed more pending branches than there is room for
+    flag_media_overflow = 1u << 1,      // more nested solids than a medium stack holds
+    flag_stack_overflow = 1u << 2,      // a ray tree needed more pending branches than the branch stack holds
     flag_too_many_crossings = 1u << 3,  // a straight ray crossed more faces than the limit
 };
 
-/// Rays of one pixel, of which 2^32 would take hours.
+/// Ray counts of one pixel. 32 bits suffice: 2^32 rays would take hours.
 struct PixelRays {
     uint32_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
 
@@ -26,7 +26,7 @@ struct PixelRays {
     CISTULA_INLINE uint32_t total() const { return primary + reflected + transmitted + shadow; }
 };
 
-/// What is noted down while a pixel is rendered; a device keeps it where it costs no registers.
+/// Per-pixel working data of a render; a device keeps it in shared memory to save registers.
 struct PixelWork {
     PixelRays rays;
     uint32_t flags = 0;  // RenderFlag bits
@@ -59,20 +59,20 @@ struct Plus {
     }
 };
 
-/// Sums over the pixel's samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
+/// A pixel's sums over its samples in fixed point: value = sum / 2^shift / samples * 2^radiance_exponent.
 struct PixelRecord {
     int64_t radiance[3];
-    uint32_t hits;          // samples whose primary ray hit anything (a seen light too)
+    uint32_t hits;          // samples whose primary ray hit anything (visible lights included)
     uint32_t rays;          // rays of all kinds
     int32_t id;             // 1 + solid under the sample nearest the pixel's center; 0: none
     float z;                // that sample's distance along the view axis in scene units; infinity: none
     float normal[3];        // that sample's unit normal, toward the viewer, in world axes; 0: none
-    uint32_t samples : 31;  // that were rendered
-    uint32_t unmet : 1;     // adaptive sampling wanted more than it may have
+    uint32_t samples : 31;  // samples that were rendered
+    uint32_t unmet : 1;     // adaptive sampling wanted more samples than `most`
     int64_t pruned[3];      // upper bound on what the cutoff took away
     int64_t cut[3];         // upper bound on what the depth limit took away
 
-    /// Calls add(to, value) for the sums; not for the counts of rays and samples.
+    /// Adds the sums to another record by add(to, value), but not the counts of rays and samples.
     template <class Add>
     CISTULA_INLINE void give(PixelRecord& to, const Add& add) const {
         for (int c = 0; c < 3; ++c) {
@@ -83,7 +83,7 @@ struct PixelRecord {
         add(to.hits, hits);
     }
 
-    /// Takes other samples of the same pixel in.
+    /// Adds the record of other samples of the same pixel.
     CISTULA_INLINE void add(const PixelRecord& o) {
         o.give(*this, Plus());
         rays += o.rays;

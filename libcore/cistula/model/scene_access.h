@@ -1,12 +1,12 @@
-// The questions that shading asks of a scene and that its forms answer differently: a SceneView computes what a
-// ConstantScene has ready.
+// Scene queries of the shading code that the two scene forms answer differently: a SceneView computes what a
+// ConstantScene has precomputed.
 #pragma once
 
 #include "cistula/model/constant_scene.h"
 
 namespace cistula {
 
-/// Whether a solid's material is clear: kr 0, kt 1, white tint.
+/// Whether a solid's material is clear: kr = 0, kt = 1, white tint.
 template <class Real>
 CISTULA_INLINE bool is_clear(const SceneView<Real>& scene, uint32_t solid) {
     return scene.materials[scene.solids[solid].material].clear != 0;
@@ -26,12 +26,12 @@ CISTULA_INLINE bool transmits(const ConstantScene<Real>& scene, uint32_t solid) 
     return (scene.transmitting_solids >> solid & 1u) != 0;
 }
 
-/// 2^-loss, the share of light that is left after a loss.
+/// 2^-loss, the transmittance after a loss.
 template <class Real>
 CISTULA_INLINE Real transmitted_share(const SceneView<Real>&, uint64_t loss) {
     return share_of<Real>(loss);
 }
-/// 2^-loss for a loss that a scene has not ready.
+/// 2^-loss for a loss that is not among a ConstantScene's known_shares.
 template <class Real>
 CISTULA_SELDOM Real unknown_share(uint64_t loss) {
     return share_of<Real>(loss);
@@ -44,7 +44,7 @@ CISTULA_INLINE Real transmitted_share(const ConstantScene<Real>& scene, uint64_t
     return share >= Real(0) ? share : unknown_share<Real>(loss);
 }
 
-/// The unit normal of a triangle on its outside.
+/// The outward unit normal of a triangle.
 template <class Real>
 CISTULA_INLINE Vec3<Real> outward_normal(const SceneView<Real>& scene, uint32_t slot) {
     Vec3<Real> corner[3];
@@ -56,7 +56,8 @@ CISTULA_INLINE Vec3<Real> outward_normal(const ConstantScene<Real>& scene, uint3
     return scene.sides[slot].normal;
 }
 
-/// The apex on one side of a triangle; `corner` and `normal`, on that side, are the triangle's.
+/// The apex (docs/rules.md, 2) on one side of a triangle; `corner` and `normal`, the normal on that side, are the
+/// triangle's.
 template <class Real>
 CISTULA_INLINE Apex<Real> apex_at(const SceneView<Real>& scene, uint32_t slot, const Vec3<Real> (&corner)[3],
                                   const Vec3<Real>& normal, bool outside) {
@@ -68,7 +69,7 @@ CISTULA_INLINE const Apex<Real>& apex_at(const ConstantScene<Real>& scene, uint3
     return scene.sides[slot].apex[outside];
 }
 
-/// The plane of a cluster's flat sheet, if it belongs to one.
+/// The plane of the flat sheet to which a cluster belongs, if any.
 template <class Real>
 CISTULA_INLINE SheetPlane<Real> plane_of(const SceneView<Real>& scene, uint32_t cluster) {
     const uint32_t solid = scene.clusters[cluster].solid;

@@ -1,6 +1,4 @@
-// A scene as the shading code sees it: flat arrays, nothing owned, the same layout on host and device.
-// Lengths are in the scene's frame (docs/rules.md, 1: centered, scaled by a power of two so that coordinates stay under
-// 2); radiances are scaled by a power of two so that the radiance bound is at most 1.
+// A scene as the shading code sees it: non-owning flat arrays, with the same layout on host and device.
 #pragma once
 
 #include "cistula/numerics/vec.h"
@@ -13,27 +11,27 @@ enum class SolidKind : uint32_t {
     sheet,   // open triangles, seen from both sides, with no inside
 };
 
-/// The points with low <= normal.x <= high. A single plane has low = -infinity. Face 2 i is slab i's low side, 2 i + 1
-/// its high one.
+/// A slab: the points with low <= normal.x <= high. A single plane has low = -infinity. Face 2 i is slab i's low side,
+/// face 2 i + 1 its high side.
 template <class Real>
-struct alignas(16) Slab {  // wide loads
+struct alignas(16) Slab {  // aligned for wide loads
     Vec3<Real> normal;     // unit
     Real low, high;
 };
 
 inline constexpr int slab_lanes = 8;
 
-/// Eight slabs side by side, so that the host tests a ray against all at once. Unused lanes have a zero normal and no
-/// sides.
+/// Eight slabs in structure-of-arrays form, so that the host tests a ray against all at once. Unused lanes have a zero
+/// normal and infinite bounds.
 template <class Real>
 struct alignas(32) SlabGroup {
     Real nx[slab_lanes], ny[slab_lanes], nz[slab_lanes], low[slab_lanes], high[slab_lanes];
-    Real light_reach;   // of a solid's first group: no seen light is farther from the solid's edges (edge_lights.h)
+    Real light_reach;   // first group of a solid: maximum reach of visible lights from its edges (edge_lights.h)
     Real light_square;  // ... and the square of the radius of a sphere around them all
-    bool lights_apart;  // no light of another solid reaches into this one
+    bool lights_apart;  // no visible light of another solid reaches into this one
 };
 
-/// Solids are numbered in file order, which is also the priority of their media: later wins.
+/// A solid. Solids are numbered in file order, which is also the priority of their media: a later solid wins.
 struct alignas(16) Solid {
     Vec3<float> center;        // convex: of a sphere around it,
     float padded_square;       // ... and the square of its radius plus sphere_padding
@@ -52,7 +50,7 @@ struct alignas(16) Solid {
                        // hits next is its own face
 };
 
-/// The sphere around a convex solid.
+/// The bounding sphere of a convex solid.
 template <class Real>
 struct alignas(16) Ball {
     Vec3<Real> center;
@@ -61,14 +59,14 @@ struct alignas(16) Ball {
     CISTULA_INLINE static Ball of(const Solid& solid) { return {Vec3<Real>(solid.center), Real(solid.padded_square)}; }
 };
 
-/// The plane of a flat sheet, and a padded box around what lies in it.
+/// The plane of a flat sheet, and a padded box around the sheet.
 template <class Real>
 struct alignas(16) SheetPlane {
     Vec3<Real> normal;
     Real offset;
     uint32_t solid;
     uint32_t flat;
-    Vec3<Real> center, half;  // half: infinite where nobody knows
+    Vec3<Real> center, half;  // half: infinite if unknown
 
     CISTULA_INLINE static SheetPlane of(const Solid& solid, uint32_t index) {
         return {Vec3<Real>(solid.plane_normal),        Real(solid.plane_offset), index, solid.flat, Vec3<Real>(Real(0)),
@@ -76,7 +74,7 @@ struct alignas(16) SheetPlane {
     }
 };
 
-/// A solid, and what is asked of it first: its sphere with the number beside it, as most rays ask for no more.
+/// A copy of a convex solid with its number and bounding sphere, which is tested first and rejects most rays.
 template <class Real>
 struct NumberedSolid {
     Ball<Real> ball;
@@ -84,17 +82,18 @@ struct NumberedSolid {
     Solid solid;
 };
 
-/// So much that rounding never turns a ray that the slabs accept into one that passes the sphere by: the terms of the
-/// test are at most 64 for lengths within 4 M, and carry an error of a few u of float each.
+/// Padding of the squared radius of bounding spheres, so that rounding never makes the sphere test reject a ray that
+/// the slabs accept: the terms of the test are at most 64 for lengths within 4 M, each with an error of a few u of
+/// float.
 inline constexpr float sphere_padding = 0x1p-11f;
 
-/// Far above the rounding of a distance from a sheet's plane, of the sheet's own corners from it, and of a shear.
+/// Padding for distances from a flat sheet's plane: far above the rounding of such a distance, of the sheet's own
+/// corners and of a shear.
 inline constexpr float plane_padding = 0x1p-10f;
 
 inline constexpr int cluster_lanes = 8;
 
-/// Up to eight neighbouring triangles of one solid, corner by corner and axis by axis, so that eight are tested at
-/// once.
+/// Up to eight neighboring triangles of one solid in structure-of-arrays form, so that eight are tested at once.
 template <class Real>
 struct alignas(32) Cluster {
     Real corner[3][3][cluster_lanes];  // [corner][axis][lane]; unused lanes hold a zero-area triangle
@@ -104,19 +103,19 @@ struct alignas(32) Cluster {
     Real height[2][cluster_lanes];     // apex height h, [0] on the side normals point away from (inside), [1] outside
 };
 
-/// A triangle by itself, in whole words: what a tree of the device has in its leaves, since a thread there tests one at
-/// a time and reads no more than it tests. The same triangle as lane slot % 8 of cluster slot / 8.
+/// A single triangle, as in the leaves of the device's tree, where a thread tests one at a time. It is the triangle in
+/// lane slot % 8 of cluster slot / 8.
 template <class Real>
 struct alignas(16) Facet {
     Real corner[3][3];  // [corner][axis]
     uint32_t solid, triangle, slot;
 };
 
-/// What of a face's material its own light depends on.
+/// The material parameters of the local (Phong) light.
 template <class Real>
 struct LocalMaterial {
     Vec3<Real> color;
-    Vec3<Real> ambient;        // ka * A, the scene's ambient colour taken in
+    Vec3<Real> ambient;        // ka * A, with the scene's ambient light A
     Vec3<Real> specular;       // ks * S
     Real diffuse;              // kd
     Real exponent;             // n; used where integer_exponent < 0
@@ -124,7 +123,7 @@ struct LocalMaterial {
     Real local;                // max(0, 1 - kr - kt), rounded down
 };
 
-/// What a face is made of. Shares: local 1 - kr - kt, reflected kr, transmitted kt * tint.
+/// A material. The shares of light are: local 1 - kr - kt, reflected kr, transmitted kt * tint.
 template <class Real>
 struct Material : LocalMaterial<Real> {
     Real reflection;    // kr
@@ -134,13 +133,13 @@ struct Material : LocalMaterial<Real> {
     Vec3<Real> absorption;    // per unit of scene-frame length
     double index;             // index of refraction
     uint64_t filter_loss[3];  // -log2(kt * tint), Q11.52; 0 for opaque channels
-    uint32_t opaque;          // bit c: channel c does not pass (kt * tint = 0)
+    uint32_t opaque;          // bit c: channel c is blocked (kt * tint = 0)
     int32_t texture;          // -1: none
     uint32_t fresnel;         // 0 or 1
-    uint32_t clear;           // 1: kr = 0, kt = 1, white tint: nothing to shade where the medium does not change either
+    uint32_t clear;           // 1: kr = 0, kt = 1, white tint: invisible unless the index changes
 };
 
-/// A point light that lights (its intensity is not zero).
+/// A point light with an intensity above zero.
 template <class Real>
 struct Light {
     Vec3<Real> position;
@@ -150,17 +149,17 @@ struct Light {
     uint32_t incident_count;
 };
 
-/// A light lies on a face if it is within this much of the plane, as a share of M (docs/rules.md, 5).
+/// The distance from a plane, relative to M, within which a light lies on a face (docs/rules.md, 5).
 template <class Real>
 inline constexpr Real incidence = 16 * RealTraits<Real>::unit;
 
-/// A face that a light lies on. face: of a convex solid 2 slab + side, of triangles the scene-wide triangle number.
+/// A face on which a light lies: slab side 2 slab + side of a convex solid, or a scene-wide triangle number.
 struct Incident {
     uint32_t solid;
     uint32_t face;
 };
 
-/// A light that is seen: a sphere of constant radiance. It casts no shadow.
+/// A visible light: a sphere of constant radiance that casts no shadow.
 template <class Real>
 struct SeenLight {
     Vec3<Real> center;
@@ -170,28 +169,28 @@ struct SeenLight {
 
 enum class TextureFilter : uint32_t { nearest, bilinear };
 
-/// Linear RGB texels, row 0 at v = 0 (the top of the picture file), repeated without end.
+/// A texture: linear RGB texels, row 0 at v = 0 (the top of the picture file), repeated infinitely.
 struct Texture {
     uint32_t width, height;
     uint32_t first_texel;
     TextureFilter filter;
-    double repeat[2];  // uv are multiplied by these first
+    double repeat[2];  // factors of uv
 };
 
-/// No tree is deeper, so traversal stacks of this size never run over.
+/// Maximum depth of a tree, and so the size of traversal stacks.
 inline constexpr int max_tree_depth = 48;
 
-/// A node of a binary tree over primitives: the boxes of both children, already padded.
-/// A child >= 0 is a node; a child < 0 is a leaf that holds items [~child, ~child + count).
+/// A node of a BVH over primitives, with the padded boxes of both children. A child >= 0 is a node; a child < 0 is a
+/// leaf that holds items [~child, ~child + count).
 struct alignas(16) TreeNode {
     float low[2][3], high[2][3];
     int32_t child[2];
     uint32_t count[2];
 };
 
-/// A node of a tree over seen lights: few rays come near one, so that four boxes at a time are worth more than the
-/// nearer of two first. Boxes are already padded, and stored so that a ray from any side reads them alike; that of a
-/// child that is not there is less than empty.
+/// A node of the four-wide tree over visible lights. Few rays come near a light, so testing four boxes at once pays
+/// more than visiting the nearer of two first. Boxes are padded and stored as center and half size, so that their test
+/// does not depend on the ray's direction; an absent child has a box of negative size.
 struct alignas(16) LightNode {
     static constexpr int width = 4;
     struct alignas(16) Lanes {
@@ -203,7 +202,7 @@ struct alignas(16) LightNode {
     Lanes center[3], half[3];  // by axis
     Children children;
 
-    /// The boxes of others are empty.
+    /// Whether child i exists; absent children have a negative half size.
     CISTULA_HD bool has_child(int i) const { return half[0].of[i] >= 0.0f; }
 };
 
@@ -227,13 +226,13 @@ struct SceneView {
     Span<uint32_t> tree_items;
     Span<LightNode> seen_tree;  // over seen_lights; empty where there are few
     Vec3<Real> background;
-    Vec3<Real> bound;    // B per channel, at most 1, slack included
-    Real largest_bound;  // of these
+    Vec3<Real> bound;    // radiance bound B per channel, at most 1, slack included
+    Real largest_bound;  // largest component of bound
     Real extent;         // M: the largest coordinate, in [1, 2)
 };
 
-/// Whether any body absorbs: what arrives of a light then changes gradually. Asked of the scene, not of the effects
-/// that are compiled in, so that these leave the image alone.
+/// Whether any material absorbs, so that transmittance toward lights varies gradually. Depends on the scene alone, not
+/// on the compiled effects, which must not change the image.
 template <class Scene>
 CISTULA_INLINE bool shades_gradually(const Scene& scene) {
     bool any = false;

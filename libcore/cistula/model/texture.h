@@ -1,18 +1,18 @@
-// Texture look-up: linear RGB texels, repeated without end.
+// Texture lookup: linear RGB texels, repeated infinitely.
 #pragma once
 
 #include "cistula/model/scene_view.h"
 
 namespace cistula {
 
-/// i - floor(i / n) n, exact for integers i below 2^23 in float and 2^52 in double: no quotient that is not whole then
-/// rounds to a whole one.
+/// i modulo n as i - floor(i / n) n, exact for integers i below 2^23 in float and 2^52 in double: no fractional
+/// quotient then rounds to an integer.
 template <class Real>
 CISTULA_INLINE uint32_t remainder(Real i, uint32_t n) {
     const Real r = i - floor_of(i / Real(n)) * Real(n);
     return uint32_t(clamped(r, Real(0), Real(n - 1)));
 }
-/// i modulo n for any whole i.
+/// i modulo n for any integer i, kept out of line.
 CISTULA_SELDOM inline uint32_t any_remainder(float i, uint32_t n) {
     return magnitude(i) < 0x1p23f ? remainder(i, n) : remainder(double(i), n);
 }
@@ -20,14 +20,14 @@ CISTULA_SELDOM inline uint32_t any_remainder(double i, uint32_t n) {
     return remainder(i, n);
 }
 
-/// i modulo n, for an integer i. Without a quotient, and a call, where n is a power of two.
+/// i modulo n for an integer i, without a division or a call where n is a power of two.
 template <class Real>
 CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
     constexpr Real few = sizeof(Real) == sizeof(float) ? Real(0x1p23) : Real(0x1p31);
     return (((n & (n - 1)) == 0) & (magnitude(i) < few)) ? uint32_t(int32_t(i)) & (n - 1) : any_remainder(i, n);
 }
 
-/// Between the four texels around (x, y); texel(i, j) are their colors.
+/// Bilinear interpolation between the four texels around (x, y); texel(i, j) gives a texel's color.
 template <class Real, class Texel>
 CISTULA_SELDOM Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
     const Real left = floor_of(x - Real(0.5)), top = floor_of(y - Real(0.5));
@@ -37,7 +37,8 @@ CISTULA_SELDOM Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
     return upper * (Real(1) - fy) + lower * fy;
 }
 
-/// uv as on the object; Texture::repeat applies. Texel centers lie at half-integers.
+/// The color of a texture at uv, the object's coordinates, to which Texture::repeat applies. Texel centers lie at
+/// half-integers.
 template <class Real, class Scene>
 CISTULA_HD inline Vec3<Real> texture_at(const Scene& scene, const Texture& texture, const Vec2<Real>& uv) {
     const Vec3<float>* texels = scene.texels.data + texture.first_texel;

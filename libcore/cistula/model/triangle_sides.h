@@ -1,22 +1,23 @@
-// The normal of a triangle, and the points toward which lines leave its two sides.
+// The normal of a triangle and its apexes, the points toward which new rays are moved off its two sides (docs/rules.md,
+// 2).
 #pragma once
 
 #include "cistula/model/scene_view.h"
 
 namespace cistula {
 
-/// The point over a triangle's centroid toward which lines leave it.
+/// The point above a triangle's centroid toward which the origins of new rays are moved off the triangle.
 template <class Real>
 struct Apex {
     Vec3<Real> place;
-    Real share;  // of the way there that a line starts at: about 8 u M
+    Real share;  // fraction of the way to the apex at which a ray starts: about 8 u M
 
     CISTULA_INLINE static Apex of(const Vec3<Real>& centroid, const Vec3<Real>& normal, Real height, Real extent) {
         const Real step = Real(8) * RealTraits<Real>::unit * extent;
         return {along(centroid, height, normal), step < height * Real(0.125) ? step / height : Real(0.125)};
     }
-    /// From a point on the triangle: the segment crosses no other triangle (docs/rules.md, 2), so that the new origin
-    /// is on the right side of all of them.
+    /// The origin of a ray that leaves from a point on the triangle. The segment to the apex crosses no other triangle
+    /// (docs/rules.md, 2), so the new origin is on the right side of all of them.
     CISTULA_INLINE Vec3<Real> from(const Vec3<Real>& point) const { return along(point, share, place - point); }
 };
 
@@ -25,8 +26,8 @@ CISTULA_INLINE Real largest_magnitude(const Vec3<Real>& a) {
     return greatest(magnitude(a.x), greatest(magnitude(a.y), magnitude(a.z)));
 }
 
-/// The unit normal of a small triangle, the square of whose area underflows: it is scaled first. Arguments by value,
-/// as it is called.
+/// The unit normal of a triangle so small that the square of its area underflows: its edges are scaled first. Not
+/// inlined, so its arguments are by value.
 template <class Real>
 CISTULA_SELDOM Vec3<Real> small_triangle_normal(Vec3<Real> ab, Vec3<Real> ac) {
     const Real scale = Real(1) / greatest(largest_magnitude(ab), largest_magnitude(ac));
@@ -34,7 +35,7 @@ CISTULA_SELDOM Vec3<Real> small_triangle_normal(Vec3<Real> ab, Vec3<Real> ac) {
     return normalized(scaled / largest_magnitude(scaled));
 }
 
-/// The unit normal of a triangle from two of its edges; not finite for one without area.
+/// The unit normal of a triangle from two of its edges; not finite for a triangle without area.
 template <class Real>
 CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>& ac) {
     const Vec3<Real> n = cross(ab, ac);
@@ -42,7 +43,7 @@ CISTULA_INLINE Vec3<Real> triangle_normal(const Vec3<Real>& ab, const Vec3<Real>
     return square > Real(0x1p-80) ? n / square_root(square) : small_triangle_normal(ab, ac);
 }
 
-/// The corners of the triangle that was hit.
+/// The corners of the triangle with this slot (8 cluster + lane).
 template <class Real, class Scene>
 CISTULA_INLINE void triangle_corners(const Scene& scene, uint32_t slot, Vec3<Real> (&corner)[3]) {
     const Cluster<Real>& cluster = scene.clusters[slot / cluster_lanes];
@@ -51,7 +52,8 @@ CISTULA_INLINE void triangle_corners(const Scene& scene, uint32_t slot, Vec3<Rea
         corner[c] = {cluster.corner[c][0][lane], cluster.corner[c][1][lane], cluster.corner[c][2][lane]};
 }
 
-/// The apex on one side of a triangle, along `normal`; outside: on the side its corners turn counter-clockwise on.
+/// The apex of a triangle on the side to which `normal` points. `outside` is that side as seen by the corners:
+/// counter-clockwise.
 template <class Real, class Scene>
 CISTULA_INLINE Apex<Real> apex_of(const Scene& scene, uint32_t slot, const Vec3<Real> (&corner)[3],
                                   const Vec3<Real>& normal, bool outside) {
@@ -60,7 +62,7 @@ CISTULA_INLINE Apex<Real> apex_of(const Scene& scene, uint32_t slot, const Vec3<
                           scene.extent);
 }
 
-/// The normal and the apexes of a triangle, as hits on it need them.
+/// The outward normal and both apexes of a triangle, precomputed.
 template <class Real>
 struct TriangleSides {
     Vec3<Real> normal;   // on the outside

@@ -1,5 +1,5 @@
-// Double-double arithmetic: the precision above double. Sums of two doubles, about 104 bits (Dekker 1971; Joldes,
-// Muller, Popescu 2017, algorithms 4, 6 (accurate sum), 12 and 18).
+// Double-double arithmetic, the precision above double: a number is the sum of two doubles, about 104 bits (Dekker
+// 1971; Joldes, Muller, Popescu 2017, algorithms 4, 6 (accurate sum), 12 and 18).
 #pragma once
 
 #include "cistula/numerics/real.h"
@@ -60,7 +60,7 @@ CISTULA_INLINE bool operator>(const DoubleDouble& a, const DoubleDouble& b) {
 CISTULA_INLINE double up_sqrt(double a) {
     return square_root(a);
 }
-/// a > 0.
+/// Square root of a, to about 2^-104 relative, for a > 0; 0 for any other a.
 CISTULA_INLINE DoubleDouble up_sqrt(const DoubleDouble& a) {
     const double r = square_root(a.high);
     if (!(r > 0)) return DoubleDouble(0);

@@ -37,7 +37,7 @@ CISTULA_INLINE double scaled(double x, int k) {
     return x * power_of_two(half) * power_of_two(k - half);
 }
 
-/// 2^(r + tail) in [0.7, 1.42], for |r| <= 0.5 and a tail of at most an ulp or so of 0.5. Exact at 0.
+/// 2^(r + tail) for |r| <= 0.5 and a tail of at most about an ulp of 0.5; the result lies in [0.7, 1.42]. Exact at 0.
 CISTULA_HD inline double exp2_reduced(double r, double tail) {
     constexpr double ln2_hi = 0x1.62e42fefa39efp-1, ln2_lo = 0x1.abc9e3b39803fp-56;
     constexpr double quadratic[] = {0x1.ebfbdff82c58fp-3,  0x1.c6b08d704a0c2p-5,  0x1.3b2ab6fba4e78p-7,
@@ -50,7 +50,7 @@ CISTULA_HD inline double exp2_reduced(double r, double tail) {
     return sum.high + (sum.low + fused(r * r, polynomial(r, quadratic), small));
 }
 
-/// 2^x. Exact at integers, subnormal ones too; above the range infinity, below it 0; NaN gives NaN.
+/// 2^x. Exact at integers, also where the result is subnormal. Overflow gives infinity, underflow 0, NaN gives NaN.
 CISTULA_HD inline double exp2(double x) {
     if (!(x < 1024)) return x >= 1024 ? infinity : x;
     if (x <= -1075) return 0;
@@ -116,11 +116,12 @@ CISTULA_HD inline double pow(double x, double y) {
     return scaled(exp2_reduced(r.high, r.low), static_cast<int>(k));
 }
 
-/// x^n for n in [0, 1024] by squaring, least bit first, so that every side multiplies in the same order; x^0 = 1.
+/// x^n for n in [0, 1024] by repeated squaring from the lowest bit, so that host and device multiply in the same order.
+/// x^0 = 1.
 template <class Real>
 CISTULA_INLINE Real power_by_squaring(Real x, int n) {
     Real result = 1;
-    for (;;) {  // by two bits: half the jumps
+    for (;;) {  // two bits a turn halve the number of branches
         const Real square = x * x;
         if (n & 1) result *= x;
         if (n & 2) result *= square;
@@ -130,7 +131,8 @@ CISTULA_INLINE Real power_by_squaring(Real x, int n) {
     }
 }
 
-/// IEC 61966-2-1, for coded values of any size; the line goes on below 0. NaN gives NaN.
+/// The sRGB transfer function (IEC 61966-2-1) for coded values of any size; below 0 its linear part continues. NaN
+/// gives NaN.
 CISTULA_HD inline double srgb_to_linear(double coded) {
     return coded <= 0.04045 ? coded / 12.92 : pow((coded + 0.055) / 1.055, 2.4);
 }

@@ -1,4 +1,4 @@
-// The one header that asks which compiler it is in: everything else is the same source for host and device.
+// The only header that asks which compiler compiles it: all other source is the same for host and device.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 #define CISTULA_HD
 #endif
 
-// Code for the device, as against code that nvcc compiles for the host.
+// 1 in device code, 0 in code that nvcc compiles for the host.
 #ifdef __CUDA_ARCH__
 #define CISTULA_ON_DEVICE 1
 #else
@@ -23,8 +23,8 @@
 #error "Cistula's images are defined by IEEE arithmetic: build without -ffast-math."
 #endif
 
-// GCC inlines by size; the ray loops are worth more than its estimate. The primitive tests are called instead: on the
-// host that costs nothing measurable and spares every mask its copy of them.
+// GCC decides about inlining by size, which is wrong for the ray loops. The primitive tests (CISTULA_CALLED) are calls
+// instead: on the host a call costs nothing measurable, and the code of each effect mask does not repeat them.
 #if defined(__GNUC__)
 #define CISTULA_INLINE CISTULA_HD inline __attribute__((always_inline))
 #else
@@ -36,26 +36,27 @@
 #define CISTULA_CALLED CISTULA_HD inline
 #endif
 
-// Before a short loop, which becomes vectors where it is not unrolled.
+// Put before a short loop that the compiler should vectorize instead of unrolling.
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define CISTULA_VECTORS _Pragma("GCC unroll 1")
 #else
 #define CISTULA_VECTORS
 #endif
 
-// Before a loop whose code devices are to have once, as their caches hold little of it.
+// Put before a loop that the device compiler must not unroll: device instruction caches are small.
 #if CISTULA_ON_DEVICE
 #define CISTULA_NOT_UNROLLED _Pragma("unroll 1")
 #else
 #define CISTULA_NOT_UNROLLED
 #endif
 
-// Called rarely: out of the way of the instruction caches.
+// A function that is called rarely and kept out of line, so that the hot loop fits the instruction cache.
 #define CISTULA_SELDOM CISTULA_HD __attribute__((noinline))
 
 namespace cistula {
 
-/// a * b + c with one rounding, on both sides. Contraction is off everywhere, so this is the only way to get one.
+/// a * b + c with a single rounding on host and device. Contraction is off everywhere, so this is the only fused
+/// operation.
 CISTULA_INLINE float fused(float a, float b, float c) {
     return fmaf(a, b, c);
 }
@@ -63,7 +64,7 @@ CISTULA_INLINE double fused(double a, double b, double c) {
     return ::fma(a, b, c);
 }
 
-/// IEEE square root, correctly rounded on both sides.
+/// Square root, correctly rounded (IEEE 754) on host and device.
 CISTULA_INLINE float square_root(float a) {
     return sqrtf(a);
 }
@@ -71,8 +72,8 @@ CISTULA_INLINE double square_root(double a) {
     return ::sqrt(a);
 }
 
-/// 1 / a, correctly rounded, for |a| in [2^-120, 2^120]. On the device without the branches that other values need: one
-/// Newton step from the hardware's estimate is exact there for floats (bench/gpu checks every significand).
+/// 1 / a, correctly rounded, for |a| in [2^-120, 2^120]. The device version omits the branches that other values need:
+/// one Newton step from the hardware's estimate is exact for floats in that range (bench/gpu checks every significand).
 CISTULA_INLINE float reciprocal(float a) {
 #if CISTULA_ON_DEVICE
     float r;
@@ -82,9 +83,9 @@ CISTULA_INLINE float reciprocal(float a) {
     return 1.0f / a;
 #endif
 }
-/// 1 / a in double, correctly rounded, for |a| in [2^-120, 2^120]. On the device the third-order step leaves less than
-/// an ulp, from which Newton's is exact (Markstein 1990) but where all bits of the significand are set. There it is
-/// exact from above, where the estimate's lower half puts it.
+/// 1 / a in double, correctly rounded, for |a| in [2^-120, 2^120]. On the device a third-order step brings the estimate
+/// to within an ulp, from which a Newton step is exact (Markstein 1990) unless all bits of the significand are set. In
+/// that case it is exact if the estimate is too large, which setting its lower half ensures.
 CISTULA_INLINE double reciprocal(double a) {
 #if CISTULA_ON_DEVICE
     double r;
@@ -98,7 +99,7 @@ CISTULA_INLINE double reciprocal(double a) {
 #endif
 }
 
-/// The lesser and the greater of two numbers that are not NaN and not both zero: one instruction on the device.
+/// Minimum and maximum of two numbers that are not NaN and not both zero: one instruction on the device.
 CISTULA_INLINE float lesser(float a, float b) {
 #if CISTULA_ON_DEVICE
     return fminf(a, b);
@@ -120,7 +121,7 @@ CISTULA_INLINE double greater(double a, double b) {
     return a < b ? b : a;
 }
 
-/// Once and for all: without it the compiler for devices may work the value out anew at every use.
+/// Forces `a` into a register: the device compiler might otherwise compute it again at every use.
 CISTULA_INLINE void settle([[maybe_unused]] float& a) {
 #if CISTULA_ON_DEVICE
     asm volatile("" : "+f"(a));
@@ -135,7 +136,7 @@ CISTULA_INLINE double floor_of(double a) {
     return ::floor(a);
 }
 
-/// floor(a) and ceil(a) for a in [0, 2^63).
+/// floor(a) and ceil(a) as integers, for a in [0, 2^63).
 template <class Real>
 CISTULA_INLINE int64_t whole_of(Real a) {
     return static_cast<int64_t>(a);
@@ -162,7 +163,7 @@ CISTULA_INLINE To bits_as(const From& from) {
     return to;
 }
 
-/// The number of the lowest set bit; bits != 0.
+/// Index of the lowest set bit, for bits != 0.
 CISTULA_INLINE uint32_t lowest_bit(uint32_t bits) {
 #if CISTULA_ON_DEVICE
     return uint32_t(__ffs(int(bits)) - 1);
@@ -171,7 +172,7 @@ CISTULA_INLINE uint32_t lowest_bit(uint32_t bits) {
 #endif
 }
 
-/// Bit i: the sign of lanes[i]. `lanes` is aligned to 32 bytes.
+/// The sign bits of eight lanes: bit i is set if lanes[i] < 0. `lanes` is aligned to 32 bytes.
 CISTULA_INLINE uint32_t sign_bits(const int32_t (&lanes)[8]) {
 #if defined(__AVX__) && !defined(__CUDACC__)
     using Eight __attribute__((vector_size(32))) = float;
@@ -185,7 +186,7 @@ CISTULA_INLINE uint32_t sign_bits(const int32_t (&lanes)[8]) {
 #endif
 }
 
-/// A view of `size` elements that something else owns; std::span without its host-only members.
+/// A non-owning view of `size` elements: std::span without its host-only members.
 template <class T>
 struct Span {
     const T* data = nullptr;

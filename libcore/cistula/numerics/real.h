@@ -1,5 +1,4 @@
-// What the shared code needs to know about float and double, and the operations whose library forms differ between
-// them.
+// Traits of float and double, and operations whose library forms differ between the two.
 #pragma once
 
 #include "cistula/numerics/portable.h"
@@ -13,8 +12,8 @@ struct RealTraits;
 
 template <>
 struct RealTraits<float> {
-    using Up = double;                       // one precision up, for decisions (Snell)
-    static constexpr float unit = 0x1p-24f;  // u, half an ulp of 1
+    using Up = double;                       // the next higher precision, for decisions such as total reflection
+    static constexpr float unit = 0x1p-24f;  // unit roundoff u, half an ulp of 1
     static constexpr float least_normal = 0x1p-126f;
     static constexpr float largest = 0x1.fffffep127f;
     static constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -31,7 +30,8 @@ struct RealTraits<double> {
     static constexpr const char* name = "double";
 };
 
-/// Selects, not library calls: fmin and fmax differ from one another on NaN and on signed zeros. NaN in a gives b.
+/// Minimum, as a select: fmin and fmax treat NaN and signed zeros differently on different machines. If a is NaN the
+/// result is b.
 template <class T>
 CISTULA_INLINE T least(T a, T b) {
     return a < b ? a : b;

@@ -1,22 +1,22 @@
-// The share of light that a straight path lets through, as integer sums of its negative logarithm: crossings may come
-// in any order and give the same bits. Shares of 0 are no losses: they are the opaque bits of a material.
+// Transmittance along a straight path, kept as an integer sum of -log2: crossings may be added in any order and give
+// the same bits. Zero transmittance has no logarithm; a material's `opaque` bits express it.
 #pragma once
 
 #include "cistula/numerics/elementary.h"
 
 namespace cistula {
 
-/// A loss is -log2(share) in Q11.52, an integer count of 2^-52, with a bit to spare. Sums saturate here, at 4096 powers
-/// of two.
+/// The largest loss, where sums saturate: about 4096 powers of two. A loss is -log2(transmittance) in Q11.52, an
+/// integer count of 2^-52, with one bit to spare.
 inline constexpr uint64_t largest_loss = ~uint64_t{0};
 
-/// Saturating addition is associative and commutative too.
+/// a + b, clamped to largest_loss; associative and commutative like exact addition.
 CISTULA_INLINE uint64_t saturating_add(uint64_t a, uint64_t b) {
     const uint64_t sum = a + b;
     return sum < a ? largest_loss : sum;
 }
 
-/// A pair >= 0 in Q11.52, to nearest (of its own 106 bits or so, halves up); 4096 and more, and NaN, saturate.
+/// Converts a logarithm >= 0 to Q11.52, rounded to nearest with halves up. Values of 4096 and more, and NaN, saturate.
 CISTULA_HD inline uint64_t loss_of_logarithm(DoubleDouble logarithm) {
     if (!(logarithm.high < 4096)) return largest_loss;
     const double high = logarithm.high * 0x1p52;
@@ -25,14 +25,15 @@ CISTULA_HD inline uint64_t loss_of_logarithm(DoubleDouble logarithm) {
     return static_cast<uint64_t>(whole) + static_cast<uint64_t>(static_cast<int64_t>(rest));
 }
 
-/// -log2(share) for a share in (0, 1], subnormal too: exact at powers of two, 0 at 1, to nearest elsewhere.
+/// -log2(share) for a share in (0, 1], subnormal included: exact at powers of two, 0 at 1, rounded to nearest
+/// elsewhere.
 CISTULA_HD inline uint64_t loss_of(double share) {
     const DoubleDouble log = elementary::log2_pair(share);
     return loss_of_logarithm({-log.high, -log.low});
 }
 
-/// 2^-loss. Exact at whole losses; 0 where that is below the smallest normal Real. Never grows with the loss:
-/// neighbours in Q11.52 are at least ln 2 ulps apart, and exp2_reduced errs by under (1 + ln 2) / 2 ulps.
+/// 2^-loss. Exact at whole losses; 0 below the smallest normal Real. Monotonic: neighboring losses differ by at least
+/// ln 2 ulps, and exp2_reduced errs by less than (1 + ln 2) / 2 ulps.
 template <class Real>
 CISTULA_HD inline Real share_of(uint64_t loss) {
     constexpr uint64_t lowest = std::numeric_limits<Real>::max_exponent - 2;  // 126, 1022
@@ -42,15 +43,15 @@ CISTULA_HD inline Real share_of(uint64_t loss) {
     return static_cast<Real>(elementary::exp2_reduced(r, 0) * elementary::power_of_two(-static_cast<int>(k)));
 }
 
-/// A loss and what it leaves.
+/// A loss and its transmittance 2^-loss, computed in advance.
 template <class Real>
 struct KnownShare {
     uint64_t loss;
     Real share;
 };
 
-/// Beer-Lambert: the loss of a share exp(-sigma_length), to nearest. Below 0 counts as 0; from
-/// 4096 ln 2 = 2839.13 on, and for NaN, it saturates.
+/// The loss of the Beer-Lambert transmittance exp(-sigma_length), rounded to nearest. Negative arguments count as 0;
+/// arguments from 4096 ln 2 = 2839.13 on, and NaN, saturate.
 CISTULA_HD inline uint64_t absorption_loss(double sigma_length) {
     constexpr double log2_e_hi = 0x1.71547652b82fep+0, log2_e_lo = 0x1.777d0ffda0d24p-56;
     if (sigma_length <= 0) return 0;
@@ -58,24 +59,24 @@ CISTULA_HD inline uint64_t absorption_loss(double sigma_length) {
     return loss_of_logarithm(fast_two_sum(product.high, fused(sigma_length, log2_e_lo, product.low)));
 }
 
-/// sigma t to the nearest 2^-32 (halves up) in Q31.32; clamped to +-2^30, NaN to -2^30.
+/// sigma t rounded to the nearest 2^-32 (halves up) in Q31.32, clamped to +-2^30; NaN gives -2^30.
 CISTULA_INLINE int64_t absorption_fixed(double sigma_t) {
     return static_cast<int64_t>(floor_of(clamped(sigma_t, -0x1p30, 0x1p30) * 0x1p32 + 0.5));
 }
 
-/// The absorption of closed meshes along a path, for one channel: sigma t where a ray leaves, less sigma t where it
-/// enters. It wraps, so partial sums may pass any bound; the whole one does not while sigma M <= 2^20.
+/// Optical depth of closed meshes along a path, for one channel: sigma t is added where a ray leaves a mesh and
+/// subtracted where it enters. Partial sums may wrap around; the whole sum is correct while sigma M <= 2^20.
 struct PathSum {
     uint64_t sum = 0;  // Q31.32, two's complement
 
-    /// A length of the path that counts (sign +1) or that a longer one counted too much (-1), as by the distances to
-    /// the path's end from where it enters and leaves a medium. Clamped to [0, farthest], 4 M.
+    /// Adds (sign +1) or subtracts (sign -1) sigma times a length, for example the distance from a crossing to the end
+    /// of the path. The length is clamped to [0, farthest], with farthest = 4 M.
     CISTULA_INLINE void add(int sign, double sigma, double length, double farthest) {
         const uint64_t term = static_cast<uint64_t>(absorption_fixed(sigma * clamped(length, 0.0, farthest)));
         sum += sign < 0 ? 0 - term : term;
     }
 
-    /// The whole path's loss. Sums below 0, which only rounding can make of a closed mesh, count as 0.
+    /// The loss of the whole path. A sum below 0, which only rounding can produce for a closed mesh, counts as 0.
     CISTULA_HD inline uint64_t loss() const {
         const int64_t absorbed = static_cast<int64_t>(sum);
         return absorption_loss(static_cast<double>(absorbed) * 0x1p-32);  // exact below 2^21, and saturated long before

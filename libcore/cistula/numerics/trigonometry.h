@@ -1,4 +1,4 @@
-// Sine, cosine and tangent in double, the same bits on every machine, for every finite argument; see elementary.h.
+// Sine, cosine and tangent in double with the same bits on every machine, for every finite argument (see elementary.h).
 #pragma once
 
 #include "cistula/numerics/elementary.h"
@@ -9,14 +9,15 @@ inline constexpr double sin_worst_ulp = 0.75;
 inline constexpr double cos_worst_ulp = 0.75;
 inline constexpr double tan_worst_ulp = 0.90;
 
-/// An angle less `quadrant` quarter turns: hi + lo in [-pi / 4, pi / 4], give or take a few ulps. Quadrant is in 0..3.
+/// An angle in radians minus `quadrant` quarter turns: high + low in [-pi / 4, pi / 4], to within a few ulps. quadrant
+/// is 0 to 3.
 struct ReducedAngle {
     double high, low;
     int quadrant;
 };
 
-/// Payne and Hanek's reduction: multiplies by just those 192 bits of 2 / pi that count modulo 4. For x in [2^30,
-/// infinity).
+/// Payne and Hanek's argument reduction, for x in [2^30, infinity): multiplies x by the 192 bits of 2 / pi that matter
+/// modulo 4.
 CISTULA_HD inline ReducedAngle reduce_large_angle(double x) {
     constexpr uint32_t two_over_pi[] = {
         0,          0xa2f9836e, 0x4e441529, 0xfc2757d1, 0xf534ddc0, 0xdb629599, 0x3c439041, 0xfe5163ab,
@@ -71,14 +72,15 @@ CISTULA_HD inline ReducedAngle reduce_small_angle(double x) {
     return {r.high, r.low, static_cast<int>(n) & 3};
 }
 
-/// For finite x. Of -x it is that of x, negated: sin, cos and tan are odd and even to the bit.
+/// Argument reduction for finite x. The result for -x is exactly the negated result for x, so sin and tan are exactly
+/// odd and cos is exactly even.
 CISTULA_HD inline ReducedAngle reduced_angle(double x) {
     const double size = magnitude(x);
     const ReducedAngle r = size < 0x1p30 ? reduce_small_angle(size) : reduce_large_angle(size);
     return x < 0 ? ReducedAngle{-r.high, -r.low, -r.quadrant & 3} : r;
 }
 
-/// sin(hi + lo) for a reduced angle.
+/// sin(hi + lo) for a reduced angle, in double-double.
 CISTULA_HD inline DoubleDouble sin_reduced(double hi, double lo) {
     constexpr double series[] = {-0x1.5555555555555p-3, 0x1.1111111111110p-7,   -0x1.a01a01a019937p-13,
                                  0x1.71de3a54607a5p-19, -0x1.ae64541295cdfp-26, 0x1.61217ee5cca1bp-33,
@@ -87,7 +89,7 @@ CISTULA_HD inline DoubleDouble sin_reduced(double hi, double lo) {
     return fast_two_sum(hi, fused(square * hi, polynomial(square, series), fused(-0.5 * square, lo, lo)));
 }
 
-/// cos(hi + lo) for a reduced angle.
+/// cos(hi + lo) for a reduced angle, in double-double.
 CISTULA_HD inline DoubleDouble cos_reduced(double hi, double lo) {
     constexpr double series[] = {0x1.5555555555555p-5,   -0x1.6c16c16c16c16p-10, 0x1.a01a01a019d0ap-16,
                                  -0x1.27e4fb7712ca2p-22, 0x1.1eed8deb82809p-29,  -0x1.9394b9eb4d56dp-37,
@@ -99,7 +101,7 @@ CISTULA_HD inline DoubleDouble cos_reduced(double hi, double lo) {
                         start.low + fused(square.high * square.high, polynomial(square.high, series), small));
 }
 
-/// The sine of an angle in radians. Infinite and NaN arguments give NaN; sin(-0) = -0.
+/// Sine of an angle in radians. Infinite and NaN arguments give NaN; sin(-0) = -0.
 CISTULA_HD inline double sin(double x) {
     if (!is_finite(x)) return not_a_number;
     if (magnitude(x) < 0x1p-27) return x;

@@ -1,4 +1,4 @@
-// Vectors: GLM's types and its exact componentwise operations; products that round are spelled out here.
+// Vectors: GLM's types and its exact componentwise operations. Products, which round, are defined here.
 #pragma once
 
 #ifndef GLM_FORCE_PURE
@@ -18,7 +18,7 @@ using Vec2 = glm::vec<2, Real, glm::defaultp>;
 template <class Real>
 using Vec3 = glm::vec<3, Real, glm::defaultp>;
 
-/// Symmetric in x and y, so that flips and the x-y swap of a scene change no bit.
+/// Dot product, symmetric in x and y: mirroring a scene or swapping its x and y axes changes no bit.
 template <class Real>
 CISTULA_INLINE Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
     return fused(a.z, b.z, a.x * b.x + a.y * b.y);
@@ -30,7 +30,7 @@ CISTULA_INLINE Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
             difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// o + t d, each component with one rounding.
+/// origin + t direction, each component rounded once.
 template <class Real>
 CISTULA_INLINE Vec3<Real> along(const Vec3<Real>& origin, Real t, const Vec3<Real>& direction) {
     return {fused(t, direction.x, origin.x), fused(t, direction.y, origin.y), fused(t, direction.z, origin.z)};
@@ -47,7 +47,7 @@ CISTULA_INLINE Vec3<Real> normalized(const Vec3<Real>& a) {
     return a / length(a);
 }
 
-/// 0, or NaN where a component is not finite: 0 times infinity or NaN is NaN, which a sum keeps.
+/// 0 if all components are finite, else NaN: 0 times infinity or NaN is NaN, which the sum keeps.
 template <class Real>
 CISTULA_INLINE Real nothing_of(const Vec3<Real>& a) {
     return fused(a.x, Real(0), fused(a.y, Real(0), a.z * Real(0)));
@@ -61,7 +61,7 @@ template <class Real>
 CISTULA_INLINE Real channel(const Vec3<Real>& a, int c) {
     return a[c];
 }
-/// A number stands for three that are alike.
+/// Component of a scalar that stands for three equal channels.
 CISTULA_INLINE float channel(float a, int) {
     return a;
 }

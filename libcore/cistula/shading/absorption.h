@@ -1,5 +1,5 @@
-// What the solids along a straight line absorb: signed sums of integers over its crossings, so that faces at which
-// nothing changes leave every bit alone (Beer-Lambert; docs/rules.md, 6).
+// Absorption along a ray, as signed integer sums over its crossings, so that faces at which no medium changes leave
+// every bit unchanged (Beer-Lambert; docs/rules.md, 6).
 #pragma once
 
 #include "cistula/geometry/ray.h"
@@ -8,12 +8,13 @@
 
 namespace cistula {
 
-/// Absorption from a place on a ray, `begin`, to another, `dim`. The false one is for scenes without any.
+/// Absorption along a ray from begin() to dim(). The `false` specialization does nothing, for scenes without
+/// absorption.
 template <bool>
 struct Absorption {
     PathSum sum[3];
 
-    /// The solids of `media` contain the ray from t on (sign -1) or up to t (sign 1).
+    /// Adds the optical depth to the media of a ray from t on (sign -1) or up to t (sign 1).
     template <class Real, class Media, class Scene>
     CISTULA_INLINE void add_all(const Scene& scene, const Media& media, Real t, int sign) {
         media.for_each([&](uint32_t solid, int count) { add(scene, solid, count, t, sign); });
@@ -33,14 +34,14 @@ struct Absorption {
         if (t > Real(0)) add_all(scene, media, t, -1);
     }
 
-    /// A face that is passed without shading.
+    /// Records a face that the ray passes without shading.
     template <class Real, class Scene>
     CISTULA_INLINE void cross(const Scene& scene, uint64_t key, Real t) {
         const int change = media_change(key_kind(key));
         if (change != 0) add(scene, key_solid(key), 1, t, -change);
     }
 
-    /// Multiplies a weight by what is left at t.
+    /// Multiplies the throughput `weight` by the transmittance up to t.
     template <class Real, class Media, class Scene>
     CISTULA_INLINE void dim(const Scene& scene, const Media& media, Real t, Vec3<Real>& weight) {
         add_all(scene, media, t, 1);

@@ -1,4 +1,4 @@
-// Where a ray meets a face between two media: which shares go on, and which way.
+// The interface between two media: the shares of the reflected and the transmitted ray, and the latter's direction.
 #pragma once
 
 #include "cistula/geometry/ray.h"
@@ -10,22 +10,22 @@ namespace cistula {
 
 template <class Real, class Filter = Vec3<Real>>
 struct Shares {
-    Real reflection;  // of the mirrored ray
-    Filter filter;    // of the ray that goes through
-    bool bends;       // whether that one takes `through`; otherwise it goes straight on
+    Real reflection;  // share of the reflected ray
+    Filter filter;    // share of the transmitted ray
+    bool bends;       // whether the transmitted ray takes the direction `through`; else it goes straight on
     Vec3<Real> through;
 };
 
-/// Index of refraction of the medium around a point: that of the solid of highest priority, or 1.
+/// Index of refraction at a point: that of the solid of highest priority that contains it, or 1.
 template <class Scene, class Media>
 CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
     const uint32_t solid = media.medium();
     return solid == no_solid ? 1.0 : scene.materials[scene.solids[solid].material].index;
 }
 
-/// Total internal reflection sends the transmitted share into the mirrored ray; `fresnel` splits kr + kt by the exact
-/// dielectric terms, of which nothing is reflected between equal indices. A sheet has no other side to bend into: kr
-/// and kt stand as they are.
+/// Splits light at an interface. Total internal reflection moves the transmitted share to the reflected ray. With
+/// `fresnel`, kr + kt is split by the exact dielectric terms; nothing is reflected between equal indices. A sheet has
+/// no medium behind it, so it does not bend rays and uses kr and kt unchanged.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE Shares<Real, Share<Real, E>> split_at(const Scene& scene, const Material<Real>& m,
                                                      const Vec3<Real>& direction, const Vec3<Real>& normal,

@@ -1,4 +1,4 @@
-// The local light of a surface: ambient, and each light by itself, so that lights may come in any order.
+// Local light of a surface: ambient light, and each point light added by itself, so that lights may come in any order.
 #pragma once
 
 #include "cistula/model/pixel_record.h"
@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-/// Starts a new line from a face. `ray`: as constructed.
+/// Sets up a ray that starts on the face of `hit`. `ray` must be as constructed.
 template <class Real, class Media>
 CISTULA_INLINE void spawn(Ray<Real, Media>& ray, const Vec3<Real>& origin, const Vec3<Real>& direction,
                           const Hit<Real>& hit, const Media& media) {
@@ -26,7 +26,7 @@ CISTULA_INLINE Ray<Real, Media> spawned(const Vec3<Real>& origin, const Vec3<Rea
     return ray;
 }
 
-/// The direction from a surface to a light (unit), how far that is, and the cosine to the normal.
+/// The unit direction from a surface to a light, its distance, and the cosine to the normal.
 template <class Real>
 struct LightAim {
     Vec3<Real> direction;
@@ -43,27 +43,27 @@ struct LightAim {
     }
 };
 
-/// Whether a light lies before a face. One in the face's plane lights it at no angle; rounding must not decide on which
-/// side it is.
+/// Whether a light lies in front of a face. A light within the incidence distance of the face's plane does not light
+/// it, so that rounding does not decide its side.
 template <class Real, class Scene>
 CISTULA_INLINE bool is_before(const Scene& scene, const Light<Real>& light, const Surface<Real>& s) {
     return dot(s.normal, light.position - s.viewer_side) > incidence<Real> * scene.extent;
 }
 
-/// Whoever wants to know what each light adds to a surface: add_local_light tells it. This one does not.
+/// Callbacks of add_local_light that report what each light adds to a surface. This default ignores them.
 struct LightObserver {
-    /// Light i is behind the surface, or at no angle to it.
+    /// Light i is behind the surface or in its plane.
     template <class Light>
     CISTULA_INLINE void behind(uint32_t, const Light&) const {}
     /// What light i would add without shadows.
     template <class Aim, class Color>
     CISTULA_INLINE void unshadowed(uint32_t, const Aim&, const Color&) const {}
-    /// The share of light i that arrives.
+    /// The transmittance toward light i.
     template <class Shadow, class Arrives>
     CISTULA_INLINE void arrives(uint32_t, const Shadow&, const Arrives&) const {}
 };
 
-/// Adds `weight` times the local term of a surface (docs/design.md, Light), seen along `ray`.
+/// Adds `weight` times the local light of a surface seen along `ray` (docs/design.md, Light).
 template <class Real, class E, class Intersector, class Media, class Scene, class Sums, class Observer = LightObserver>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                     const Hit<Real>& hit, const Surface<Real>& s, const Share<Real, E>& weight,

@@ -1,6 +1,6 @@
-// A ray meets a face: which of the crossings that rounding cannot tell apart is shaded, and what is beyond them all.
-// Touching bodies then pass light from one index straight to the other (docs/rules.md, 4), and what stays on the
-// viewer's side is in the viewer's medium.
+// A ray's meeting with one or several faces that rounding cannot tell apart: which of their crossings is shaded, and
+// the media beyond them all. Light then passes from one touching body to the other without a gap between them
+// (docs/rules.md, 4), and rays that stay on the viewer's side are in the viewer's medium.
 #pragma once
 
 #include "cistula/geometry/ray.h"
@@ -12,12 +12,12 @@ template <class Real, class Media = MediaList>
 struct Meeting {
     static constexpr int capacity = Media::contacts ? 8 : 1;
 
-    Hit<Real> hit;                   // the crossing to shade: of the solid with the highest priority
-    Crossing<Real> taken[capacity];  // crossings that change the media, in their order; sheets change none
+    Hit<Real> hit;                   // the crossing to shade: that of the solid of highest priority
+    Crossing<Real> taken[capacity];  // all crossings, in order
     int count;
-    Media beyond;      // after all of them
-    bool fits;         // whether the lists had room
-    bool passed_over;  // whether crossings from the wrong side come before the first
+    Media beyond;      // media behind all of them
+    bool fits;         // whether `beyond` had room
+    bool passed_over;  // whether refused mesh crossings come before the first (Hit::passed_over)
 
     CISTULA_INLINE void begin(const Ray<Real, Media>& ray, const Hit<Real>& first) {
         hit = first;
@@ -30,7 +30,7 @@ struct Meeting {
 
     CISTULA_INLINE const Crossing<Real>& last() const {
         if constexpr (capacity == 1)
-            return taken[0];  // no index: that would put all of it into memory
+            return taken[0];  // no index: it would force the struct into memory
         else
             return taken[count - 1];
     }
@@ -43,8 +43,8 @@ struct Meeting {
     }
 };
 
-/// A new line starts up to 8 u M beyond a mesh, and t is rounded by as much again, so crossings of other solids within
-/// twice that of the face belong to the same meeting.
+/// Collects crossings of other solids that belong to the same meeting: those within 16 u M of the face. (A new ray
+/// starts up to 8 u M beyond a mesh, and the rounding of t is as large.)
 template <class Real, class Intersector, class Media, class Scene>
 CISTULA_INLINE void meet_touching(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                   const Hit<Real>& hit, Meeting<Real, Media>& meeting) {
@@ -66,7 +66,7 @@ CISTULA_INLINE void meet_touching(const Scene& scene, const Intersector& interse
     }
 }
 
-/// `hit` is the ray's next crossing.
+/// Finds the meeting at `hit`, the ray's next crossing.
 template <class Real, class Intersector, class Media, class Scene>
 CISTULA_INLINE void meet(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                          const Hit<Real>& hit, Meeting<Real, Media>& meeting) {

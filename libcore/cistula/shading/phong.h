@@ -1,4 +1,4 @@
-// The local light at a point (Phong 1975), one light at a time, so that lights may come in any order.
+// Phong's local light at a point (1975), one light at a time, so that lights may come in any order.
 #pragma once
 
 #include "cistula/model/effects.h"
@@ -11,7 +11,7 @@ CISTULA_SELDOM inline double fractional_power(double base, double exponent) {
     return elementary::pow(base, exponent);
 }
 
-/// max(0, cosine)^n.
+/// The highlight max(0, cosine)^n.
 template <class Real>
 CISTULA_INLINE Real highlight(const LocalMaterial<Real>& material, Real cosine) {
     if (!(cosine > Real(0))) return material.integer_exponent == 0 ? Real(1) : Real(0);
@@ -20,15 +20,15 @@ CISTULA_INLINE Real highlight(const LocalMaterial<Real>& material, Real cosine) 
     return Real(fractional_power(double(base), double(material.exponent)));
 }
 
-/// R.V, of the light's direction mirrored at the face and of the viewer's.
+/// R.V: the cosine between the mirrored light direction and the direction to the viewer.
 template <class Real>
 CISTULA_INLINE Real mirror_cosine(const Vec3<Real>& normal, const Vec3<Real>& to_light, const Vec3<Real>& to_viewer,
                                   Real n_l) {
     return Real(2) * n_l * dot(normal, to_viewer) - dot(to_light, to_viewer);
 }
 
-/// What a light of unit transmittance adds, before the local share: I a(r) (C kd N.L + ks S (R.V)^n). n_l = N.L > 0;
-/// `shine`: (R.V)^n.
+/// What a light adds at unit transmittance, without the local share: I a(r) (C kd N.L + ks S (R.V)^n). n_l = N.L > 0;
+/// `shine` = (R.V)^n.
 template <class Real, class E>
 CISTULA_INLINE Vec3<Real> phong(const LocalMaterial<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
                                 Real n_l, Real shine, Real distance) {

@@ -1,5 +1,5 @@
-// Transmittance toward a light: sums of integers over the faces crossed, the same in any order (docs/rules.md, 5 and
-// 6).
+// Transmittance toward a light as integer sums over the crossed faces, with the same result in any order
+// (docs/rules.md, 5 and 6).
 #pragma once
 
 #include "cistula/geometry/convex.h"
@@ -9,7 +9,7 @@
 
 namespace cistula {
 
-/// A straight line to a light; refraction does not bend it. ray.after plays no part.
+/// A shadow ray, a straight segment to a light; refraction does not bend it. ray.after is not used.
 template <class Real, class Media = MediaList>
 struct ShadowRay {
     Ray<Real, Media> ray;
@@ -17,13 +17,13 @@ struct ShadowRay {
     const Light<Real>* light;
 };
 
-/// What has been met so far on the way to a light, for every color or for all at once (Share).
+/// The losses met so far on the way to a light, per channel or for all channels at once (Share).
 template <class E = Effects<all_effects>>
 struct ShadowSum {
     static constexpr int channels = std::is_same_v<Share<float, E>, float> ? 1 : 3;
     uint64_t loss[channels] = {};
     PathSum path[channels];  // absorption inside meshes
-    uint32_t opaque = 0;     // bit c: color c is stopped
+    uint32_t opaque = 0;     // bit c: channel c is blocked
 
     CISTULA_INLINE bool dark() const { return opaque == 7u; }
 
@@ -37,7 +37,7 @@ struct ShadowSum {
         }
     }
 
-    /// A stretch of length >= 0 inside a convex solid.
+    /// Adds the absorption of a length >= 0 inside a convex solid.
     template <class Real>
     CISTULA_INLINE void absorb(const Material<Real>& material, Real length) {
         for (int c = 0; c < channels; ++c)
@@ -45,8 +45,8 @@ struct ShadowSum {
                 loss[c] = saturating_add(loss[c], absorption_loss(double(material.absorption[c]) * double(length)));
     }
 
-    /// A mesh whose inside begins (sign 1) or ends (sign -1) at `remaining` before the light: the signed sum over all
-    /// its crossings is the length inside.
+    /// Adds the absorption of a mesh entered (sign 1) or left (sign -1) at a distance `remaining` from the light: the
+    /// signed sum over all its crossings is the length inside.
     template <class Real>
     CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real remaining, int sign, Real extent) {
         for (int c = 0; c < channels; ++c)
@@ -56,7 +56,7 @@ struct ShadowSum {
     template <class Real, class Scene>
     CISTULA_INLINE Share<Real, E> share(const Scene& scene) const {
         Real shares[channels];
-        uint64_t known = 0;  // a loss and its share, as gray materials have one for all colors
+        uint64_t known = 0;  // the last loss and its share: gray materials have the same one in all channels
         Real known_share = 1;
         for (int c = 0; c < channels; ++c) {
             if constexpr (E::has(effect_transparent_shadows)) {
@@ -73,10 +73,11 @@ struct ShadowSum {
     }
 };
 
-/// Where a line to a light starts that lies on faces of a solid.
-enum class LightSide { none, inside, outside };  // on no face of it; inside all of their planes, or outside one
+/// Where a shadow ray starts, if its light lies on faces of a solid.
+enum class LightSide { none, inside, outside };  // on no face; inside all planes of such faces; outside one
 
-/// By value: a reference would put the ray into memory.
+/// Where a point lies relative to the faces of a convex solid that hold a light. `point` is by value: a reference would
+/// force the ray into memory.
 template <class Real, class Scene>
 CISTULA_SELDOM LightSide light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index,
                                          Vec3<Real> point) {
@@ -99,8 +100,8 @@ CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const Sh
     return LightSide::none;
 }
 
-/// A convex solid that the ray starts in. A light on its own face is never beyond that, whatever the rounding of two
-/// nearly equal distances says.
+/// Adds what a convex solid that contains the ray's origin takes from a light. A light on that solid's own face is
+/// never outside it, whatever the rounding of two nearly equal distances says.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                 ShadowSum<E>& sum) {
@@ -116,7 +117,8 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance), Real(0)));
 }
 
-/// One that it neither starts in nor left, nor passes by. With a light on its face half-spaces decide.
+/// Adds what a convex solid that the ray may enter takes from a light: one that it does not start in, has not left and
+/// does not pass by. If the light lies on a face of the solid, half-spaces decide.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid& solid,
                                  const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
@@ -150,8 +152,8 @@ CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const Shad
         shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
 }
 
-/// Whether a mesh that touches others is crossed where the ray starts on one of them, and from the side on which the
-/// ray is not: it is behind the ray.
+/// Whether a crossing of a touching mesh lies behind the shadow ray: at its origin on another solid, and on the side on
+/// which the ray is not.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool behind_shadow(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
                                   const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray) {
@@ -172,7 +174,7 @@ CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32
     return lies;
 }
 
-/// Takes an accepted crossing of a triangle into the sum if it lies before the light.
+/// Adds an accepted crossing of a triangle if it lies before the light.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow,
@@ -191,7 +193,7 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
             sum.absorb_rest(material, shadow.distance - c.t, c.enters() ? 1 : -1, scene.extent);
 }
 
-/// For a ray that does not start on the cluster's flat sheet.
+/// Adds what a cluster's triangles take from a light, for a ray that does not start on the cluster's flat sheet.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                      const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
@@ -208,7 +210,7 @@ CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const Sha
     if (!leaves_flat(scene, index, shadow.ray)) shadow_triangles<Real, E>(scene, index, shadow, triangle_ray, sum);
 }
 
-/// Adds one facet's crossing to a shadow's sum; `left` is the flat sheet on which the ray starts, or no_solid.
+/// Adds the crossing of one facet; `left` is the flat sheet on which the ray starts, or no_solid.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                  const TriangleRay<Real>& triangle_ray, uint32_t left, ShadowSum<E>& sum) {
@@ -218,7 +220,7 @@ CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const Shado
         shadow_crossing<Real, E>(scene, facet.solid, facet.triangle, facet.slot, c, shadow, sum);
 }
 
-/// What meshes that contain the start of the ray add.
+/// Adds the absorption of meshes that contain the ray's origin.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
     if constexpr (E::has(effect_absorption)) {

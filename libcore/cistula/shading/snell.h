@@ -1,5 +1,5 @@
-// Snell's law and the dielectric Fresnel terms, decided one precision up: float in double, double in double-double.
-// At equal indices the direction comes back unchanged and nothing is reflected, exactly.
+// Snell's law and the dielectric Fresnel terms, computed in the next higher precision: float in double, double in
+// double-double. At equal indices the direction is returned unchanged and the reflectance is exactly 0.
 #pragma once
 
 #include "cistula/numerics/double_double.h"
@@ -14,21 +14,22 @@ struct Refraction {
     Real reflectance;      // Fresnel's, unpolarized, in [0, 1]; 1 if total
 };
 
-/// One Newton step toward unit length; enough where the error is a few u.
+/// A vector after one Newton step toward unit length, which suffices for an error of a few u.
 template <class Real>
 CISTULA_INLINE Vec3<Real> renormalized(const Vec3<Real>& a) {
     return a * fused(Real(-0.5), dot(a, a), Real(1.5));
 }
 
-/// The mirror direction, d - 2 (d.N) N.
+/// The mirrored direction d - 2 (d.N) N.
 template <class Real>
 CISTULA_INLINE Vec3<Real> reflected(const Vec3<Real>& direction, const Vec3<Real>& normal) {
     return renormalized(along(direction, Real(-2) * dot(direction, normal), normal));
 }
 
-/// normal toward the incoming side; index_from and index_to >= the least legal index of a scene. With n = index_to /
-/// index_from, c = -d.N, D = (n - 1)(n + 1): g^2 = D + c^2, T = (d - (D / (g + c)) N) / n, and Fresnel's
-/// (a^2 / 2)(1 + b^2) with a = (g - c) / (g + c), b = (c (g + c) - 1) / (c (g - c) + 1) (Cook and Torrance 1982).
+/// Refraction at an interface. The normal is on the incoming side; the indices are at least the smallest one allowed in
+/// a scene. With n = index_to / index_from, c = -d.N, D = (n - 1)(n + 1): g^2 = D + c^2, T = (d - (D / (g + c)) N) / n,
+/// and Fresnel's (a^2 / 2)(1 + b^2) with a = (g - c) / (g + c), b = (c (g + c) - 1) / (c (g - c) + 1) (Cook and
+/// Torrance 1982).
 template <class Real>
 CISTULA_HD inline Refraction<Real> refracted(const Vec3<Real>& direction, const Vec3<Real>& normal, double index_from,
                                              double index_to) {

@@ -1,4 +1,4 @@
-// What is at a hit: computed from its ids, not from the ray's rounding where that can be helped.
+// The surface at a hit, computed from the hit's ids rather than from the ray where that is more accurate.
 #pragma once
 
 #include "cistula/geometry/ray.h"
@@ -12,17 +12,17 @@ template <class Real>
 struct Surface {
     Vec3<Real> point;
     Vec3<Real> normal;       // geometric, unit, toward the viewer
-    Vec3<Real> viewer_side;  // where rays that stay on the viewer's side start
-    Vec3<Real> color;        // the material's, times its texture
+    Vec3<Real> viewer_side;  // origin of rays that stay on the viewer's side
+    Vec3<Real> color;        // material color times texture
     uint32_t material;
 };
 
-/// No question where one kind alone is compiled in.
+/// Whether a solid is convex; a constant where only one kind of primitive is compiled in.
 template <class E>
 CISTULA_INLINE bool is_convex(const Solid& solid) {
     return E::solids && (!E::triangles || solid.kind == SolidKind::convex);
 }
-/// Where rays that bend into the other side of a face start.
+/// The origin of rays that are refracted into the other side of a face.
 template <class E, class Real, class Scene>
 CISTULA_INLINE Vec3<Real> far_side(const Scene& scene, const Hit<Real>& hit, const Vec3<Real>& point,
                                    const Vec3<Real>& normal) {
@@ -50,7 +50,7 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
     }
 }
 
-/// Whether a crossing of a mesh lies where a line starts on a face of another solid, give or take rounding.
+/// Whether a crossing of a mesh lies at the origin of a ray that starts on another solid's face, to within rounding.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool lies_at_start(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
     if (ray.from_solid == no_solid || ray.from_solid == key_solid(hit.key)) return false;

@@ -1,4 +1,4 @@
-// A part of a ray tree that is still to be followed, and the form in which it waits in memory.
+// A branch of a ray tree that is still to be traced, and its compact form in memory.
 #pragma once
 
 #include "cistula/geometry/ray.h"
@@ -6,24 +6,25 @@
 
 namespace cistula {
 
-/// A ray of a tree and the weight that what it sees has in the pixel. Weight: a number for each color, or one for all.
+/// A ray of a ray tree and its throughput: the weight, per channel or for all at once, with which what it sees counts
+/// in the pixel.
 template <class Real, class Media = MediaList, class Weight = Vec3<Real>>
 struct Branch {
     Ray<Real, Media> ray;
     Weight weight{Real(1)};
-    uint32_t depth : 30 = 0;  // surfaces above it
+    uint32_t depth : 30 = 0;  // number of surfaces before it on the path
     uint32_t mirrored : 1 = 0;
-    uint32_t no_light_ahead : 1 = 0;  // its line meets no seen light, however many faces it passes
+    uint32_t no_light_ahead : 1 = 0;  // its line meets no visible light, however far it goes on
 };
 
-/// The branches of the trees that are rendered with effects E.
+/// The branch type of trees that are rendered with effects E.
 template <class Real, class E, class Media>
 using BranchOf = Branch<Real, Media, Share<Real, E>>;
 
 template <class Entry>
 class WaitingBranch;
-/// A branch as it lies in memory: value by value, since a processor stalls when it reads as a whole what was just
-/// written in parts, and without gaps, since all threads of a device together have little memory.
+/// A branch as stored on a stack. Written value by value, since a processor stalls when it reads as a whole what was
+/// just written in parts; without padding, since device memory per thread is scarce.
 template <class Real, class Media, class Weight>
 class WaitingBranch<Branch<Real, Media, Weight>> {
   public:

@@ -1,5 +1,5 @@
-// The stacks in which the branches of a ray tree wait. The lighter child is followed first, so that a few entries hold
-// any tree.
+// Stacks for the pending branches of a ray tree. The lighter child is followed first, so that a small stack suffices
+// for any tree.
 #pragma once
 
 #include <new>
@@ -9,15 +9,15 @@
 
 namespace cistula {
 
-/// Entries of a stack: the branch that is followed while k others wait weighs at most 2^-k, and one under 2^-62 is
-/// dropped.
+/// The capacity of a stack. While k branches wait, the one that is followed has a weight of at most 2^-k, and a branch
+/// under 2^-62 is dropped.
 inline constexpr int branch_stack = 67;
 
-/// A stack of branches, whose entries lie in a Storage of the caller's: the stack itself then stays in registers.
+/// A stack of branches. Its entries lie in a Storage of the caller, so that the stack itself stays in registers.
 template <class Entry>
 class BranchStack {
   public:
-    /// Memory for all entries, unset: most trees need a few.
+    /// Uninitialized memory for all entries, of which most trees need a few.
     class Storage {
       public:
         CISTULA_INLINE Storage() {}
@@ -31,13 +31,13 @@ class BranchStack {
 
     CISTULA_INLINE explicit BranchStack(Storage& storage) : storage_(storage) {}
 
-    /// False if there is no room.
+    /// Pushes a branch; false if the stack is full.
     CISTULA_INLINE bool push(const Entry& branch) {
         if (count_ == branch_stack) return false;
         new (&storage_.entries_[count_++]) WaitingBranch<Entry>(branch);
         return true;
     }
-    /// Takes the latest entry; false if there is none.
+    /// Pops the latest branch; false if there is none.
     CISTULA_INLINE bool pop(Entry& branch) {
         if (count_ == 0) return false;
         storage_.entries_[--count_].give(branch);
@@ -45,7 +45,7 @@ class BranchStack {
     }
     CISTULA_INLINE bool empty() const { return count_ == 0; }
     CISTULA_INLINE void clear() { count_ = 0; }
-    /// Whether the tree is to end where it is.
+    /// Whether the render was stopped, so that the tree is to end early.
     CISTULA_INLINE bool stopped() const { return false; }
 
   private:
@@ -53,7 +53,7 @@ class BranchStack {
     int count_ = 0;
 };
 
-/// The stack of trees that do not fork: a branch has one child at most, which is followed next.
+/// The stack of trees that do not fork: a branch has at most one child, which is followed next.
 template <class Entry>
 class OneBranch {
   public:
@@ -81,12 +81,12 @@ class OneBranch {
     bool waits_ = false;
 };
 
-/// The stack for trees that are rendered with effects E.
+/// The stack type of trees that are rendered with effects E.
 template <class Real, class E, class Media>
 using StackOf = std::conditional_t<E::has(effect_transmission), BranchStack<BranchOf<Real, E, Media>>,
                                    OneBranch<BranchOf<Real, E, Media>>>;
 
-/// A stack whose trees end once stop() is true; a tree may be as good as endless.
+/// A stack whose trees end early once stop() is true, since a tree may be practically endless.
 template <class Base, class Stop>
 class StoppableStack : public Base {
   public:

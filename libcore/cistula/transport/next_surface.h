@@ -1,4 +1,4 @@
-// From a branch's origin along its line to the next face that has anything to shade.
+// The search along a branch's line for the next face that is shaded or bends the ray.
 #pragma once
 
 #include "cistula/lights/seen_light.h"
@@ -10,14 +10,15 @@
 
 namespace cistula {
 
-/// Faces that one ray may pass without shading or bending; more fail the render (flag_too_many_crossings).
+/// The maximum number of faces that a ray may pass without shading or bending; more fail the render
+/// (flag_too_many_crossings).
 inline constexpr int largest_crossings = 1 << 20;
 
-/// Whether rays pass faces without bending, all of them.
+/// Whether all rays that pass a face go straight on.
 template <class E>
 inline constexpr bool lines_go_on = E::has(effect_transmission) && !E::has(effect_refraction);
 
-/// Follows the lines of a tree's branches.
+/// Finds the surfaces that the branches of a tree meet.
 template <class Real, class E, class Intersector>
 class NextSurface {
   public:
@@ -25,12 +26,12 @@ class NextSurface {
     using Scene = typename Intersector::Scene;
     using Entry = BranchOf<Real, E, Media>;
 
-    /// `depth`: surfaces that a path may have.
+    /// `depth`: maximum number of surfaces on a path.
     CISTULA_INLINE NextSurface(const Scene& scene, const Intersector& intersector, int depth, PixelSums<Real>& sums)
         : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums) {}
 
-    /// Finds the branch's next surface. False where there is none: the light or background on which the ray ends is
-    /// added then, and `light` tells which of them it is.
+    /// Finds the branch's next surface. False if there is none: the visible light or background at the end of the ray
+    /// is then added, and `light` tells whether it was a light.
     CISTULA_INLINE bool find(Entry& branch, Meeting<Real, Media>& meeting, bool& light) {
         Absorption<E::has(effect_absorption)> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
@@ -72,8 +73,8 @@ class NextSurface {
     }
 
   private:
-    /// A line's first crossing of a mesh is from the right side. Others of that mesh that rounding puts before it, at
-    /// an edge that the line grazes, count all the same once it goes on straight.
+    /// Adds refused crossings to the media. A ray's first crossing of a mesh is from the right side; others of the same
+    /// mesh that rounding puts before it, at a grazed edge, count as well once the ray goes straight on.
     template <class Absorbed>
     CISTULA_INLINE void count_passed_over(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media,
                                           Absorbed& absorption) {
@@ -82,7 +83,7 @@ class NextSurface {
         for (;;) {
             const Hit<Real> next = intersector_.closest(probe);
             if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
-            // From the wrong side where the line starts: that mesh is behind it.
+            // A refused crossing at the ray's origin belongs to a mesh behind the ray.
             if (!lies_at_start(scene_, ray, next)) {
                 if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) sums_.flag(flag_media_overflow);
                 absorption.cross(scene_, next.key, next.t);
@@ -91,8 +92,8 @@ class NextSurface {
         }
     }
 
-    /// Whether a crossing has nothing to shade: inside a medium of higher priority, or of a clear face between equal
-    /// media.
+    /// Whether a crossing has nothing to shade: it lies inside a medium of higher priority, or belongs to a clear face
+    /// between equal media.
     CISTULA_INLINE bool invisible(const Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting) const {
         if constexpr (!E::has(effect_transmission | effect_insides)) {
             return false;
@@ -106,15 +107,15 @@ class NextSurface {
         }
     }
 
-    /// What a ray sees that meets no face before `seen`.
+    /// The radiance of the visible light `seen`, or the background if there is none.
     CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const SeenHit<Real>& seen) const {
         if constexpr (E::has(effect_visible_lights))
             if (seen.light != no_light) return scene_.seen_lights[seen.light].radiance;
         return scene_.background;
     }
 
-    /// The seen light that the ray meets before `hit`. A line that may go straight on from there is searched to its
-    /// end.
+    /// The visible light that the ray meets before `hit`. If the ray may go straight on from there, its whole line is
+    /// searched, and `no_light_ahead` keeps a negative result.
     CISTULA_INLINE SeenHit<Real> light_before(const Hit<Real>& hit, Entry& branch) const {
         if constexpr (lines_go_on<E>)
             if (branch.no_light_ahead) return SeenHit<Real>();

@@ -1,4 +1,4 @@
-// One pixel: the body of both backends' loops.
+// Rendering of one pixel: the body of both backends' loops.
 #pragma once
 
 #include "cistula/model/camera.h"
@@ -7,33 +7,34 @@
 
 namespace cistula {
 
-/// What a frame asks of every pixel. The camera is in the scene's frame.
+/// A frame's settings for every pixel. The camera is in the scene's frame.
 struct FrameView {
     Camera camera;
-    MediaList camera_media;  // the solids that contain the camera (camera_solids)
+    MediaList camera_media;  // medium stack at the camera (camera_solids)
     double unit_length = 1;  // scene units per unit of the frame
-    double half_sample = 0;  // tangent between the middle of the picture and half a sample beside it
+    double half_sample = 0;  // tangent of the angle of half a sample, at the picture's center
     bool is_far = false;     // the camera is outside the sphere of radius 2 M
     int width = 0, height = 0;
     int supersample = 1;
     TreeSettings tree;
-    LatticeSettings lattice;  // with a target, of a grid of 16 x 16
+    LatticeSettings lattice;  // if it has a target: supersample is then 16
 };
 
-/// Whether rays begin at the sphere of radius 2 M, not at the camera.
+/// Whether primary rays start at the sphere of radius 2 M instead of at the camera.
 CISTULA_HD inline bool is_far(const Camera& camera, double extent) {
     return dot(camera.position, camera.position) > 4 * extent * extent;
 }
 
-/// The ray from the camera, from where it enters the sphere of radius 2 M (docs/rules.md, 1), in double for either
-/// Real. `start` is how far from the camera that is. False: it passes the scene by.
+/// The primary ray, starting where it enters the sphere of radius 2 M (docs/rules.md, 1), computed in double for either
+/// Real. `start` is the distance of that point from the camera. False if the ray misses the sphere.
 template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, const Vec3<double>& direction,
                                    Ray<Real, Media>& ray, double& start) {
     Vec3<double> origin = frame.camera.position;
     start = 0;
     if (frame.is_far) {
-        // By the closest approach: a camera 1e9 away loses no more than its own rounding.
+        // Computed from the closest approach, so that a camera at a distance of 1e9 loses no more than its own
+        // rounding.
         const double radius = 2 * double(scene.extent), square = radius * radius;
         const double along_view = dot(origin, direction);
         const Vec3<double> closest = along(origin, -along_view, direction);
@@ -50,7 +51,7 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, c
     return true;
 }
 
-/// The ray from the camera through the point (x, y) of the picture, whose direction it gives too.
+/// The primary ray through the point (x, y) of the picture, and its direction in double.
 template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, double x, double y,
                                    Ray<Real, Media>& ray, Vec3<double>& direction, double& start) {
@@ -58,14 +59,15 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, d
     return primary_ray(scene, frame, direction, ray, start);
 }
 
-/// The meshes that contain a point, by the crossings of a straight ray from outside.
+/// The meshes that contain a point, found by counting the crossings of a straight ray from outside. False if there are
+/// more than a medium stack holds.
 template <class Scene, class Intersector>
 CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
                                      MediaList& media) {
     using Real = typename Scene::Scalar;
-    // Through no axis, edge or symmetry that a scene is likely to have.
+    // A direction along no axis, edge or symmetry that a scene is likely to have.
     const Vec3<double> direction = normalized(Vec3<double>(0.36, 0.48, 0.8112));
-    // From the sphere of radius 2 M, as all rays (docs/rules.md, 1).
+    // The ray starts at the sphere of radius 2 M, like all rays (docs/rules.md, 1).
     const double ahead = dot(point, direction);
     const double rest = 4 * double(scene.extent) * double(scene.extent) - (dot(point, point) - ahead * ahead);
     const double distance = ahead + square_root(greatest(rest, 0.0));
@@ -85,7 +87,7 @@ CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& inte
     }
 }
 
-/// The solids that contain a point.
+/// The solids that contain a point. False if there are more than a medium stack holds.
 template <class Scene, class Intersector>
 CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
                                      MediaList& media) {
@@ -104,13 +106,13 @@ CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& inte
     return fits;
 }
 
-/// Notes down what a sample sees first.
+/// Records the first hit of a sample.
 template <class Real>
 struct FirstSeen {
     const FrameView& frame;
     const PixelWork& work;
     PixelRecord& record;
-    bool middle;  // the sample that stands for the pixel where no mean makes sense
+    bool middle;  // whether this sample gives the pixel's id, depth and normal
 
     CISTULA_INLINE void nothing(bool light) const { record.hits += light ? 1 : 0; }
     CISTULA_INLINE void surface(const Hit<Real>& hit, const Vec3<Real>& normal) const {
@@ -122,7 +124,7 @@ struct FirstSeen {
     }
 };
 
-/// A pixel under way: what all of its samples share. E: the effects that are compiled in.
+/// A pixel that is being rendered: what all its samples share. E: the effects that are compiled in.
 template <class E, class Intersector, class Stack>
 struct PixelTask {
     using Scene = typename Intersector::Scene;
@@ -137,7 +139,7 @@ struct PixelTask {
     Stack& stack;
 };
 
-/// Which of a pixel's samples are rendered: all, or every step-th where several threads share a pixel.
+/// The samples of a pixel to render: all, or every step-th where several threads share a pixel.
 struct SampleRange {
     int first = 0, step = 1;
 };
@@ -145,10 +147,10 @@ struct SampleRange {
 /// A sample of a pixel's k x k grid.
 struct GridSample {
     int column, row;
-    bool middle;  // stands for the pixel where no mean makes sense
+    bool middle;  // gives the pixel's id, depth and normal
 };
 
-/// Adds a sample to the record. `settings`: frame.tree, or a budget of the sample's own.
+/// Renders a sample and adds it to the record. `settings`: frame.tree, or a copy with a budget of the sample's own.
 template <class E, class Intersector, class Stack>
 CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, const TreeSettings& settings,
                                   const GridSample& sample, PixelRecord& record) {
@@ -157,7 +159,7 @@ CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, 
     const FrameView& frame = task.frame;
     const int k = frame.supersample;
     Ray<Real, typename Task::Media> ray;
-    // In half samples from the middle of the picture.
+    // Coordinates in half samples from the middle of the picture.
     const int across = 2 * (task.x * k + sample.column) + 1 - frame.width * k;
     const int down = 2 * (task.y * k + sample.row) + 1 - frame.height * k;
     const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
@@ -177,7 +179,7 @@ CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, 
     tree.trace(ray, FirstSeen<Real>{frame, task.work, record, sample.middle});
 }
 
-/// A pixel's record before its first sample, and after its last.
+/// Initializes a pixel's record before its first sample; end_pixel completes it after the last.
 CISTULA_INLINE void begin_pixel(PixelRecord& record) {
     record = PixelRecord();
     record.z = RealTraits<float>::infinity;
@@ -187,7 +189,7 @@ CISTULA_INLINE void end_pixel(PixelRecord& record, const PixelWork& work) {
     record.samples = work.rays.primary;
 }
 
-/// Adds sample i, row by row of the k x k grid, to the record.
+/// Renders sample i, counted row by row in the k x k grid, and adds it to the record.
 template <class E, class Intersector, class Stack>
 CISTULA_INLINE void add_sample(const PixelTask<E, Intersector, Stack>& task, int i, PixelRecord& record) {
     const int k = task.frame.supersample, row = k == 1 ? 0 : i / k, column = i - row * k;

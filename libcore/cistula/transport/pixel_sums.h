@@ -1,4 +1,4 @@
-// A sample's way into its pixel: radiance and what truncation took away, in integers (docs/rules.md, 7 and 8).
+// Accumulation of samples in a pixel: radiance and what truncation removed, as integers (docs/rules.md, 7 and 8).
 #pragma once
 
 #include "cistula/model/pixel_record.h"
@@ -7,15 +7,16 @@
 
 namespace cistula {
 
-/// What a frame asks of every ray tree.
+/// A frame's settings for every ray tree.
 struct TreeSettings {
-    int depth = 4;          // surfaces shaded along a path, the first included
-    float fixed_scale = 1;  // 2^s of the sums, a power of two that every Real has
+    int depth = 4;          // maximum number of surfaces shaded along a path
+    float fixed_scale = 1;  // 2^s of the sums (docs/rules.md, 8), exact in either Real
     float fixed_unit = 1;   // 2^-s
     int64_t budget = 0;     // truncation allowed per sample, in units of the sums
 };
 
-/// The bits of a number as an integer. Numbers in [0, 1] are in its order, and all others (-0, NaN) are above them.
+/// The bits of a number as an integer. For numbers in [0, 1] integers have the same order; all others (-0 and NaN
+/// included) give greater integers.
 CISTULA_INLINE uint32_t word_of(float a) {
     return bits_as<uint32_t>(a);
 }
@@ -27,8 +28,8 @@ CISTULA_INLINE auto greatest_word(const Vec3<Real>& a) {
     return greatest(word_of(a.x), greatest(word_of(a.y), word_of(a.z)));
 }
 
-/// A radiance in units of the sums that is not in [0, 1] is a fault, and counts as 0, without a jump: no other channel
-/// is touched by it. `scale` is settings.fixed_scale.
+/// Replaces a value that is not in [0, scale] by 0, without a branch, and tells whether it did. Such a value is an
+/// error; other channels are not affected. `scale` is settings.fixed_scale.
 template <class Real>
 CISTULA_INLINE bool clear_fault(Real& units, Real scale) {
     const bool is_fault = word_of(units) > word_of(scale);
@@ -39,7 +40,7 @@ CISTULA_INLINE bool clear_fault(Real& units, Real scale) {
 template <class Real>
 class PixelSums {
   public:
-    /// For one sample. Weights have a share per color, or one for all.
+    /// Sums of one sample. Weights are a share per channel, or one for all.
     template <class Scene>
     CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
         : settings_(settings),
@@ -54,8 +55,8 @@ class PixelSums {
         for (int c = 0; c < 3; ++c) record_.radiance[c] += whole_of(units[c]);
     }
 
-    /// Whether to follow a branch of this weight; if not, the ledger has it. Not followed is what fits in a tenth of
-    /// the budget that is left, and what could add one unit of the sums at most.
+    /// Whether to follow a branch with this throughput; if not, its bound is added to the ledger. A branch is dropped
+    /// if its bound is at most a tenth of the remaining budget, or at most one unit of the sums.
     template <class Share>
     CISTULA_INLINE bool afford(const Share& weight) {
         if (left_ == 0 && clearly_counts(weight)) return true;
@@ -67,7 +68,7 @@ class PixelSums {
         return false;
     }
 
-    /// A branch beyond the depth.
+    /// Adds the bound of a branch beyond the depth limit to the ledger.
     template <class Share>
     CISTULA_INLINE void cut(const Share& weight) {
         int64_t most[3];
@@ -78,8 +79,8 @@ class PixelSums {
     CISTULA_INLINE void flag(uint32_t bits) { flags_ |= bits; }
 
   private:
-    /// Whether the branch could add more than one unit of the sums; what is not finite or beyond the bound is left to
-    /// most_of.
+    /// Whether the branch could add more than one unit of the sums. False for values that are not finite or exceed the
+    /// bound, which most_of handles.
     CISTULA_INLINE bool clearly_counts(const Vec3<Real>& weight) const {
         return counts(greatest_word(weight * bound_));
     }
@@ -90,13 +91,13 @@ class PixelSums {
         return most <= word_of(Real(1)) && most > word_of(Real(settings_.fixed_unit));
     }
 
-    /// The most a branch can add; B's slack of 2^-10 covers the rounding of all weights below it.
+    /// The bound on what a branch can add. The slack of 2^-10 in B covers the rounding of all weights below it.
     template <class Share>
     CISTULA_INLINE Vec3<Real> bounded(const Share& weight) const {
         return {channel(weight, 0) * bound_[0], channel(weight, 1) * bound_[1], channel(weight, 2) * bound_[2]};
     }
 
-    /// The bounds by channel in units of the sums, rounded up, as `most`; gives the greatest.
+    /// Writes the bounds per channel in units of the sums, rounded up, to `most`, and returns the greatest.
     CISTULA_INLINE static int64_t most_of(const Vec3<Real>& bounded, Real scale, uint32_t& flags, int64_t (&most)[3]) {
         const Vec3<Real> units = in_units(bounded, scale, flags);
         int64_t worst = 0;
@@ -107,10 +108,10 @@ class PixelSums {
         return worst;
     }
 
-    /// Exact.
+    /// The radiance in units of the sums, exactly; channels outside [0, 1] become 0 and set flag_not_finite.
     CISTULA_INLINE static Vec3<Real> in_units(const Vec3<Real>& a, Real scale, uint32_t& flags) {
         const Real zero = Real(0);
-        Vec3<Real> units(fused(a.x, scale, zero), fused(a.y, scale, zero), fused(a.z, scale, zero));  // makes 0 of -0
+        Vec3<Real> units(fused(a.x, scale, zero), fused(a.y, scale, zero), fused(a.z, scale, zero));  // turns -0 into 0
         bool has_fault = false;
         for (int c = 0; c < 3; ++c) has_fault |= clear_fault(units[c], scale);
         if (has_fault) flags |= flag_not_finite;

@@ -1,5 +1,5 @@
-// One ray's tree (Whitted 1980), without recursion: the lighter child is followed and the heavier one waits. Whatever
-// is not followed goes into the ledger.
+// Whitted's ray tree (1980) without recursion: the lighter child is followed and the heavier one waits on a stack. What
+// is not followed is added to the ledger.
 #pragma once
 
 #include "cistula/shading/lighting.h"
@@ -10,7 +10,7 @@
 namespace cistula {
 
 inline constexpr int largest_depth = 1024;
-/// Surfaces between two questions to a stack whether the tree is to end.
+/// The number of surfaces between two checks whether the render was stopped.
 inline constexpr uint32_t turns_between_stops = 64;
 
 template <class Real, class E, class Intersector, class Stack>
@@ -22,7 +22,7 @@ class RayTree {
     using Weight = Share<Real, E>;
     using Entry = BranchOf<Real, E, Media>;
 
-    /// `depth`: surfaces that a path may have.
+    /// `depth`: maximum number of surfaces on a path.
     CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth, Sums& sums, PixelRays& rays,
                            Stack& stack)
         : scene_(scene),
@@ -33,8 +33,9 @@ class RayTree {
           rays_(rays),
           stack_(stack) {}
 
-    /// Adds all that the primary ray sees to the sums, and tells what it meets first: first.surface(hit, normal), or
-    /// first.nothing(light) where that is no surface but perhaps a seen light.
+    /// Traces the tree of a primary ray and adds what it sees to the sums. Reports the first hit by first.surface(hit,
+    /// normal), or by first.nothing(light) if the ray meets no surface; `light` tells whether it ends on a visible
+    /// light.
     template <class First>
     CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
         Entry branch;
@@ -42,10 +43,11 @@ class RayTree {
         bool at_first = true;
         uint32_t turns = 0;
         do {
-            // The lanes of a warp ask in the same turn: a question that a few ask alone would part them for long.
+            // All lanes of a warp check in the same turn: checks at different times would make the warp diverge.
             if (++turns % turns_between_stops == 0 && stack_.stopped()) return stack_.clear();
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
-            // Within the loop, as all that only some rays have: it holds no registers elsewhere.
+            // Declared inside the loop, like everything that only some rays need, so that it holds no registers
+            // elsewhere.
             Meeting<Real, Media> meeting;
             bool light = false;
             if (line_.find(branch, meeting, light)) {
@@ -60,7 +62,7 @@ class RayTree {
     }
 
   private:
-    /// Takes the latest of the branches that wait and are worth it; false if there is none.
+    /// Pops branches until one is worth tracing; false if there is none.
     CISTULA_INLINE bool next(Entry& branch) {
         if constexpr (E::has(effect_reflection | effect_transmission)) {
             do {
@@ -74,8 +76,8 @@ class RayTree {
         }
     }
 
-    /// Adds a face's local light. What the face sends on waits before the lights are looked at, so that nothing of the
-    /// branch has to be kept for later.
+    /// Adds a face's local light. The children are pushed before the lights are evaluated, so that nothing of the
+    /// branch has to be kept.
     CISTULA_INLINE void shade(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
         if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
         if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, meeting, s);
@@ -85,14 +87,14 @@ class RayTree {
                                      rays_);
     }
 
-    /// Pushes the heavier of the branch's children and then the lighter, which is next.
+    /// Pushes the heavier of the branch's children and then the lighter, which is followed next.
     CISTULA_INLINE void send_on(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
         const bool sheet = key_kind(meeting.hit.key) == CrossingKind::sheet;
         const Shares<Real, Weight> shares =
             split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal, branch.ray.media,
                               meeting.beyond, sheet);
         const Weight mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
-        // Sums over colors, so that a child that is not the heavier is at most half its parent.
+        // Sums over channels, so that the lighter child has at most half the weight of its parent.
         const Real mirrored_size = total(mirrored),
                    through_size = E::has(effect_transmission) ? total(through) : Real(0);
         if (int(branch.depth) + 1 >= depth_) {
@@ -102,7 +104,7 @@ class RayTree {
             return;
         }
         if constexpr (!E::has(effect_transmission)) {
-            // The one child has the room that its parent left.
+            // The only child takes the place of its parent, so there is room.
             if (mirrored_size > Real(0)) stack_.push(child_of(branch, meeting, s, shares, false, mirrored));
         } else {
             bool goes_through = through_size >= mirrored_size;
@@ -115,7 +117,7 @@ class RayTree {
         }
     }
 
-    /// The branch that goes through, or the mirrored one.
+    /// The transmitted or the reflected child of a branch.
     CISTULA_INLINE Entry child_of(const Entry& parent, const Meeting<Real, Media>& meeting, const Surface<Real>& s,
                                   const Shares<Real, Weight>& shares, bool goes_through, const Weight& weight) {
         Entry child;
@@ -130,7 +132,7 @@ class RayTree {
         } else {
             child.ray = parent.ray;
             if constexpr (lines_go_on<E>) child.no_light_ahead = parent.no_light_ahead;
-            Absorption<false> later;  // counted from there on
+            Absorption<false> later;  // the child starts its own absorption
             line_.pass(child.ray, meeting, later);
         }
         return child;

@@ -1,17 +1,18 @@
-// The plain loop over all primitives: the oracle, and the fastest way where there are few.
+// Brute-force intersection, a loop over all primitives: the reference for all other intersectors, and the fastest one
+// for few primitives.
 #pragma once
 
 #include "cistula/shading/shadow.h"
 
 namespace cistula {
 
-/// No question where one kind alone is compiled in.
+/// Whether a primitive is a convex solid; a constant where only one kind of primitive is compiled in.
 template <class E, class Scene>
 CISTULA_INLINE bool is_solid(const Scene& scene, uint32_t primitive) {
     return E::solids && (!E::triangles || primitive < scene.convex.size);
 }
 
-/// The exact test of one primitive against one ray; trees and Embree only choose which ones to call it on.
+/// The exact test of one primitive against a ray; trees and Embree only choose the primitives to test.
 template <class E = Effects<all_effects>, class Real, class Media, class Scene>
 CISTULA_INLINE void closest_primitive(const Scene& scene, uint32_t primitive, const Ray<Real, Media>& ray,
                                       const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
@@ -35,16 +36,15 @@ struct BruteIntersector {
     using Media = MediaKind;
     using Scene = SceneKind;
     const Scene& scene;
-    /// The primitives of a ConstantScene, numbered as in ShadowPlan, that rays from the camera can meet in a part of
+    /// Mask of the primitives (numbered as in ShadowPlan) of a ConstantScene that primary rays may meet in a part of
     /// the picture, as long as they go straight on.
     uint32_t in_view = ~0u;
 
-    /// The least (t, key) after ray.after that the primitive tests accept.
+    /// The hit with the smallest (t, key) after ray.after.
     template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
-        // Nothing is nearer than that to a ray that is not finite: no question of its own, which would part a warp's
-        // lanes.
+        // With t = -1 a ray that is not finite finds nothing; a separate branch would make the warp diverge.
         best.t = is_finite(ray) ? RealTraits<Real>::infinity : Real(-1);
         find_closest<E>(ray, best);
         if (!best.found()) best.t = RealTraits<Real>::infinity;
@@ -85,7 +85,8 @@ struct BruteIntersector {
         }
     }
 
-    /// The shear anew for each of the few: a variable that only some paths set would hold registers on all of them.
+    /// Computes the shear for each cluster, of which there are few: a variable that only some paths set would hold
+    /// registers on all.
     CISTULA_INLINE void closest_in_cluster(uint32_t i, const Ray<Real, Media>& ray, Hit<Real>& best) const {
         if (!misses_flat(scene, i, ray, best.t))
             closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
@@ -95,7 +96,7 @@ struct BruteIntersector {
         return ray.from_solid == no_solid ? in_view : ~0u;
     }
 
-    /// True if the ray's own way out comes first, since that solid stands alone.
+    /// Tests the convex solids. True if the search is over: the ray leaves a solid that nothing else touches.
     template <class E>
     CISTULA_INLINE bool closest_solid(const Ray<Real, Media>& ray, Hit<Real>& best) const {
         if constexpr (Media::contacts) {
@@ -109,7 +110,7 @@ struct BruteIntersector {
             }
             for (uint32_t left = ahead_of(ray) & scene.plan.all_convex; left != 0; left &= left - 1) {
                 const auto& next = scene.convex[lowest_bit(left)];
-                // All conditions in one, so that their values are waited for but once.
+                // One condition instead of several branches, so that all values are loaded at once.
                 if ((next.index != around) & (next.index != ray.from_solid) &
                     !passes_by(next.ball, ray.origin, ray.direction, best.t))
                     closest_entry(scene, next.index, next.solid, ray, best);
@@ -127,7 +128,7 @@ struct BruteIntersector {
         }
     }
 
-    /// Those among `near`, and the one around the ray.
+    /// Adds the solids in the mask `near`, and the one around the ray.
     template <class E>
     CISTULA_INLINE void add_planned_solids(uint32_t near, uint32_t light, const ShadowRay<Real, Media>& shadow,
                                            ShadowSum<E>& sum) const {
@@ -135,7 +136,7 @@ struct BruteIntersector {
                        from = shadow.ray.from_solid;
         if constexpr (E::has(effect_insides))
             if (around != no_solid) {
-                // From its own face, as lines from other faces may start a little off theirs.
+                // Only for rays that start on the solid's own face: others may start slightly off theirs.
                 if (!E::has(effect_absorption) && from == around && (scene.plan.beyond[light] >> around & 1u) != 0)
                     sum.cross(scene.materials[scene.solids[around].material]);
                 else

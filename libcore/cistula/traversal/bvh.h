@@ -1,20 +1,20 @@
-// Walks a binary tree of padded boxes with a float ray that only finds candidates: the primitive tests decide, so that
-// no tree changes a bit (docs/rules.md, 1). What the GPU runs; the host runs it in tests.
+// BVH traversal with a float ray that only finds candidates; the primitive tests decide, so that no tree changes a bit
+// (docs/rules.md, 1). Used on the GPU; the host runs it in tests.
 #pragma once
 
 #include "cistula/traversal/brute.h"
 
 namespace cistula {
 
-/// The candidate ray: rounded to float, which the padding of the boxes covers. Times are fused products, not quotients
-/// of differences: what that adds is a few u of the places' own size.
+/// The ray of box tests: rounded to float, which the padding of the boxes covers. Times are fused products instead of
+/// quotients of differences, which adds an error of a few u of the coordinates' size.
 struct BoxRay {
     float inverse[3], shift[3];  // see meets()
     float near_limit, far_limit;
 
     template <class Real>
     CISTULA_INLINE static BoxRay of(const Vec3<Real>& origin, const Vec3<Real>& direction) {
-        constexpr float least_step = 0x1p-60f;  // of a line beside two planes: all is finite, and drifts by nothing
+        constexpr float least_step = 0x1p-60f;  // keeps times finite if the ray is parallel to a plane
         BoxRay r;
         for (int k = 0; k < 3; ++k) {
             const float step = float(direction[k]);
@@ -24,10 +24,10 @@ struct BoxRay {
         return r;
     }
 
-    /// When x[k] = plane.
+    /// The time at which x[k] = plane.
     CISTULA_INLINE float meets(int k, float plane) const { return fused(plane, inverse[k], shift[k]); }
 
-    /// Where the ray enters the box, or infinity.
+    /// The time at which the ray enters the box, or infinity.
     CISTULA_INLINE float enter(const float low[3], const float high[3]) const {
         float near_t = near_limit, far_t = far_limit;
         for (int k = 0; k < 3; ++k) {
@@ -39,7 +39,7 @@ struct BoxRay {
     }
 };
 
-/// Outward slack of the ends of a candidate ray: relative for the rounding of t, absolute for that of the boxes' sides.
+/// Outward slack of the limits of a box ray: relative for the rounding of t, absolute for that of the boxes' sides.
 inline constexpr float tree_slack_relative = 0x1p-21f, tree_slack_absolute = 0x1p-16f;
 
 template <class Real>
@@ -61,11 +61,11 @@ CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>&
     int depth = 0;
     int32_t node = 0;
     for (;;) {
-        const TreeNode n = nodes[uint32_t(node)];  // whole: wide loads
+        const TreeNode n = nodes[uint32_t(node)];  // copied whole, for wide loads
         const float t0 = box_ray.enter(n.low[0], n.high[0]), t1 = box_ray.enter(n.low[1], n.high[1]);
         const bool swap = t1 < t0;
         int32_t next = -1, later = -1;
-        // The nearer first, by selects: an index would put the node into memory.
+        // Orders the children by selects: an index would force the node into memory.
         for (int i = 0; i < 2; ++i) {
             const bool second = (i == 1) != swap;
             const float t = second ? t1 : t0;
