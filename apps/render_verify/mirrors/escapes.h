@@ -1,4 +1,4 @@
-// A ray that bounces inside a closed solid stays inside: convex ones by state, meshes by where new lines start.
+// A ray reflected inside a closed solid stays inside: convex solids by state, meshes by the origins of new lines.
 #pragma once
 
 #include "apps/render_verify/mirrors/bounces_inside.h"
@@ -23,7 +23,7 @@ struct EscapesMeshes : BouncesInside {
     static void plan(Plan& plan) { plan_meshes<EscapesMeshes>(plan, Start::as_rendered, 4060, 200); }
 };
 
-/// Lines that start inside a mesh on no face, as the camera's do and those that go straight on.
+/// Lines of the camera and lines that continue straight on.
 struct FirstLines : BouncesInside {
     static constexpr const char* name = "mirrors/escapes/camera-in-mesh";
     static constexpr const char* exact = "a line that starts inside a mesh, on no face, first meets a face from within";

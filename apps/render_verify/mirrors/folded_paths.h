@@ -51,7 +51,7 @@ struct CubeFoldTriangles : FoldedPath {
     static void plan(Plan& plan) { plan_cubes<CubeFoldTriangles>(plan, Walls::cube_of_triangles, 1000); }
 };
 
-/// Mirrors 2^-8 apart and 1 wide.
+/// Distance of the mirrors, which are 1 wide.
 inline constexpr double gap = 0x1p-8;
 
 struct ParallelPlanes : FoldedPath {
@@ -70,7 +70,7 @@ struct ParallelPlanes : FoldedPath {
     }
 };
 
-/// A square across the y axis, of two triangles.
+/// A square perpendicular to the y axis, of two triangles.
 inline TrianglesObject square_across_y(double y, double half) {
     TrianglesObject square;
     square.vertices = {{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}};

@@ -1,11 +1,11 @@
-// The furnace: what loses no light is invisible in a world of one radiance.
+// Furnace test: lossless objects are invisible in a world of constant radiance.
 #pragma once
 
 #include "apps/render_verify/mirrors/mirror_images.h"
 
 namespace cistula::verify::mirrors {
 
-/// The bodies one by one, then five solids that overlap; seen from outside and from inside.
+/// Tests the bodies one by one, then five overlapping solids, seen from outside and from inside.
 template <class Check>
 void for_each_furnace(const Stage& stage, const SceneDescription& lossless, int depth_of_convex, int depth_of_others,
                       const Check& check) {
@@ -28,7 +28,7 @@ void for_each_furnace(const Stage& stage, const SceneDescription& lossless, int 
     }
 }
 
-/// Shares of 1/2 make every weight a power of two.
+/// Furnace with shares of 1/2, which make every weight a power of two.
 struct FurnaceHalves {
     static constexpr const char* name = "mirrors/furnace/halves";
     static constexpr const char* exact =
@@ -49,7 +49,7 @@ struct FurnaceHalves {
     }
 };
 
-/// Glass of index 1.5: total reflection, with given shares and with Fresnel's.
+/// Furnace with glass of index 1.5: total reflection, given shares, and Fresnel's.
 struct FurnaceGlass {
     static constexpr const char* name = "mirrors/furnace/glass";
     static constexpr const char* exact =

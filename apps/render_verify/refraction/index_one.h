@@ -1,4 +1,4 @@
-// A solid of the index around it that mirrors and tints nothing is not there: not in one bit of the image.
+// A clear solid of the surrounding index changes no bit of the image.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace cistula::verify::refraction {
 
-/// A floor of cells, an opaque solid, a mirror, tinted glass that splits by Fresnel's terms and absorbs, lights of all
-/// kinds. The frame and the bound are pinned, so that more solids change neither.
+/// A room with a checkered floor, an opaque solid, a mirror, tinted absorbing Fresnel glass, and lights of all kinds.
+/// The frame and the bound are given, so that additional solids change neither.
 inline SceneDescription room() {
     SceneDescription scene = empty_scene();
     scene.frame = FrameOfReference{{0, 0, 0}, -2, 64.0};
@@ -57,7 +57,8 @@ inline SceneDescription room() {
     return scene;
 }
 
-/// Expects equal pixels but for the solids' numbers, of which the image without has `fewer`, and the count of rays.
+/// Expects equal pixels, except for the solids' numbers, which are lower by `fewer` in the image without, and ray
+/// counts.
 inline void expect_same(const Film& with, const Film& without, int fewer, Tally& tally) {
     for (size_t i = 0; i < without.pixels.size(); ++i) {
         const PixelRecord &a = with.pixels[i], &b = without.pixels[i];
