@@ -23,7 +23,7 @@ struct EscapesMeshes : BouncesInside {
     static void plan(Plan& plan) { plan_meshes<EscapesMeshes>(plan, Start::as_rendered, 4060, 200); }
 };
 
-/// Lines of the camera and lines that continue straight on.
+/// Lines that start inside a mesh on no face, as the camera's do and those that go straight on.
 struct FirstLines : BouncesInside {
     static constexpr const char* name = "mirrors/escapes/camera-in-mesh";
     static constexpr const char* exact = "a line that starts inside a mesh, on no face, first meets a face from within";

@@ -54,9 +54,9 @@ struct FurnaceGlass {
     static constexpr const char* name = "mirrors/furnace/glass";
     static constexpr const char* exact =
         "lossless glass in a white world: image + ledger / (1 + 2^-10) = 1, less truncation";
-    // Of each surface: kr and kt are rounded, 1 u for both, 1 - F is, and the products with the branch's weight: at
-    // most 3 u of what arrives. 10 surfaces, and the ledger's product with B: 31 u, or 15.5 ulps. A contribution and a
-    // branch that is not followed are off by less than a unit of the sums each, three at most for a ray.
+    // Rounding at each surface: kr and kt, 1 u for both; 1 - F; and the products with the branch's weight: at most 3 u
+    // of what arrives. 10 surfaces, and the ledger's product with B: 31 u, or 15.5 ulps. A contribution and a branch
+    // that is not followed are off by less than a unit of the sums each, three at most for a ray.
     static constexpr int depth = 10;
     static constexpr Bound bound = at_most(15.5, "ulps of 1");
     static constexpr bool needs_witness = true;

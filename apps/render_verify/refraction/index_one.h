@@ -94,8 +94,8 @@ struct IndexOne {
                          seen.radiance_exponent == expected.radiance_exponent);
             expect_same(seen, expected, first ? added : 0, tally);
         };
-        // Of lower priority than all else: through everything, around the camera and around lights. At most 8 in one
-        // place.
+        // A solid of lower priority than all others: through everything, around the camera and around lights. At most 8
+        // in one place.
         const Change everywhere = [](SceneDescription& scene, int clear) {
             for (size_t k = 0; k < 5; ++k) {
                 const PlatonicSolid kind = platonic_solids[k];

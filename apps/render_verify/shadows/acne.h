@@ -88,7 +88,7 @@ void plan_acne(Plan& plan, Body body, const std::vector<double>& offsets, bool f
             }
 }
 
-/// Offsets in scene units, which the frame of reference removes.
+/// Offsets of solids in scene units, which scene coordinates take away.
 inline const std::vector<double> acne_offsets = {0, 1, 1e3, 1e6};
 
 struct AcnePlanes : LitInFull {

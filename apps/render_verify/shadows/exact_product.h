@@ -122,7 +122,7 @@ struct ThroughSolids {
         const uint32_t light = draw.below(setup.scene.lights.size);
         const Vec3<double> from(setup.scene.lights[light].position);
         const Vec3<double> target(setup.point(draw.below(setup.points.size)));
-        // As far beyond the target as the scene goes.
+        // Length of the line beyond the target: past the whole scene.
         const double reach = 1.7 * double(setup.extent());
         const Vec3<double> way = normalized(target - from);
         const double ahead = dot(target, way);
