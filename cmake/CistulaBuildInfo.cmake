@@ -1,17 +1,18 @@
-# cistula_build_info: the flags and the commit of a build and the machine that it runs on, which render --stats and the benchmarks record.
+# cistula_build_info: compiler flags, commit and machine of a build, recorded by render --stats and the benchmarks.
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
 set(_flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_host}")
 string(REPLACE ";" " " _flags "${_flags}")
 string(STRIP "${_flags}" _flags)
 
-# A source tree without its own .git may lie in some other repository, whose commit says nothing.
+# A source tree without its own .git may lie inside another repository, whose commit would be wrong.
 set(_commit "")
 find_program(CISTULA_GIT git)
 mark_as_advanced(CISTULA_GIT)
 if(CISTULA_GIT AND EXISTS "${PROJECT_SOURCE_DIR}/.git")
     execute_process(COMMAND "${CISTULA_GIT}" -C "${PROJECT_SOURCE_DIR}" describe --always --dirty --abbrev=12
         OUTPUT_VARIABLE _commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-    # The log of HEAD grows with every commit and checkout: the next build then configures first, and records name what they ran.
+    # The log of HEAD changes with every commit and checkout; the next build then reconfigures, so that records name the
+    # commit that ran.
     execute_process(COMMAND "${CISTULA_GIT}" -C "${PROJECT_SOURCE_DIR}" rev-parse --git-path logs/HEAD
         OUTPUT_VARIABLE _head_log OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     get_filename_component(_head_log "${_head_log}" ABSOLUTE BASE_DIR "${PROJECT_SOURCE_DIR}")
@@ -30,7 +31,8 @@ target_compile_definitions(cistula_build_info PRIVATE
     CISTULA_BUILD_FLAGS="${_flags}" CISTULA_BUILD_COMMIT="${_commit}")
 target_link_libraries(cistula_build_info PRIVATE cistula_contract cistula_warnings)
 
-# cistula_record_cuda(TARGET FLAG...): gives a program the name of nvcc and the flags of kernels, for the records that it writes.
+# cistula_record_cuda(TARGET FLAG...): defines the name of nvcc and the flags of kernels in a program, for its
+# records.
 function(cistula_record_cuda target)
     string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
     list(JOIN ARGN " " flags)

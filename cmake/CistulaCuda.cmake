@@ -1,5 +1,5 @@
-# Finds nvcc: $CUDACXX or -DCMAKE_CUDA_COMPILER, the PATH, the toolkit that `make cuda-toolkit` puts into .cuda/.
-# Sets CISTULA_CUDA, and says in one line why there is no CUDA backend where there is none.
+# Finds nvcc: $CUDACXX or -DCMAKE_CUDA_COMPILER, the PATH, the toolkit installed by `make cuda-toolkit` in .cuda/. Sets
+# CISTULA_CUDA, or prints in one line why there is no CUDA backend.
 option(CISTULA_WITH_CUDA "Build the CUDA backend where nvcc is found" ON)
 set(CISTULA_CUDA OFF)
 set(_why "")
@@ -20,12 +20,13 @@ else()
     if(NOT _nvcc)
         set(_why "no nvcc on the PATH (`make cuda-toolkit` fetches one)")
     else()
-        # One architecture keeps compiling quick; its PTX runs on every later GPU.
+        # A single architecture keeps compilation fast; its PTX runs on every later GPU.
         if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})
             set(CMAKE_CUDA_ARCHITECTURES 75)
         endif()
         if(NOT CMAKE_CUDA_COMPILER)
-            # Tries it in a project apart: a broken one costs the backend, not the configuration.
+            # Tested in a separate project, so that a broken nvcc disables the backend instead of failing the
+            # configuration.
             set(ENV{CUDACXX} "${_nvcc}")
             set(_log_level "${CMAKE_MESSAGE_LOG_LEVEL}")
             set(CMAKE_MESSAGE_LOG_LEVEL WARNING)

@@ -1,4 +1,4 @@
-# Every library that Cistula uses, found where the system has it. What is missing is named at once, with its Debian package.
+# Finds all libraries that Cistula uses. A missing one is reported with its Debian package.
 list(PREPEND CMAKE_MODULE_PATH "${CMAKE_CURRENT_LIST_DIR}")
 set(_missing "")
 set(_packages "")
@@ -12,7 +12,7 @@ macro(cistula_find _name _package)
     endif()
 endmacro()
 
-# Debian's Imath (which OpenEXR brings) announces at every configuration that its Python half is not installed.
+# Debian's Imath (a dependency of OpenEXR) prints at every configuration that its Python part is not installed.
 set(_log_level "${CMAKE_MESSAGE_LOG_LEVEL}")
 set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 

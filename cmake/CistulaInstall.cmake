@@ -1,5 +1,5 @@
-# make install: programs, libraries, headers, and a CMake package: find_package(cistula), cistula::cistula | scene | embree |
-# cuda.
+# make install: programs, libraries, headers, and a CMake package for find_package(cistula) with the targets
+# cistula::cistula | scene | embree | cuda.
 include(CMakePackageConfigHelpers)
 
 install(DIRECTORY libcore/cistula libcore/scene DESTINATION "${CISTULA_INSTALL_HEADERS}" FILES_MATCHING PATTERN "*.h")
@@ -31,7 +31,7 @@ if(TARGET cistula_oiio)
 endif()
 configure_package_config_file(cmake/cistulaConfig.cmake.in "${PROJECT_BINARY_DIR}/cistulaConfig.cmake"
     INSTALL_DESTINATION "${CISTULA_INSTALL_CMAKE}" PATH_VARS CISTULA_INSTALL_MODULES NO_SET_AND_CHECK_MACRO)
-# Before 1.0 every minor version may break.
+# Before version 1.0, minor versions may be incompatible.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/cistulaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/cistulaConfig.cmake" "${PROJECT_BINARY_DIR}/cistulaConfigVersion.cmake"
     DESTINATION "${CISTULA_INSTALL_CMAKE}")

@@ -1,4 +1,4 @@
-# -DCISTULA_SANITIZE=address,undefined: for every host source of this build. A finding ends the program.
+# -DCISTULA_SANITIZE=address,undefined: sanitizers for every host source of this build. An error ends the program.
 set(CISTULA_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them")
 if(CISTULA_SANITIZE)
     add_compile_options(

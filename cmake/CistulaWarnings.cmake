@@ -1,4 +1,4 @@
-# Warnings for our own sources; never exported.
+# Warnings for Cistula's own sources; never exported.
 option(CISTULA_WARNINGS_AS_ERRORS "Stop at the first warning" OFF)
 
 add_library(cistula_warnings INTERFACE)

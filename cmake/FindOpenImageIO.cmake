@@ -1,5 +1,5 @@
-# OpenImageIO by its header and its libraries. Its own CMake package, as Debian ships it, cannot be used without iconvert, iv and
-# the other tools of openimageio-tools, which bring Qt.
+# Finds OpenImageIO by its header and its libraries. Debian's CMake package for it requires iconvert, iv and the other
+# tools of openimageio-tools, which depend on Qt.
 # Defines OpenImageIO::OpenImageIO, OpenImageIO_VERSION.
 find_path(OpenImageIO_INCLUDE_DIR OpenImageIO/imageio.h)
 find_library(OpenImageIO_LIBRARY OpenImageIO)

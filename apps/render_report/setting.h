@@ -32,7 +32,6 @@ Setting with_target(Setting setting, double target_error);
 
 /// The setting's name: "depth:4/cutoff:0/float/samples:1x1", or "target:0.01/float"; intersectors other than the exact
 /// ones are appended.
-/// added.
 std::string setting_name(const Setting& setting);
 
 /// The command that renders with this setting: "render scenes/platonic.json --res 1280x720 --depth 4 ...".

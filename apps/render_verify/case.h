@@ -35,24 +35,24 @@ struct Bound {
     const char* unit;
 };
 
-/// A count of zero, or bit equality.
+/// A bound on the number of failures: none; also for bit equality.
 constexpr Bound no_failures(const char* unit) {
     return {Measure::failures, false, {0, 0}, unit};
 }
-/// The largest deviation measured; expectations must hold as well.
+/// A bound on the largest deviation; expectations must hold as well.
 constexpr Bound at_most(double limit, const char* unit) {
     return {Measure::worst, false, {limit, limit}, unit};
 }
 constexpr Bound at_most(double limit_in_float, double limit_in_double, const char* unit) {
     return {Measure::worst, false, {limit_in_float, limit_in_double}, unit};
 }
-/// For what is built wrong on purpose.
+/// A bound for negative controls: at least that many tries must fail.
 constexpr Bound must_fail(double at_least, const char* unit) {
     return {Measure::failures, true, {at_least, at_least}, unit};
 }
 
-/// Where the renderer is known not to hold a case yet. It stays in the list and fails; docs/numerics.md says how often
-/// and why.
+/// The precisions in which the renderer is known to fail a case. The case stays in the list and fails; docs/numerics.md
+/// says how often and why.
 enum class FailsIn { nothing, single, both };
 
 struct CaseInfo {

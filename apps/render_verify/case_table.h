@@ -15,7 +15,7 @@
 
 namespace cistula::verify {
 
-/// What finds hits on the host. `plain`: every primitive's test and nothing else, the oracle of compared cases.
+/// Ways to find hits on the host. `plain`: tests every primitive and nothing else; the reference of compared cases.
 enum class HostPath { embree, bvh, brute, plain };
 
 /// A case of rays in one precision.
@@ -48,7 +48,7 @@ struct CaseEntry {
     }
 };
 
-/// In the order of the groups' names and of their lists.
+/// All cases, in the order of the groups' names and of their lists.
 const std::vector<CaseEntry>& all_cases();
 
 }  // namespace cistula::verify

@@ -1,11 +1,11 @@
-// Rays and what they cross: shared by the cases, on host and device.
+// Rays and their crossings, shared by cases on host and device.
 #pragma once
 
 #include "apps/render_verify/setup.h"
 
 namespace cistula::verify {
 
-/// Uniform in the ball of radius 1, by rejection; ends for every draw.
+/// A uniform point in the unit ball, by rejection; terminates for every sequence of draws.
 CISTULA_HD inline Vec3<double> in_ball(Draw& draw) {
     for (int i = 0; i < 64; ++i) {
         const Vec3<double> p = draw.in_cube<double>(1.0);
@@ -30,8 +30,8 @@ CISTULA_HD inline Ray<Real> ray_from(const Vec3<Real>& origin, const Vec3<Real>&
     return ray;
 }
 
-/// From `origin` at `target`. Convex solids want unit directions; among triangles alone half of the directions are not
-/// rounded to that length, so that more of the sheared corners are exactly 0.
+/// A ray from `origin` at `target`. Convex solids need unit directions; among triangles alone, half of the directions
+/// are not normalized, so that more of the sheared corners are exactly 0.
 template <class Real>
 CISTULA_HD inline Ray<Real> aimed(const Setup<Real>& setup, Draw& draw, const Vec3<Real>& origin,
                                   const Vec3<Real>& target) {
@@ -46,7 +46,7 @@ CISTULA_HD inline Ray<Real> inside(Ray<Real> ray, uint32_t solid) {
     return ray;
 }
 
-/// A new line from a face, as the ray tree starts it.
+/// Starts a new line on a face as the ray tree does.
 template <class Real>
 CISTULA_HD inline Ray<Real> leaving(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
                                     const MediaList& media) {
@@ -59,7 +59,7 @@ CISTULA_HD inline Ray<Real> leaving(const Vec3<Real>& origin, const Vec3<Real>& 
 
 struct Crossings {
     uint32_t enters = 0, leaves = 0, sheets = 0;
-    bool in_order = true;  // (t, key) went up all the way, to an end
+    bool in_order = true;  // (t, key) increased throughout, and the crossings ended
 
     CISTULA_HD bool balanced() const { return in_order && enters == leaves; }
     CISTULA_HD bool are(uint32_t entered, uint32_t left) const {
@@ -69,8 +69,8 @@ struct Crossings {
 
 inline constexpr uint32_t most_crossings = 1u << 18;
 
-/// Straight on until nothing is met; a line that starts on no face meets all. `only`: crossings of other solids do not
-/// count; no_solid: all do.
+/// Follows a line through all crossings until nothing is hit; a line that starts on no face hits all. `only`: the solid
+/// whose crossings count; no_solid: all.
 template <class Real, class Intersector>
 CISTULA_HD inline Crossings cross_all(const Intersector& intersector, Ray<Real> ray, uint32_t only = no_solid) {
     Crossings found;
@@ -89,7 +89,7 @@ CISTULA_HD inline Crossings cross_all(const Intersector& intersector, Ray<Real> 
     return found;
 }
 
-/// How far a line is inside a convex body, its planes moved inward by `margin`; below 0: it passes the body by.
+/// Length of a line inside a convex body whose planes are moved inward by `margin`; negative if it misses the body.
 /// `planes`: outward unit normal and distance, four numbers each. Closed form, in double.
 CISTULA_HD inline double chord(const Span<double>& planes, double margin, const Vec3<double>& origin,
                                const Vec3<double>& direction) {

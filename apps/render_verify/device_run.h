@@ -1,4 +1,4 @@
-// Cases on a device: the launchers of one case, and what moves its parts there and its findings back.
+// Cases on a device: the launchers of a case, and transfer of its parts and results.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace cistula::verify {
 
-/// Threads that a case's rays are dealt out to, each with a tally of its own.
+/// Number of threads for the rays of a case, each with its own tally.
 inline constexpr unsigned device_threads = 1u << 16, device_block = 128;
 
-/// `setup` and `out` are the device's; `functor` is read here.
+/// Launches a case's kernel. `setup` and `out` are in device memory; `functor` in host memory.
 template <class Real>
 struct DeviceMethods {
     void (*tally)(const std::byte* functor, const Setup<Real>& setup, uint64_t place, uint64_t count,
@@ -21,7 +21,7 @@ struct DeviceMethods {
                   uint64_t* out) = nullptr;
 };
 
-/// `here`: the part in this program's memory; its tree may be any. Throw Error (device).
+/// Runs a case on the device. `here`: the part in host memory, with any tree. Throws Error (device).
 template <class Real>
 Tally tally_on_device(const DeviceMethods<Real>& methods, const std::byte* functor, const Setup<Real>& here,
                       uint64_t place, uint64_t count);

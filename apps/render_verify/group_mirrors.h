@@ -1,4 +1,4 @@
-// Light between mirrors: paths in closed form, sums in closed form, and that nothing gets out.
+// Cases on mirrors: paths and sums compared with closed forms, and no escapes from closed solids.
 #pragma once
 
 #include "apps/render_verify/mirrors/escapes.h"

@@ -1,4 +1,4 @@
-// Light through matter: Snell, Fresnel, total reflection, and media one in another.
+// Cases on refraction: Snell, Fresnel, total reflection, and nested media.
 #pragma once
 
 #include "apps/render_verify/refraction/brewster.h"

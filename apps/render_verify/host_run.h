@@ -1,4 +1,4 @@
-// Cases on the host: a functor over TBB, on each of the host's intersectors. Included by the generated group_*.cpp
+// Cases on the host: a functor run over TBB on each of the host's intersectors. Included by the generated group_*.cpp
 // only.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace cistula::verify {
 
-/// Every primitive's exact test, without what spares other intersectors some of them.
+/// The reference intersector: every primitive's exact test, without any culling.
 template <class Real>
 struct PlainIntersector {
     using Media = MediaList;
@@ -31,7 +31,7 @@ struct PlainIntersector {
     }
 };
 
-/// Calls body(intersector).
+/// Calls body(intersector) with the intersector of this path.
 template <class Real, class Body>
 void with_intersector(HostPath path, const SceneView<Real>& scene, RTCScene tree, const Body& body) {
     switch (path) {
@@ -104,7 +104,7 @@ void fill_entry(CaseEntry& entry) {
         entry.methods<Real>().tally = &tally_on_host<Case, Real>;
 }
 
-/// The cases of a list; the second precision completes the entries that the first one made, from `first` on.
+/// Adds the cases of a list; the second precision completes the entries that the first one made, from `first` on.
 template <class Real, class... Cases>
 void fill_entries(CaseList<Cases...>, const std::vector<DeviceMethods<Real>>& device, size_t first,
                   std::vector<CaseEntry>& entries) {

@@ -15,13 +15,13 @@ struct VerifyOptions {
     RunSettings settings;
     std::vector<const CaseEntry*> cases;
     std::string json, html;  // files; empty: none
-    bool cuda = false;       // devices take part
+    bool cuda = false;       // devices are used as well
 };
 
-/// Throws Error (usage). `cases`: those that --case chooses from.
+/// Parses the command line. Throws Error (usage). `cases`: those that --case chooses from.
 VerifyOptions parse_verify_options(int argc, const char* const* argv, const std::vector<CaseEntry>& cases);
 
-/// What --help prints.
+/// The output of --help.
 std::string verify_help_text();
 
 }  // namespace cistula::verify

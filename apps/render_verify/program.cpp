@@ -19,7 +19,7 @@ int run(const VerifyOptions& options) {
         context.devices = devices.names;
         context.driver = devices.driver;
     }
-    // Before a long run rather than after it.
+    // Checked before a long run rather than after it.
     for (const std::string& file : {options.json, options.html})
         if (!file.empty()) AtomicFile probe(file);
     const auto start = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-// A part of a case made ready: compiled, with its trees and lists.
+// A part of a case after compilation, with its trees and lists.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,13 +13,13 @@
 
 namespace cistula::verify {
 
-/// The plain loop over all primitives tests at most so many a part: of large scenes it takes the first rays only.
+/// Limit on the primitive tests of the plain loop per part: of large scenes it takes the first rays only.
 inline uint64_t plain_tests(bool quick) {
     return quick ? 10'000'000 : 500'000'000;
 }
 inline constexpr uint64_t least_plain_rays = 64;
 
-/// A part of a case, compiled, with all that an intersector needs.
+/// A compiled part of a case with everything that intersectors need.
 template <class Real>
 class ReadyPart {
   public:
@@ -51,7 +51,7 @@ class ReadyPart {
         return std::min(part_.count,
                         std::max(plain_tests(quick) / std::max<uint64_t>(primitives, 1), least_plain_rays));
     }
-    /// What the scene should have warned of and did not; empty: nothing.
+    /// An expected warning that the scene did not give; empty: none is missing.
     std::string missing_warning() const {
         for (const std::string& text : part_.warnings) {
             const auto& all = compiled_->warnings;

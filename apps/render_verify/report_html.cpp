@@ -1,4 +1,4 @@
-// The page: a line a case, with its outcomes on every intersector.
+// The HTML page: a line per case, with its outcomes on every intersector.
 #include <fmt/format.h>
 
 #include <map>

@@ -51,7 +51,7 @@ std::vector<uint64_t> words_of_device(const RayMethods<Real>&, const Part&, cons
 }
 #endif
 
-/// One outcome for each intersector, filled part by part.
+/// The outcomes of a case, one for each intersector, filled part by part.
 class CaseRun {
   public:
     CaseRun(const CaseEntry& entry, const RunSettings& settings, Precision precision)
@@ -77,7 +77,7 @@ class CaseRun {
     }
 
   private:
-    /// What a case throws becomes the outcome's problem.
+    /// Runs `work`; an exception becomes the outcome's problem.
     template <class Work>
     void guarded(Outcome& outcome, const Work& work) {
         const auto start = Clock::now();

@@ -1,4 +1,4 @@
-// Runs cases on the intersectors of this machine and judges what they found.
+// Runs cases on the intersectors of this machine and judges their results.
 #pragma once
 
 #include <functional>
@@ -14,21 +14,21 @@ namespace cistula::verify {
 enum class IntersectorKind { embree, bvh, brute, cuda };
 const char* intersector_name(IntersectorKind kind);
 
-/// One case on one intersector in one precision.
+/// The result of one case on one intersector in one precision.
 struct Outcome {
     const CaseInfo* info = nullptr;
     IntersectorKind intersector = IntersectorKind::embree;
     Precision precision = Precision::single_;
     Tally tally;
-    std::string worst_label;  // the part and the ray with the largest deviation; empty: none deviates
-    std::string problem;      // what kept it from being judged: it then does not hold
+    std::string worst_label;  // part and ray with the largest deviation; empty: none deviates
+    std::string problem;      // reason why it could not be judged; it then fails
     double seconds = 0;
 
     double limit() const { return info->bound.limit[precision == Precision::double_]; }
-    /// What stands against the limit.
+    /// The value that is compared with the limit.
     double measured() const;
     bool holds() const;
-    /// Does not hold, as is known.
+    /// Whether it fails as documented (FailsIn).
     bool is_known() const;
 };
 
@@ -38,8 +38,8 @@ struct RunSettings {
     std::vector<Precision> precisions;
 };
 
-/// Calls `done` after each outcome, in the order of the cases, then precisions, then intersectors. `progress` shows the
-/// case under way.
+/// Runs cases. Calls `done` after each outcome, in the order of the cases, then precisions, then intersectors.
+/// `progress` shows the current case.
 std::vector<Outcome> run_cases(const std::vector<const CaseEntry*>& cases, const RunSettings& settings,
                                StepProgress& progress, const std::function<void(const Outcome&)>& done);
 

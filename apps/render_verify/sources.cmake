@@ -1,4 +1,4 @@
-# One source a group of cases and precision, for the host and for devices, so that they compile side by side.
+# One generated source per group of cases and precision, for host and devices, so that they compile in parallel.
 file(GLOB groups CONFIGURE_DEPENDS "${folder}/group_*.h")
 set(group_lines "")
 foreach(header IN LISTS groups)

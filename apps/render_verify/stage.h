@@ -1,4 +1,4 @@
-// What a case of images has: a renderer on one intersector in one precision, for any scene.
+// The environment of a case of images: a renderer for any scene, on one intersector in one precision.
 #pragma once
 
 #include <functional>
@@ -25,7 +25,7 @@ class Stage {
     /// u: half an ulp of 1.
     double unit() const { return in_double() ? 0x1p-53 : 0x1p-24; }
 
-    /// Throws Error where the film cannot be trusted (film.flags).
+    /// Renders a frame. Throws Error if the film is unreliable (film.flags).
     Film render(const SceneDescription& scene, const FrameSettings& settings, int frame = 0) const {
         return render_(scene, settings, frame);
     }

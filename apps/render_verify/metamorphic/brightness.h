@@ -1,4 +1,4 @@
-// Bright and dim scenes: radiances are scaled by a power of two to their bound, and what exceeds it is said.
+// Bright and dim scenes: radiances are scaled by a power of two to their bound, and exceeding it is reported.
 #pragma once
 
 #include <limits>
@@ -34,13 +34,13 @@ inline void brighten(SceneDescription& scene, int light, int color) {
     if (scene.frame && scene.frame->bound) *scene.frame->bound *= s;
 }
 
-/// Whether anything shines at all: else there is no bound to scale by.
+/// Whether anything emits light; without that there is no bound to scale by.
 inline bool shines(const SceneDescription& scene) {
     const Vec3<double> bound = compile_scene<double>(scene)->view().bound;
     return bound.x + bound.y + bound.z > 0;
 }
 
-/// Whether no light is so faint beside the bound, which becomes 1, that the type keeps fewer of its digits.
+/// Whether no light is so faint relative to the bound, which becomes 1, that the type keeps fewer of its digits.
 template <class Real>
 bool keeps_digits(const SceneDescription& scene) {
     const auto compiled = compile_scene<Real>(scene);
@@ -84,7 +84,7 @@ struct Brightness {
     }
 };
 
-/// Colors of 1e-30 under lights of 1e30, and the other way about.
+/// Colors of 1e-30 under lights of 1e30, and vice versa.
 struct ColorsAgainstLights {
     static constexpr const char* name = "metamorphic/brightness/colors-against-lights";
     static constexpr const char* exact =
@@ -110,7 +110,7 @@ struct ColorsAgainstLights {
     }
 };
 
-/// Radiances that are what a scene says, from the least to the largest; and scenes that reach their bound.
+/// Radiances equal those of the scene, from the smallest to the largest; and scenes that reach their bound.
 struct ExtremeRadiance {
     static constexpr const char* name = "metamorphic/brightness/extremes";
     static constexpr const char* exact = "backgrounds of 1e-30 to 1e30; the bound, met by as many lights as you like";

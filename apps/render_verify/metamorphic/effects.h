@@ -1,4 +1,4 @@
-// Code for effects that a scene does not use is left out at compile time; with it, no bit is another.
+// Effects that a scene does not use are left out at compile time; including them changes no bit.
 #pragma once
 
 #include "apps/render_verify/metamorphic/films.h"

@@ -1,4 +1,4 @@
-// Films to compare, and the scenes that they show.
+// Comparison of films, and the scenes that they show.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace cistula::verify::metamorphic {
 
-/// All that a pixel holds, bit for bit; z after multiplication with a power of two.
+/// Whether two pixels are equal bit for bit, with z multiplied by a power of two.
 inline bool same_pixel(const PixelRecord& a, const PixelRecord& b, float z_factor = 1) {
     bool same = a.hits == b.hits && a.rays == b.rays && a.id == b.id &&
                 bits_as<uint32_t>(a.z) == bits_as<uint32_t>(b.z * z_factor);
@@ -23,12 +23,12 @@ inline bool same_pixel(const PixelRecord& a, const PixelRecord& b, float z_facto
     return same;
 }
 
-/// The place of a pixel, so that "try 3001200017" reads: scene 3, variation 12, pixel 17.
+/// The place of a pixel as a number: 3001200017 is scene 3, variation 12, pixel 17.
 inline uint64_t place_of(uint64_t scene, uint64_t variation, size_t pixel) {
     return scene * 1'000'000'000 + variation * 1'000'000 + pixel;
 }
 
-/// One try a pixel: the same in both. A film with flags, or of another size or scale, has no good pixel.
+/// Expects equal pixels, one try each. A film with flags, or of another size or scale, fails for all.
 inline void expect_same(Tally& tally, const Film& found, const Film& expected, uint64_t scene, uint64_t variation,
                         float z_factor = 1, int exponent = 0) {
     const bool comparable = found.flags == 0 && expected.flags == 0 && found.pixels.size() == expected.pixels.size() &&
@@ -40,7 +40,7 @@ inline void expect_same(Tally& tally, const Film& found, const Film& expected, u
     }
 }
 
-/// One try a pixel: equal in what is hit only, how many samples and which solid.
+/// Expects equal hits only: the numbers of samples that hit, and the solids.
 inline void expect_same_hits(Tally& tally, const Film& found, const Film& expected, uint64_t scene,
                              uint64_t variation) {
     for (size_t i = 0; i < expected.pixels.size(); ++i) {
@@ -50,13 +50,13 @@ inline void expect_same_hits(Tally& tally, const Film& found, const Film& expect
     }
 }
 
-/// Whether there is more to see than a background of one color.
+/// Whether a film shows more than a background of one color.
 inline bool shows_something(const Film& film) {
     const auto hit = [](const PixelRecord& pixel) { return pixel.hits > 0; };
     return std::count_if(film.pixels.begin(), film.pixels.end(), hit) * 20 > ptrdiff_t(film.pixels.size());
 }
 
-/// A scene by number, its picture small enough for the plain loop over all primitives.
+/// A generated scene whose picture is small enough for the plain loop over all primitives.
 inline SceneDescription small_scene(uint64_t seed) {
     SceneDescription scene = generated_scene(seed);
     scene.film.width = 24;
@@ -65,7 +65,7 @@ inline SceneDescription small_scene(uint64_t seed) {
     scene.depth = std::min(scene.depth, 6);
     return scene;
 }
-/// Whether a quick run leaves it out: the plain loop takes its time over many triangles.
+/// Whether a quick run skips the scene: the plain loop is slow for many triangles.
 inline bool is_heavy(const SceneDescription& scene) {
     size_t triangles = 0;
     for (const ObjectDescription& object : scene.objects)
@@ -73,7 +73,8 @@ inline bool is_heavy(const SceneDescription& scene) {
     return triangles > 300;
 }
 
-/// The camera of frame 0 without paths, so that moving its two points moves it. `reach` is a length of the scene.
+/// Replaces the camera's paths by its position and target in frame 0, which can then be moved. `reach` is a length of
+/// the scene.
 inline void fix_camera(SceneDescription& scene, double reach) {
     const Camera camera = camera_at(scene.camera, 0).camera;
     scene.camera.position_path.reset();

@@ -1,4 +1,5 @@
-// The eight flips of axes, and the same with x and y swapped: scenes that they map onto themselves are met alike.
+// The eight flips of axes, with and without swapping x and y: rays and their images at symmetric scenes give equal
+// hits.
 #pragma once
 
 #include "apps/render_verify/crossings.h"
@@ -6,14 +7,14 @@
 
 namespace cistula::verify::metamorphic {
 
-/// Bits 0 to 2: axes to flip, after bit 3: x and y swapped.
+/// The image of a vector. Bit 3: swap x and y; bits 0 to 2: flip axes after that.
 template <class Real>
 CISTULA_HD Vec3<Real> mapped(const Vec3<Real>& p, uint32_t map) {
     const Vec3<Real> q = (map & 8u) != 0 ? Vec3<Real>(p.y, p.x, p.z) : p;
     return {(map & 1u) != 0 ? -q.x : q.x, (map & 2u) != 0 ? -q.y : q.y, (map & 4u) != 0 ? -q.z : q.z};
 }
 
-/// Where a line crosses a solid: t of the first ways, and how many there are.
+/// Crossings of a line with a solid: t and kind of the first ones, and their number.
 template <class Real>
 struct LineCrossings {
     static constexpr uint32_t most = 8;
@@ -71,7 +72,7 @@ struct Flips {
     }
 };
 
-/// Which maps a solid has. The tetrahedron has none of the flips alone, and is left out.
+/// Number of maps to test for a solid: 8, or 16 with the swap. The tetrahedron has none of the flips and is left out.
 inline uint32_t maps_of(PlatonicSolid kind) {
     return kind == PlatonicSolid::cube || kind == PlatonicSolid::octahedron ? 16 : 8;
 }

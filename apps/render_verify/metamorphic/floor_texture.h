@@ -1,4 +1,4 @@
-// Textures where cells meet, and far from their origin.
+// Textures at the borders of cells, and far from their origin.
 #pragma once
 
 #include "apps/render_verify/crossings.h"
@@ -12,7 +12,7 @@ CISTULA_HD inline uint32_t modulo(int64_t i, int64_t n) {
     const int64_t r = i % n;
     return uint32_t(r < 0 ? r + n : r);
 }
-/// For whole numbers up to 2^53 in floating point.
+/// The floor of x, for |x| up to 2^53.
 CISTULA_HD inline int64_t whole_below(double x) {
     return int64_t(floor_of(x));
 }
@@ -21,7 +21,7 @@ struct Texels {
     Span<Vec3<float>> texels;
 };
 
-/// A checker's cells, exactly: they and the repeats are powers of two, so that no product rounds.
+/// Cells of a checkerboard, exact: they and the repeats are powers of two, so that no product is rounded.
 struct CellBorders {
     static constexpr const char* name = "metamorphic/floor-texture/cell-borders";
     static constexpr const char* exact = "the cell on the right side of borders up to 1e9 cells out, and an ulp beside";
@@ -60,8 +60,7 @@ struct CellBorders {
     }
 };
 
-/// Which texel of a row, for rows of any length: near the origin, where floats tell all whole numbers apart, and
-/// beyond.
+/// Texels in rows of any length: near the origin, where floats represent all integers, and beyond.
 struct RepeatedTexels {
     int64_t largest;  // |i| + n; 0: what the type holds exactly, up to 2^30
 
@@ -101,7 +100,7 @@ struct RepeatedFar : RepeatedTexels {
     static void plan(Plan& plan) { plan_rows<RepeatedFar>(plan, 1'000'000'000); }
 };
 
-/// A floor of half width `size` with a checker of `cell`, seen from above at up to 45 degrees.
+/// A floor of half width `size` with a checkerboard of `cell`, seen from above at up to 45 degrees.
 struct FarFloor {
     static constexpr const char* name = "metamorphic/floor-texture/far";
     static constexpr const char* exact = "a floor's cells to 1e9, 32 u of its size beside borders and farther";

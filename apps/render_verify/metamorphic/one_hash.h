@@ -1,4 +1,4 @@
-// One image, whoever renders it: threads, tiles, crops, trees, instruction sets, the order of primitives, devices.
+// The image does not depend on threads, tiles, crops, trees, instruction sets, the order of primitives, or devices.
 #pragma once
 
 #include <tbb/global_control.h>
@@ -34,7 +34,7 @@ void swap_lanes(Cluster<Real>& cluster, uint32_t a, uint32_t b) {
     std::swap(cluster.triangle[a], cluster.triangle[b]);
 }
 
-/// Primitives in another order, triangles of a cluster too. Their numbers, which decide ties, stay.
+/// Reorders primitives, and the triangles in clusters. Their numbers, which decide ties, stay.
 template <class Real>
 void shuffle_primitives(CompiledScene<Real>& scene, std::mt19937_64& random) {
     std::shuffle(scene.convex.begin(), scene.convex.end(), random);
@@ -43,7 +43,7 @@ void shuffle_primitives(CompiledScene<Real>& scene, std::mt19937_64& random) {
         for (uint32_t lane = cluster.count; lane > 1; --lane) swap_lanes(cluster, lane - 1, uint32_t(random() % lane));
 }
 
-/// Puts a tree's children and the items of its leaves in another order.
+/// Reorders a tree's children and the items of its leaves.
 template <class Real>
 void shuffle_tree(CompiledScene<Real>& scene, std::mt19937_64& random) {
     for (TreeNode& node : scene.tree) {
@@ -59,7 +59,7 @@ void shuffle_tree(CompiledScene<Real>& scene, std::mt19937_64& random) {
     }
 }
 
-/// All ways to make a renderer of an intersector; none of them may show.
+/// All ways to make a renderer of an intersector; all must give the same image.
 template <class Real>
 std::vector<std::function<std::unique_ptr<Renderer>(Compiled<Real>)>> renderers(const std::string& intersector) {
     std::vector<std::function<std::unique_ptr<Renderer>(Compiled<Real>)>> all;
@@ -96,7 +96,7 @@ std::vector<std::function<std::unique_ptr<Renderer>(Compiled<Real>)>> renderers(
     return all;
 }
 
-/// Scenes for these cases: few primitives and many, planes and meshes.
+/// Numbers of generated scenes for these cases: few primitives and many, planes and meshes.
 inline std::vector<uint64_t> some_seeds(bool quick, size_t in_full, size_t in_quick) {
     std::vector<uint64_t> seeds;
     for (uint64_t seed = 0; seed < generated_scene_count && seeds.size() < (quick ? in_quick : in_full); ++seed)
@@ -159,7 +159,7 @@ struct ThreadsAndTiles {
             for (const PixelRect& crop : {PixelRect{0, 0, 24, 5}, PixelRect{0, 5, 11, 11}, PixelRect{11, 5, 13, 11}}) {
                 settings.crop = crop;
                 settings.tile = 4;
-                Film part = whole;  // the whole, cut out
+                Film part = whole;  // the whole frame, cropped
                 part.pixels.clear();
                 for (int y = 0; y < crop.height; ++y)
                     for (int x = 0; x < crop.width; ++x)

@@ -1,4 +1,4 @@
-// Radiances that no sum can take.
+// Radiances that exceed the range of the sums.
 #pragma once
 
 #include "apps/render_verify/metamorphic/films.h"
@@ -7,7 +7,7 @@
 
 namespace cistula::verify::metamorphic {
 
-/// Refused when the scene is read, and where that was gone around, a flag that fails the render.
+/// Such scenes are rejected when read; if that is bypassed, a flag makes the render fail.
 struct OverflowIsSaid {
     static constexpr const char* name = "metamorphic/brightness/overflow";
     static constexpr const char* exact = "what exceeds the bound is an error or a flag, and never in the sums";

@@ -20,7 +20,7 @@ CISTULA_HD inline DoubleDouble power_pair(double x, int n) {
     }
 }
 
-/// Units in the last place of a Real at `value` > 0; subnormal ones have that of the least normal number.
+/// Size of an ulp of Real at `value` > 0; for subnormal values that of the smallest normal number.
 template <class Real>
 CISTULA_HD double ulp_at(double value) {
     const double least = double(RealTraits<Real>::least_normal);
@@ -42,7 +42,7 @@ void plan_powers(Plan& plan) {
     plan.add("cos^n", scene, Case{}, {}, plan.rays(20'000'000, 300'000));
 }
 
-/// A cosine: any, near 1, or a quotient of two small numbers.
+/// A random cosine: any, near 1, or a quotient of two small numbers.
 template <class Real>
 CISTULA_HD Real drawn_cosine(Draw& draw) {
     const Real any = Real(1) - draw.unit<Real>();
@@ -104,7 +104,7 @@ struct RealPowers {
     }
 };
 
-/// The highlight itself: its way for integers and for others, and cosines that rounding put outside of [0, 1].
+/// The highlight itself, for integer and other exponents, and cosines that rounding moved outside [0, 1].
 struct Highlights {
     static constexpr const char* name = "metamorphic/powers/highlight";
     static constexpr const char* exact = "at most 1; 0 on the far side; never more at a larger angle or exponent";

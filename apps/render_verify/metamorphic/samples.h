@@ -1,4 +1,4 @@
-// Supersampling: it changes nothing where nothing changes, and counts exactly where a border runs through a pixel.
+// Supersampling: it changes nothing in a constant picture, and counts exactly where an edge crosses a pixel.
 #pragma once
 
 #include <random>
@@ -13,7 +13,7 @@ struct ConstantScene {
     static constexpr const char* exact = "the color itself, for 1 to 64 x 64 samples a pixel";
     static constexpr Bound bound = no_failures("pixels");
 
-    /// A scene all of which has this color: the background, a room in ambient light, clear solids before them.
+    /// A scene that has one color everywhere: the background, a room in ambient light, clear solids in front.
     static SceneDescription scene_of(int kind, const glm::dvec3& color) {
         SceneDescription scene = empty_scene();
         scene.camera.position = {0.125, -2.5, 0.25};
@@ -66,7 +66,7 @@ struct ConstantScene {
     }
 };
 
-/// Samples of a picture in half steps from its middle, as camera_direction has them, and a line a x + b y = c there.
+/// Samples of a picture in half steps from its center, as in camera_direction, and a line a x + b y = c there.
 struct SampleLine {
     int a, b;
     double c;
@@ -74,8 +74,8 @@ struct SampleLine {
     bool left_of(int across, int down) const { return a * across + b * down < c; }
 };
 
-/// A camera above the plane z = 0 and a sheet there that ends at a line of the picture. `beyond`: what lies on the
-/// other side of it, from the same two corners on.
+/// A camera above a sheet in the plane z = 0 that ends at a line of the picture. `beyond`: the sheet on the other side,
+/// which starts with the same two corners.
 inline SceneDescription half_plane(const SampleLine& line, int samples_across, bool beyond) {
     constexpr double height = 4, reach = 8;
     SceneDescription scene = empty_scene();
@@ -93,7 +93,7 @@ inline SceneDescription half_plane(const SampleLine& line, int samples_across, b
     return scene;
 }
 
-/// Sample positions of a pixel.
+/// Calls `visit` for the sample positions of a pixel.
 template <class Visit>
 void for_each_sample(int width, int height, int k, int x, int y, const Visit& visit) {
     for (int j = 0; j < k; ++j)

@@ -1,4 +1,4 @@
-// Pictures of one pixel, strips of 65,536, fields of view from next to nothing to next to 180 degrees.
+// Pictures of one pixel, strips of 65,536 pixels, fields of view from almost 0 to almost 180 degrees.
 #pragma once
 
 #include "apps/render_verify/metamorphic/films.h"
@@ -36,7 +36,7 @@ struct OnePixel {
                     // Each pixel's own rounding down counts as a number of one ray.
                     for (int c = 0; c < 3; ++c) sums[c] += other.radiance[c] >> shift;
                 }
-                PixelRecord middle = pixel;  // but for its sums
+                PixelRecord middle = pixel;  // compared except for its sums
                 middle.hits = chosen.hits;
                 middle.rays = chosen.rays;
                 bool holds = one.flags == 0 && many.flags == 0 && pixel.hits == hits && pixel.rays == rays;
@@ -53,7 +53,7 @@ struct OnePixel {
     }
 };
 
-/// Pixels on the left of (or above) a border between two of them, in strips; and crops of the ends.
+/// Pixels to the left of (or above) a border between two pixels, in strips, and crops of the strips' ends.
 struct Strips {
     static constexpr const char* name = "metamorphic/strips";
     static constexpr const char* exact = "65,536 x 1 and 1 x 65,536: every pixel on the right side of a border";
@@ -87,7 +87,7 @@ struct Strips {
     }
 };
 
-/// The camera so near or so far that the picture has one size on the plane, whatever its field of view.
+/// Cameras at a distance that makes the picture equally large on the plane for any field of view.
 struct WideFields {
     static constexpr const char* name = "metamorphic/fields-of-view";
     static constexpr const char* exact = "coverage of a half-plane from 1e-6 to 179.999 degrees";

@@ -1,4 +1,4 @@
-// Scenes in other units and in other places: the frame of reference gives the same numbers, and the same image.
+// Scenes in other units and at other positions: the frame of reference makes the numbers, and the image, the same.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace cistula::verify::metamorphic {
 
-/// All lengths times 2^k; light that falls off times 4^k.
+/// Multiplies all lengths by 2^k and the intensities of lights with falloff by 4^k.
 inline void scale_scene(SceneDescription& scene, int k) {
     const double s = std::ldexp(1.0, k);
     for (ObjectDescription& object : scene.objects) {
@@ -89,7 +89,7 @@ inline void put_on_grid(SceneDescription& scene) {
     scene.frame->scale = compiled->scale - 1;
 }
 
-/// A sheet under all else that reaches farthest.
+/// Adds a sheet below everything else, which reaches farthest.
 inline void add_ground(SceneDescription& scene, double reach) {
     const glm::dvec3& c = scene.frame->center;
     add_object(scene,
@@ -110,7 +110,7 @@ inline void translate_scene(SceneDescription& scene, const glm::dvec3& by) {
     if (scene.frame) scene.frame->center += by;
 }
 
-/// Scenes on the grid and where they are moved: by their sizes, and far.
+/// Scenes on the grid and their displacements: by their size, and far away.
 template <class Compare>
 void translate_scenes(Stage& stage, Tally& tally, bool with_ground, const Compare& compare) {
     for (uint64_t seed = 0, left = stage.quick ? 24 : 150; seed < generated_scene_count && left > 0; ++seed) {
@@ -160,7 +160,7 @@ struct TranslatedImages {
     }
 };
 
-/// The center of the frame is found, not pinned: that of corners on a grid moves with them.
+/// Tests the frame's computed center: that of corners on a grid moves with them.
 struct FoundCenter {
     static constexpr const char* name = "metamorphic/dyadic-translation/meshes";
     static constexpr const char* exact = "sums, ids, normals and Z of meshes, whose frame is found where they are";

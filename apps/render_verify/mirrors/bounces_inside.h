@@ -1,4 +1,4 @@
-// Paths inside closed solids: mirrored, and now and then aimed where it is hard.
+// Paths inside closed solids: reflected, and sometimes aimed at difficult places.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -10,17 +10,16 @@
 
 namespace cistula::verify::mirrors {
 
-/// How a line leaves a face.
+/// How a line starts on a face.
 enum class Start : uint32_t {
     as_rendered,
-    face_left_out,  // on the face itself, which is left out, and nothing else
-    epsilon,  // on a face of a convex solid; planes nearer than an epsilon are left out, and there is no other state
+    face_left_out,  // on the face itself, which is excluded; no other state
+    epsilon,        // on a convex solid's face; planes nearer than an epsilon are excluded, with no other state
 };
 
 inline constexpr uint32_t path_length = 100;
 
-/// A path, aimed at corners, edges and faces. Numbers: a place inside and how far around
-/// it is inside, too.
+/// Paths aimed at corners, edges and faces. Numbers: a point inside, and the radius around it that is inside, too.
 struct BouncesInside {
     Start start;
 
@@ -58,7 +57,7 @@ struct BouncesInside {
                 if (start != Start::as_rendered) ray.after = {Real(0), 0};
                 afresh = !good;
             }
-            // In meshes the way to the first face is FirstLines' own case.
+            // In meshes, the way to the first face is tested by FirstLines.
             if (bounced || convex) tally.expect(good);
         }
     }
@@ -74,7 +73,7 @@ struct BouncesInside {
     }
 
   private:
-    /// The nearest plane that is left farther than 2^-16 M ahead, as usual elsewhere.
+    /// The nearest plane that the line leaves more than 2^-16 M ahead: the usual epsilon method of other renderers.
     template <class Real>
     CISTULA_HD static Hit<Real> beyond_epsilon(const SceneView<Real>& scene, const Ray<Real>& ray) {
         Hit<Real> best;
@@ -88,7 +87,7 @@ struct BouncesInside {
         }
         return best;
     }
-    /// Not farther outside than the boxes of trees allow for: 64 u M (docs/rules.md, 1).
+    /// Whether a point is at most as far outside as the trees' boxes allow for: 64 u M (docs/rules.md, 1).
     template <class Real>
     CISTULA_HD static bool within_box(const SceneView<Real>& scene, const Vec3<Real>& point) {
         const Vec3<double> p(point);

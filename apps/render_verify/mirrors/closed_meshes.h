@@ -1,4 +1,4 @@
-// Meshes with an inside: round a hole, with spikes, uneven.
+// Closed meshes: with a hole, with spikes, uneven.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace cistula::verify::mirrors {
 
-/// A mesh, a place inside, and how far around that is inside, too.
+/// A mesh, a point inside, and the radius around it that is inside, too.
 struct InsideOf {
     const char* name;
     TrianglesObject mesh;
@@ -22,7 +22,7 @@ inline std::vector<InsideOf> closed_meshes() {
             {"bumpy sphere", bumpy_sphere(500), {0.01, 0.02, -0.03}, 0.3}};
 }
 
-/// Corners, edges and middles of triangles.
+/// Corners, edge points and centers of triangles.
 inline std::vector<glm::dvec3> mesh_points(const TrianglesObject& mesh) {
     std::vector<glm::dvec3> points = mesh.vertices;
     for (const auto& t : mesh.triangles) {

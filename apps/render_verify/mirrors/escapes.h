@@ -1,4 +1,4 @@
-// A ray that bounces inside a closed solid stays inside: convex ones by state, meshes by where new lines start.
+// A ray reflected inside a closed solid stays inside: convex solids by state, meshes by the origins of new lines.
 #pragma once
 
 #include "apps/render_verify/mirrors/bounces_inside.h"

@@ -1,5 +1,5 @@
-// Paths between axis-parallel mirrors have a closed form: unfold the mirrors, and the path is straight. Each coordinate
-// after a length T is the triangle wave of o + T d, and of d only signs change.
+// Closed form of paths between axis-parallel mirrors: with the mirrors unfolded, the path is straight. Each coordinate
+// after a length T is the triangle wave of o + T d; in d only signs change.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -13,18 +13,18 @@ namespace cistula::verify::mirrors {
 
 enum class Walls : uint32_t {
     cube_of_planes,
-    cube_of_triangles,  // points: its least corner and its greatest
+    cube_of_triangles,  // points: its lowest and its highest corner
     two_cubes,          // the upper face of the first and the lower one of the second
-    two_sheets,         // points: the least corner of the lower, the greatest of the upper one
+    two_sheets,         // points: the lowest corner of the lower, the highest of the upper one
 };
 
-/// A mirrored coordinate: where its two walls are.
+/// A coordinate that is reflected between two walls.
 struct Fold {
     DoubleDouble low, width;
 
     CISTULA_HD static Fold between(double low, double high) { return {DoubleDouble(low), two_sum(high, -low)}; }
-    /// At a multiple of the width both branches of the wave give the same, so that it does not matter which one
-    /// rounding takes.
+    /// The reflected coordinate. At a multiple of the width both branches of the wave are equal, so it does not matter
+    /// which one rounding selects.
     CISTULA_HD DoubleDouble operator()(const DoubleDouble& unfolded) const {
         const DoubleDouble z = unfolded - low;
         const double k = floor_of(z.high / width.high);
@@ -33,7 +33,7 @@ struct Fold {
     }
 };
 
-/// A deviation is that of the place where the next line starts from the closed form, over the number of bounces.
+/// Deviation: distance of the next line's origin from the closed form, divided by the number of bounces.
 struct FoldedPath {
     Walls walls;
     uint32_t bounces;
@@ -88,7 +88,7 @@ struct FoldedPath {
                                                     : CrossingKind::leave);
     }
 
-    /// The wall's place as stored, in Real. NaN where the scene has no such wall: nothing then holds.
+    /// A wall's coordinate as stored in Real. NaN if the scene has no such wall; then nothing holds.
     template <class Real>
     CISTULA_HD double wall(const Setup<Real>& setup, int axis, bool upper) const {
         if (walls == Walls::cube_of_triangles || walls == Walls::two_sheets)
@@ -103,8 +103,8 @@ struct FoldedPath {
         return parity::no_number<double>;
     }
 
-    /// In a cube no component of the direction is under a third of the others' length or so; between two mirrors the
-    /// line moves along them from one side of their middle to the other.
+    /// A random start. In a cube, no component of the direction is below about a third of the others' length; between
+    /// two mirrors the line moves along them from one side of their center to the other.
     template <class Real>
     CISTULA_HD static void start(const Setup<Real>& setup, Draw& draw, bool cube, const Fold (&fold)[3],
                                  Vec3<Real>& origin, Vec3<Real>& direction) {

@@ -51,15 +51,15 @@ struct CubeFoldTriangles : FoldedPath {
     static void plan(Plan& plan) { plan_cubes<CubeFoldTriangles>(plan, Walls::cube_of_triangles, 1000); }
 };
 
-/// Mirrors 2^-8 apart and 1 wide.
+/// Distance of the mirrors, which are 1 wide.
 inline constexpr double gap = 0x1p-8;
 
 struct ParallelPlanes : FoldedPath {
     static constexpr const char* name = "mirrors/parallel/planes";
     static constexpr const char* exact =
         "500 bounces between faces of two cubes: triangle wave across, straight along them";
-    // As in the cube, but that the way from wall to wall is 2^-8 M: 2 * 3 u * 2^-8 M off the walls. Along them at most
-    // u / 2 M, for coordinates up to M / 2: 0.53 u M, or 0.27 ulps.
+    // The bound of the cube, except that the distance of the walls is 2^-8 M: 2 * 3 u * 2^-8 M off the walls. Along
+    // them at most u / 2 M, for coordinates up to M / 2: 0.53 u M, or 0.27 ulps.
     static constexpr Bound bound = at_most(0.27, "ulps of M a bounce");
     static void plan(Plan& plan) {
         SceneDescription scene = empty_scene();
@@ -70,7 +70,7 @@ struct ParallelPlanes : FoldedPath {
     }
 };
 
-/// A square across the y axis, of two triangles.
+/// A square perpendicular to the y axis, of two triangles.
 inline TrianglesObject square_across_y(double y, double half) {
     TrianglesObject square;
     square.vertices = {{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}};
@@ -81,9 +81,9 @@ inline TrianglesObject square_across_y(double y, double half) {
 struct ParallelSheets : FoldedPath {
     static constexpr const char* name = "mirrors/parallel/sheets";
     static constexpr const char* exact = "500 bounces between two sheets: triangle wave across, straight along them";
-    // As for the cube of triangles, all in u M, for slopes of 0.3 at most and distances across of 2^-7: sheared corners
-    // are off by 5, points by 26 + 5, the start by 146 along the sheet and 8 across it, which counts at the slope too:
-    // 31 + 146 + 8 * 1.3, or 94 ulps.
+    // The bound of the cube of triangles, all in u M, for slopes of 0.3 at most and distances across of 2^-7: sheared
+    // corners are off by 5, points by 26 + 5, the start by 146 along the sheet and 8 across it, which counts at the
+    // slope too: 31 + 146 + 8 * 1.3, or 94 ulps.
     static constexpr Bound bound = at_most(94, "ulps of M a bounce");
     static void plan(Plan& plan) {
         SceneDescription scene = empty_scene();

@@ -1,11 +1,11 @@
-// The furnace: what loses no light is invisible in a world of one radiance.
+// Furnace test: lossless objects are invisible in a world of constant radiance.
 #pragma once
 
 #include "apps/render_verify/mirrors/mirror_images.h"
 
 namespace cistula::verify::mirrors {
 
-/// The bodies one by one, then five solids that overlap; seen from outside and from inside.
+/// Tests the bodies one by one, then five overlapping solids, seen from outside and from inside.
 template <class Check>
 void for_each_furnace(const Stage& stage, const SceneDescription& lossless, int depth_of_convex, int depth_of_others,
                       const Check& check) {
@@ -28,7 +28,7 @@ void for_each_furnace(const Stage& stage, const SceneDescription& lossless, int 
     }
 }
 
-/// Shares of 1/2 make every weight a power of two.
+/// Furnace with shares of 1/2, which make every weight a power of two.
 struct FurnaceHalves {
     static constexpr const char* name = "mirrors/furnace/halves";
     static constexpr const char* exact =
@@ -49,14 +49,14 @@ struct FurnaceHalves {
     }
 };
 
-/// Glass of index 1.5: total reflection, with given shares and with Fresnel's.
+/// Furnace with glass of index 1.5: total reflection, given shares, and Fresnel's.
 struct FurnaceGlass {
     static constexpr const char* name = "mirrors/furnace/glass";
     static constexpr const char* exact =
         "lossless glass in a white world: image + ledger / (1 + 2^-10) = 1, less truncation";
-    // Of each surface: kr and kt are rounded, 1 u for both, 1 - F is, and the products with the branch's weight: at
-    // most 3 u of what arrives. 10 surfaces, and the ledger's product with B: 31 u, or 15.5 ulps. A contribution and a
-    // branch that is not followed are off by less than a unit of the sums each, three at most for a ray.
+    // Rounding at each surface: kr and kt, 1 u for both; 1 - F; and the products with the branch's weight: at most 3 u
+    // of what arrives. 10 surfaces, and the ledger's product with B: 31 u, or 15.5 ulps. A contribution and a branch
+    // that is not followed are off by less than a unit of the sums each, three at most for a ray.
     static constexpr int depth = 10;
     static constexpr Bound bound = at_most(15.5, "ulps of 1");
     static constexpr bool needs_witness = true;

@@ -1,4 +1,4 @@
-// What images of mirrors share: materials without local light, cameras, and sums in integers.
+// Helpers for images of mirrors: materials without local light, cameras, and sums in integers.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -8,7 +8,7 @@
 
 namespace cistula::verify::mirrors {
 
-/// A material with local light 1 where neither mirrored nor let through.
+/// A material with local light 1 in the share that is neither reflected nor transmitted.
 inline MaterialDescription share_material(const char* name, double reflection, double transmission) {
     MaterialDescription material;
     material.name = name;
@@ -20,7 +20,7 @@ inline MaterialDescription share_material(const char* name, double reflection, d
     return material;
 }
 
-/// Ambient light 1, no objects, one material.
+/// A scene with ambient light 1, no objects, one material.
 inline SceneDescription share_scene(double reflection, double transmission, double background) {
     SceneDescription scene = empty_scene();
     scene.materials = {share_material("mirror", reflection, transmission)};
@@ -43,7 +43,7 @@ inline Film film_of(const Stage& stage, SceneDescription scene, const glm::dvec3
 inline constexpr int64_t whole = int64_t(1) << 61;
 inline constexpr int64_t bound_of_whole = whole + (whole >> 10);
 
-/// Whether a film has those units.
+/// Whether the sums of a film are in the units of `whole`.
 inline bool counts_in_wholes(const Film& film) {
     return film.flags == 0 && film.fixed_shift == 62 && film.radiance_exponent == 1 && film.samples == 1;
 }
@@ -52,8 +52,8 @@ inline int64_t ledger(const PixelRecord& pixel, int channel) {
     return pixel.cut[channel] + pixel.pruned[channel];
 }
 
-/// Calls check(pixel, channel), each a place of its own, `first` and following; tells whether the film counts in
-/// wholes.
+/// Calls check(pixel, channel) for all, with places `first` and following; returns whether the film's units are those
+/// of `whole`.
 template <class Check>
 void for_each_sum(Tally& tally, uint64_t first, const Film& film, const Check& check) {
     tally.place = first;
@@ -64,14 +64,14 @@ void for_each_sum(Tally& tally, uint64_t first, const Film& film, const Check& c
     }
 }
 
-/// Solids for cameras inside: the middle, and how far around it is inside, too.
+/// A solid for cameras inside: an inner point, and the radius around it that is inside, too.
 struct Body {
     SceneDescription scene;
     glm::dvec3 middle;
     double around;
 };
 
-/// Five solids as planes and as triangles, then a torus, a star and a bumpy sphere, of material 0 of `scene`.
+/// Five solids as planes and as triangles, then a torus, a star and a bumpy sphere, with material 0 of `scene`.
 inline std::vector<Body> bodies(const SceneDescription& scene) {
     std::vector<Body> all;
     for (const Shape shape : {Shape::planes, Shape::triangles})
@@ -89,8 +89,7 @@ inline std::vector<Body> bodies(const SceneDescription& scene) {
     return all;
 }
 
-/// Mirrors that take no light, around the camera, in a white world: every path ends at the depth, and none sees the
-/// white.
+/// Lossless mirrors around the camera in a white world: every path ends at the depth limit, and none sees the white.
 struct DepthEnds {
     static constexpr const char* name = "mirrors/depth-1024";
     static constexpr const char* exact = "in opaque mirrors a pixel takes 1,024 rays, stays black, and its ledger is B";
@@ -110,7 +109,7 @@ struct DepthEnds {
     }
 };
 
-/// Two mirrors that reflect half and shine with the other half: 1/2 + 1/4 + ... after `depth` surfaces.
+/// Two mirrors that reflect half and emit the other half: 1/2 + 1/4 + ... after `depth` surfaces.
 struct ParallelSum {
     static constexpr const char* name = "mirrors/parallel/image";
     static constexpr const char* exact =

@@ -1,4 +1,4 @@
-// A slab whose two faces reflect R and let 1 - R through, before a wall of radiance 1: T = (1-R)^2 (1 + R^2 + R^4 +
+// A slab whose two faces reflect R and transmit 1 - R, in front of a wall of radiance 1: T = (1-R)^2 (1 + R^2 + R^4 +
 // ...).
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace cistula::verify::mirrors {
 
-/// A box about the origin, of triangles.
+/// A box of triangles about the origin.
 inline TrianglesObject box(const glm::dvec3& half) {
     TrianglesObject object = triangulated_solid(solid_object(PlatonicSolid::cube));
     for (glm::dvec3& v : object.vertices)
@@ -14,7 +14,7 @@ inline TrianglesObject box(const glm::dvec3& half) {
     return object;
 }
 
-/// The slab across y between the camera and the wall: a cube of planes, or a thin box of triangles.
+/// A slab perpendicular to y between the camera and the wall: a cube of planes or a thin box of triangles.
 inline SceneDescription slab_scene(Shape shape, double reflectance) {
     SceneDescription scene = share_scene(reflectance, 1 - reflectance, 0);
     if (shape == Shape::planes)
@@ -26,19 +26,20 @@ inline SceneDescription slab_scene(Shape shape, double reflectance) {
     return scene;
 }
 
-/// So narrow that 1,024 crossings of the slab end on its large faces.
+/// A film with a view so narrow that 1,024 crossings of the slab stay on its large faces.
 inline Film slab_film(const Stage& stage, Shape shape, double reflectance, int depth) {
     return film_of(stage, slab_scene(shape, reflectance), {0.001, -3, 0.002}, {0.001, 0, 0.002},
                    shape == Shape::planes ? 0.03 : 1.5, stage.quick ? 3 : 16, depth);
 }
 
-/// The surfaces along a path are the near face, the far one, then 2 j more within the slab, then the wall.
+/// Number of terms within a depth. The surfaces of a path are the near face, the far one, 2 j more in the slab, the
+/// wall.
 inline int terms_within(int depth) {
     return depth < 3 ? 0 : (depth - 1) / 2;
 }
 
-/// How far a sum of `terms` terms is from its closed form in the scene's own R, or with its ledger under the limit of
-/// all terms, in ulps. Truncation takes less than a unit of the sums from each term, and what was pruned.
+/// Deviation in ulps of a sum of `terms` terms from its closed form in the scene's R, or of the sum with its ledger
+/// from the limit. Truncation takes less than a unit of the sums from each term, besides what was pruned.
 inline double slab_deviation(const Stage& stage, const PixelRecord& pixel, int channel, double reflectance, int terms) {
     const auto in_real = [&](double x) { return stage.in_double() ? x : double(float(x)); };
     const __float128 r = in_real(reflectance), t = in_real(1 - reflectance);
@@ -89,7 +90,7 @@ struct SemiMirror50 {
     }
 };
 
-/// Depths at which a path is cut, after k = terms_within(depth) terms.
+/// Depths at which paths are cut, after k = terms_within(depth) terms.
 inline constexpr int cut_depths[] = {1, 2, 3, 4, 7, 16, 33, 64, 255};
 
 struct DepthCut {

@@ -1,4 +1,4 @@
-// Directions stay of unit length, however often they are mirrored.
+// Directions stay of unit length however often they are reflected.
 #pragma once
 
 #include "apps/render_verify/mirrors/bounces_inside.h"
@@ -38,7 +38,7 @@ struct Lengths {
     }
 
   private:
-    /// ||d| - 1| to within its square.
+    /// ||d| - 1|, up to its square.
     CISTULA_HD static double off_unit(const Vec3<double>& d) {
         const DoubleDouble square = two_product(d.x, d.x) + two_product(d.y, d.y) + two_product(d.z, d.z);
         return 0.5 * magnitude(double(square - DoubleDouble(1)));

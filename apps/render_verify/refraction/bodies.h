@@ -1,5 +1,5 @@
-// Bodies between planes x = begin and x = end, as cubes of planes or as wide boxes of triangles, and the indices along
-// x.
+// Bodies between planes x = begin and x = end, as cubes of planes or wide boxes of triangles, and the sequence of
+// indices along x.
 #pragma once
 
 #include <set>
@@ -20,7 +20,7 @@ struct Arrangement {
     std::vector<Body> bodies;
 };
 
-/// Index 1 is a bubble.
+/// The arrangements of bodies; one of index 1 is a bubble.
 inline std::vector<Arrangement> arrangements() {
     return {{"two abutting", {{0, 2, 1.5}, {2, 4, 1.33}}},
             {"three abutting", {{0, 2, 1.33}, {2, 4, 2}, {4, 6, 1.5}}},
@@ -37,7 +37,7 @@ inline std::vector<Arrangement> arrangements() {
 
 enum class Form { cubes, wide_boxes, both };
 
-/// A closed box; two ways of cutting its faces into triangles.
+/// A closed box of triangles; there are two ways of cutting its faces.
 inline TrianglesObject box_mesh(const glm::dvec3& low, const glm::dvec3& high, const Rotation& rotation,
                                 bool other_way) {
     TrianglesObject mesh;
@@ -75,7 +75,7 @@ inline SceneDescription scene_of(const std::vector<Body>& bodies, Form form, con
     return scene;
 }
 
-/// Where bodies are in the frame: the place of x = y = z = 0 and the three axes, the first twelve numbers of a case.
+/// Appends the first twelve numbers of a case: position of x = y = z = 0 in the frame and the three axes.
 inline void place_numbers(const glm::dvec3& turn, const glm::dvec3& center, double factor,
                           std::vector<double>& numbers) {
     const Rotation rotation(turn);
@@ -94,7 +94,7 @@ struct PlaceOnFace {
     double y, z;
 };
 
-/// Anywhere within `reach` of the x axis, on it, or where a mesh is cut into triangles.
+/// A random point: within `reach` of the x axis, on it, or on a diagonal of a mesh's faces.
 CISTULA_HD inline PlaceOnFace place_on_face(Draw& draw, double reach) {
     double y = draw.centered<double>(reach), z = draw.centered<double>(reach);
     const int where = draw.between(0, 5);
@@ -104,15 +104,15 @@ CISTULA_HD inline PlaceOnFace place_on_face(Draw& draw, double reach) {
     return {y, z};
 }
 
-/// Puts the ray into the solids of these bits.
+/// Sets the media around the ray's origin to the solids of these bits.
 template <class Real>
 CISTULA_HD inline void surround(Ray<Real>& ray, uint32_t solids) {
     for (uint32_t solid = 0; solid < 8; ++solid)
         if ((solids >> solid & 1u) != 0) ray.media.add(solid, 1);
 }
 
-/// Those of place_numbers, the number of intervals, how far beside the x axis rays may go, the sine
-/// of their greatest angle to it in air; then of every interval its ends, its index, the solids there as bits.
+/// Appends the numbers of place_numbers, the number of intervals, the greatest distance of rays from the x axis, the
+/// sine of their greatest angle to it in air; then for every interval its ends, its index, the solids there as bits.
 inline void sequence_numbers(const std::vector<Body>& bodies, Form form, const glm::dvec3& turn,
                              const glm::dvec3& center, double factor, std::vector<double>& numbers) {
     std::set<double> ends;
@@ -142,7 +142,7 @@ inline std::string label(Form form, const char* name, const std::vector<Body>& b
     return text;
 }
 
-/// Up by an ulp, down, or not at all, by the value and whose it is, so that a mesh stays closed.
+/// Moves a number up or down by an ulp or leaves it, depending on its value and owner, so that a mesh stays closed.
 template <class Real>
 Real moved(Real x, uint64_t whose) {
     if (!is_finite(x) || x == Real(0)) return x;

@@ -1,11 +1,13 @@
-// Brewster's angle, where light in the plane of incidence is not reflected, and the two rays stand at right angles.
+// Brewster's angle: light polarized in the plane of incidence is not reflected; reflected and refracted ray are
+// perpendicular.
 #pragma once
 
 #include "apps/render_verify/refraction/fresnel.h"
 
 namespace cistula::verify::refraction {
 
-/// The record's direction is at the angle itself, tan = n, rounded; the share expected is that of the exact angle.
+/// Appends a record whose direction is at Brewster's angle, tan = n, rounded; the expected share is that of the exact
+/// angle.
 inline void brewster_record(Draw& draw, std::vector<double>& numbers) {
     const double from = 1 + draw.unit<double>(), to = from * (1.0625 + 1.5 * draw.unit<double>());
     const Vec3<double> normal = axis_normal(draw);
@@ -23,9 +25,10 @@ inline void brewster_record(Draw& draw, std::vector<double>& numbers) {
     }
 }
 
-/// ((n^2 - 1)/(n^2 + 1))^2 / 2. The amplitude across the plane has the derivative 2 D / (g h^2) by c, so that its
-/// square changes by the share 4 c / g = 4 / n^2 of c's change; the other's square has none there. c is rounded by u at
-/// most, which is one ulp of the share at most: 4 ulps for n >= 1, and one rounding.
+/// Reflectance at Brewster's angle, ((n^2 - 1)/(n^2 + 1))^2 / 2. The amplitude perpendicular to the plane has the
+/// derivative 2 D / (g h^2) by c, so its square changes by the share 4 c / g = 4 / n^2 of c's change; the other
+/// amplitude's square has derivative 0 there. c is rounded by at most u, which is at most one ulp of the share: 4 ulps
+/// for n >= 1, and one rounding.
 struct BrewsterShare {
     static constexpr const char* name = "refraction/brewster/share";
     static constexpr const char* exact = "half of ((n^2 - 1)/(n^2 + 1))^2: none of the light in the plane";
@@ -42,8 +45,9 @@ struct BrewsterShare {
     static void plan(Plan& plan) { plan_records<BrewsterShare>(plan, 4, 100000, 4000, brewster_record); }
 };
 
-/// The angle between the two changes by 1 + c / g = 1 + 1 / n^2 <= 2 times that of incidence, which is off by u at
-/// most: 2 u. The mirrored ray is rounded by its last factor, u; the other by 2 u (any-angle). 5 u.
+/// Perpendicularity of the reflected and the refracted ray. The angle between them changes by 1 + c / g = 1 + 1 / n^2
+/// <= 2 times that of incidence, which is off by at most u: 2 u. The reflected ray is rounded by its last factor, u;
+/// the other by 2 u (any-angle). 5 u.
 struct BrewsterAngle {
     static constexpr const char* name = "refraction/brewster/right-angle";
     static constexpr const char* exact = "mirrored and refracted ray at right angles";

@@ -1,5 +1,5 @@
-// A camera inside a solid sees what a ray from outside sees as it goes on from there: the same media, the same next
-// face, the same bend.
+// A camera inside a solid must see what a ray from outside sees as it continues from there: the same media, next face
+// and refraction.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -39,14 +39,14 @@ struct CameraInside {
         Lines<Real> seen;
         trace(setup, intersector, view, seen);
         same = same && seen.flags == 0 && seen.first[0].key == ahead.key;
-        // A face that is passed unshaded begins no new line.
+        // A face that is passed without shading does not start a new line.
         if (line + 1 < lines.count && seen.count > 1 && same)
             same = seen.direction[1] == lines.direction[line + 1] && seen.index[1] == lines.index[line + 1];
         tally.expect(same);
         tally.witness(!around.empty());
     }
 
-    /// Whether lines beside this one, by more than rounding moves it, meet something else: an edge, or a silhouette.
+    /// Whether lines beside this one, farther away than rounding moves it, hit something else: an edge or a silhouette.
     template <class Real, class Intersector>
     CISTULA_HD static bool edge_ahead(const Setup<Real>& setup, const Intersector& intersector,
                                       const Lines<Real>& lines, int line) {
@@ -56,7 +56,7 @@ struct CameraInside {
             Ray<Real> ray = ray_from(origin, lines.direction[line]);
             ray.origin[k / 2] += k % 2 != 0 ? beside : -beside;
             ray.media = lines.media[line];
-            // Not from the face, which those on the wrong side of it would meet: from a little farther on.
+            // Not from the face itself, which lines on its wrong side would hit: from a little farther on.
             ray.origin =
                 along(ray.origin, least(lines.first[line].t * Real(0.125), Real(0.0625)), lines.direction[line]);
             if (intersector.closest(ray).key != lines.first[line].key) return true;

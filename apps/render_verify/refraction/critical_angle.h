@@ -11,7 +11,7 @@ namespace cistula::verify::refraction {
 
 inline constexpr IndexPair critical_pairs[] = {{1.5, 1}, {1.5, 1.33}, {1.33, 1}, {2, 1}, {2.417, 1.5}};
 
-/// The critical sine times 1 + k step, for |k| in [1, most], about normals along axes and others.
+/// Appends records at the critical sine times 1 + k step for |k| in [1, most], about normals along axes and others.
 inline void sweep_records(const IndexPair& index, double step, int most, bool axes, uint64_t seed,
                           std::vector<double>& numbers) {
     for (int k = -most; k <= most; ++k) {
@@ -56,8 +56,8 @@ struct CriticalAngle {
     }
 };
 
-/// The critical angle through the ray tree: from inside a cube in a larger one, faces across the axes, their normals
-/// exact.
+/// Total reflection in the ray tree: from inside a cube in a larger one, with faces perpendicular to the axes and exact
+/// normals.
 struct CriticalAngleTraced {
     static constexpr const char* name = "refraction/critical-angle/traced";
     static constexpr const char* exact = "the ray tree mirrors or bends as 113 bits say, in steps of 2^-22";
@@ -89,7 +89,7 @@ struct CriticalAngleTraced {
         for (const IndexPair& index : critical_pairs)
             for (const Shape shape : {Shape::planes, Shape::triangles}) {
                 SceneDescription scene = empty_scene();
-                const double radius = std::sqrt(3.0);  // of a cube of side 2
+                const double radius = std::sqrt(3.0);  // half diagonal of a cube of side 2
                 add_solid(scene, shape, solid_object(PlatonicSolid::cube, {}, radius),
                           add_material(scene, glass(index.to)));
                 add_solid(scene, shape, solid_object(PlatonicSolid::cube, {}, radius / 2),

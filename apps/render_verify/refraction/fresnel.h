@@ -1,4 +1,5 @@
-// Snell's direction and Fresnel's share at the angles where their formulas lose digits, against 113 bits.
+// Refracted direction and Fresnel reflectance at angles where their formulas lose digits, compared with 113-bit
+// results.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -9,7 +10,7 @@
 
 namespace cistula::verify::refraction {
 
-/// Indices at least 2^-10 apart, in either order.
+/// A random pair of indices at least 2^-10 apart, in either order.
 inline IndexPair drawn_pair(Draw& draw) {
     IndexPair pair{1 + 1.5 * draw.unit<double>(), 1};
     const int kind = draw.between(0, 3);
@@ -19,7 +20,7 @@ inline IndexPair drawn_pair(Draw& draw) {
     return swap ? IndexPair{pair.to, pair.from} : pair;
 }
 
-/// One part of rays whose records `make` appends.
+/// Adds a part of rays whose records `make` appends.
 template <class Functor, class Make>
 void plan_records(Plan& plan, uint64_t seed, uint64_t full, uint64_t quick, const Make& make) {
     Part& part = plan.add("records", empty_scene(), Functor(), {}, plan.rays(full, quick));
@@ -29,10 +30,10 @@ void plan_records(Plan& plan, uint64_t seed, uint64_t full, uint64_t quick, cons
     }
 }
 
-/// All is computed one precision up. For float that is double: n - 1 has a relative error of 2^-53 / |n - 1| <= 2^-43,
-/// which the square doubles; g^2, at least 2^-14 here, one of 2^-39 at most; every further step adds 2^-52 or so.
-/// Beside the half ulp of the last rounding all of it is below 2^-13 of an ulp, and less in double; 2^-10 is what the
-/// bound grants.
+/// Bound in ulps for results computed one precision up and rounded once. For float that is double: n - 1 has a relative
+/// error of 2^-53 / |n - 1| <= 2^-43, which the square doubles; g^2, at least 2^-14 here, one of 2^-39 at most; every
+/// further step adds about 2^-52. Beside the half ulp of the last rounding all of these are below 2^-13 of an ulp, and
+/// less in double; the bound allows 2^-10.
 inline constexpr double rounded_once = 0.5 + 0x1p-10;
 
 struct FresnelNormal {
@@ -54,7 +55,7 @@ struct FresnelNormal {
             const Vec3<double> normal = axis_normal(draw);
             const size_t first = numbers.size();
             add_records(-normal, normal, index.from, index.to, numbers);
-            // The closed form in the place of the general one.
+            // The closed form instead of the general one.
             const Quad n = Quad(index.to) / Quad(index.from), amplitude = (n - 1) / (n + 1),
                        share = amplitude * amplitude;
             for (const size_t at : {first + record_reflectance, first + record_size + record_reflectance}) {
@@ -98,7 +99,7 @@ struct FresnelGrazing {
     }
 };
 
-/// Nothing is reflected and nothing bends: g = c and D = 0 to the last bit.
+/// Equal indices: nothing is reflected or refracted, g = c and D = 0 to the last bit.
 struct FresnelEqual {
     static constexpr const char* name = "refraction/fresnel/equal-indices";
     static constexpr const char* exact = "no reflection, no bend, at any angle";
@@ -114,7 +115,7 @@ struct FresnelEqual {
         const Vec3<Real> direction(square_root(1 - cosine * cosine) * tangent - cosine * Vec3<double>(normal));
         const double index = 1 + draw.below(1024) * 0x1p-8;
         const Refraction<Real> found = refracted(direction, normal, index, index);
-        // A face that is not clear asks for no bend at all.
+        // A material that is not clear needs no refraction.
         Material<Real> material = Material<Real>();
         material.reflection = Real(0.25);
         material.transmission = Real(0.5);

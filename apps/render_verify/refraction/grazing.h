@@ -1,5 +1,4 @@
-// Faces that bodies share, met at any slant: a line bends there once, or is mirrored once, and the next face is far
-// off.
+// Faces shared by bodies, hit at any slant: a line is refracted or reflected there once, and the next face is far away.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +21,8 @@ inline std::vector<SharedFace> shared_faces() {
             {{{0, 3, 1.5}, {1, 3, 1.33}, {2, 3, 2}}, 3}};
 }
 
-/// From a little before the face, at its middle. Numbers: the place of x = y = z = 0 and the three axes, the face, the
-/// way through it (1 or -1), the indices before and behind it, the solids before it as bits.
+/// Rays that start a little before the face, at its center. Numbers: the position of x = y = z = 0 and the three axes,
+/// the face, the direction through it (1 or -1), the indices before and behind it, the solids before it as bits.
 struct Grazing {
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
@@ -59,7 +58,7 @@ struct Grazing {
         tally.expect(good);
     }
 
-    /// `changed`: planes and corners are moved by an ulp or none.
+    /// Adds the parts; `changed`: planes and corners are moved by an ulp or not at all.
     template <class Functor>
     static void plan_faces(Plan& plan, bool changed) {
         uint64_t number = 0;
@@ -98,7 +97,7 @@ struct Grazing {
     }
 
   private:
-    /// In units of the scene.
+    /// Distance of two points in scene units.
     template <class Real>
     CISTULA_HD static double apart(const Setup<Real>& setup, const Vec3<Real>& a, const Vec3<Real>& b) {
         return length(Vec3<double>(a) - Vec3<double>(b)) / setup.factor;

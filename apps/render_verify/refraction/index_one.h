@@ -1,4 +1,4 @@
-// A solid of the index around it that mirrors and tints nothing is not there: not in one bit of the image.
+// A clear solid of the surrounding index changes no bit of the image.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace cistula::verify::refraction {
 
-/// A floor of cells, an opaque solid, a mirror, tinted glass that splits by Fresnel's terms and absorbs, lights of all
-/// kinds. The frame and the bound are pinned, so that more solids change neither.
+/// A room with a checkered floor, an opaque solid, a mirror, tinted absorbing Fresnel glass, and lights of all kinds.
+/// The frame and the bound are given, so that additional solids change neither.
 inline SceneDescription room() {
     SceneDescription scene = empty_scene();
     scene.frame = FrameOfReference{{0, 0, 0}, -2, 64.0};
@@ -57,7 +57,8 @@ inline SceneDescription room() {
     return scene;
 }
 
-/// Expects equal pixels but for the solids' numbers, of which the image without has `fewer`, and the count of rays.
+/// Expects equal pixels, except for the solids' numbers, which are lower by `fewer` in the image without, and ray
+/// counts.
 inline void expect_same(const Film& with, const Film& without, int fewer, Tally& tally) {
     for (size_t i = 0; i < without.pixels.size(); ++i) {
         const PixelRecord &a = with.pixels[i], &b = without.pixels[i];
@@ -93,8 +94,8 @@ struct IndexOne {
                          seen.radiance_exponent == expected.radiance_exponent);
             expect_same(seen, expected, first ? added : 0, tally);
         };
-        // Of lower priority than all else: through everything, around the camera and around lights. At most 8 in one
-        // place.
+        // A solid of lower priority than all others: through everything, around the camera and around lights. At most 8
+        // in one place.
         const Change everywhere = [](SceneDescription& scene, int clear) {
             for (size_t k = 0; k < 5; ++k) {
                 const PlatonicSolid kind = platonic_solids[k];

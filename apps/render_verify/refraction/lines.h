@@ -1,5 +1,5 @@
-// What a path of light is made of: the straight lines that the ray tree itself follows, seen by an intersector that
-// notes what it is asked. For scenes in which a face lets all through or, beyond the critical angle, mirrors all.
+// The straight lines of a light path, as the ray tree follows them, recorded by an intersector that notes its queries.
+// For scenes in which every face transmits all light or, beyond the critical angle, reflects all.
 #pragma once
 
 #include "apps/render_verify/crossings.h"
@@ -12,12 +12,12 @@ struct Lines {
     static constexpr int capacity = 12;
 
     Vec3<Real> origin[capacity], direction[capacity];
-    double index[capacity];     // of the medium that the line starts in
-    Hit<Real> first[capacity];  // what it meets first, shaded or not
+    double index[capacity];     // of the medium in which the line starts
+    Hit<Real> first[capacity];  // the first hit, shaded or not
     MediaList media[capacity];
     int count = 0;
     uint32_t flags = 0;  // RenderFlag bits
-    bool cut = false;    // went on past `capacity`
+    bool cut = false;    // the path is longer than `capacity`
 
     CISTULA_HD bool whole() const { return flags == 0 && !cut; }
 };
@@ -51,7 +51,7 @@ struct Watched {
     }
 };
 
-/// An observer that keeps nothing of what a tree sees first.
+/// An observer of the ray tree that records nothing.
 struct Unnoted {
     template <class Hit, class Normal>
     CISTULA_HD void surface(const Hit&, const Normal&) const {}
@@ -84,7 +84,7 @@ CISTULA_SELDOM void trace(const Setup<Real>& setup, const Intersector& intersect
     lines.cut = record.cut[0] != 0;
 }
 
-/// A material that lets all through.
+/// A material that transmits all light.
 inline MaterialDescription glass(double index) {
     MaterialDescription material;
     material.transmission = 1;

@@ -1,5 +1,5 @@
-// Media one beside, over and in another: along a ray there is the sequence of indices that the scene's description
-// says, and never a gap of air where bodies touch.
+// Media side by side, overlapping and nested: the sequence of indices along a ray is that of the scene's description,
+// without gaps of air where bodies touch.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace cistula::verify::refraction {
 
-/// Straight at faces that all lie across one axis: the sequence is known from the intervals alone.
+/// Rays through faces that are all perpendicular to one axis; the sequence follows from the intervals alone.
 struct MediaSequence {
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
@@ -42,7 +42,7 @@ struct MediaSequence {
         tally.expect(same && line == lines.count);
     }
 
-    /// Every order in the file; `change` alters the compiled scene.
+    /// Adds parts for every order of the bodies in the file; `change` alters the compiled scene.
     template <class Functor, class Change>
     static void plan_bodies(Plan& plan, const std::vector<Form>& forms, const Change& change) {
         uint64_t number = 0;
@@ -102,8 +102,8 @@ struct MediaMovedTriangles : MediaSequence {
         });
     }
 };
-/// Planes closer than 1e-12 M are one when a scene is read, so that in double they are never a few ulps apart; in float
-/// they may be: moved there only.
+/// Planes moved by an ulp or not at all, in float only: planes closer than 1e-12 M become one when a scene is read, so
+/// in double they are never just a few ulps apart.
 struct MediaMovedPlanes : MediaSequence {
     static constexpr const char* name = "refraction/media/within-rounding/planes";
     static constexpr const char* exact = "the same where shared faces of solids of planes are ulps apart in float";
@@ -115,8 +115,8 @@ struct MediaMovedPlanes : MediaSequence {
     }
 };
 
-/// Eight cubes of one glass that share faces, edges and a corner are one cube: light is in it once, however it is
-/// reflected.
+/// Eight cubes of one glass that share faces, edges and a corner act as one cube: a ray inside is in one medium,
+/// however it is reflected.
 struct Octants {
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,

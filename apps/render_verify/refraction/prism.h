@@ -1,4 +1,4 @@
-// A prism turns light least when it passes symmetrically.
+// A prism deviates light least when the path is symmetric.
 #pragma once
 
 #include "apps/render_verify/refraction/lines.h"
@@ -7,7 +7,7 @@
 
 namespace cistula::verify::refraction {
 
-/// Two faces of a solid about one of its edges, with an index at which light passes symmetrically.
+/// Two faces of a solid at one of its edges, and an index for which light passes symmetrically.
 struct Prism {
     PlatonicSolid solid;
     double index;
@@ -29,7 +29,7 @@ struct PrismDeviation {
     static constexpr Bound bound = at_most(23.5, "u");
     static constexpr bool needs_witness = true;
 
-    /// Numbers: unit directions in, out and along the edge; where the symmetric way enters; the cosine of the
+    /// Numbers: unit directions in, out and along the edge; the point of entry of the symmetric path; the cosine of the
     /// deviation; a length.
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
@@ -99,7 +99,7 @@ struct PrismDeviation {
             normalized(along_first * (index * length(within - dot(within, first) * first)) - double(c) * first);
         const glm::dvec3 out =
             normalized(along_second * (index * length(within - dot(within, second) * second)) + double(c) * second);
-        // The way through, a little inside the edge's middle, back to the first face.
+        // The symmetric path, a little inside the middle of the edge, back to the first face.
         const glm::dvec3 inward = -normalized(first + second);
         const double apothem = length(a - b) * 0.125;
         const glm::dvec3 through = 0.5 * (a + b) + inward * apothem;

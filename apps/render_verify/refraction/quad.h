@@ -1,4 +1,4 @@
-// What snell.h should find, in 113 bits, and records of it that travel to the device. Host only, but for reading them.
+// Reference results of snell.h in 113 bits, and records of them for the device. Host only, except for reading records.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace cistula::verify::refraction {
 
 using Quad = __float128;
 
-/// Newton from the root in double: twice as many digits a step.
+/// Square root by Newton's method from the root in double; each step doubles the number of digits.
 inline Quad root(Quad a) {
     if (!(a > 0)) return 0;
     Quad r = Quad(std::sqrt(double(a)));
@@ -19,7 +19,7 @@ inline Quad root(Quad a) {
     return r;
 }
 
-/// One refraction as doubles. A number of more than 53 bits is a pair whose sum it is.
+/// Fields of a record of one refraction, in doubles. A number of more than 53 bits is a pair whose sum it is.
 enum RecordField : uint32_t {
     record_from,
     record_to,
@@ -31,7 +31,7 @@ enum RecordField : uint32_t {
     record_size = record_through + 6,
 };
 
-/// Appends the refraction of `direction`, rounded to Real; returns g^2.
+/// Appends the record of the refraction of `direction`, rounded to Real; returns g^2.
 template <class Real>
 Quad add_record(const Vec3<double>& direction, const Vec3<double>& normal, double from, double to,
                 std::vector<double>& numbers) {
@@ -51,7 +51,7 @@ Quad add_record(const Vec3<double>& direction, const Vec3<double>& normal, doubl
     for (int k = 0; k < 3; ++k) numbers.push_back(double(at[k]));
     numbers.push_back(total ? 1 : 0);
     const Quad g = root(g2);
-    // Fresnel's amplitudes as textbooks give them: across the plane of incidence and in it.
+    // Fresnel's amplitudes in textbook form: perpendicular to the plane of incidence and in it.
     const Quad s = (c - g) / (c + g), p = (n * n * c - g) / (n * n * c + g);
     pair(total ? Quad(1) : (s * s + p * p) / 2);
     Quad through[3], square = 0;
@@ -59,14 +59,14 @@ Quad add_record(const Vec3<double>& direction, const Vec3<double>& normal, doubl
     for (int k = 0; k < 3; ++k) pair(total ? Quad(0) : through[k] / root(square));
     return g2;
 }
-/// Asks one question of either precision, side by side; returns double's g^2.
+/// Appends records of one refraction for both precisions, side by side; returns the g^2 of double.
 inline Quad add_records(const Vec3<double>& direction, const Vec3<double>& normal, double from, double to,
                         std::vector<double>& numbers) {
     add_record<float>(direction, normal, from, to, numbers);
     return add_record<double>(direction, normal, from, to, numbers);
 }
 
-/// Ray i's record.
+/// Access to the record of ray i.
 template <class Real>
 class Record {
   public:
@@ -78,13 +78,13 @@ class Record {
     CISTULA_HD Vec3<Real> direction() const { return at(record_direction); }
     CISTULA_HD Vec3<Real> normal() const { return at(record_normal); }
     CISTULA_HD bool total() const { return data_[record_total] != 0; }
-    /// In ulps of the exact value.
+    /// Deviation of a reflectance from the exact value in ulps.
     CISTULA_HD double reflectance_off(Real found) const {
         const double high = data_[record_reflectance], off = (double(found) - high) - data_[record_reflectance + 1];
         const uint64_t exponent = bits_as<uint64_t>(high) & 0x7ff0000000000000u;
         return magnitude(off) / (bits_as<double>(exponent) * (2 * double(RealTraits<Real>::unit)));
     }
-    /// The length of the difference, in u.
+    /// Length of a refracted direction's deviation from the exact one, in u.
     CISTULA_HD double through_off(const Vec3<Real>& found) const {
         Vec3<double> off;
         for (int k = 0; k < 3; ++k)
@@ -104,14 +104,14 @@ struct IndexPair {
     double from, to;
 };
 
-/// A unit vector across `normal`.
+/// A random unit vector perpendicular to `normal`.
 inline Vec3<double> tangent_to(const Vec3<double>& normal, Draw& draw) {
     for (;;) {
         const Vec3<double> other = draw.in_cube<double>(1.0), across = other - dot(other, normal) * normal;
         if (dot(across, across) > 0x1p-8) return normalized(across);
     }
 }
-/// At a cosine and a sine of incidence.
+/// The incoming direction for a cosine and a sine of incidence.
 inline Vec3<double> incoming(const Vec3<double>& normal, double cosine, double sine, Draw& draw) {
     const Vec3<double> tangent = tangent_to(normal, draw);
     return sine * tangent - cosine * normal;

@@ -1,4 +1,4 @@
-// Light goes back the way it came.
+// Reversibility of light paths: a refracted direction, reversed and refracted back, is the original direction.
 #pragma once
 
 #include "apps/render_verify/refraction/fresnel.h"

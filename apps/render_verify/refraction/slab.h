@@ -1,5 +1,5 @@
-// A ray through two parallel faces goes on as it came, moved aside by h s (1 - c / g): thickness h, sine and cosine of
-// incidence s and c, g = sqrt(n^2 - s^2).
+// A ray through two parallel faces leaves in its original direction, displaced by h s (1 - c / g): thickness h, sine
+// and cosine of incidence s and c, g = sqrt(n^2 - s^2).
 #pragma once
 
 #include "apps/render_verify/refraction/lines.h"
@@ -10,7 +10,8 @@ namespace cistula::verify::refraction {
 
 inline constexpr double slab_indices[] = {1.0625, 1.33, 1.5, 2.5};
 
-/// Cubes of side 2. Points: the middles of the faces, then the middle. Numbers: the index, half of the side.
+/// Adds parts with cubes of side 2. Points: the centers of the faces, then the center. Numbers: the index, half of the
+/// side.
 template <class Functor>
 void plan_slabs(Plan& plan, const std::vector<Shape>& shapes, const std::vector<glm::dvec3>& rotations) {
     for (const double index : slab_indices)
@@ -32,12 +33,12 @@ void plan_slabs(Plan& plan, const std::vector<Shape>& shapes, const std::vector<
             }
 }
 
-/// A ray from outside at a face, and what became of it.
+/// A ray from outside through a face, and where it leaves.
 template <class Real>
 struct SlabRay {
     Lines<Real> lines;
-    Vec3<double> normal, to;  // outward at the face that it enters by; the way it goes
-    bool through;             // entered and left by the opposite face
+    Vec3<double> normal, to;  // outward at the face of entry; direction after the cube
+    bool through;             // entered one face and left by the opposite one
 };
 template <class Real, class Intersector>
 CISTULA_HD inline void pass_slab(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
@@ -59,8 +60,8 @@ CISTULA_HD inline void pass_slab(const Setup<Real>& setup, const Intersector& in
                   magnitude(dot(normal_at(setup.scene, lines.first[1]), Vec3<Real>(ray.normal))) > Real(0.5);
 }
 
-/// Both faces have the same normal, bit for bit: this is reversibility once more, with n < 1 on the way out, whose
-/// bound is the same.
+/// The direction after a slab equals that before. Both faces have the same normal, bit for bit, so this is
+/// reversibility once more, with n < 1 on the way out and the same bound.
 struct SlabParallel {
     static constexpr const char* name = "refraction/slab/parallel";
     static constexpr const char* exact = "the ray leaves as it came";
@@ -73,7 +74,7 @@ struct SlabParallel {
         SlabRay<Real> ray;
         pass_slab(setup, intersector, i, ray);
         tally.expect(ray.lines.flags == 0 && ray.lines.count >= 3);
-        if (!ray.through) return;  // by a side
+        if (!ray.through) return;  // left by a side
         tally.witness(true);
         const Condition condition = condition_of(ray.to, ray.normal, 1, setup.numbers[0]);
         const Vec3<double> off = Vec3<double>(ray.lines.direction[2]) - ray.to;
@@ -81,7 +82,7 @@ struct SlabParallel {
     }
     static void plan(Plan& plan) {
         plan_slabs<SlabParallel>(plan, {Shape::planes}, {{0, 0, 0}, {20, 35, 50}});
-        // The normals of a mesh come from its corners: the same for both faces only across the axes.
+        // A mesh's normals come from its corners; both faces have the same one only if perpendicular to an axis.
         plan_slabs<SlabParallel>(plan, {Shape::triangles}, {{0, 0, 0}});
     }
 };

@@ -1,11 +1,11 @@
-// A face never shadows itself, nor does a convex body: what faces a light is lit in full, bit for bit.
+// No face and no convex body shadows itself: a face toward a light is fully lit, bit for bit.
 #pragma once
 
 #include "apps/render_verify/shadows/local_light.h"
 
 namespace cistula::verify::shadows {
 
-/// Looks at a convex body from all around, and asks one light. Numbers: the body's middle and radius.
+/// Rays at a convex body from all around, with one light each. Numbers: the body's center and radius.
 struct LitInFull {
     uint32_t solid;
 
@@ -55,7 +55,7 @@ inline void add_lights_around(SceneDescription& scene, const SolidObject& body) 
     }
 }
 
-/// What stands at a place: a solid of planes, its triangles, or a square that faces up before it is turned.
+/// The object at a placement: a solid of planes, its triangles, or a square that faces up before rotation.
 enum class Body { planes, triangles, sheet };
 
 template <class Functor>
@@ -140,8 +140,8 @@ struct AcneTinyTriangles : LitInFull {
     static void plan(Plan& plan) { plan_acne<AcneTinyTriangles>(plan, Body::triangles, {1e6}, true); }
 };
 
-/// The facets of a coarse sphere that the light just reaches are lit in full, those that it just does not are dark: no
-/// jagged shadow of facets on one another.
+/// The facets of a coarse sphere that the light just reaches are fully lit, those that it just misses are dark: facets
+/// cast no jagged shadows on one another.
 struct Terminator : LitInFull {
     static constexpr const char* name = "shadows/terminator";
     static constexpr const char* exact = "facets of a coarse sphere are lit by their own half-space alone";

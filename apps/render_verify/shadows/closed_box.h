@@ -1,5 +1,4 @@
-// No light gets out of a closed opaque solid, through its edges and corners either, and glass lets out its share
-// exactly.
+// No light leaves a closed opaque solid, not through its edges and corners either; glass transmits its exact share.
 #pragma once
 
 #include "apps/render_verify/shadows/local_light.h"
@@ -20,11 +19,12 @@ inline uint32_t add_lights_inside(SceneDescription& scene, const SolidObject& so
     return uint32_t(scene.lights.size());
 }
 
-/// Numbers: the radius, how far scene units round, the solid's planes from first_plane on.
+/// Points outside a solid with lights inside. Numbers: the radius, the rounding of scene units, the solid's planes from
+/// first_plane on.
 struct FromOutside {
     static constexpr uint32_t first_plane = 2;
     uint32_t solid;
-    int halvings;  // of the light at each face; below 0: opaque
+    int halvings;  // of the light at each face; negative: opaque
 
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
@@ -57,7 +57,7 @@ struct FromOutside {
     }
 };
 
-/// `tiny`: only the solid that is a few numbers wide; else all others.
+/// Adds the parts. `tiny`: only the solid that is a few floating-point numbers wide; else all others.
 template <class Functor>
 void plan_boxes(Plan& plan, Shape shape, int halvings, bool tiny) {
     for (const PlatonicSolid kind : platonic_solids)
@@ -117,7 +117,7 @@ struct InsideGlassTriangles : FromOutside {
     static void plan(Plan& plan) { plan_boxes<InsideGlassTriangles>(plan, Shape::triangles, 3, false); }
 };
 
-/// A floor around opaque solids with lights in them, as the renderer sees it.
+/// A floor around opaque solids with lights inside, rendered.
 struct BoxPixels {
     static constexpr const char* name = "shadows/closed-box/pixels";
     static constexpr const char* exact = "every pixel of a floor around opaque solids with lights in them is 0";
@@ -145,7 +145,7 @@ struct BoxPixels {
                 ++tally.place;
                 tally.expect(pixel.radiance[0] == 0 && pixel.radiance[1] == 0 && pixel.radiance[2] == 0);
             }
-            // The same picture is not dark for want of anything else.
+            // The picture with a light outside is not dark, so nothing else darkens it.
             add_light(scene, {0.5, -3, 4});
             film = stage.render(scene, width, height);
             int lit = 0;

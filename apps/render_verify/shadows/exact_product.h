@@ -1,17 +1,18 @@
-// A shadow through faces of transmission 2^-k is 2^-(the sum), also where triangles meet.
+// A shadow through faces of transmission 2^-k is 2^-(sum of k), also where triangles meet.
 #pragma once
 
 #include "apps/render_verify/shadows/local_light.h"
 
 namespace cistula::verify::shadows {
 
-/// Many sheets in a pile, each of a grid of triangles. Numbers: the axis of the pile, and where on it lines begin.
+/// A pile of sheets, each a grid of triangles. Numbers: the axis of the pile, and the coordinate on it where lines
+/// begin.
 struct ThroughSheets {
     static constexpr const char* name = "shadows/exact-product/sheets";
     static constexpr const char* exact = "through m sheets of transmission 2^-k exactly 2^-sum, at shared edges too";
     static constexpr Bound bound = no_failures("shadow rays");
 
-    int loss[3];  // the last channel is opaque where below 0
+    int loss[3];  // the last channel is opaque if it is negative
 
     static void plan(Plan& plan) {
         for (const uint32_t sheets : {1u, 2u, 5u, 20u})
@@ -121,7 +122,7 @@ struct ThroughSolids {
         const uint32_t light = draw.below(setup.scene.lights.size);
         const Vec3<double> from(setup.scene.lights[light].position);
         const Vec3<double> target(setup.point(draw.below(setup.points.size)));
-        // As far beyond the target as the scene goes.
+        // Length of the line beyond the target: past the whole scene.
         const double reach = 1.7 * double(setup.extent());
         const Vec3<double> way = normalized(target - from);
         const double ahead = dot(target, way);

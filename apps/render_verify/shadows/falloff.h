@@ -6,7 +6,7 @@
 
 namespace cistula::verify::shadows {
 
-/// Looks down at a horizontal face. h and x are those of the point where the ray tree shades it.
+/// Rays down at a horizontal face. h and x are those of the point that the ray tree shades.
 struct Falloff {
     static constexpr const char* name = "shadows/falloff";
     static constexpr const char* exact = "light on a plane under a lamp is I h/(h^2+x^2)^(3/2)";
@@ -65,7 +65,7 @@ struct Falloff {
         const DoubleDouble square = x * x + y * y + h * h, ih = DoubleDouble(double(light.intensity.x)) * h;
         const DoubleDouble value =
             fast_two_sum(double(lit.radiance[0] >> 31) * 0x1p-31, double(lit.radiance[0] & 0x7fffffff) * 0x1p-62);
-        if (!(value.high > 0x1p-8)) return;  // where the sums have fewer digits than a double
+        if (!(value.high > 0x1p-8)) return;  // otherwise the sums have fewer digits than a double
         // v^2 r^6 over I^2 h^2 is 1 + 2 e: no root is taken.
         const DoubleDouble e = (value * value * (square * square * square) - ih * ih) / (ih * ih);
         tally.witness(lit.shadow_rays == 1);

@@ -7,9 +7,9 @@ namespace cistula::verify::shadows {
 
 inline constexpr int glass_halvings = 2;
 
-/// A light on a solid: at a corner, on an edge, or on a face; the faces that it lies on, as bits, by how it was made.
+/// A light on a corner, an edge or a face of a solid, with the faces on which it lies as bits, by construction.
 struct OnSolid {
-    glm::dvec3 place;  // of the solid at the origin, with radius 1, not turned
+    glm::dvec3 place;  // for the solid at the origin with radius 1, not rotated
     uint32_t faces;
 };
 
@@ -35,7 +35,8 @@ inline std::vector<OnSolid> places_on(const PlatonicShape& shape) {
     return places;
 }
 
-/// A point somewhere. Numbers: for each light and solid the faces that hold the light; then the planes of each solid.
+/// Shadow rays from random points. Numbers: for each light and solid the faces on which the light lies; then the planes
+/// of each solid.
 struct HalfSpaces {
     uint32_t solids, faces, lights;
     bool glass;
@@ -84,7 +85,7 @@ struct HalfSpaces {
     }
 };
 
-/// Which numbers a part of HalfSpaces needs.
+/// Appends the numbers that HalfSpaces needs to a part.
 inline void add_half_spaces(Part& part, const std::vector<SolidObject>& solids,
                             const std::vector<std::vector<OnSolid>>& on) {
     part.frame_numbers = [solids, on](const glm::dvec3& center, double factor, std::vector<double>& numbers) {

@@ -1,11 +1,11 @@
-// Lights on the face that two solids share.
+// Lights on a face shared by two solids.
 #pragma once
 
 #include "apps/render_verify/shadows/half_spaces.h"
 
 namespace cistula::verify::shadows {
 
-/// Lights between two cubes that touch, of planes or of triangles, and where the shared face ends.
+/// Lights between two touching cubes of planes or triangles, and at the border of the shared face.
 struct LightsInContact : HalfSpaces {
     static constexpr const char* name = "shadows/lights-in-contact";
     static constexpr const char* exact = "lights on the face that two solids share: each by its own half-spaces";
@@ -13,7 +13,7 @@ struct LightsInContact : HalfSpaces {
     static constexpr bool needs_witness = true;
 
     static void plan(Plan& plan) {
-        const double half_diagonal = 0.86602540378443864676;  // of a cube of side 1
+        const double half_diagonal = 0.86602540378443864676;  // half the diagonal of a cube of side 1
         const PlatonicShape& shape = platonic_shape(PlatonicSolid::cube);
         for (int shapes = 0; shapes < 4; ++shapes)
             for (const bool glass : {false, true}) {

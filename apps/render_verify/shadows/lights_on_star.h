@@ -1,5 +1,5 @@
-// Lights on the edges and corners of a mesh that is not convex: what hides them is what lies between, not what holds
-// them.
+// Lights on edges and corners of a nonconvex mesh: they are hidden by what lies between, not by the triangles that they
+// lie on.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace cistula::verify::shadows {
 
-/// Numbers: the corners of the star's triangles, nine a triangle; then for each light the triangles that hold it, 30
-/// bits a number.
+/// Numbers: the corners of the star's triangles, nine per triangle; then for each light the triangles on which it lies,
+/// 30 bits per number.
 struct LightsOnStar {
     static constexpr const char* name = "shadows/lights-on-solids/star";
     static constexpr const char* exact =
@@ -28,7 +28,7 @@ struct LightsOnStar {
                 SceneDescription scene = empty_scene();
                 scene.materials[0] = glass_or_opaque(scene, glass);
                 add_object(scene, mesh);
-                // At corners, along edges and on faces: a light is held by the triangles that have all its corners.
+                // At corners, along edges and on faces: a light lies on the triangles that have all its corners.
                 std::vector<std::vector<uint32_t>> held;
                 for (uint32_t v = 0; v < mesh.vertices.size(); v += 3) held.push_back({v});
                 for (uint32_t t = 0; t < mesh.triangles.size(); t += 4) {
@@ -73,7 +73,8 @@ struct LightsOnStar {
         return {numbers[k], numbers[k + 1], numbers[k + 2]};
     }
 
-    /// How the segment from p to l meets a triangle: 0 not, 1 crosses it, 2 too close to its border to say.
+    /// Relation of the segment from p to l to a triangle: 0 misses it, 1 crosses it, 2 too close to its border to
+    /// decide.
     CISTULA_HD int meets(const Span<double>& numbers, uint32_t triangle, const Vec3<double>& p, const Vec3<double>& l,
                          double doubt) const {
         const Vec3<double> a = corner(numbers, triangle, 0), b = corner(numbers, triangle, 1),

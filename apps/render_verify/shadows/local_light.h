@@ -1,4 +1,4 @@
-// What one light gives a hit, as the ray tree computes it, and what it would give if nothing stood between.
+// The contribution of one light at a hit, as the ray tree computes it, with and without shadows.
 #pragma once
 
 #include "apps/render_verify/case.h"
@@ -11,7 +11,7 @@ namespace cistula::verify::shadows {
 
 using All = Effects<all_effects>;
 
-/// Radiance in units of 2^-62.
+/// Contribution of a light, with radiance in units of 2^-62.
 struct LocalLight {
     int64_t radiance[3];
     uint32_t shadow_rays, flags;
@@ -23,7 +23,7 @@ struct LocalLight {
     CISTULA_HD bool dark() const { return radiance[0] == 0 && radiance[1] == 0 && radiance[2] == 0; }
 };
 
-/// In the place of an intersector: all light arrives.
+/// A stand-in for an intersector: all light arrives.
 struct Unshadowed {
     template <class E, class Real, class Media>
     CISTULA_HD Vec3<Real> transmittance(const ShadowRay<Real, Media>&) const {
@@ -47,7 +47,7 @@ CISTULA_HD inline LocalLight local_light(const Setup<Real>& setup, const Interse
     return {{record.radiance[0], record.radiance[1], record.radiance[2]}, rays.shadow, flags};
 }
 
-/// From a point in space to a light, as add_local_light aims.
+/// A shadow ray from a point in space to a light, aimed as in add_local_light.
 template <class Real>
 CISTULA_HD inline ShadowRay<Real> shadow_ray(const Setup<Real>& setup, const Vec3<Real>& origin, uint32_t light) {
     const Light<Real>& to = setup.scene.lights[light];
@@ -57,14 +57,14 @@ CISTULA_HD inline ShadowRay<Real> shadow_ray(const Setup<Real>& setup, const Vec
     return {ray_from(origin, direction), distance, &to};
 }
 
-/// Lights and nothing else: what is dark is in the shadow.
+/// A scene of lights only, so that what is dark is in shadow.
 inline SceneDescription lit_scene() {
     SceneDescription scene = empty_scene();
     scene.ambient = glm::dvec3(0);
     return scene;
 }
 
-/// The square [-half, half]^2 at a height z, turned; n x n cells of two triangles, cut along one diagonal or the other.
+/// The square [-half, half]^2 at height z, rotated; n x n cells of two triangles, cut along one diagonal or the other.
 inline TrianglesObject square(double half, double z, uint32_t n, bool other_way,
                               const glm::dvec3& rotation = glm::dvec3(0), const glm::dvec3& center = glm::dvec3(0)) {
     const Rotation turned(rotation);

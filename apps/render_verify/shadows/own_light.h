@@ -1,5 +1,4 @@
-// Lights on a solid and the solid itself: its outside gets nothing of them, its inside all, but for the faces that hold
-// them.
+// Lights on a solid's surface: the outside gets no light of them, the inside all, except the faces on which they lie.
 #pragma once
 
 #include "apps/render_verify/shadows/acne.h"
@@ -7,8 +6,7 @@
 
 namespace cistula::verify::shadows {
 
-/// Looks at a solid from outside or from inside it. Numbers as HalfSpaces has them, then the solid's middle and
-/// inradius.
+/// Rays at a solid from outside or from inside. Numbers as for HalfSpaces, then the solid's center and inradius.
 struct OwnLight : HalfSpaces {
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector& intersector, uint64_t i,
@@ -32,7 +30,7 @@ struct OwnLight : HalfSpaces {
         const Surface<Real> surface = surface_at<Real, All>(setup.scene, ray, hit);
         const LocalLight lit = local_light(setup, intersector, ray, hit, surface, light);
         const LocalLight open = local_light(setup, Unshadowed(), ray, hit, surface, light);
-        // The face that is looked at, by its normal, and whether it holds the light.
+        // The face that is hit, by its normal, and whether the light lies on it.
         const uint32_t incident = uint32_t(setup.numbers[light]);
         double depth = 1e300;
         bool holds = false;
@@ -94,7 +92,7 @@ struct OwnLightTriangles : OwnLight {
     static void plan(Plan& plan) { plan_own_light<OwnLightTriangles>(plan, Shape::triangles); }
 };
 
-/// A light in a face and the very point that it lies at, and those next to it: nothing, and no NaN.
+/// Shading at the very position of a light on a face, and at the next points: no light, and no NaN.
 struct LightAtThePoint {
     static constexpr const char* name = "shadows/light-at-the-point";
     static constexpr const char* exact = "a light at the point that is shaded, in its face: 0, never NaN";

@@ -1,4 +1,4 @@
-// The order of a file's triangles and lights does not show: not one integer of a film differs.
+// The order of triangles and lights in a file does not change any integer of a film.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ inline SceneDescription glass_room() {
     return scene;
 }
 
-/// The numbers below n in another order: turned round, or drawn.
+/// A permutation of the numbers below n: the reverse, or a random one.
 inline std::vector<uint32_t> permutation(size_t n, uint64_t which) {
     std::vector<uint32_t> order(n);
     for (size_t i = 0; i < n; ++i) order[i] = uint32_t(n - 1 - i);

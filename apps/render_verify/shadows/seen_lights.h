@@ -1,4 +1,4 @@
-// Many lights that are seen: which one a ray meets, and what a picture shows of them.
+// Many visible lights: which one a ray hits, and how a picture shows them.
 #pragma once
 
 #include "apps/render_verify/shadows/local_light.h"
@@ -7,7 +7,7 @@
 
 namespace cistula::verify::shadows {
 
-/// A tree over lights against the plain loop.
+/// The tree over lights compared with a plain loop.
 struct SeenLightTree {
     static constexpr const char* name = "shadows/seen-lights/tree";
     static constexpr const char* exact =
@@ -23,7 +23,7 @@ struct SeenLightTree {
             for (uint32_t k = 0; k < 4096; ++k) {
                 Draw draw(k, 77);
                 glm::dvec3 p = draw.in_cube<double>(1.0);
-                if (k % 16 == 1) p = points.back();  // two in one place
+                if (k % 16 == 1) p = points.back();  // two at one position
                 if (k % 16 == 2) p = points.back() + glm::dvec3(radius, 0, 0);
                 if (k % 16 == 3) p.z = 0;
                 LightDescription& light = add_light(scene, p);
@@ -74,7 +74,7 @@ struct SeenLightTree {
     }
 };
 
-/// A wall of lights that are only seen, some before others, behind an octahedron that hides some of them.
+/// A wall of lights that are only visible, some in front of others, behind an octahedron that hides some of them.
 struct SeenLightPixels {
     static constexpr const char* name = "shadows/seen-lights/pixels";
     static constexpr const char* exact = "a picture of 4,096 seen lights: the glow of the nearest, every digit";
