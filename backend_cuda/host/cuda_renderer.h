@@ -34,20 +34,6 @@ struct CudaOptions {
     bool always_tree = false;  // a tree even where a plain loop would do; for tests
 };
 
-/// What a kernel takes of this thread's current device.
-struct KernelResources {
-    const char* name;              // "render_pixels", ...
-    const char *precision, *path;  // "float", "double"; "loop", "tree"
-    uint32_t mask;                 // of effects
-    int registers;                 // of a thread
-    size_t local_bytes;            // of a thread: its stack of branches, and what found no register
-    int blocks;                    // that share a multiprocessor
-    double occupancy;              // their threads, as a share of those that a multiprocessor has room for
-};
-
-/// What all kernels in this program take. Throws Error (device).
-std::vector<KernelResources> kernel_resources();
-
 /// Uploads the scene. Throws Error (device) with CUDA's own words where a device cannot be used.
 template <class Real>
 std::unique_ptr<Renderer> make_cuda_renderer(std::shared_ptr<const CompiledScene<Real>> scene,

@@ -21,9 +21,6 @@ class GpuRecord {
     /// One comparison of host and device. Prints a line where they differ.
     void add_parity(const std::string& name, uint64_t compared, uint64_t differing, Json more = Json::object());
 
-    /// Anything else that a check has to say.
-    void add(const std::string& key, Json value) { all_[key] = std::move(value); }
-
     /// Whether every comparison found nothing.
     bool equal() const { return differing_ == 0; }
     uint64_t compared() const { return compared_; }
