@@ -73,7 +73,7 @@ test-report: ## measure a small report, open it in headless Chromium and look fo
 	$(BUILD)/bin/render-report scenes/benchmark.json scenes/platonic.json --quick --res 96x54 --scaling -o out/report/small.html
 	tests/report-check out/report/small.html $(wildcard docs/report/*.html) --screenshots out/report
 
-bench: ## build the benchmarks and run them; JSON into out/bench
+bench: ## build the benchmarks and run them; bars and records into out/bench
 	$(call setup,packages.txt bench/packages.txt)
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD)
@@ -86,7 +86,7 @@ $(if $(findstring CMAKE_CUDA_ARCHITECTURES,$(CMAKE_ARGS))$(CUDAARCHS),,$(shell \
     paste -sd';' | sed -n "s/..*/'-DCMAKE_CUDA_ARCHITECTURES=&'/p"))
 endef
 
-gpu-check: ## on a machine with a GPU: compare it with the CPU bit for bit, and time it; JSON into out/bench
+gpu-check: ## on a machine with a GPU: compare it with the CPU bit for bit, and time it; bars and records into out/bench
 	$(call setup,packages.txt)
 	$(call configure,$(PRESET)) $(own_architectures)
 	@cmake --build $(BUILD) --target help | grep -qw gpu_check || \

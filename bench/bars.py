@@ -1,82 +1,121 @@
-"""bars.py OUT.json RECORD.json...: merges records of Google Benchmark and prints every bar beside what was measured."""
+"""bars.py OUT.csv RECORD.json...: every bar beside what was measured, as rows of bench/results/history.csv.
+
+The records are Google Benchmark's or of its shape, of one commit and one machine. Exit code 0; 1 where a bar does not hold;
+3 where the records are of no use."""
+import csv
+import datetime
 import json
+import os
 import statistics
 import sys
+
+HEADER = ["date", "commit", "machine", "bar", "value", "limit", "holds"]
+
+
+def fail(message):
+    print(f"bars.py: {message}", file=sys.stderr)
+    sys.exit(3)
+
+
+class History:
+    """Rows of history.csv, of one run; `context` is a record's."""
+
+    def __init__(self, context):
+        gpus = context.get("devices") or [gpu["name"] for gpu in context.get("gpu", [])]
+        machine = " and ".join(f"{gpus.count(name)} {name}" for name in dict.fromkeys(gpus))
+        date = context.get("date") or datetime.datetime.now(datetime.timezone.utc).isoformat()
+        self.key = [date[:10], context["commit"], machine or f"{context['cpu']} with {context['num_cpus']} threads"]
+        self.rows, self.holds = [], True
+
+    def add(self, bar, value, limit=""):
+        """`limit` is as in ">=22" or "<=1.1"; without one the value is for the record."""
+        holds = ""
+        if limit:
+            holds = "yes" if (value >= float(limit[2:]) if limit.startswith(">=") else value <= float(limit[2:])) else "no"
+        self.holds = self.holds and holds != "no"
+        self.rows.append([*self.key, bar, f"{value:.5g}", limit, holds])
+        print(f"{bar:<44} {value:10.5g}  {limit:<8}{ {'yes': 'holds', 'no': 'DOES NOT HOLD'}.get(holds, '')}", flush=True)
+
+    def append_to(self, path):
+        begins = not os.path.exists(path) or os.path.getsize(path) == 0
+        with open(path, "a", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(([HEADER] if begins else []) + self.rows)
+        print(f"written: {path}")
 
 
 class Records:
     def __init__(self, paths):
-        self.context, self.benchmarks = None, []
+        self.context, self.benchmarks, self.cases = {}, [], []
         for path in paths:
             with open(path) as file:
                 record = json.load(file)
-            record["context"].pop("executable", None)
             self.context = self.context or record["context"]
-            self.benchmarks += record["benchmarks"]
+            if record["context"]["commit"] != self.context["commit"]:
+                fail(f"{path} is of {record['context']['commit']}, the others of {self.context['commit']}; run all steps again")
+            kind = "fast/" if record["context"].get("executable") == "gpu_check_fast" else ""
+            self.benchmarks += [{**b, "name": kind + b["run_name"]} for b in record.get("benchmarks", []) if b["run_type"] == "iteration"]
+            parity = record.get("parity", {})  # of gpu_check by cases, of render-compare as a whole
+            self.cases += parity.get("cases", [{"case": "golden", **parity}] if parity else [])
 
-    def runs(self, name):
-        """The repetitions of a benchmark, in the order in which they ran."""
-        chosen = [b for b in self.benchmarks if b["run_type"] == "iteration" and b["run_name"].startswith(name)]
-        if not chosen:
-            sys.exit(f"bars.py: the records have no benchmark {name}")
-        return sorted(chosen, key=lambda b: b.get("repetition_index", 0))
+    def named(self, name):
+        found = [b for b in self.benchmarks if (b["name"] + "/").startswith(name + "/")]
+        return found or fail(f"the records have no benchmark {name}")
 
-    def times(self, name, clock="real_time"):
-        return [b[clock] for b in self.runs(name)]
+    def has(self, name):
+        return any(b["name"].startswith(name) for b in self.benchmarks)
 
-    def counter(self, name, key):
-        return self.runs(name)[0][key]
+    def time(self, name, clock="real_time"):
+        return statistics.median(b[clock] for b in self.named(name))
 
     def ratio(self, over, under, clock="real_time"):
-        """Of the medians, and the range over the single repetitions of both."""
-        a, b = self.times(over, clock), self.times(under, clock)
-        return statistics.median(a) / statistics.median(b), min(a) / max(b), max(a) / min(b)
+        return self.time(over, clock) / self.time(under, clock)
+
+
+def cpu_bars(add, records):
+    scene, sphere = "benchmark.json/", "bumpy_sphere/"
+    add("povray/time-ratio", records.ratio(scene + "povray", scene + "cistula"), ">=15")
+    add("povray/share-within-0.004", records.named(scene + "images")[0]["share_within_0.004"], ">=0.99")
+    add("embree/rays-ratio", records.ratio(sphere + "embree_robust", sphere + "cistula/float", "cpu_time"), ">=0.95")
+    for precision, most in (("float", 160), ("double", 240)):
+        add(f"bytes-a-triangle/{precision}", records.named(f"{sphere}memory/{precision}")[0]["bytes_per_triangle"], f"<={most}")
+    for depth in (4, 16):
+        add(f"double-over-float/depth:{depth}", records.ratio(f"{scene}double/depth:{depth}", f"{scene}float/depth:{depth}"), "<=1.6")
+
+
+def gpu_bars(add, records):
+    """seed_baseline counts by the best of its grids; it computes in double, and the bar is on our float."""
+    for kind in ("functions", "scenes", "generated", "golden", "devices"):
+        chosen = [case for case in records.cases if case["case"].startswith(kind)]
+        if chosen:
+            add(f"parity/{kind}", sum(case["differing"] for case in chosen), "<=0")
+    picture = "benchmark.json/3840x2160/"
+    for precision in ("float", "double"):
+        for depth in (4, 8):
+            frame = f"depth:{depth}/{precision}"
+            if not records.has(picture + frame):
+                continue
+            if records.has("seed/") and precision == "float":
+                best = min(b["real_time"] for b in records.named(f"seed/3840x2160/depth:{depth}"))
+                add(f"seed/depth:{depth}", best / records.time(picture + frame), ">=22")
+            add(f"kernel-ms/3840x2160/{frame}", records.time(picture + frame))
+            if records.has("fast/"):
+                add(f"exact-over-fast/3840x2160/{frame}", records.ratio(picture + frame, "fast/" + picture + frame))
+    heavy = f"{picture}6x6/depth:8/float/devices:"
+    for count, least in ((2, ">=1.9"), (4, ">=3.7"), (8, ">=7.6")):
+        if records.has(f"{heavy}{count}"):
+            add(f"devices:{count}/speed-ratio", records.ratio(f"{heavy}1", f"{heavy}{count}"), least)
 
 
 def main():
     out, *paths = sys.argv[1:]
     records = Records(paths)
-    scene, sphere = "benchmark.json/", "bumpy_sphere/"
-    bars = []  # name, what holds, bar, value, low, high
-
-    def bar(name, relation, limit, value, low=None, high=None):
-        met = value >= limit if relation == ">=" else value <= limit
-        entry = {"bar": name, "relation": relation, "limit": limit, "value": value, "met": met}
-        if low is not None:
-            entry["low"], entry["high"] = low, high
-        bars.append(entry)
-
-    bar("POV-Ray's time / Cistula's, depth 16", ">=", 15, *records.ratio(scene + "povray", scene + "cistula"))
-    bar("  share of pixels within 0.004 of it", ">=", 0.99, records.counter(scene + "images", "share_within_0.004"))
-    bar("rays a second / Embree's robust triangles", ">=", 0.95,
-        *records.ratio(sphere + "embree_robust", sphere + "cistula/float", "cpu_time"))
-    for precision, limit in (("float", 160), ("double", 240)):
-        bar(f"bytes a triangle at the peak, {precision}", "<=", limit,
-            records.counter(f"{sphere}memory/{precision}", "bytes_per_triangle"))
-    for depth in (4, 16):
-        bar(f"time of double / float, depth {depth}", "<=", 1.6,
-            *records.ratio(f"{scene}double/depth:{depth}", f"{scene}float/depth:{depth}"))
-    for effects, limit in (("opaque", 1.8), ("mirrors", 1.4), ("benchmark", 1.1)):
-        for precision in ("float", "double"):
-            run = f"effects/{effects}/{precision}/"
-            bar(f"all effects / those needed, {effects}, {precision}", ">=", limit, *records.ratio(run + "all", run + "auto"))
-    for precision in ("float", "double"):
-        bar(f"with / without lights on edges, {precision}", "<=", 1.3,
-            *records.ratio(f"effects/edge_lights/{precision}/auto", f"effects/benchmark/{precision}/auto"))
-
-    for b in bars:
-        spread = f"{b['low']:9.3f} to {b['high']:<9.3f}" if "low" in b else ""
-        verdict = "met" if b["met"] else "MISSED"
-        print(f"{b['bar']:<48} {b['value']:9.3f}  {b['relation']} {b['limit']:<6} {verdict:<7}{spread}")
-    for name in ("povray", "cistula"):
-        times = records.times(scene + name)
-        print(f"{name} on benchmark.json, depth 16: median {statistics.median(times):.0f} ms, "
-              f"{min(times):.0f} to {max(times):.0f}")
-    with open(out, "w") as file:
-        json.dump({"context": records.context, "benchmarks": records.benchmarks, "bars": bars}, file, indent=2)
-        file.write("\n")
-    print(f"written: {out}")
+    history = History(records.context)
+    (gpu_bars if records.context.keys() & {"gpu", "devices"} else cpu_bars)(history.add, records)
+    if os.path.exists(out):
+        os.remove(out)
+    history.append_to(out)
+    return 0 if history.holds else 1
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

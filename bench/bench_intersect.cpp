@@ -8,16 +8,30 @@
 #include <cstring>
 
 #include "backend_embree/embree/embree_tree.h"
-#include "bumpy_scene.h"
 #include "program.h"
 #include "scene/base/error.h"
 #include "scene/frame/frame_view.h"
+#include "testing/generated_mesh.h"
 
 namespace cistula::bench {
 namespace {
 
 constexpr int width = 640, height = 480, tile = 16, repetitions = 9;
-constexpr double field_of_view = 30;  // every ray hits
+
+SceneDescription bumpy_scene() {
+    SceneDescription scene;
+    scene.source = "bumpy sphere";
+    scene.camera.position = {0, -2.6, 1};
+    scene.camera.field_of_view = 30;  // every ray hits
+    scene.materials.emplace_back();
+    ObjectDescription object;
+    object.name = "sphere";
+    object.material = 0;
+    object.shape = bumpy_sphere(1'300'000);
+    object.place = "/objects/0";
+    scene.objects.push_back(std::move(object));
+    return scene;
+}
 
 size_t triangles_of(const SceneDescription& scene) {
     return std::get<TrianglesObject>(scene.objects[0].shape).triangles.size();
@@ -107,7 +121,7 @@ class Theirs {
 };
 
 struct Setting {
-    SceneDescription scene = bumpy_scene(field_of_view);
+    SceneDescription scene = bumpy_scene();
     Ours<float> single{scene};
     Ours<double> twice{scene};
     Theirs embree{scene, *single.compiled};
@@ -158,7 +172,7 @@ void measure_memory(benchmark::State& state, const std::string& precision) {
 
 template <class Real>
 double memory_of_ours() {
-    const SceneDescription scene = bumpy_scene(field_of_view);
+    const SceneDescription scene = bumpy_scene();
     const Ours<Real> ours(scene);
     return peak_memory();
 }

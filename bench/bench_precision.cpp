@@ -3,6 +3,7 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "program.h"
+#include "scene/base/error.h"
 #include "scene/description/camera_path.h"
 #include "scene/readers/read_scene.h"
 
@@ -10,6 +11,23 @@ namespace cistula::bench {
 namespace {
 
 constexpr int width = 640, height = 480, threads = 2, repetitions = 7;
+
+/// Fails where a frame cannot be trusted.
+void register_frames(const std::string& name, std::shared_ptr<Renderer> renderer, const CameraFrame& camera,
+                     const FrameSettings& settings) {
+    const auto time_frame = [=](benchmark::State& state) {
+        Film film;
+        for (auto _ : state) {
+            RenderProgress progress;
+            renderer->render(camera, settings, film, progress);
+            if (film.flags != 0)
+                throw Error(ExitCode::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
+        }
+        state.counters["rays_per_second"] =
+            benchmark::Counter(double(film.rays.total()), benchmark::Counter::kIsIterationInvariantRate);
+    };
+    benchmark::RegisterBenchmark(name.c_str(), time_frame)->MinTime(0.05)->UseRealTime()->Unit(benchmark::kMillisecond);
+}
 
 template <class Real>
 void add(const SceneDescription& scene) {

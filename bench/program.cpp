@@ -13,24 +13,6 @@
 
 namespace cistula::bench {
 
-void register_frames(const std::string& name, std::shared_ptr<Renderer> renderer, const CameraFrame& camera,
-                     const FrameSettings& settings) {
-    const auto time_frame = [=](benchmark::State& state) {
-        Film film;
-        for (auto _ : state) {
-            RenderProgress progress;
-            renderer->render(camera, settings, film, progress);
-            if (film.flags != 0)
-                throw Error(ExitCode::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
-        }
-        state.counters["rays"] = double(film.rays.total());
-        state.counters["rays_per_second"] =
-            benchmark::Counter(double(film.rays.total()), benchmark::Counter::kIsIterationInvariantRate);
-        state.counters["mask"] = renderer->effects();
-    };
-    benchmark::RegisterBenchmark(name.c_str(), time_frame)->MinTime(0.05)->UseRealTime()->Unit(benchmark::kMillisecond);
-}
-
 std::string output_of(const std::string& command) {
     const auto close = [](FILE* stream) { pclose(stream); };
     std::unique_ptr<FILE, decltype(close)> pipe(popen((command + " 2>&1").c_str(), "r"), close);

@@ -4,11 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
-
-#include "scene/film/renderer.h"
 
 namespace cistula::bench {
 
@@ -17,10 +14,6 @@ namespace cistula::bench {
 /// Returns the exit code.
 int run_program(int argc, char** argv, int repetitions,
                 void (*register_all)(const std::vector<std::string>& arguments));
-
-/// One benchmark of whole frames, by the wall clock; it fails where a frame cannot be trusted.
-void register_frames(const std::string& name, std::shared_ptr<Renderer> renderer, const CameraFrame& camera,
-                     const FrameSettings& settings);
 
 /// Standard output and standard error of a command of the shell together. Throws Error (failed) with its last line if
 /// it does not exit with 0.

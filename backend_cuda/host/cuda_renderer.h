@@ -34,20 +34,6 @@ struct CudaOptions {
     bool always_tree = false;  // use a tree even where a plain loop is faster; for tests
 };
 
-/// The resources that a kernel takes on this thread's current device.
-struct KernelResources {
-    const char* name;              // "render_pixels", ...
-    const char *precision, *path;  // "float", "double"; "loop", "tree"
-    uint32_t mask;                 // effect mask
-    int registers;                 // per thread
-    size_t local_bytes;            // per thread: its branch stack and spilled registers
-    int blocks;                    // resident blocks per multiprocessor
-    double occupancy;              // resident threads as a share of the maximum
-};
-
-/// The resources of all kernels in this program. Throws Error (device).
-std::vector<KernelResources> kernel_resources();
-
 /// A renderer on GPUs, to which it uploads the scene. Throws Error (device) with CUDA's message if a device cannot be
 /// used.
 template <class Real>

@@ -3,9 +3,6 @@
 
 #include <cuda_runtime_api.h>
 
-#include <vector>
-
-#include "backend_cuda/host/cuda_renderer.h"
 #include "backend_cuda/kernels/block_pixels.h"
 #include "cistula/adaptive/lattice.h"
 #include "cistula/model/constant_scene.h"
@@ -62,12 +59,10 @@ template <class Real>
 void launch(Sampling sampling, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
             cudaStream_t stream);
 
-/// launch() and kernel_resources() for one mask, defined in frame_kernels.cuh. Each mask and precision is instantiated
-/// in its own source file (frame_kernels.cu.in), so that they compile in parallel.
+/// launch() for one mask, defined in frame_kernels.cuh. Each mask and precision is instantiated in its own source file
+/// (frame_kernels.cu.in), so that they compile in parallel.
 template <class Real, int mask>
 void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
                  cudaStream_t stream);
-template <class Real, int mask>
-void list_resources_of_mask(std::vector<KernelResources>& list);
 
 }  // namespace cistula

@@ -67,64 +67,19 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
         write_records<threads, threads>(block_storage.records, to);
 }
 
-/// An attribute of this thread's current device.
-inline int device_attribute(cudaDeviceAttr attribute) {
-    int device = 0, value = 0;
-    CISTULA_CUDA_CHECK(cudaGetDevice(&device));
-    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&value, attribute, device));
-    return value;
-}
-
-/// The number of a kernel's blocks that are resident on a multiprocessor.
-template <class Kernel>
-int sharing_blocks(const Kernel& kernel, int threads) {
-    int blocks = 0;
-    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, 0));
-    return blocks;
-}
-
-/// The number of a kernel's blocks that fill the device.
+/// The number of a kernel's blocks that fill this thread's current device.
 template <class Kernel>
 unsigned int filling_blocks(const Kernel& kernel, int threads) {
-    return unsigned(device_attribute(cudaDevAttrMultiProcessorCount)) *
-           unsigned(greatest(sharing_blocks(kernel, threads), 1));
-}
-
-template <class Kernel>
-KernelResources resources_of(const char* name, const Kernel& kernel, int threads) {
-    cudaFuncAttributes attributes;
-    CISTULA_CUDA_CHECK(cudaFuncGetAttributes(&attributes, kernel));
-    KernelResources r{};
-    r.name = name;
-    r.registers = attributes.numRegs;
-    r.local_bytes = attributes.localSizeBytes;
-    r.blocks = sharing_blocks(kernel, threads);
-    r.occupancy = double(r.blocks) * threads / device_attribute(cudaDevAttrMaxThreadsPerMultiProcessor);
-    return r;
+    int device = 0, multiprocessors = 0, blocks = 0;
+    CISTULA_CUDA_CHECK(cudaGetDevice(&device));
+    CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device));
+    CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, 0));
+    return unsigned(multiprocessors) * unsigned(greatest(blocks, 1));
 }
 
 /// Whether adaptive sampling is compiled for this mask: for all effects only.
 constexpr bool samples_adaptively(int mask) {
     return mask == effect_mask_count - 1;
-}
-
-template <class Real, int mask, DevicePath path>
-void list_resources(std::vector<KernelResources>& list) {
-    const auto add = [&](KernelResources r) {
-        r.precision = RealTraits<Real>::name;
-        r.path = path == DevicePath::plain_loop ? "loop" : "tree";
-        r.mask = effect_masks[mask];
-        list.push_back(r);
-    };
-    add(resources_of("render_pixels", render_pixels<Real, mask, path>, kernel_shapes[mask].threads()));
-    if constexpr (samples_adaptively(mask))
-        add(resources_of("render_adaptive", render_adaptive<Real, path>, adaptive_shape.threads()));
-}
-
-template <class Real, int mask>
-void list_resources_of_mask(std::vector<KernelResources>& list) {
-    list_resources<Real, mask, DevicePath::plain_loop>(list);
-    list_resources<Real, mask, DevicePath::tree>(list);
 }
 
 template <class Real, int mask>

@@ -17,16 +17,6 @@ void launch(Sampling sampling, int mask, DevicePath path, const DeviceScene<Real
     table[size_t(mask)](sampling, path, scene, job, stream);
 }
 
-std::vector<KernelResources> kernel_resources() {
-    std::vector<KernelResources> list;
-    [&]<int... m>(std::integer_sequence<int, m...>) {
-        (list_resources_of_mask<float, m>(list), ...);
-        (list_resources_of_mask<double, m>(list), ...);
-    }
-    (std::make_integer_sequence<int, compiled_mask_count>());
-    return list;
-}
-
 template void launch(Sampling, int, DevicePath, const DeviceScene<float>&, const FrameJob&, cudaStream_t);
 template void launch(Sampling, int, DevicePath, const DeviceScene<double>&, const FrameJob&, cudaStream_t);
 

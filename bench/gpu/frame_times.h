@@ -7,11 +7,11 @@
 
 namespace cistula::bench {
 
-/// FOLDER/scenes/benchmark.json at 3840x2160 in depth 4 and 8, at 640x480 in depth 8, in both precisions: medians of
-/// `runs` after warm-up, with the rays that they took.
+/// FOLDER/scenes/benchmark.json at 3840x2160 in depth 4 and 8, in both precisions: kernel times of `runs` frames after
+/// warm-up.
 void time_frames(GpuRecord& record, const std::string& folder, int runs);
 
-/// Times benchmark.json at 3840x2160 in depth 8 with 4 x 4 samples on one GPU, two, ... all: the slowest one's kernels,
+/// Times benchmark.json at 3840x2160 in depth 8 with 6 x 6 samples on one GPU, two, ... all: the slowest one's kernels,
 /// and that the integers are equal.
 void time_devices(GpuRecord& record, const std::string& folder, int runs);
 

@@ -5,10 +5,7 @@
 #include <cstdio>
 
 #include "backend_cuda/host/cuda_renderer.h"
-#include "bench/gpu/effect_times.h"
-#include "bench/gpu/film_times.h"
 #include "bench/gpu/frame_times.h"
-#include "bench/gpu/ray_times.h"
 #include "scene/base/error.h"
 #include "testing/parity/function_parity.h"
 #include "testing/parity/image_parity.h"
@@ -20,17 +17,14 @@ namespace {
 struct Options {
     std::string folder = ".", json;
     uint64_t functions = 0, generated = 0;
-    bool scenes = false, times = false, effects = false, rays = false, devices = false;
-    int runs = 20, film = 0;
+    bool scenes = false, times = false, devices = false;
+    int runs = 20;
 };
 
 int run(const Options& options) {
     GpuRecord record;
     if (options.times) time_frames(record, options.folder, options.runs);
-    if (options.effects) time_effects(record, options.folder, options.runs);
     if (options.devices) time_devices(record, options.folder, 5);
-    if (options.rays) time_rays(record, options.runs);
-    if (options.film > 0) time_film(record, options.folder, options.film);
     if (options.functions > 0)
         for (const FunctionParity& f : check_functions(options.functions, 1))
             record.add_parity(fmt::format("functions/{}/{}", f.name, f.precision), f.compared, f.differing,
@@ -54,10 +48,7 @@ int main(int argc, char** argv) {
     app.add_flag("--scenes", options.scenes, "compare all of scenes/, and with golden/");
     app.add_option("--generated", options.generated, "generated scenes to compare");
     app.add_flag("--times", options.times, "time frames");
-    app.add_flag("--effects", options.effects, "time scenes with the effects they call for, and with all");
     app.add_flag("--devices", options.devices, "time a heavy frame on one GPU, two, ... all");
-    app.add_flag("--rays", options.rays, "time rays on a mesh, and compare their hits");
-    app.add_option("--film", options.film, "frames of a film to time, rendered and written");
     app.add_option("--runs", options.runs, "runs of each, after warm-up")->check(CLI::Range(1, 10000));
     app.add_option("--json", options.json, "where the record goes");
     try {

@@ -45,9 +45,9 @@ GpuRecord::GpuRecord(const std::string& program) {
 void GpuRecord::add_times(const std::string& name, const std::vector<double>& milliseconds, Json more) {
     const auto [least, most] = std::minmax_element(milliseconds.begin(), milliseconds.end());
     Json entry = {{"name", name},
-                  {"run_type", "aggregate"},
-                  {"aggregate_name", "median"},
-                  {"repetitions", milliseconds.size()},
+                  {"run_name", name},
+                  {"run_type", "iteration"},
+                  {"iterations", milliseconds.size()},
                   {"real_time", median_of(milliseconds)},
                   {"time_unit", "ms"},
                   {"least", *least},

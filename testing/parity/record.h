@@ -21,9 +21,6 @@ class GpuRecord {
     /// Adds a comparison of host and device. Prints a line if they differ.
     void add_parity(const std::string& name, uint64_t compared, uint64_t differing, Json more = Json::object());
 
-    /// Adds any other value.
-    void add(const std::string& key, Json value) { all_[key] = std::move(value); }
-
     /// Whether no comparison found a difference.
     bool equal() const { return differing_ == 0; }
     uint64_t compared() const { return compared_; }
