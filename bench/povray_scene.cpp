@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "scene/base/error.h"
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/platonic.h"
 

@@ -19,7 +19,7 @@
 #include "bench/seed_baseline_scene.h"
 #include "scene/base/atomic_file.h"
 #include "scene/image/picture_io.h"
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::seed {
@@ -148,7 +148,7 @@ std::vector<Pixel> time_on_device(const Options& options, const OwnedScene& scen
 }
 
 void use_picture(const Options& options, const ColorPicture& picture, Json& record) {
-    if (!options.image.empty()) write_seed_frame(options.image, picture);
+    if (!options.image.empty()) write_raw_picture(options.image, picture);
     if (options.reference.empty()) return;
     const ColorPicture reference = read_texture(options.reference);
     if (reference.width != picture.width || reference.height != picture.height)

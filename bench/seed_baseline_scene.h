@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bench/seed_baseline.h"
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/camera_path.h"
 #include "scene/description/platonic.h"

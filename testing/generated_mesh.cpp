@@ -2,7 +2,7 @@
 
 #include "cistula/numerics/trigonometry.h"
 #include "cistula/numerics/vec.h"
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 
 namespace cistula {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
 #include "scene/readers/quad.h"
@@ -102,7 +102,7 @@ class Objects : Part {
         --edge_lights_left_;
         lights.count = 1 + static_cast<int>(random_.below(2));
         lights.color = random_.chance(0.15) ? dvec3(0) : random_.color_times({0.05, 0.2});
-        if (palette_ < Palette::lamps || random_.chance(0.2)) return;
+        if (palette_ < Palette::lights || random_.chance(0.2)) return;
         lights.radius = random_.of({0.02, 0.06});
         if (random_.chance(0.6)) lights.glow = random_.color();
         lights.falloff = random_.chance(0.4);

@@ -41,7 +41,7 @@ class Random {
 };
 
 /// The range of a scene's materials and lights; each palette needs another mask of effects.h.
-enum class Palette { plain, mirrors, lamps, everything };
+enum class Palette { plain, mirrors, lights, everything };
 
 constexpr double floor_height = -1;
 

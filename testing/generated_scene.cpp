@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
 #include "testing/generated_parts.h"
@@ -21,7 +21,7 @@ class Maker : Part {
         const double kind = random_.unit();
         state_.palette = kind < 0.12   ? Palette::plain
                          : kind < 0.27 ? Palette::mirrors
-                         : kind < 0.43 ? Palette::lamps
+                         : kind < 0.43 ? Palette::lights
                                        : Palette::everything;
         add_objects(state_);
         if (random_.chance(0.2))
@@ -75,7 +75,7 @@ class Maker : Part {
             LightDescription light;
             light.position = light_position();
             light.color = random_.chance(0.12) ? dvec3(0) : random_.color_times({0.3, 1, 2});
-            if (palette_ >= Palette::lamps && random_.chance(0.6)) {
+            if (palette_ >= Palette::lights && random_.chance(0.6)) {
                 light.radius = random_.of({0.05, 0.2, 0.5});
                 light.falloff = random_.chance(0.5);
                 if (random_.chance(0.5)) light.glow = 2.0 * random_.color();

@@ -1,4 +1,4 @@
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/description/rotation.h"
 #include "testing/generated_mesh.h"
 #include "testing/generated_parts.h"

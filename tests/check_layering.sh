@@ -110,7 +110,7 @@ check() {
     code 'glm::(refract|reflect|normalize|dot|cross|length|distance|mix|clamp|min|max|inversesqrt|mod|fract)[ \t]*[(]' "${core[@]}" |
         fail "of GLM only types and exact operations: products that round are spelled out in cistula/numerics/vec.h"
     code 'std::f?(min|max)[ \t]*[(<]' "${core[@]}" |
-        fail 'library forms of min and max differ on NaN: use least and greatest of cistula/numerics/real.h'
+        fail 'library forms of min and max differ on NaN: use min_or_second and max_or_second of cistula/numerics/real.h'
 
     # Files that name the flags in order to refuse them do not count, nor do records of what was measured.
     { grep -rnE --include='*' -e '-ffast-math|-Ofast|-funsafe-math|-fassociative-math|-freciprocal-math|-ffinite-math-only|-use_fast_math' \
@@ -165,7 +165,7 @@ self_test() {
     breaks backend_cuda/kernels/a.cuh '#include "embree_renderer.h"'
     breaks backend_cuda/kernels/a.cu.in '#include "bench/gpu/record.h"'
     breaks backend_cuda/kernels/a.h '#include <embree3/rtcore.h>'
-    breaks libcore/cistula/model/a.h '#include "cistula/lights/seen_light.h"'
+    breaks libcore/cistula/model/a.h '#include "cistula/lights/visible_light.h"'
     breaks libcore/cistula/numerics/a.h '#  include "cistula/model/good.h"'
     breaks libcore/cistula/model/a.h '#include "cistula/portable.h"'
     breaks libcore/cistula/a.h '#include "cistula/numerics/portable.h"'

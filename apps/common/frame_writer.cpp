@@ -6,7 +6,7 @@
 #include "apps/common/timing.h"
 #include "scene/image/exr.h"
 #include "scene/image/picture_io.h"
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 
 namespace cistula {
 namespace {
@@ -149,7 +149,7 @@ void FrameWriter::write(Task& task) {
         // The preview is written first: if the image is complete, --resume can rely on both.
         if (!frame.preview.empty()) write_preview(frame.preview, color);
         if (raw)
-            write_seed_frame(frame.path, color);
+            write_raw_picture(frame.path, color);
         else
             write_exr(frame.path, layers);
     });

@@ -25,7 +25,7 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/required_effects.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_seed.h"
+#include "scene/readers/read_text_input.h"
 
 namespace cistula {
 namespace {
@@ -239,7 +239,7 @@ void run(const RenderOptions& options) {
         case Action::print_version:
             return print("render (Cistula) " CISTULA_VERSION "\n");
         case Action::print_template:
-            return print(seed_template());
+            return print(text_input_template());
         case Action::list_devices:
             return print(list_devices_text());
         case Action::pixel:

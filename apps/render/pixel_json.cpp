@@ -121,7 +121,7 @@ class PixelJson {
             face["because"] = passed.inside ? "precedence" : "clear";
             json["passed"].push_back(std::move(face));
         }
-        if (branch.end == BranchEnd::light) json["light"] = named(report_.names.seen_lights[branch.seen_light]);
+        if (branch.end == BranchEnd::light) json["light"] = named(report_.names.visible_lights[branch.visible_light]);
         if (branch.end == BranchEnd::surface) json["surface"] = surface_entry(branch.surface);
         json["adds"] = sum(branch.adds);
         if (branch.end != BranchEnd::surface) return json;
@@ -176,20 +176,20 @@ class PixelJson {
             {"local", number(s.local)}, {"mirrored", number(s.mirrored)}, {"transmitted", vector(s.through)}};
         json["ambient"] = {{"local", vector(s.ambient)}, {"adds", sum(s.ambient_adds)}};
         json["lights"] = Json::array();
-        for (const LightShare& light : s.lights) json["lights"].push_back(light_entry(light));
+        for (const LightContribution& light : s.lights) json["lights"].push_back(light_entry(light));
         return json;
     }
 
-    Json light_entry(const LightShare& share) const {
-        Json json = named(report_.names.lights[share.light]);
-        json["fate"] = name_of(share.fate);
-        json["N.L"] = number(share.cosine);
-        json["distance"] = number(share.distance);
-        if (share.fate == LightFate::behind || share.fate == LightFate::nothing) return json;
-        json["unshadowed"] = vector(share.unshadowed);
-        json["transmittance"] = vector(share.arrives);
-        json["through"] = solid_names(share.through);
-        json["adds"] = sum(share.adds);
+    Json light_entry(const LightContribution& contribution) const {
+        Json json = named(report_.names.lights[contribution.light]);
+        json["fate"] = name_of(contribution.fate);
+        json["N.L"] = number(contribution.cosine);
+        json["distance"] = number(contribution.distance);
+        if (contribution.fate == LightFate::behind || contribution.fate == LightFate::nothing) return json;
+        json["unshadowed"] = vector(contribution.unshadowed);
+        json["transmittance"] = vector(contribution.arrives);
+        json["through"] = solid_names(contribution.through);
+        json["adds"] = sum(contribution.adds);
         return json;
     }
 

@@ -103,7 +103,7 @@ class TreeText {
                 return fmt::format("{}sees the background, adds {}", absorbed, radiance(branch.adds));
             case BranchEnd::light:
                 return fmt::format("{}sees {}, distance {}, adds {}", absorbed,
-                                   called(report_.names.seen_lights[branch.seen_light]), number(branch.distance),
+                                   called(report_.names.visible_lights[branch.visible_light]), number(branch.distance),
                                    radiance(branch.adds));
             case BranchEnd::pruned:
                 return fmt::format("too faint to follow, could add {} at most", radiance(branch.ledger));
@@ -226,15 +226,15 @@ class TreeText {
             line(depth, fmt::format("  {:<{}}  {}", names[n], width, light(s.lights[shown_lights[n]])));
     }
 
-    std::string light(const LightShare& share) const {
-        if (share.fate == LightFate::behind) return "behind the face";
-        const std::string cosine = fmt::format("N.L {:.3f}", share.cosine);
-        if (share.fate == LightFate::nothing) return cosine + ", lights nothing here";
-        const std::string through = solids(share.through);
-        if (share.fate == LightFate::shadow)
+    std::string light(const LightContribution& contribution) const {
+        if (contribution.fate == LightFate::behind) return "behind the face";
+        const std::string cosine = fmt::format("N.L {:.3f}", contribution.cosine);
+        if (contribution.fate == LightFate::nothing) return cosine + ", lights nothing here";
+        const std::string through = solids(contribution.through);
+        if (contribution.fate == LightFate::shadow)
             return fmt::format("{}, in shadow{}", cosine, through.empty() ? "" : " of " + through);
-        return fmt::format("{}, arrives {}{}, adds {}", cosine, color(share.arrives),
-                           through.empty() ? "" : " through " + through, radiance(share.adds));
+        return fmt::format("{}, arrives {}{}, adds {}", cosine, color(contribution.arrives),
+                           through.empty() ? "" : " through " + through, radiance(contribution.adds));
     }
 
     std::string solids(const std::vector<uint32_t>& numbers) const {
@@ -248,11 +248,11 @@ class TreeText {
         FixedColor adds{};
         std::vector<uint32_t> shadows;  // solids in the way of these lights
         for (const size_t i : rest) {
-            const LightShare& share = s.lights[i];
-            ++counts[static_cast<size_t>(share.fate)];
-            adds = sum_of(adds, share.adds);
-            if (share.fate != LightFate::shadow) continue;
-            for (const uint32_t solid : share.through)
+            const LightContribution& contribution = s.lights[i];
+            ++counts[static_cast<size_t>(contribution.fate)];
+            adds = sum_of(adds, contribution.adds);
+            if (contribution.fate != LightFate::shadow) continue;
+            for (const uint32_t solid : contribution.through)
                 if (std::find(shadows.begin(), shadows.end(), solid) == shadows.end()) shadows.push_back(solid);
         }
         std::vector<std::string> parts;
@@ -285,7 +285,7 @@ std::string first_met(const PixelReport& report, const SampleTree& sample) {
         case BranchEnd::surface:
             return report.names.solids[primary.surface.solid].name;
         case BranchEnd::light:
-            return report.names.seen_lights[primary.seen_light].name;
+            return report.names.visible_lights[primary.visible_light].name;
         default:
             return "the background";
     }

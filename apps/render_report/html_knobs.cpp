@@ -20,8 +20,8 @@ struct Alone {
 /// Whether the reference is accurate enough for this error: it must be sixteen times closer.
 bool resolves(const Shown& shown, const std::string& knob, const Metrics& error) {
     if (knob != "depth" && knob != "cutoff") return true;  // other knobs' references differ in the knob only
-    for (const Yardstick& one : shown.scene->yardsticks)
-        if (one.setting.depth == deepest && one.setting.cutoff == yardstick_cutoff)
+    for (const ReferenceRecord& one : shown.scene->yardsticks)
+        if (one.setting.depth == deepest && one.setting.cutoff == knob_reference_cutoff)
             return error.rmse >= 16 * one.remainder.rms;
     return true;
 }

@@ -98,7 +98,7 @@ std::string front_table(const Shown& shown, const Front& front) {
 }
 
 std::string reference_text(const Shown& shown) {
-    const Yardstick& reference = shown.scene->reference;
+    const ReferenceRecord& reference = shown.scene->reference;
     const Remainder& left = reference.remainder;
     std::string text = fmt::format(
         "Reference: {}, whose ledger proves that its own truncation hides at most {} in the mean, {} (RMS) and {} in "

@@ -79,14 +79,14 @@ class Sweep {
                                     "gives it more time",
                                     scene_.file, setting_name(setting), settings_.of_reference().still));
         reference_ = *found;
-        scene_.reference = reference_.yardstick;
+        scene_.reference = reference_.record;
     }
 
     /// The reference for one knob, rendered on first use; null if that takes too long.
-    const ReferencePicture* yardstick_of(const std::string& knob, const Setting& setting) {
-        if (reference_.yardstick.setting == setting) return &reference_;
-        for (const ReferencePicture& one : yardsticks_)
-            if (one.yardstick.setting == setting) return &one;
+    const ReferencePicture* reference_of(const std::string& knob, const Setting& setting) {
+        if (reference_.record.setting == setting) return &reference_;
+        for (const ReferencePicture& one : references_)
+            if (one.record.setting == setting) return &one;
         if (std::find(without_end_.begin(), without_end_.end(), setting) != without_end_.end()) return nullptr;
         auto found = reference_picture(frames_, scene_.hash, setting, settings_.of_reference(), settings_.cache);
         frames_.progress.frame(0);
@@ -95,9 +95,9 @@ class Sweep {
             scene_.left_out.push_back(fmt::format("{}: the reference of {}", setting_name(setting), knob));
             return nullptr;
         }
-        found->yardstick.knob = knob;
-        scene_.yardsticks.push_back(found->yardstick);
-        return &yardsticks_.emplace_back(std::move(*found));
+        found->record.knob = knob;
+        scene_.yardsticks.push_back(found->record);
+        return &references_.emplace_back(std::move(*found));
     }
 
     /// Measures the error of every setting. All are tried: predicting times from other settings would leave out some
@@ -126,8 +126,8 @@ class Sweep {
             entry.error = compare_with(picture, reference_.picture);
             note_samples(film, picture, entry);
             for (const auto& [knob, alone] : planned.alone)
-                if (const ReferencePicture* yardstick = yardstick_of(knob, alone))
-                    entry.alone[knob] = compare_with(picture, yardstick->picture);
+                if (const ReferencePicture* reference = reference_of(knob, alone))
+                    entry.alone[knob] = compare_with(picture, reference->picture);
             entries.push_back(std::move(entry));
             seconds_.push_back(*seconds);
             frames_.progress.advance();
@@ -169,7 +169,7 @@ class Sweep {
     SceneRecord& scene_;
     std::vector<PlannedSetting> plan_;
     ReferencePicture reference_;
-    std::deque<ReferencePicture> yardsticks_;
+    std::deque<ReferencePicture> references_;
     std::vector<Setting> without_end_;  // settings whose reference took too long
     std::vector<double> seconds_;       // of the frames in measure_errors
 };

@@ -22,7 +22,7 @@ namespace cistula::report {
 
 CISTULA_RECORD_FIELDS(Rays, primary, reflected, transmitted, shadow)
 CISTULA_RECORD_FIELDS(TargetOutcome, over, missed)
-CISTULA_RECORD_FIELDS(Yardstick, knob, setting, remainder, seconds, cached)
+CISTULA_RECORD_FIELDS(ReferenceRecord, knob, setting, remainder, seconds, cached)
 CISTULA_RECORD_FIELDS(Share, what, material, value)
 CISTULA_RECORD_FIELDS(Stage, name, precision, time)
 CISTULA_RECORD_FIELDS(Level, depth, rays)

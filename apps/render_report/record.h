@@ -45,7 +45,7 @@ struct Entry {
 };
 
 /// A reference picture for errors.
-struct Yardstick {
+struct ReferenceRecord {
     std::string knob;  // empty: the reference for all knobs
     Setting setting;
     Remainder remainder;  // bound on its own truncation
@@ -97,8 +97,8 @@ struct SceneRecord {
     Setting base;  // values of the other knobs when one knob is varied
     std::vector<std::string> effects;
     Share strongest, mirror;  // mirror: the largest reflection
-    Yardstick reference;
-    std::vector<Yardstick> yardsticks;
+    ReferenceRecord reference;
+    std::vector<ReferenceRecord> yardsticks;
     std::vector<std::string> left_out;  // settings slower than the limit, and other parts left out for lack of time
     std::vector<Stage> stages;
     std::vector<Level> levels;

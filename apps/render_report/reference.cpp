@@ -53,7 +53,7 @@ std::string pack_reference(const ReferencePicture& reference, const std::string&
     const Json head = {{"key", key},
                        {"width", picture.width},
                        {"height", picture.height},
-                       {"remainder", reference.yardstick.remainder},
+                       {"remainder", reference.record.remainder},
                        {"hash", hash_of(pixels)}};
     return head.dump() + "\n" + pixels;
 }
@@ -74,7 +74,7 @@ std::optional<ReferencePicture> unpack_reference(const std::string& bytes, const
         picture.pixels.size() != static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height))
         return std::nullopt;
     std::memcpy(picture.pixels.data(), pixels.data(), pixels.size());
-    head.at("remainder").get_to(reference.yardstick.remainder);
+    head.at("remainder").get_to(reference.record.remainder);
     return reference;
 }
 
@@ -94,9 +94,9 @@ std::optional<ReferencePicture> reference_picture(Frames& frames, const std::str
             }
         });
         if (found) {
-            found->yardstick.setting = setting;
-            found->yardstick.seconds = seconds;
-            found->yardstick.cached = true;
+            found->record.setting = setting;
+            found->record.seconds = seconds;
+            found->record.cached = true;
             return found;
         }
     }
@@ -104,11 +104,11 @@ std::optional<ReferencePicture> reference_picture(Frames& frames, const std::str
     frames.progress.frame(static_cast<uint64_t>(frames.width) * static_cast<uint64_t>(frames.height));
     const std::optional<double> seconds = frames.render_within(limit, setting, film);
     if (!seconds) return std::nullopt;
-    reference.yardstick.seconds = *seconds;
-    reference.yardstick.setting = setting;
-    reference.yardstick.remainder = remainder_of(film);
+    reference.record.seconds = *seconds;
+    reference.record.setting = setting;
+    reference.record.remainder = remainder_of(film);
     reference.picture = resolve_picture(film);
-    if (file.empty() || reference.yardstick.seconds < worth_keeping) return reference;
+    if (file.empty() || reference.record.seconds < worth_keeping) return reference;
     try {
         std::filesystem::create_directories(cache);
         write_file_atomically(file, pack_reference(reference, key));

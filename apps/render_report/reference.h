@@ -11,7 +11,7 @@ namespace cistula::report {
 
 struct ReferencePicture {
     Picture picture;
-    Yardstick yardstick;
+    ReferenceRecord record;
 };
 
 /// The cache folder: $XDG_CACHE_HOME/cistula, else ~/.cache/cistula; empty if neither is known.

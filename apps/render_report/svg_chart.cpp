@@ -24,7 +24,7 @@ class Scale {
         any_ = true;
     }
     /// Adds a margin around the values taken.
-    void settle() {
+    void add_margins() {
         if (!any_) low_ = 1, high_ = 10;
         if (log_) {
             const double room = std::max(0.04 * std::log(high_ / low_), 0.12);
@@ -133,8 +133,8 @@ std::string chart_svg(const Chart& chart) {
                 if (value != 0) y.take(value);
         }
     }
-    x.settle();
-    y.settle();
+    x.add_margins();
+    y.add_margins();
     std::string svg = open_svg(chart.width, chart.height, chart.description);
     for (const double value : y.marks()) svg += y_tick(y(value), chart.width, tick_text(value));
     for (const double value : x.marks()) svg += x_tick(x(value), chart.height, tick_text(value));
@@ -188,7 +188,7 @@ std::string stacks_svg(const Stacks& stacks) {
         for (const double part : column.parts) sum += part;
         y.take(sum);
     }
-    y.settle();
+    y.add_margins();
     std::string svg = open_svg(stacks.width, stacks.height, stacks.description);
     for (const double value : y.marks()) svg += y_tick(y(value), stacks.width, tick_text(value));
     svg += axis_labels(stacks.width, stacks.height, stacks.x_label, stacks.y_label);

@@ -70,7 +70,7 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
             if (lattice == 1 || !quick) plan.add(with(base, depth, 0, twice, lattice));
 
     // Each knob alone.
-    const Setting whole = with(base, deepest, yardstick_cutoff, single, 1);
+    const Setting whole = with(base, deepest, knob_reference_cutoff, single, 1);
     for (const int depth : with_value(quick ? std::vector<int>{1, 2, 3, 4, 6, 8, 12, 16}
                                             : std::vector<int>{1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64},
                                       base.depth))

@@ -30,8 +30,8 @@ const std::vector<Knob>& knobs();
 /// besides the exact one.
 std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const std::vector<std::string>& others = {});
 
-inline constexpr int deepest = 256;                  // depth of the reference and of references for single knobs
-inline constexpr double yardstick_cutoff = 0x1p-40;  // truncation budget of a pixel in references for single knobs
+inline constexpr int deepest = 256;                       // depth of the reference and of references for single knobs
+inline constexpr double knob_reference_cutoff = 0x1p-40;  // truncation budget of a pixel in references for single knobs
 inline constexpr double reference_cutoff = 0x1p-18,
                         quick_reference_cutoff = 0x1p-11;  // budget of the overall reference
 inline constexpr int reference_supersample = 16;

@@ -49,7 +49,7 @@ CISTULA_HD inline Ray<Real> inside(Ray<Real> ray, uint32_t solid) {
 /// Starts a new line on a face as the ray tree does.
 template <class Real>
 CISTULA_HD inline Ray<Real> leaving(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
-                                    const MediaList& media) {
+                                    const InteriorList& media) {
     Ray<Real> ray = ray_from(origin, direction);
     ray.from_solid = key_solid(hit.key);
     ray.from_face = key_face(hit.key);
@@ -74,7 +74,7 @@ inline constexpr uint32_t most_crossings = 1u << 18;
 template <class Real, class Intersector>
 CISTULA_HD inline Crossings cross_all(const Intersector& intersector, Ray<Real> ray, uint32_t only = no_solid) {
     Crossings found;
-    if (ray.from_solid == no_solid && ray.fresh()) ray.meet_all();
+    if (ray.from_solid == no_solid && ray.fresh()) ray.accept_both_sides();
     for (uint32_t i = 0; i < most_crossings; ++i) {
         const Hit<Real> hit = intersector.closest(ray);
         if (!hit.found()) return found;
@@ -98,8 +98,8 @@ CISTULA_HD inline double chord(const Span<double>& planes, double margin, const 
         const Vec3<double> normal(planes[i], planes[i + 1], planes[i + 2]);
         const double nd = dot(normal, direction), rest = planes[i + 3] - margin - dot(normal, origin);
         if (nd == 0 && rest <= 0) return -1;
-        if (nd < 0) enter = greatest(enter, rest / nd);
-        if (nd > 0) leave = least(leave, rest / nd);
+        if (nd < 0) enter = max_or_second(enter, rest / nd);
+        if (nd > 0) leave = min_or_second(leave, rest / nd);
     }
     return leave - enter;
 }

@@ -11,14 +11,14 @@
 #include "apps/render_verify/shadows/lights_on_star.h"
 #include "apps/render_verify/shadows/own_light.h"
 #include "apps/render_verify/shadows/permutations.h"
-#include "apps/render_verify/shadows/seen_lights.h"
+#include "apps/render_verify/shadows/visible_lights.h"
 
 namespace cistula::verify::shadows {
 
-using Cases =
-    CaseList<AcnePlanes, AcneTriangles, AcneSheets, AcneFarPlanes, AcneFarTriangles, AcneTinyTriangles, Terminator,
-             BoxPlanes, BoxTriangles, BoxTiny, BoxPixels, InsideGlassPlanes, InsideGlassTriangles, LightsOnPlanes,
-             LightsOnTriangles, LightsOnStar, LightsInContact, OwnLightPlanes, OwnLightTriangles, LightAtThePoint,
-             Falloff, ThroughSheets, ThroughSolids, PermutedTriangles, PermutedLights, SeenLightTree, SeenLightPixels>;
+using Cases = CaseList<AcnePlanes, AcneTriangles, AcneSheets, AcneFarPlanes, AcneFarTriangles, AcneTinyTriangles,
+                       Terminator, BoxPlanes, BoxTriangles, BoxTiny, BoxPixels, InsideGlassPlanes, InsideGlassTriangles,
+                       LightsOnPlanes, LightsOnTriangles, LightsOnStar, LightsInContact, OwnLightPlanes,
+                       OwnLightTriangles, LightAtThePoint, Falloff, ThroughSheets, ThroughSolids, PermutedTriangles,
+                       PermutedLights, VisibleLightTree, VisibleLightPixels>;
 
 }  // namespace cistula::verify::shadows

@@ -17,7 +17,7 @@ namespace cistula::verify {
 /// The reference intersector: every primitive's exact test, without any culling.
 template <class Real>
 struct PlainIntersector {
-    using Media = MediaList;
+    using Media = InteriorList;
     using Scene = SceneView<Real>;
     const Scene& scene;
 

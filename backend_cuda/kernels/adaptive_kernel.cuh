@@ -73,8 +73,8 @@ class WarpPixels {
             const int waiting = int(warp_sum(unsigned(wanted_ - given_)));
             const unsigned int free = __ballot_sync(whole_warp, lane_ < at_once_ && wanted_ == 0);
             if (waiting >= warp_threads || free == 0) break;
-            const int take =
-                least(__popc(free), (warp_threads - waiting + least_lattice_samples - 1) / least_lattice_samples);
+            const int take = min_or_second(
+                __popc(free), (warp_threads - waiting + least_lattice_samples - 1) / least_lattice_samples);
             unsigned int first = 0;
             if (lane_ == 0) first = atomicAdd(job_.next, unsigned(take));
             first = __shfl_sync(whole_warp, first, 0);
@@ -175,7 +175,7 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
                     const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using E = Effects<all_effects>;
     using Stack = DeviceStack<Real, E, path>;
-    __shared__ Unset<BlockStorage<adaptive_shape.threads()>> memory;
+    __shared__ Uninitialized<BlockStorage<adaptive_shape.threads()>> memory;
     PixelWork& own = memory.get().work[threadIdx.x] = PixelWork();
     PixelRecord& taken = memory.get().records[threadIdx.x];
     typename Stack::Storage branches;

@@ -26,14 +26,14 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     using E = Effects<effect_masks[mask]>;
     using Stack = DeviceStack<Real, E, path>;
     constexpr int warps = kernel_shapes[mask].warps, threads = kernel_shapes[mask].threads();
-    __shared__ Unset<BlockStorage<threads>> memory;
+    __shared__ Uninitialized<BlockStorage<threads>> memory;
     BlockStorage<threads>& block_storage = memory.get();
     const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
-    const bool shares = job.mapping == PixelMapping::shared_tile;
+    const bool shared_tile = job.mapping == PixelMapping::shared_tile;
     const BlockPlace block = job.blocks[blockIdx.x];
     const BlockPlan plan{job.mapping, warps};
     const BlockShape shape = plan.shape();
-    const PixelPlace place = plan.place_of(shares ? lane : int(threadIdx.x));
+    const PixelPlace place = plan.place_of(shared_tile ? lane : int(threadIdx.x));
     const int column = block.column * shape.width + place.column, row = block.row * shape.height + place.row;
     PixelWork& own = block_storage.work[threadIdx.x] = PixelWork();
     PixelRecord& record = block_storage.records[threadIdx.x];
@@ -49,19 +49,19 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
         // Samples start together, so that the warps of a block do much the same at a time and share the instructions
         // and constants that are fetched.
         if (round != 0) __syncthreads();
-        const int i = round + (shares ? warp : 0);
+        const int i = round + (shared_tile ? warp : 0);
         if (is_inside && i < samples) add_sample(task, i, record);
     }
     if (is_inside) end_pixel(record, own);
     __syncthreads();
-    if (shares) {
+    if (shared_tile) {
         if (warp == 0)
             for (int other = 1; other < warps; ++other) record.add(block_storage.records[other * warp_threads + lane]);
         __syncthreads();
     }
     if (warp == 0) add_block_to_tally(*job.tally, block_storage.work);
     PixelRecord* to = job.records + blockIdx.x * unsigned(shape.pixels());
-    if (shares)
+    if (shared_tile)
         write_records<BlockPlan::shared_shape.pixels(), threads>(block_storage.records, to);
     else
         write_records<threads, threads>(block_storage.records, to);
@@ -74,7 +74,7 @@ unsigned int filling_blocks(const Kernel& kernel, int threads) {
     CISTULA_CUDA_CHECK(cudaGetDevice(&device));
     CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device));
     CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, 0));
-    return unsigned(multiprocessors) * unsigned(greatest(blocks, 1));
+    return unsigned(multiprocessors) * unsigned(max_or_second(blocks, 1));
 }
 
 /// Whether adaptive sampling is compiled for this mask: for all effects only.
@@ -92,7 +92,8 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
         } else if constexpr (samples_adaptively(mask)) {
             constexpr int threads = adaptive_shape.threads();
             const auto kernel = render_adaptive<Real, here>;
-            kernel<<<least(filling_blocks(kernel, threads), job.storage_blocks), threads, 0, stream>>>(job, own);
+            kernel<<<min_or_second(filling_blocks(kernel, threads), job.storage_blocks), threads, 0, stream>>>(job,
+                                                                                                               own);
             check_cuda(cudaGetLastError(), "launch of render_adaptive");
         }
     };

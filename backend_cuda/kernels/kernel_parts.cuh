@@ -17,7 +17,7 @@ struct alignas(16) BlockStorage {
 
 /// Uninitialized storage: __shared__ variables must not have constructors.
 template <class T>
-struct alignas(T) Unset {
+struct alignas(T) Uninitialized {
     unsigned char bytes[sizeof(T)];
     __device__ T& get() { return reinterpret_cast<T&>(bytes); }
 };
@@ -40,13 +40,13 @@ struct PathTraits;
 template <class Real>
 struct PathTraits<Real, DevicePath::plain_loop> {
     using Scene = ConstantScene<Real>;
-    using Intersector = BruteIntersector<Real, OneMedium, Scene>;
+    using Intersector = BruteIntersector<Real, SingleInterior, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
 };
 template <class Real>
 struct PathTraits<Real, DevicePath::tree> {
     using Scene = SceneView<Real>;
-    using Intersector = BvhIntersector<Real, MediaList, Scene>;
+    using Intersector = BvhIntersector<Real, InteriorList, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t) { return {scene}; }
 };
 

@@ -50,7 +50,7 @@ void set_ray(RTCRay& out, const Ray<Real>& ray, float near_t, float far_t) {
 
 /// Traverses the tree: on_intersect is called for primitives that the ray may meet after ray.after.
 template <class Real>
-void walk_closest(RTCScene tree, EmbreeContext& context, const Ray<Real>& ray) {
+void traverse_closest(RTCScene tree, EmbreeContext& context, const Ray<Real>& ray) {
     RTCRayHit rayhit;
     set_ray(rayhit.ray, ray, tree_near(ray.after.t), RealTraits<float>::infinity);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -59,7 +59,7 @@ void walk_closest(RTCScene tree, EmbreeContext& context, const Ray<Real>& ray) {
 
 /// Traverses the tree: on_occluded is called for primitives that may lie before the light.
 template <class Real>
-void walk_shadow(RTCScene tree, EmbreeContext& context, const ShadowRay<Real>& shadow) {
+void traverse_shadow(RTCScene tree, EmbreeContext& context, const ShadowRay<Real>& shadow) {
     RTCRay ray;
     set_ray(ray, shadow.ray, 0.0f, tree_far(shadow.distance));
     embree_occluded(tree, context, ray);
@@ -67,7 +67,7 @@ void walk_shadow(RTCScene tree, EmbreeContext& context, const ShadowRay<Real>& s
 
 template <class Real>
 struct EmbreeIntersector {
-    using Media = MediaList;
+    using Media = InteriorList;
     using Scene = SceneView<Real>;
     const SceneView<Real>& scene;
     RTCScene tree;
@@ -81,13 +81,13 @@ struct EmbreeIntersector {
         query.scene = &scene;
         query.ray = &ray;
         query.triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
-        walk_closest(tree, query.context, ray);
+        traverse_closest(tree, query.context, ray);
         return query.best;
     }
 
     template <class E>
-    Share<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
-        if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
+    Throughput<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        if (!is_finite(shadow.ray)) return Throughput<Real, E>(Real(0));
         using Query = SummedShadowQuery<Real, E>;
         Query query;
         embree_init(query.context);
@@ -97,11 +97,11 @@ struct EmbreeIntersector {
         query.visit = [](ShadowQuery<Real>& q, uint32_t primitive) {
             ShadowSum<E>& sum = static_cast<Query&>(q).sum;
             shadow_primitive<Real, E>(*q.scene, primitive, *q.shadow, q.triangle_ray, sum);
-            return sum.dark();
+            return sum.is_blocked();
         };
         shadow_start<Real, E>(scene, shadow, query.sum);
-        walk_shadow(tree, query.context, shadow);
-        return query.sum.template share<Real>(scene);
+        traverse_shadow(tree, query.context, shadow);
+        return query.sum.template transmittance<Real>(scene);
     }
 
     /// The RTCIntersectFunctionN of the only user geometry.
@@ -117,7 +117,7 @@ struct EmbreeIntersector {
     }
 
     /// The RTCOccludedFunctionN of the only user geometry. It sums all crossings, so it reports an occlusion only once
-    /// every channel is dark.
+    /// every channel is blocked.
     static void on_occluded(const RTCOccludedFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<ShadowQuery<Real>*>(arguments->context);

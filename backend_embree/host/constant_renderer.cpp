@@ -7,7 +7,7 @@ template <class Real>
 std::unique_ptr<Renderer> make_constant_renderer(std::shared_ptr<const CompiledScene<Real>> scene) {
     std::unique_ptr<const ConstantScene<Real>> form = constant_scene(scene->view());
     if (!form) return nullptr;
-    using Loop = BruteIntersector<Real, OneMedium, ConstantScene<Real>>;
+    using Loop = BruteIntersector<Real, SingleInterior, ConstantScene<Real>>;
     return std::make_unique<HostRenderer<Real, Loop>>(std::move(scene), std::move(form), "embree");
 }
 

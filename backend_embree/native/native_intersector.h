@@ -52,7 +52,7 @@ struct NativeShadow {
     EmbreeContext context;
     const SceneView<Real>& scene;
     const ShadowRay<Real>& shadow;
-    bool (*visit)(NativeShadow&, const NativeTriangle&, Real t, bool enters);  // tells whether all is dark
+    bool (*visit)(NativeShadow&, const NativeTriangle&, Real t, bool enters);  // tells whether all light is blocked
 };
 template <class Real, class E>
 struct SummedNativeShadow : NativeShadow<Real> {
@@ -85,7 +85,7 @@ struct SummedNativeShadow : NativeShadow<Real> {
 
 template <class Real>
 struct NativeIntersector {
-    using Media = MediaList;
+    using Media = InteriorList;
     using Scene = SceneView<Real>;
     const SceneView<Real>& scene;
     RTCScene tree;
@@ -95,23 +95,23 @@ struct NativeIntersector {
         NativeClosest<Real> query{{}, scene, ray, {}};
         if (!is_finite(ray)) return query.best;
         embree_init(query.context);
-        walk_closest(tree, query.context, ray);
+        traverse_closest(tree, query.context, ray);
         return query.best;
     }
 
     template <class E>
-    Share<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
-        if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
+    Throughput<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        if (!is_finite(shadow.ray)) return Throughput<Real, E>(Real(0));
         using Query = SummedNativeShadow<Real, E>;
         Query query{{{}, scene, shadow, [](NativeShadow<Real>& q, const NativeTriangle& triangle, Real t, bool enters) {
                          auto& own = static_cast<Query&>(q);
                          own.add(triangle, t, enters);
-                         return own.sum.dark();
+                         return own.sum.is_blocked();
                      }}};
         embree_init(query.context);
         query.start();
-        walk_shadow(tree, query.context, shadow);
-        return query.sum.template share<Real>(scene);
+        traverse_shadow(tree, query.context, shadow);
+        return query.sum.template transmittance<Real>(scene);
     }
 
     /// The RTCFilterFunctionN of rtcIntersect1: a refused hit does not end the search.
@@ -123,7 +123,7 @@ struct NativeIntersector {
     }
 
     /// The RTCFilterFunctionN of rtcOccluded1. It sums all hits, so it reports an occlusion only once every channel is
-    /// dark.
+    /// blocked.
     static void on_occluded(const RTCFilterFunctionNArguments* arguments) {
         if (!arguments->valid[0]) return;
         auto& query = *reinterpret_cast<NativeShadow<Real>*>(arguments->context);

@@ -31,7 +31,7 @@ struct Sums {
 
 /// All queries of one branch to its intersector and its stack, in order.
 template <class Real>
-struct BranchSeen {
+struct BranchTrace {
     struct Look {
         Ray<Real> ray;
         Hit<Real> hit;
@@ -57,7 +57,7 @@ struct BranchSeen {
 /// An intersector that replays the recorded hits in their order.
 template <class Real>
 struct ReplayedIntersector {
-    const std::vector<typename BranchSeen<Real>::Look>& looks;
+    const std::vector<typename BranchTrace<Real>::Look>& looks;
     size_t& next;
 
     Hit<Real> closest(const Ray<Real>&) const { return next < looks.size() ? looks[next++].hit : Hit<Real>(); }
@@ -67,7 +67,7 @@ struct ReplayedIntersector {
 /// queried.
 template <class Real>
 struct ReplayedShadows {
-    const std::vector<typename BranchSeen<Real>::Shadow>& shadows;
+    const std::vector<typename BranchTrace<Real>::Shadow>& shadows;
     size_t& next;
     bool& agrees;
 
@@ -91,29 +91,29 @@ template <class Real, class Intersector>
 class BranchReader {
   public:
     using E = BranchEffects;
-    using Seen = BranchSeen<Real>;
+    using Trace = BranchTrace<Real>;
 
     BranchReader(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, const Intersector& intersector,
                  const FrameView& frame)
         : compiled_(compiled), scene_(scene), intersector_(intersector), frame_(frame) {}
 
     /// Fills the branch's node and adds nodes for its children; `waiting` gets those that are on the stack.
-    void read(const Seen& seen, SampleTree& tree, uint32_t node, std::vector<uint32_t>& waiting) const {
+    void read(const Trace& trace, SampleTree& tree, uint32_t node, std::vector<uint32_t>& waiting) const {
         PixelBranch branch = std::move(tree.branches[node]);
-        if (seen.looks.empty()) {
+        if (trace.looks.empty()) {
             branch.end = BranchEnd::pruned;
-            branch.ledger = less(seen.end.pruned, seen.begin.pruned);
+            branch.ledger = less(trace.end.pruned, trace.begin.pruned);
         } else {
-            Walk walk{seen,    branch,      tree,
-                      waiting, seen.weight, seen.start - greatest(seen.looks[0].ray.after.t, Real(0))};
-            read_way(walk);
+            Replay replay{trace,   branch,       tree,
+                          waiting, trace.weight, trace.start - max_or_second(trace.looks[0].ray.after.t, Real(0))};
+            read_way(replay);
         }
         tree.branches[node] = std::move(branch);
     }
 
   private:
-    struct Walk {
-        const Seen& seen;
+    struct Replay {
+        const Trace& trace;
         PixelBranch& branch;
         SampleTree& tree;
         std::vector<uint32_t>& waiting;
@@ -123,97 +123,98 @@ class BranchReader {
 
     /// Throws if the reconstruction disagrees with the recording, unless the pixel is flagged; then the branch is read
     /// as far as possible.
-    void require(const Seen& seen, bool holds, const char* what) const {
-        if (!holds && seen.flags == 0)
+    void require(const Trace& trace, bool holds, const char* what) const {
+        if (!holds && trace.flags == 0)
             throw std::logic_error(std::string("internal error: the ray tree does not add up: ") + what);
     }
 
-    void read_way(Walk& walk) const {
-        const auto& looks = walk.seen.looks;
+    void read_way(Replay& replay) const {
+        const auto& looks = replay.trace.looks;
         Ray<Real> ray = looks[0].ray;
-        walk.branch.origin = to_scene(along(ray.origin, greatest(ray.after.t, Real(0)), ray.direction));
-        walk.branch.direction = Vec3<double>(ray.direction);
+        replay.branch.origin = to_scene(along(ray.origin, max_or_second(ray.after.t, Real(0)), ray.direction));
+        replay.branch.direction = Vec3<double>(ray.direction);
         Absorption<true> absorption;
         absorption.begin(scene_, ray.media, ray.after.t);
         for (size_t at = 0;;) {
             ray = looks[at].ray;
             const Hit<Real> hit = looks[at].hit;
-            const SeenHit<Real> seen = closest_seen_light(scene_, ray, hit.t);
-            if (seen.light != no_light || !hit.found()) {
-                const bool light = seen.light != no_light;
-                absorption.dim(scene_, ray.media, light ? seen.t : hit.t, walk.weight);
-                walk.branch.end = light ? BranchEnd::light : BranchEnd::background;
-                walk.branch.seen_light = seen.light;
-                walk.branch.distance = length_of(walk, light ? seen.t : hit.t);
+            const VisibleLightHit<Real> visible = closest_visible_light(scene_, ray, hit.t);
+            if (visible.light != no_light || !hit.found()) {
+                const bool light = visible.light != no_light;
+                absorption.dim(scene_, ray.media, light ? visible.t : hit.t, replay.weight);
+                replay.branch.end = light ? BranchEnd::light : BranchEnd::background;
+                replay.branch.visible_light = visible.light;
+                replay.branch.distance = length_of(replay, light ? visible.t : hit.t);
                 break;
             }
             size_t next = at + 1;
-            Meeting<Real> meeting;
-            meet(scene_, ReplayedIntersector<Real>{looks, next}, ray, hit, meeting);
-            const size_t after = next_on_line(looks, next, meeting.last());
+            SurfaceEvent<Real> event;
+            resolve_event(scene_, ReplayedIntersector<Real>{looks, next}, ray, hit, event);
+            const size_t after = next_on_line(looks, next, event.last());
             if (after == looks.size()) {
-                absorption.dim(scene_, ray.media, meeting.hit.t, walk.weight);
-                walk.branch.end = BranchEnd::surface;
-                walk.branch.distance = length_of(walk, meeting.hit.t);
-                read_surface(walk, ray, meeting);
+                absorption.dim(scene_, ray.media, event.hit.t, replay.weight);
+                replay.branch.end = BranchEnd::surface;
+                replay.branch.distance = length_of(replay, event.hit.t);
+                read_surface(replay, ray, event);
                 break;
             }
-            note_passed(walk, ray, meeting);
-            for (int i = 0; i < meeting.count; ++i) absorption.cross(scene_, meeting.taken[i].key, meeting.taken[i].t);
-            for (; next < after; ++next) {  // refused crossings, as in NextSurface::count_passed_over
+            note_passed(replay, ray, event);
+            for (int i = 0; i < event.count; ++i) absorption.cross(scene_, event.taken[i].key, event.taken[i].t);
+            for (; next < after; ++next) {  // refused crossings, as in NextSurface::count_wrong_side
                 const Hit<Real>& over = looks[next].hit;
-                if (!Crossing<Real>{over.t, over.key}.before(meeting.taken[0].t, meeting.taken[0].key)) break;
+                if (!Crossing<Real>{over.t, over.key}.before(event.taken[0].t, event.taken[0].key)) break;
                 if (!lies_at_start(scene_, ray, over)) absorption.cross(scene_, over.key, over.t);
             }
             at = after;
         }
-        walk.branch.arriving = Vec3<double>(walk.weight);
-        walk.branch.adds = less(walk.seen.end.radiance, walk.seen.begin.radiance);
+        replay.branch.arriving = Vec3<double>(replay.weight);
+        replay.branch.adds = less(replay.trace.end.radiance, replay.trace.begin.radiance);
     }
 
     /// The query that continues straight from a crossing, if there is one: nothing was shaded there then.
-    static size_t next_on_line(const std::vector<typename Seen::Look>& looks, size_t from, const Crossing<Real>& last) {
+    static size_t next_on_line(const std::vector<typename Trace::Look>& looks, size_t from,
+                               const Crossing<Real>& last) {
         while (from < looks.size() && !(looks[from].ray.after.t == last.t && looks[from].ray.after.key == last.key))
             ++from;
         return from;
     }
 
-    void note_passed(Walk& walk, const Ray<Real>& ray, const Meeting<Real>& meeting) const {
+    void note_passed(Replay& replay, const Ray<Real>& ray, const SurfaceEvent<Real>& event) const {
         const uint32_t medium = ray.media.medium();
-        for (int i = 0; i < meeting.count; ++i) {
+        for (int i = 0; i < event.count; ++i) {
             FacePassed face;
-            fill(walk, face, meeting.taken[i].key, meeting.taken[i].t);
+            fill(replay, face, event.taken[i].key, event.taken[i].t);
             face.inside = face.crossing != CrossingKind::sheet && medium != no_solid && medium > face.solid;
-            walk.branch.passed.push_back(face);
+            replay.branch.passed.push_back(face);
         }
     }
 
-    void read_surface(Walk& walk, const Ray<Real>& ray, const Meeting<Real>& meeting) const {
-        PixelSurface& out = walk.branch.surface;
-        fill(walk, out, meeting.hit.key, meeting.hit.t);
-        for (int i = 0; i < meeting.count; ++i)
-            if (meeting.taken[i].key != meeting.hit.key)
-                fill(walk, out.also.emplace_back(), meeting.taken[i].key, meeting.taken[i].t);
-        const Surface<Real> s = surface_at<Real, E>(scene_, ray, meeting.hit);
+    void read_surface(Replay& replay, const Ray<Real>& ray, const SurfaceEvent<Real>& event) const {
+        PixelSurface& out = replay.branch.surface;
+        fill(replay, out, event.hit.key, event.hit.t);
+        for (int i = 0; i < event.count; ++i)
+            if (event.taken[i].key != event.hit.key)
+                fill(replay, out.also.emplace_back(), event.taken[i].key, event.taken[i].t);
+        const Surface<Real> s = surface_at<Real, E>(scene_, ray, event.hit);
         const Material<Real>& m = scene_.materials[s.material];
         out.material = s.material;
-        out.t = double(meeting.hit.t) * frame_.unit_length;
+        out.t = double(event.hit.t) * frame_.unit_length;
         out.point = to_scene(s.point);
         out.normal = Vec3<double>(s.normal);
         out.color = Vec3<double>(s.color);
         out.before = solids_of(ray.media);
-        out.beyond = solids_of(meeting.beyond);
+        out.beyond = solids_of(event.beyond);
         out.index_before = index_of(scene_, ray.media);
-        out.index_beyond = index_of(scene_, meeting.beyond);
+        out.index_beyond = index_of(scene_, event.beyond);
         out.cosine = -double(dot(ray.direction, s.normal));
         const bool sheet = out.crossing == CrossingKind::sheet;
-        const Shares<Real> shares =
-            split_at<Real, E>(scene_, m, ray.direction, s.normal, ray.media, meeting.beyond, sheet);
+        const InterfaceSplit<Real> split =
+            split_at<Real, E>(scene_, m, ray.direction, s.normal, ray.media, event.beyond, sheet);
         out.local = double(m.local);
-        out.mirrored = double(shares.reflection);
-        out.through = Vec3<double>(shares.filter);
-        out.bends = shares.bends;
-        if (shares.bends) {
+        out.mirrored = double(split.reflection);
+        out.through = Vec3<double>(split.filter);
+        out.bends = split.bends;
+        if (split.bends) {
             const Refraction<Real> refraction =
                 refracted<Real>(ray.direction, s.normal, out.index_before, out.index_beyond);
             out.total = refraction.total;
@@ -222,13 +223,13 @@ class BranchReader {
         } else if (m.fresnel != 0 && !sheet) {
             out.fresnel = 0;
         }
-        read_children(walk, shares);
-        if (m.local > Real(0)) read_light(walk, ray, meeting.hit, s);
+        read_children(replay, split);
+        if (m.local > Real(0)) read_light(replay, ray, event.hit, s);
     }
 
-    void read_children(Walk& walk, const Shares<Real>& shares) const {
-        const Vec3<Real> weights[2] = {walk.weight * shares.reflection, walk.weight * shares.filter};
-        const bool last = walk.branch.depth + 1 >= frame_.tree.depth;
+    void read_children(Replay& replay, const InterfaceSplit<Real>& split) const {
+        const Vec3<Real> weights[2] = {replay.weight * split.reflection, replay.weight * split.filter};
+        const bool last = replay.branch.depth + 1 >= frame_.tree.depth;
         uint32_t number[2] = {0, 0};
         FixedColor cut{};
         for (int through = 0; through < 2; ++through) {
@@ -236,7 +237,7 @@ class BranchReader {
             if (!(weight.x + weight.y + weight.z > Real(0))) continue;
             PixelBranch child;
             child.kind = through ? BranchKind::transmitted : BranchKind::mirrored;
-            child.depth = walk.branch.depth + 1;
+            child.depth = replay.branch.depth + 1;
             child.weight = child.arriving = Vec3<double>(weight);
             child.end = BranchEnd::cut;
             if (last) {
@@ -245,72 +246,74 @@ class BranchReader {
                     cut[size_t(c)] += child.ledger[size_t(c)];
                 }
             }
-            number[through] = uint32_t(walk.tree.branches.size());
-            walk.branch.children.push_back(number[through]);
-            walk.tree.branches.push_back(std::move(child));
+            number[through] = uint32_t(replay.tree.branches.size());
+            replay.branch.children.push_back(number[through]);
+            replay.tree.branches.push_back(std::move(child));
         }
-        require(walk.seen, cut == less(walk.seen.end.cut, walk.seen.begin.cut), "what the depth cuts");
-        require(walk.seen, walk.seen.pushed.size() == (last ? 0 : walk.branch.children.size()),
+        require(replay.trace, cut == less(replay.trace.end.cut, replay.trace.begin.cut), "what the depth cuts");
+        require(replay.trace, replay.trace.pushed.size() == (last ? 0 : replay.branch.children.size()),
                 "the number of children");
-        for (const typename Seen::Push& push : walk.seen.pushed) {
+        for (const typename Trace::Push& push : replay.trace.pushed) {
             const int through = push.branch.mirrored ? 0 : 1;
-            require(walk.seen, number[through] != 0 && push.branch.weight == weights[through], "the weight of a child");
-            if (push.fits) walk.waiting.push_back(number[through]);
-            if (!push.fits && number[through] != 0) walk.tree.branches[number[through]].end = BranchEnd::dropped;
+            require(replay.trace, number[through] != 0 && push.branch.weight == weights[through],
+                    "the weight of a child");
+            if (push.fits) replay.waiting.push_back(number[through]);
+            if (!push.fits && number[through] != 0) replay.tree.branches[number[through]].end = BranchEnd::dropped;
         }
     }
 
     /// Evaluates the surface's local light again, with the recorded shadows.
-    void read_light(Walk& walk, const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s) const {
-        PixelSurface& out = walk.branch.surface;
-        const auto& shadows = walk.seen.shadows;
+    void read_light(Replay& replay, const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s) const {
+        PixelSurface& out = replay.branch.surface;
+        const auto& shadows = replay.trace.shadows;
         out.ambient = Vec3<double>(s.color * scene_.materials[s.material].ambient) * radiance_unit();
-        out.ambient_adds = less(shadows.empty() ? walk.seen.end.radiance : shadows[0].before, walk.seen.begin.radiance);
+        out.ambient_adds =
+            less(shadows.empty() ? replay.trace.end.radiance : shadows[0].before, replay.trace.begin.radiance);
         out.lights.resize(scene_.lights.size);
         size_t next = 0;
         bool agrees = true;
         const ReplayedShadows<Real> replayed{shadows, next, agrees};
-        const Local local{*this, walk, s, next};
+        const Local local{*this, replay, s, next};
         DiscardedSums sums;
         PixelRays rays;
-        add_local_light<Real, E>(scene_, replayed, ray, hit, s, walk.weight * scene_.materials[s.material].local, sums,
-                                 rays, local);
-        require(walk.seen, agrees, "which lights cast shadows");
-        require(walk.seen, next == shadows.size(), "the number of shadow rays");
+        add_local_light<Real, E>(scene_, replayed, ray, hit, s, replay.weight * scene_.materials[s.material].local,
+                                 sums, rays, local);
+        require(replay.trace, agrees, "which lights cast shadows");
+        require(replay.trace, next == shadows.size(), "the number of shadow rays");
     }
 
     /// Records what each light adds to a surface. `next`: the index of the next recorded shadow ray.
     struct Local {
         const BranchReader& reader;
-        Walk& walk;
+        Replay& replay;
         const Surface<Real>& s;
         const size_t& next;
 
-        LightShare& share(uint32_t i) const {
-            LightShare& share = walk.branch.surface.lights[i];
-            share.light = i;
-            return share;
+        LightContribution& contribution(uint32_t i) const {
+            LightContribution& contribution = replay.branch.surface.lights[i];
+            contribution.light = i;
+            return contribution;
         }
-        void aim(LightShare& share, const LightAim<Real>& aim) const {
-            share.distance = double(aim.distance) * reader.frame_.unit_length;
-            share.cosine = double(aim.cosine);
+        void aim(LightContribution& contribution, const LightAim<Real>& aim) const {
+            contribution.distance = double(aim.distance) * reader.frame_.unit_length;
+            contribution.cosine = double(aim.cosine);
         }
         void behind(uint32_t i, const Light<Real>& light) const {
-            aim(share(i), LightAim<Real>::of(light, s));
-            share(i).fate = LightFate::behind;
+            aim(contribution(i), LightAim<Real>::of(light, s));
+            contribution(i).fate = LightFate::behind;
         }
         void unshadowed(uint32_t i, const LightAim<Real>& to_light, const Vec3<Real>& lit) const {
-            aim(share(i), to_light);
-            share(i).unshadowed = Vec3<double>(lit) * reader.radiance_unit();
-            share(i).fate = LightFate::nothing;
+            aim(contribution(i), to_light);
+            contribution(i).unshadowed = Vec3<double>(lit) * reader.radiance_unit();
+            contribution(i).fate = LightFate::nothing;
         }
         void arrives(uint32_t i, const ShadowRay<Real>& shadow, const Vec3<Real>& arrives) const {
-            const auto& shadows = walk.seen.shadows;
+            const auto& shadows = replay.trace.shadows;
             if (next == 0) return;  // no shadow ray was traced
-            LightShare& to = share(i);
+            LightContribution& to = contribution(i);
             to.arrives = Vec3<double>(arrives);
-            to.adds =
-                less(next < shadows.size() ? shadows[next].before : walk.seen.end.radiance, shadows[next - 1].before);
+            to.adds = less(next < shadows.size() ? shadows[next].before : replay.trace.end.radiance,
+                           shadows[next - 1].before);
             to.fate = arrives == Vec3<Real>(Real(0)) ? LightFate::shadow : LightFate::adds;
             if (arrives != Vec3<Real>(Real(1))) to.through = reader.solids_on_the_way(shadow);
         }
@@ -337,7 +340,7 @@ class BranchReader {
             if (count > 0 && scene_.solids[solid].kind == SolidKind::convex) note(solid, 0);
         });
         Ray<Real> ray = shadow.ray;
-        ray.meet_all();
+        ray.accept_both_sides();
         for (int crossings = 0; crossings < 256 && solids.size() < 8; ++crossings) {
             const Hit<Real> hit = intersector_.closest(ray);
             if (!(hit.t < shadow.distance)) break;
@@ -349,22 +352,22 @@ class BranchReader {
         return solids;
     }
 
-    void fill(const Walk& walk, FaceMet& face, uint64_t key, Real t) const {
+    void fill(const Replay& replay, FaceMet& face, uint64_t key, Real t) const {
         const Solid& solid = scene_.solids[key_solid(key)];
         face.solid = key_solid(key);
         face.triangle = solid.kind != SolidKind::convex;
         face.face = key_face(key) - (face.triangle ? solid.first_triangle : 0);
         face.crossing = key_kind(key);
-        face.distance = length_of(walk, t);
+        face.distance = length_of(replay, t);
     }
 
-    double length_of(const Walk& walk, Real t) const { return (double(t) + walk.ahead) * frame_.unit_length; }
+    double length_of(const Replay& replay, Real t) const { return (double(t) + replay.ahead) * frame_.unit_length; }
 
     glm::dvec3 to_scene(const Vec3<Real>& point) const {
         return Vec3<double>(point) * frame_.unit_length + compiled_.center;
     }
 
-    static std::vector<uint32_t> solids_of(const MediaList& media) {
+    static std::vector<uint32_t> solids_of(const InteriorList& media) {
         std::vector<uint32_t> solids;
         media.for_each([&](uint32_t solid, int count) {
             if (count > 0) solids.push_back(solid);

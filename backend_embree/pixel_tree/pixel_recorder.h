@@ -19,26 +19,26 @@ class SampleRecorder {
         tree_.branches.emplace_back();
     }
 
-    void looked(const Ray<Real>& ray, const Hit<Real>& hit) { seen_.looks.push_back({ray, hit}); }
+    void looked(const Ray<Real>& ray, const Hit<Real>& hit) { trace_.looks.push_back({ray, hit}); }
     void shadowed(const ShadowRay<Real>& shadow, const Vec3<Real>& arrives) {
-        seen_.shadows.push_back({shadow, arrives, colors_of(record_.radiance)});
+        trace_.shadows.push_back({shadow, arrives, colors_of(record_.radiance)});
     }
-    void pushed(const Branch<Real>& branch, bool fits) { seen_.pushed.push_back({branch, fits}); }
+    void pushed(const Branch<Real>& branch, bool fits) { trace_.pushed.push_back({branch, fits}); }
 
     /// Ends the current branch.
     void finish() {
-        seen_.end = Sums::of(record_);
-        seen_.flags = work_.flags;
-        seen_.start = current_ == 0 ? work_.start : 0;
-        if (current_ != none) reader_.read(seen_, tree_, current_, waiting_);
-        seen_ = {};
+        trace_.end = Sums::of(record_);
+        trace_.flags = work_.flags;
+        trace_.start = current_ == 0 ? work_.start : 0;
+        if (current_ != none) reader_.read(trace_, tree_, current_, waiting_);
+        trace_ = {};
         current_ = none;
     }
     void popped(const Branch<Real>& branch) {
         current_ = waiting_.back();
         waiting_.pop_back();
-        seen_.weight = branch.weight;
-        seen_.begin = Sums::of(record_);
+        trace_.weight = branch.weight;
+        trace_.begin = Sums::of(record_);
     }
 
   private:
@@ -48,7 +48,7 @@ class SampleRecorder {
     const PixelRecord& record_;
     const PixelWork& work_;
     SampleTree& tree_;
-    BranchSeen<Real> seen_;
+    BranchTrace<Real> trace_;
     std::vector<uint32_t> waiting_;  // nodes of the branches on the stack
     uint32_t current_ = 0;
 };
@@ -67,8 +67,8 @@ struct ObservedIntersector {
         return hit;
     }
     template <class E>
-    Share<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
-        const Share<Real, E> arrives = inner.template transmittance<E>(shadow);
+    Throughput<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        const Throughput<Real, E> arrives = inner.template transmittance<E>(shadow);
         recorder.shadowed(shadow, arrives);
         return arrives;
     }

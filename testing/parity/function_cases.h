@@ -15,12 +15,13 @@ using NumberCases =
     CaseList<ReciprocalCase<float>, ReciprocalCase<double>, LesserGreaterCase<float>, LesserGreaterCase<double>,
              Exp2Case, Log2Case, Log2PairCase, PowCase, SinCase, CosCase, TanCase, SrgbCase, PowerBySquaringCase<float>,
              PowerBySquaringCase<double>, DoubleDoubleCase, ToFixedCase<float>, ToFixedCase<double>, ResolveCase<float>,
-             ResolveCase<double>, LossCase, ShareCase<float>, ShareCase<double>, AbsorptionCase, PathSumCase>;
+             ResolveCase<double>, LossCase, TransmittanceCase<float>, TransmittanceCase<double>, AbsorptionCase,
+             PathSumCase>;
 
 using LightCases = CaseList<VectorCase<float>, VectorCase<double>, RefractCase<float>, RefractCase<double>,
                             FresnelCase<float>, FresnelCase<double>, ReflectCase<float>, ReflectCase<double>,
                             PhongCase<float>, PhongCase<double>, CameraCase, TextureCase<float>, TextureCase<double>,
-                            SeenLightCase<float>, SeenLightCase<double>, ApexCase<float>, ApexCase<double>>;
+                            VisibleLightCase<float>, VisibleLightCase<double>, ApexCase<float>, ApexCase<double>>;
 
 using HitCases = CaseList<TriangleCase<float>, TriangleCase<double>, TriangleShadowCase<float>,
                           TriangleShadowCase<double>, ConvexCase<float>, ConvexCase<double>, ConvexIntervalCase<float>,

@@ -221,8 +221,8 @@ struct ConvexIntervalCase {
         out.unsigned_zero(rest.t);
         out.bits(is_met(all, scene.extent));
         // Whether the ray misses the sphere, and whether the solid lies beyond half the distance to it.
-        const bool misses = passes_by(Ball<Real>::of(in.solid), o, d, RealTraits<Real>::infinity);
-        const bool beyond = passes_by(Ball<Real>::of(in.solid), o, d, all.enter * Real(0.5));
+        const bool misses = misses_bounds(BoundingSphere<Real>::of(in.solid), o, d, RealTraits<Real>::infinity);
+        const bool beyond = misses_bounds(BoundingSphere<Real>::of(in.solid), o, d, all.enter * Real(0.5));
         out.bits(4 * uint64_t(beyond) + 2 * uint64_t(inside_convex(scene, in.solid, o)) + uint64_t(misses));
     }
 };

@@ -2,7 +2,7 @@
 // triangle.
 #pragma once
 
-#include "cistula/lights/seen_light.h"
+#include "cistula/lights/visible_light.h"
 #include "cistula/model/camera.h"
 #include "cistula/model/texture.h"
 #include "cistula/shading/phong.h"
@@ -124,24 +124,24 @@ struct TextureCase {
 
 /// Case: two spheres, often at equal distances, and a ray that passes near their outlines.
 template <class Real>
-struct SeenLightCase {
+struct VisibleLightCase {
     static constexpr const char* name = "seen_light";
     using Number = Real;
     struct Input {
-        SeenLight<Real> lights[2];
+        VisibleLight<Real> lights[2];
         Ray<Real> ray;
         Real limit;
     };
     static constexpr int words = 2;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
-        for (SeenLight<Real>& light : in.lights) {
+        for (VisibleLight<Real>& light : in.lights) {
             light.center = draw.in_cube<Real>(Real(1));
             light.radius = magnitude(draw.scaled<Real>(-16, -1));
             light.radiance = Vec3<Real>(Real(1));
         }
         if (draw.one_in(4)) in.lights[1] = in.lights[0];
-        const SeenLight<Real>& aimed = in.lights[draw.below(2)];
+        const VisibleLight<Real>& aimed = in.lights[draw.below(2)];
         in.ray.origin = draw.in_cube<Real>(Real(3));
         if (draw.one_in(8)) in.ray.origin = along(aimed.center, aimed.radius, draw.direction<Real>());
         Vec3<Real> target = aimed.center;
@@ -154,8 +154,8 @@ struct SeenLightCase {
     }
     CISTULA_HD static void run(const Input& in, Words& out) {
         SceneView<Real> scene;
-        scene.seen_lights = {in.lights, 2};
-        const SeenHit<Real> hit = closest_seen_light(scene, in.ray, in.limit);
+        scene.visible_lights = {in.lights, 2};
+        const VisibleLightHit<Real> hit = closest_visible_light(scene, in.ray, in.limit);
         out.real(hit.t);
         out.bits(hit.light);
     }

@@ -70,8 +70,8 @@ struct LesserGreaterCase {
         return in;
     }
     CISTULA_HD static void run(const Input& in, Words& out) {
-        out.real(lesser(in.a, in.b));
-        out.real(greater(in.a, in.b));
+        out.real(min_no_nan(in.a, in.b));
+        out.real(max_no_nan(in.a, in.b));
     }
 };
 

@@ -112,7 +112,7 @@ struct LossCase {
 };
 
 template <class Real>
-struct ShareCase {
+struct TransmittanceCase {
     static constexpr const char* name = "share_of";
     using Number = Real;
     struct Input {
@@ -137,7 +137,7 @@ struct ShareCase {
                 return {draw.bits() >> (sizeof(Real) == sizeof(float) ? 5 : 2)};
         }
     }
-    CISTULA_HD static void run(const Input& in, Words& out) { out.real(share_of<Real>(in.loss)); }
+    CISTULA_HD static void run(const Input& in, Words& out) { out.real(transmittance_of<Real>(in.loss)); }
 };
 
 struct AbsorptionCase {

@@ -197,7 +197,7 @@ CISTULA_HD inline void add_shadow(const SceneView<Real>& scene, const ShadowSum<
     for (int c = 0; c < 3; ++c) out.bits(sum.loss[c]);
     for (int c = 0; c < 3; ++c) out.bits(sum.path[c].sum);
     out.bits(sum.opaque);
-    out.vec(sum.template share<Real>(scene));
+    out.vec(sum.template transmittance<Real>(scene));
 }
 
 template <class Real>

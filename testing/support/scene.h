@@ -169,7 +169,8 @@ void pass(Ray<Real>& ray, const Hit<Real>& hit) {
 
 /// Starts a new line on a face as the ray tree does.
 template <class Real>
-Ray<Real> spawn(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit, const MediaList& media) {
+Ray<Real> spawn(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit<Real>& hit,
+                const InteriorList& media) {
     Ray<Real> ray = ray_from(origin, direction);
     ray.from_solid = key_solid(hit.key);
     ray.from_face = key_face(hit.key);
@@ -185,8 +186,8 @@ inline double chord(const PlatonicShape& shape, const Rotation& rotation, double
         const dvec3 n = rotation(face.normal);
         const double nd = dot(n, direction), rest = shape.inradius * radius - margin - dot(n, origin);
         if (nd == 0 && rest <= 0) return 0;
-        if (nd < 0) enter = greatest(enter, rest / nd);
-        if (nd > 0) leave = least(leave, rest / nd);
+        if (nd < 0) enter = max_or_second(enter, rest / nd);
+        if (nd > 0) leave = min_or_second(leave, rest / nd);
     }
     return leave - enter;
 }
@@ -200,7 +201,7 @@ struct Count {
 template <class Real, class Intersector>
 Count cross_all(const Intersector& intersector, Ray<Real> ray) {
     Count count;
-    if (ray.from_solid == no_solid && ray.fresh()) ray.meet_all();
+    if (ray.from_solid == no_solid && ray.fresh()) ray.accept_both_sides();
     for (int i = 0; i < 100000; ++i) {
         const Hit<Real> hit = intersector.closest(ray);
         if (!hit.found()) return count;
@@ -225,7 +226,7 @@ inline void add_edge_lights(SceneDescription& scene, int count) {
         }
 }
 
-inline void add_seen_lights(SceneDescription& scene, int count) {
+inline void add_visible_lights(SceneDescription& scene, int count) {
     for (int i = 0; i < count; ++i) {
         const double turn = 0.3 * double(scene.lights.size());
         LightDescription light;

@@ -1,5 +1,5 @@
 // Exact text dump of everything in a description that affects the picture: equal texts are equal scenes. Left out are
-// places in the file, the seed's output pattern and its flag.
+// places in the file, the text input's output pattern and its flag.
 #pragma once
 
 #include <filesystem>

@@ -87,7 +87,7 @@ void expect_same_with_mask(const SceneDescription& scene, const std::string& wha
     film.rays = RayCounts();
     uint64_t samples = 0;
     for (int i = 0; i < int(film.pixels.size()); ++i) {
-        using Stack = StackOf<Real, E, MediaList>;
+        using Stack = StackOf<Real, E, InteriorList>;
         typename Stack::Storage storage;
         Stack stack(storage);
         PixelWork work;

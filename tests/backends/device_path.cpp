@@ -82,8 +82,8 @@ bool check(const std::string& name, const SceneDescription& description, const F
         EXPECT_EQ(film.rays.transmitted, expected.rays.transmitted) << where;
         EXPECT_EQ(film.rays.shadow, expected.rays.shadow) << where;
     };
-    using Tree = BvhIntersector<Real, MediaList>;
-    using PlainLoop = BruteIntersector<Real, OneMedium, ConstantScene<Real>>;
+    using Tree = BvhIntersector<Real, InteriorList>;
+    using PlainLoop = BruteIntersector<Real, SingleInterior, ConstantScene<Real>>;
     const FacetTree<Real> tree = facet_tree(compiled->view());
     SceneView<Real> view = compiled->view();
     tree.put_into(view);

@@ -112,7 +112,7 @@ TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
     };
     const std::string dark = hash();
     test::add_edge_lights(scene, 4);
-    test::add_seen_lights(scene, 40);
+    test::add_visible_lights(scene, 40);
     EXPECT_EQ(this->compare(scene, settings, "lights"), effect_masks[3]);
     EXPECT_NE(hash(), dark);
 }

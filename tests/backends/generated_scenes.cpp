@@ -10,8 +10,8 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "cistula/traversal/brute.h"
-#include "scene/compile/frame.h"
 #include "scene/compile/scene_hash.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/description/camera_path.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
@@ -77,7 +77,7 @@ Body body_of(const TrianglesObject& mesh) {
     body.vertices = mesh.vertices;
     for (const auto& t : mesh.triangles) {
         const dvec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-        body.tolerance = greatest(body.tolerance, 1e-9 * (length(b - a) + length(a)));
+        body.tolerance = max_or_second(body.tolerance, 1e-9 * (length(b - a) + length(a)));
         body.faces.push_back({normalized(cross(b - a, c - a)), {a, b, c}});
     }
     return body;
@@ -214,7 +214,7 @@ class Coverage {
             convex += solid.kind == SolidKind::convex;
             meshes += solid.kind == SolidKind::mesh;
             sheets += solid.kind == SolidKind::sheet;
-            touched += solid.kind != SolidKind::sheet && solid.touched != 0;
+            touched += solid.kind != SolidKind::sheet && solid.may_touch != 0;
             const bool textured = scene.materials[solid.material].texture >= 0;
             note(solid.kind == SolidKind::sheet && !solid.flat, "sheet that is not flat");
             note(solid.kind == SolidKind::sheet && textured, "texture on a sheet");
@@ -230,7 +230,7 @@ class Coverage {
         note(primitives > 16, "a tree is needed");
         note(primitives > 16 && meshes == 0 && touched == 0, "a tree over convex solids apart");
         note(primitives > 200, "many primitives");
-        note(scene.seen_lights.size() > 8, "a tree over seen lights");
+        note(scene.visible_lights.size() > 8, "a tree over seen lights");
         note(magnitude(scene.center.x) > 100 || magnitude(scene.center.y) > 100, "far from the origin");
         note(scene.scale > 3, "small units");
         note(scene.scale < -6, "large units");
@@ -249,7 +249,7 @@ class Coverage {
         note(true, "mask " + std::to_string(least_mask(scene.effects)));
 
         const FrameView frame = frame_view(scene, camera_at(description.camera, 0), generated_settings(description));
-        MediaList media;
+        InteriorList media;
         const SceneView<double> view = scene.view();
         EXPECT_TRUE(camera_solids(view, BruteIntersector<double>{view}, frame.camera.position, media));
         note(!media.empty(), "camera in a solid");

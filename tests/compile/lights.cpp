@@ -64,7 +64,7 @@ TYPED_TEST(CompileLights, LightsAtVerticesOnFacesAndOnTriangles) {
     EXPECT_EQ(first[5].face, 1u);
 }
 
-TYPED_TEST(CompileLights, SeenLightsAndThoseThatOnlyLight) {
+TYPED_TEST(CompileLights, VisibleLightsAndThoseThatOnlyLight) {
     SceneDescription scene = empty_scene();
     add_light(scene, {0, 0, 2});
     add_light(scene, {1, 0, 0}, glm::dvec3{0}).radius = 0.5;
@@ -72,11 +72,11 @@ TYPED_TEST(CompileLights, SeenLightsAndThoseThatOnlyLight) {
     add_light(scene, {-1, 0, 0}, {1, 0.5, 0}).radius = 0.5;
     const auto compiled = compile_scene<TypeParam>(scene);
     ASSERT_EQ(compiled->lights.size(), 2u);
-    ASSERT_EQ(compiled->seen_lights.size(), 2u);
+    ASSERT_EQ(compiled->visible_lights.size(), 2u);
     const auto unit = TypeParam(std::ldexp(1.0, -compiled->radiance_exponent));
-    EXPECT_EQ(compiled->seen_lights[0].radiance, Vec3<TypeParam>(4, 0, 0) * unit);
-    EXPECT_EQ(compiled->seen_lights[1].radiance, Vec3<TypeParam>(1, 0.5, 0) * unit);
-    EXPECT_TRUE(compiled->seen_tree.empty());
+    EXPECT_EQ(compiled->visible_lights[0].radiance, Vec3<TypeParam>(4, 0, 0) * unit);
+    EXPECT_EQ(compiled->visible_lights[1].radiance, Vec3<TypeParam>(1, 0.5, 0) * unit);
+    EXPECT_TRUE(compiled->visible_light_tree.empty());
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ TEST(MeshTopology, InsideOutMeshesAreTurned) {
     const MeshTopology topology = find_topology(source);
     EXPECT_TRUE(topology.closed);
     EXPECT_TRUE(topology.flipped);
-    const Frame frame;
-    const FramedMesh mesh(source, topology, frame, false);
+    const SceneNormalization normalization;
+    const NormalizedMesh mesh(source, topology, normalization, false);
     for (uint32_t i = 0; i < mesh.size(); ++i) {
         const auto c = mesh.triangle(i);
         EXPECT_GT(dot(c[0], cross(c[1], c[2])), 0);
@@ -176,7 +176,7 @@ struct Apexes {
     explicit Apexes(const TrianglesObject& object, bool single_precision = false)
         : source(source_of(object)),
           topology(find_topology(source)),
-          mesh(source, topology, frame, single_precision),
+          mesh(source, topology, normalization, single_precision),
           first(apex_heights(mesh)),
           checked(first) {
         const Groups groups = group_triangles(mesh);
@@ -189,15 +189,15 @@ struct Apexes {
     }
 
     MeshSource source;
-    Frame frame;
+    SceneNormalization normalization;
     MeshTopology topology;
-    FramedMesh mesh;
+    NormalizedMesh mesh;
     ApexHeights first, checked;
     uint32_t blocked = 0;
 };
 
 /// Turns of a closed mesh about a point (van Oosterom and Strackee 1983): 1 inside, 0 outside.
-double winding(const FramedMesh& mesh, const dvec3& p) {
+double winding(const NormalizedMesh& mesh, const dvec3& p) {
     double sum = 0;
     for (uint32_t i = 0; i < mesh.size(); ++i) {
         const auto t = mesh.triangle(i);
@@ -344,8 +344,8 @@ TEST(MeshApex, DoNotDependOnTheRun) {
 TEST(Groups, AreTheSameFromRunToRunAndWellFilled) {
     const MeshSource source = source_of(bumpy_sphere(100000));
     const MeshTopology topology = find_topology(source);
-    const Frame frame;
-    const FramedMesh mesh(source, topology, frame, true);
+    const SceneNormalization normalization;
+    const NormalizedMesh mesh(source, topology, normalization, true);
     const Groups first = group_triangles(mesh);
     EXPECT_GT(double(mesh.size()) / (8 * first.size()), 0.8);
     for (int i = 0; i < 3; ++i) {

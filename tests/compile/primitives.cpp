@@ -124,34 +124,34 @@ TYPED_TEST(CompilePrimitives, BoxesOfConvexSolidsHoldTheirCornersPushedOut) {
 template <class Real>
 void expect_each_once(const CompiledScene<Real>& compiled) {
     std::multiset<int32_t> children;
-    for (const LightNode& node : compiled.seen_tree)
+    for (const LightNode& node : compiled.visible_light_tree)
         for (int i = 0; i < LightNode::width; ++i)
             if (node.has_child(i)) children.insert(node.children.of[i]);
-    const auto lights = static_cast<int32_t>(compiled.seen_lights.size()),
-               nodes = static_cast<int32_t>(compiled.seen_tree.size());
+    const auto lights = static_cast<int32_t>(compiled.visible_lights.size()),
+               nodes = static_cast<int32_t>(compiled.visible_light_tree.size());
     for (int32_t light = 0; light < lights; ++light) EXPECT_EQ(children.count(~light), 1u) << light;
     for (int32_t node = 1; node < nodes; ++node) EXPECT_EQ(children.count(node), 1u) << node;
     EXPECT_EQ(children.size(), static_cast<size_t>(lights + nodes - 1));
 }
 
-TYPED_TEST(CompilePrimitives, SeenLightsInOnePlaceAreAllInTheTree) {
+TYPED_TEST(CompilePrimitives, VisibleLightsInOnePlaceAreAllInTheTree) {
     SceneDescription scene = empty_scene();
     for (int i = 0; i < 21; ++i) add_light(scene, {i == 7 ? 2.0 : 1.0, 0, 0}).radius = 0.01;
     const auto compiled = compile_scene<TypeParam>(scene);
-    ASSERT_EQ(compiled->seen_lights.size(), 21u);
+    ASSERT_EQ(compiled->visible_lights.size(), 21u);
     expect_each_once(*compiled);
 }
 
-TYPED_TEST(CompilePrimitives, SeenLightsGetATreeWhereThereAreMany) {
+TYPED_TEST(CompilePrimitives, VisibleLightsGetATreeWhereThereAreMany) {
     SceneDescription scene = empty_scene();
     SolidObject object = solid(PlatonicSolid::icosahedron);
     object.edge_lights.count = 6;
     object.edge_lights.radius = 0.01;
     add_object(scene, object);
     const auto compiled = compile_scene<TypeParam>(scene);
-    ASSERT_EQ(compiled->seen_lights.size(), 180u);
+    ASSERT_EQ(compiled->visible_lights.size(), 180u);
     expect_each_once(*compiled);
-    EXPECT_LT(compiled->seen_tree.size(), 2 * 60u);  // 60 would be full
+    EXPECT_LT(compiled->visible_light_tree.size(), 2 * 60u);  // 60 would be full
 }
 
 }  // namespace

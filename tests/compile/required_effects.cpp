@@ -57,7 +57,7 @@ TEST(RequiredEffects, AnUnlitSceneNeedsNone) {
     EXPECT_EQ(because(scene, effect_diffuse), "no light has an intensity above 0");
 }
 
-TEST(RequiredEffects, AnOpaqueCubeUnderALamp) {
+TEST(RequiredEffects, AnOpaqueCubeUnderALight) {
     SceneDescription scene = lit_cube();
     EXPECT_EQ(effects_of(scene), effect_solids | effect_diffuse | effect_opaque_shadows);
     EXPECT_EQ(because(scene, effect_solids), "material plain of /objects/0 is on a convex solid");
@@ -158,7 +158,7 @@ TEST(RequiredEffects, LightsOnEdgesAndFalloff) {
     EXPECT_EQ(effects_of(scene), seen | effect_light_falloff);
 }
 
-TEST(RequiredEffects, LampsOnFaces) {
+TEST(RequiredEffects, LightsOnFaces) {
     SceneDescription scene = lit_cube();
     EXPECT_FALSE(effects_of(scene) & effect_lights_on_faces);
     EXPECT_EQ(because(scene, effect_lights_on_faces), "no lamp lies on a face");

@@ -47,9 +47,9 @@ SceneDescription varied_scene() {
     add_object(scene, torus(1, 0.25, 24, 12), 1);
     add_object(scene, solid(PlatonicSolid::tetrahedron, {-2, 0, 1}), 0);
     add_light(scene, {0, 0, 8});
-    LightDescription& lamp = add_light(scene, {3, 3, 3}, {2, 1, 0.5});
-    lamp.radius = 0.25;
-    lamp.falloff = true;
+    LightDescription& bulb = add_light(scene, {3, 3, 3}, {2, 1, 0.5});
+    bulb.radius = 0.25;
+    bulb.falloff = true;
     add_light(scene, {-3, 1, 2}, glm::dvec3{0}).radius = 0.125;
     scene.lights.back().glow = glm::dvec3{3, 2, 1};
     return scene;
@@ -94,7 +94,7 @@ TYPED_TEST(CompileScene, ScenesScaledByAPowerOfTwoCompileToTheSameBits) {
     using Real = TypeParam;
     const auto reference = compile_scene<Real>(varied_scene());
     for (const int k : {-40, -7, 3, 40}) {
-        // A lamp's own radiance follows its intensity unless given.
+        // A point light's own radiance follows its intensity unless given.
         SceneDescription description = varied_scene();
         description.lights[1].glow = description.lights[1].color;
         const auto scaled = compile_scene<Real>(scaled_scene(description, k));
@@ -103,7 +103,7 @@ TYPED_TEST(CompileScene, ScenesScaledByAPowerOfTwoCompileToTheSameBits) {
         EXPECT_TRUE(same_slabs(scaled->slabs, reference->slabs));
         EXPECT_TRUE(same_bits(scaled->clusters, reference->clusters));
         EXPECT_TRUE(same_bits(scaled->lights, reference->lights));
-        EXPECT_TRUE(same_bits(scaled->seen_lights, reference->seen_lights));
+        EXPECT_TRUE(same_bits(scaled->visible_lights, reference->visible_lights));
         EXPECT_TRUE(same_bits(scaled->incidents, reference->incidents));
         EXPECT_EQ(scaled->bound, reference->bound);
         EXPECT_EQ(scaled->extent, reference->extent);

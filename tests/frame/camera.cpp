@@ -60,7 +60,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
         for (int i = 0; i < 2000; ++i) {
             FrameView frame;
             const dvec3 forward = random.direction();
-            frame.camera = looking(forward * -distance, forward, greatest(4 / distance, 0.01));
+            frame.camera = looking(forward * -distance, forward, max_or_second(4 / distance, 0.01));
             frame.is_far = is_far(frame.camera, double(scene.extent));
             frame.width = frame.height = 100;
             frame.camera_media.add(3, 1);

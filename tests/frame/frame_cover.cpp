@@ -39,7 +39,7 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
                 PixelRecord record;
                 PixelWork work;
                 using E = Effects<all_effects>;
-                using Stack = StackOf<Real, E, MediaList>;
+                using Stack = StackOf<Real, E, InteriorList>;
                 typename Stack::Storage storage;
                 Stack stack(storage);
                 const PixelTask<E, BvhIntersector<Real>, Stack> task{view,       frame, intersector, rect.x + x,
@@ -98,10 +98,10 @@ TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
         check(read_scene(source + "/scenes/" + name + ".json"), name);
     for (uint64_t seed = 0; seed < generated_scene_count; seed += 4)
         check(generated_scene(seed, source + "/scenes"), "seed " + std::to_string(seed));
-    SceneDescription lamps = read_scene(source + "/scenes/benchmark.json");
+    SceneDescription with_lights = read_scene(source + "/scenes/benchmark.json");
     for (const int more : {10, 90}) {  // with an outline each, then one for all
-        test::add_seen_lights(lamps, more);
-        check(lamps, std::to_string(lamps.lights.size()) + " lights");
+        test::add_visible_lights(with_lights, more);
+        check(with_lights, std::to_string(with_lights.lights.size()) + " lights");
     }
     // All in all little background is rendered.
     EXPECT_GT(share.left_out, share.background / 2);
@@ -122,12 +122,12 @@ TYPED_TEST(Cover, IsTightAroundConvexThings) {
 
 TYPED_TEST(Cover, ManyHullsHaveOneOutline) {
     SceneDescription description = read_scene(source + "/scenes/benchmark.json");
-    for (const int lamps : {10, 100}) {
+    for (const int light_count : {10, 100}) {
         description.lights.clear();
-        test::add_seen_lights(description, lamps);
+        test::add_visible_lights(description, light_count);
         const auto outlines = cover_of<TypeParam>(description).outlines();
-        ASSERT_EQ(outlines.size(), lamps == 10 ? 14u : 1u);
-        EXPECT_EQ(outlines.back().hull, lamps == 10 ? size_t{13} : FrameCover::Outline::all);
+        ASSERT_EQ(outlines.size(), light_count == 10 ? 14u : 1u);
+        EXPECT_EQ(outlines.back().hull, light_count == 10 ? size_t{13} : FrameCover::Outline::all);
     }
 }
 

@@ -19,7 +19,7 @@ template <class Real>
 class ShadowPlans : public ::testing::Test {
   public:
     using Small = ConstantScene<Real>;
-    using Intersector = BruteIntersector<Real, OneMedium, Small>;
+    using Intersector = BruteIntersector<Real, SingleInterior, Small>;
     using E = Effects<clear_bodies>;
 
     /// Compiles the scene with and without a shadow plan; false if it does not fit a ConstantScene.
@@ -42,7 +42,7 @@ class ShadowPlans : public ::testing::Test {
         const Intersector blind{*blind_}, planned{*planned_};
         int compared = 0;
         for (int i = 0; i < count; ++i) {
-            Ray<Real, OneMedium> ray;
+            Ray<Real, SingleInterior> ray;
             ray.origin = vector() * blind_->extent;
             ray.direction = normalized(vector());
             for (uint32_t s = 0; s < blind_->solids.size; ++s)
@@ -54,7 +54,7 @@ class ShadowPlans : public ::testing::Test {
             const Surface<Real> s = surface_at<Real, E>(*blind_, ray, hit);
             compared += compare(blind, planned, s, hit, ray.media);
             // The other side of the face.
-            OneMedium beyond = ray.media;
+            SingleInterior beyond = ray.media;
             const int change = media_change(key_kind(hit.key));
             if (change != 0 && !beyond.add(key_solid(hit.key), change)) continue;
             Surface<Real> back = s;
@@ -71,20 +71,20 @@ class ShadowPlans : public ::testing::Test {
 
   private:
     /// Called: inlined, GCC takes the lack of a solid for an index out of bounds.
-    [[gnu::noinline]] static Hit<Real> first_hit(const Intersector& intersector, const Ray<Real, OneMedium>& ray) {
+    [[gnu::noinline]] static Hit<Real> first_hit(const Intersector& intersector, const Ray<Real, SingleInterior>& ray) {
         return intersector.closest(ray);
     }
 
     static int compare(const Intersector& blind, const Intersector& planned, const Surface<Real>& s,
-                       const Hit<Real>& hit, const OneMedium& media) {
+                       const Hit<Real>& hit, const SingleInterior& media) {
         int compared = 0;
         for (uint32_t l = 0; l < blind.scene.lights.size; ++l) {
             const auto share = [&](const Intersector& intersector) {
                 const Light<Real>& light = intersector.scene.lights[l];
                 const Vec3<Real> to_light = light.position - s.viewer_side;
                 const Real distance = length(to_light);
-                const ShadowRay<Real, OneMedium> shadow{spawned(s.viewer_side, to_light / distance, hit, media),
-                                                        distance, &light};
+                const ShadowRay<Real, SingleInterior> shadow{spawned(s.viewer_side, to_light / distance, hit, media),
+                                                             distance, &light};
                 return intersector.template transmittance<E>(shadow);
             };
             if (!(dot(s.normal, blind.scene.lights[l].position - s.viewer_side) > incidence<Real> * blind.scene.extent))

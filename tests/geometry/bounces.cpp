@@ -59,9 +59,9 @@ void bounce(const SceneView<Real>& scene, const Intersector& intersector, const 
             for (uint32_t k = 0; k < scene.solids[0].slab_count; ++k) {
                 const Slab<Real>& slab = scene.slabs[scene.solids[0].first_slab + k];
                 const double n = double(dot(slab.normal, s.point));
-                const double out = greatest(n - double(slab.high), double(slab.low) - n);
+                const double out = max_or_second(n - double(slab.high), double(slab.low) - n);
                 result.farthest_out =
-                    greatest(result.farthest_out, out / double(RealTraits<Real>::unit * scene.extent));
+                    max_or_second(result.farthest_out, out / double(RealTraits<Real>::unit * scene.extent));
             }
         Vec3<Real> direction = reflected(ray.direction, s.normal);
         if (random.below(4) ==
@@ -226,10 +226,10 @@ TYPED_TEST(BouncesTest, CrossingsPassedOverCount) {
             ray.media.add(0, 1);
             const Hit<Real> first = intersector.closest(ray);
             wrong_side += !first.found() || first.enters;
-            passed_over += first.passed_over <= first.t;
+            passed_over += first.wrong_side_t <= first.t;
             double inside = 0;  // the length, by all crossings
             Ray<Real> line = ray;
-            line.meet_all();
+            line.accept_both_sides();
             for (Hit<Real> hit = intersector.closest(line); hit.found(); hit = intersector.closest(line)) {
                 inside += hit.enters ? -double(hit.t) : double(hit.t);
                 test::pass(line, hit);

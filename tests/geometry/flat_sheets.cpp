@@ -1,4 +1,4 @@
-// misses_flat spares rays the triangles of flat sheets: it never hides a hit, and leaves out most that have none.
+// misses_flat_sheet spares rays the triangles of flat sheets: it never hides a hit, and leaves out most that have none.
 #include <gtest/gtest.h>
 
 #include "cistula/traversal/brute.h"
@@ -33,7 +33,7 @@ SceneDescription sheets_scene(Random& random, bool across_z) {
 
 /// Lines at all distances from a sheet's border, half of them within a few u of it, at slants from 1 to below 2^-10.
 template <class Real>
-Ray<Real, OneMedium> aimed(Random& random, const ConstantScene<Real>& scene, uint32_t index) {
+Ray<Real, SingleInterior> aimed(Random& random, const ConstantScene<Real>& scene, uint32_t index) {
     const Cluster<Real>& cluster = scene.clusters[index];
     const uint32_t lane = random.below(cluster.count), c = random.below(3), d = (c + 1) % 3;
     dvec3 from, to, third;
@@ -47,7 +47,7 @@ Ray<Real, OneMedium> aimed(Random& random, const ConstantScene<Real>& scene, uin
     const dvec3 target = on_border + (third - on_border) * random.between(-reach, reach);
     const dvec3 normal(scene.planes[index].normal), away = random.direction();
     const dvec3 direction = normalized(away + normal * (std::exp2(-random.between(0, 12)) - dot(away, normal)));
-    Ray<Real, OneMedium> ray;
+    Ray<Real, SingleInterior> ray;
     ray.origin = Vec3<Real>(target - direction * random.between(0, 2) * double(scene.extent));
     ray.direction = Vec3<Real>(direction);
     return ray;
@@ -55,7 +55,7 @@ Ray<Real, OneMedium> aimed(Random& random, const ConstantScene<Real>& scene, uin
 
 /// Called: inlined, GCC takes the lack of a solid for an index out of bounds.
 template <class Real>
-[[gnu::noinline]] bool is_hit(const ConstantScene<Real>& scene, uint32_t index, const Ray<Real, OneMedium>& ray) {
+[[gnu::noinline]] bool is_hit(const ConstantScene<Real>& scene, uint32_t index, const Ray<Real, SingleInterior>& ray) {
     Hit<Real> hit;
     closest_triangles(scene, index, ray, TriangleRay<Real>::of(ray.origin, ray.direction), hit);
     return hit.found();
@@ -77,9 +77,9 @@ TYPED_TEST(FlatSheets, NoHitIsHidden) {
         for (int i = 0; i < 10000; ++i) {
             const uint32_t index = random.below(scene->clusters.size);
             ASSERT_EQ(scene->planes[index].flat, 1u);
-            const Ray<Real, OneMedium> ray = aimed(random, *scene, index);
+            const Ray<Real, SingleInterior> ray = aimed(random, *scene, index);
             const bool found = is_hit(*scene, index, ray);
-            const bool is_left_out = misses_flat(*scene, index, ray, RealTraits<Real>::infinity);
+            const bool is_left_out = misses_flat_sheet(*scene, index, ray, RealTraits<Real>::infinity);
             hits += found;
             misses += !found;
             hidden += found && is_left_out;
@@ -102,13 +102,13 @@ TYPED_TEST(FlatSheets, MostMissesAreSpared) {
         const auto scene = constant_scene(compiled->view());
         ASSERT_TRUE(scene);
         for (int i = 0; i < 2000; ++i) {
-            Ray<Real, OneMedium> ray;
+            Ray<Real, SingleInterior> ray;
             ray.origin = Vec3<Real>(random.in_cube(double(scene->extent)));
             ray.direction = Vec3<Real>(random.direction());
             const uint32_t index = random.below(scene->clusters.size);
             const bool found = is_hit(*scene, index, ray);
             misses += !found;
-            spared += !found && misses_flat(*scene, index, ray, RealTraits<Real>::infinity);
+            spared += !found && misses_flat_sheet(*scene, index, ray, RealTraits<Real>::infinity);
         }
     }
     EXPECT_GT(spared, misses * 0.9) << "of " << misses;

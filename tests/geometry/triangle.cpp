@@ -297,8 +297,8 @@ TYPED_TEST(TriangleTest, TheSignOfDetTellsTheSide) {
             if (side > 0) ray.media.add(0, 1);  // first crossings come from the side that the list states
             const Hit<Real> refused = BruteIntersector<Real>{view}.closest(ray);
             EXPECT_FALSE(refused.found());
-            EXPECT_EQ(refused.passed_over, Real(2));
-            ray.meet_all();
+            EXPECT_EQ(refused.wrong_side_t, Real(2));
+            ray.accept_both_sides();
             EXPECT_EQ(BruteIntersector<Real>{view}.closest(ray).t, Real(2));
             ray = test::ray_from(origin, direction);
             if (side < 0) ray.media.add(0, 1);

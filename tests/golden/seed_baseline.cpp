@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 #include "testing/support/golden.h"
 #include "testing/support/scratch_directory.h"
 
@@ -72,8 +72,8 @@ TEST(SeedBaseline, RendersCistulasPictureWithALightAmongTheSolids) {
 TEST(SeedBaseline, FramesAreRead) {
     const ScratchDirectory folder;
     const ColorPicture picture = by_the_baseline<2>(benchmark_scene());
-    write_seed_frame(folder.file("frame.data"), picture);
-    const ColorPicture read = read_seed_data(folder.file("frame.data"));
+    write_raw_picture(folder.file("frame.data"), picture);
+    const ColorPicture read = read_raw_picture(folder.file("frame.data"));
     ASSERT_EQ(read.texels.size(), picture.texels.size());
     const seed::Difference difference = seed::compare(read, picture);
     EXPECT_EQ(difference.mean, 0);

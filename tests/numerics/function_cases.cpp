@@ -355,10 +355,11 @@ TYPED_TEST(FunctionInputs, RefractionOnBothSidesOfTheCriticalAngle) {
 TYPED_TEST(FunctionInputs, LightsAndTexelsOfAllKinds) {
     using Real = TypeParam;
     int seen[2] = {}, unseen = 0, twice = 0;
-    for_each_input<SeenLightCase<Real>>([&](const typename SeenLightCase<Real>::Input& in, const uint64_t* words) {
-        ++(words[1] == no_light ? unseen : seen[words[1]]);
-        twice += words[1] == 0 && in.lights[0].center == in.lights[1].center;
-    });
+    for_each_input<VisibleLightCase<Real>>(
+        [&](const typename VisibleLightCase<Real>::Input& in, const uint64_t* words) {
+            ++(words[1] == no_light ? unseen : seen[words[1]]);
+            twice += words[1] == 0 && in.lights[0].center == in.lights[1].center;
+        });
     for (const int count : {seen[0], seen[1], unseen, twice}) EXPECT_GT(count, 500);
     int texels = 0, mixed_ones = 0, none = 0;
     for_each_input<TextureCase<Real>>([&](const typename TextureCase<Real>::Input& in, const uint64_t* words) {
@@ -404,7 +405,7 @@ TYPED_TEST(FunctionInputs, SumsThatFitAndThatDoNot) {
     });
     for (const int count : {halves, infinite, subnormal, ordinary}) EXPECT_GT(count, 200);
     int none = 0, one = 0, between = 0;
-    for_each_input<ShareCase<Real>>([&](const auto&, const uint64_t* words) {
+    for_each_input<TransmittanceCase<Real>>([&](const auto&, const uint64_t* words) {
         const Real share = real_of<Real>(words[0]);
         ++(share == 0 ? none : share == 1 ? one : between);
     });

@@ -45,35 +45,35 @@ TEST(Loss, ToNearest) {
     EXPECT_EQ(loss_of(std::nextafter(1.0, 0.0)), 1u);  // 2^-53 / ln 2 is 0.72 units
 }
 
-TEST(Loss, SharesComeBack) {
+TEST(Loss, TransmittancesComeBack) {
     std::mt19937_64 engine(2);
     for (int i = 0; i < 200'000; ++i) {
         // A float share, as materials hold them, comes back to the bit.
         const float share = static_cast<float>(std::ldexp(unit(engine), -static_cast<int>(engine() % 100)));
-        ASSERT_EQ(share_of<float>(loss_of(share)), share);
+        ASSERT_EQ(transmittance_of<float>(loss_of(share)), share);
         const double fine = unit(engine);
-        ASSERT_NEAR(share_of<double>(loss_of(fine)), fine, 2 * 0x1p-53);
+        ASSERT_NEAR(transmittance_of<double>(loss_of(fine)), fine, 2 * 0x1p-53);
     }
 }
 
 template <class Real>
-class Share : public testing::Test {};
+class TransmittanceOfLoss : public testing::Test {};
 using Reals = testing::Types<float, double>;
-TYPED_TEST_SUITE(Share, Reals);
+TYPED_TEST_SUITE(TransmittanceOfLoss, Reals);
 
-TYPED_TEST(Share, ExactAtWholeLosses) {
+TYPED_TEST(TransmittanceOfLoss, ExactAtWholeLosses) {
     using Real = TypeParam;
     const int lowest = 1 - std::numeric_limits<Real>::min_exponent;
     ASSERT_EQ(std::ldexp(Real(1), -lowest), std::numeric_limits<Real>::min());
     for (int k = 0; k <= lowest; ++k)
-        ASSERT_EQ(share_of<Real>(static_cast<uint64_t>(k) * one), std::ldexp(Real(1), -k));
-    EXPECT_EQ(share_of<Real>(static_cast<uint64_t>(lowest) * one + 1), Real(0));
-    EXPECT_EQ(share_of<Real>(static_cast<uint64_t>(lowest + 1) * one), Real(0));
-    EXPECT_EQ(share_of<Real>(2047 * one), Real(0));
-    EXPECT_EQ(share_of<Real>(largest_loss), Real(0));
+        ASSERT_EQ(transmittance_of<Real>(static_cast<uint64_t>(k) * one), std::ldexp(Real(1), -k));
+    EXPECT_EQ(transmittance_of<Real>(static_cast<uint64_t>(lowest) * one + 1), Real(0));
+    EXPECT_EQ(transmittance_of<Real>(static_cast<uint64_t>(lowest + 1) * one), Real(0));
+    EXPECT_EQ(transmittance_of<Real>(2047 * one), Real(0));
+    EXPECT_EQ(transmittance_of<Real>(largest_loss), Real(0));
 }
 
-TYPED_TEST(Share, WithinStatedError) {
+TYPED_TEST(TransmittanceOfLoss, WithinStatedError) {
     using Real = TypeParam;
     std::mt19937_64 engine(3);
     double worst = 0;
@@ -83,18 +83,18 @@ TYPED_TEST(Share, WithinStatedError) {
         int exponent = 0;
         frexpq(exact, &exponent);
         const Quad ulp = ldexpq(1, exponent - std::numeric_limits<Real>::digits);
-        worst = std::max(worst, static_cast<double>(fabsq(Quad(share_of<Real>(loss)) - exact) / ulp));
+        worst = std::max(worst, static_cast<double>(fabsq(Quad(transmittance_of<Real>(loss)) - exact) / ulp));
     }
     EXPECT_LE(worst, sizeof(Real) == 4 ? 0.5 + 1e-6 : elementary::exp2_worst_ulp);
 }
 
-TYPED_TEST(Share, NeverGrowsWithTheLoss) {
+TYPED_TEST(TransmittanceOfLoss, NeverGrowsWithTheLoss) {
     using Real = TypeParam;
     std::mt19937_64 engine(4);
     const auto run = [](uint64_t first) {
-        Real before = share_of<Real>(first);
+        Real before = transmittance_of<Real>(first);
         for (uint64_t loss = first + 1; loss < first + 400; ++loss) {
-            const Real share = share_of<Real>(loss);
+            const Real share = transmittance_of<Real>(loss);
             ASSERT_LE(share, before) << loss;
             before = share;
         }
@@ -108,22 +108,22 @@ TEST(Loss, AnyOrderOfCrossingsGivesTheSame) {
     std::mt19937_64 engine(5);
     std::vector<double> shares(100);
     for (double& share : shares) share = unit(engine);
-    const auto share_through = [&] {
+    const auto transmittance_through = [&] {
         uint64_t loss = 0;
         for (const double share : shares) loss = saturating_add(loss, loss_of(share));
-        return share_of<double>(loss);
+        return transmittance_of<double>(loss);
     };
     const auto product = [&] {
         double all = 1;
         for (const double share : shares) all *= share;
         return all;
     };
-    const double first = share_through(), plain = product();
+    const double first = transmittance_through(), plain = product();
     EXPECT_NEAR(first / plain, 1, 200 * 0x1p-53);
     bool plain_differs = false;
     for (int round = 0; round < 50; ++round) {
         std::shuffle(shares.begin(), shares.end(), engine);
-        EXPECT_EQ(share_through(), first);
+        EXPECT_EQ(transmittance_through(), first);
         plain_differs |= product() != plain;
     }
     EXPECT_TRUE(plain_differs);
@@ -166,7 +166,7 @@ TEST(Absorption, LossToNearest) {
     EXPECT_EQ(absorption_loss(2840), largest_loss);
     EXPECT_EQ(absorption_loss(inf), largest_loss);
     EXPECT_EQ(absorption_loss(nan), largest_loss);
-    EXPECT_EQ(share_of<double>(absorption_loss(1)), std::exp(-1.0));
+    EXPECT_EQ(transmittance_of<double>(absorption_loss(1)), std::exp(-1.0));
 }
 
 TEST(Absorption, LossIsMonotone) {

@@ -8,7 +8,7 @@
 
 #include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_seed.h"
+#include "scene/readers/read_text_input.h"
 #include "scene/readers/scene_keys.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
@@ -220,7 +220,7 @@ std::vector<std::string> scene_files() {
 
 TEST(Scenes, BenchmarkIsWhatItsFiguresWereMeasuredOn) {
     const SceneDescription scene = read_scene((source_root() / "scenes/benchmark.json").string());
-    const SceneDescription seed = read_scene_text(seed_template(), "template", "");
+    const SceneDescription seed = read_scene_text(text_input_template(), "template", "");
     EXPECT_EQ(scene.film.width, 640);
     EXPECT_EQ(scene.film.height, 480);
     EXPECT_EQ(scene.film.supersample, 1);

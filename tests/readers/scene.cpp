@@ -8,7 +8,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "scene/readers/read_seed.h"
+#include "scene/readers/read_text_input.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
@@ -61,9 +61,9 @@ TEST(SceneFile, StandardInputIsRead) {
 }
 
 TEST(SceneFile, FormatIsToldByTheFirstCharacter) {
-    EXPECT_FALSE(read(" \n\t{\"objects\": []}").seed_format);
-    EXPECT_FALSE(read("\xEF\xBB\xBF{\"objects\": []}").seed_format);
-    EXPECT_TRUE(read("\n" + seed_template()).seed_format);
+    EXPECT_FALSE(read(" \n\t{\"objects\": []}").from_text_input);
+    EXPECT_FALSE(read("\xEF\xBB\xBF{\"objects\": []}").from_text_input);
+    EXPECT_TRUE(read("\n" + text_input_template()).from_text_input);
     EXPECT_WRONG(read(" \n"), "a.json: the scene is empty; expected JSON or the text of --print-template");
     EXPECT_WRONG(read("// mine\n{}"),
                  "a.json: a JSON scene begins with '{', found '/'; comments may stand anywhere after it");

@@ -6,7 +6,7 @@
 #include "scene/base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_seed.h"
+#include "scene/readers/read_text_input.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
@@ -108,7 +108,8 @@ TEST(SceneSyntax, MangledTextsAreReadOrRefusedOnOneLine) {
     std::mt19937_64 random(1);
     const auto below = [&](size_t n) { return static_cast<size_t>(random() % n); };
     const std::string alphabet = "{}[],:\"/*\\\n 0123456789.eE+-abcxyz\x01\x80\xff";
-    for (const std::string& whole : {bytes_of((source_root() / "scenes/benchmark.json").string()), seed_template()}) {
+    for (const std::string& whole :
+         {bytes_of((source_root() / "scenes/benchmark.json").string()), text_input_template()}) {
         int refused = 0;
         constexpr int rounds = 3000;
         for (int round = 0; round < rounds; ++round) {

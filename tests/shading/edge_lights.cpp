@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "cistula/lights/seen_light.h"
+#include "cistula/lights/visible_light.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/constant_scene.h"
 #include "scene/readers/read_scene.h"
@@ -28,12 +28,12 @@ SceneDescription edge_lit(int count, double radius, double size = 1) {
     return scene;
 }
 
-/// What closest_seen_light is to find.
+/// What closest_visible_light is to find.
 template <class Real>
-SeenHit<Real> found_by_loop(const SceneView<Real>& scene, const Ray<Real>& ray, Real limit) {
-    SeenHit<Real> best;
+VisibleLightHit<Real> found_by_loop(const SceneView<Real>& scene, const Ray<Real>& ray, Real limit) {
+    VisibleLightHit<Real> best;
     best.t = limit;
-    for (uint32_t i = 0; i < scene.seen_lights.size; ++i) see_light(scene, i, ray, best);
+    for (uint32_t i = 0; i < scene.visible_lights.size; ++i) intersect_visible_light(scene, i, ray, best);
     return best;
 }
 
@@ -55,19 +55,19 @@ class EdgeLights : public ::testing::Test {
             Ray<Real> ray = i % 2 == 0 ? any_ray(scene) : grazing_ray(scene);
             if (i % 3 == 0) limit = scene.extent * Real(uniform(0, 2));
             seen.inside += enter_solids(scene, ray, limit, i % 5 == 0);
-            const SeenHit<Real> expected = found_by_loop(scene, ray, limit),
-                                found = closest_seen_light(scene, ray, limit);
+            const VisibleLightHit<Real> expected = found_by_loop(scene, ray, limit),
+                                        found = closest_visible_light(scene, ray, limit);
             EXPECT_EQ(found.light, expected.light) << "ray " << i;
             EXPECT_EQ(found.t, expected.t) << "ray " << i;
             if (small) {
-                const SeenHit<Real> in_small = closest_seen_light(*small, ray, limit);
+                const VisibleLightHit<Real> in_small = closest_visible_light(*small, ray, limit);
                 EXPECT_EQ(in_small.light, expected.light) << "ray " << i;
                 EXPECT_EQ(in_small.t, expected.t) << "ray " << i;
             }
             ++seen.rays;
             seen.lights += expected.light != no_light;
-            Real from = greatest(ray.after.t, Real(0));
-            if (i % 2 == 0) seen.looked += may_see_lights(scene, ray, from, limit);
+            Real from = max_or_second(ray.after.t, Real(0));
+            if (i % 2 == 0) seen.looked += may_hit_visible_lights(scene, ray, from, limit);
         }
         return seen;
     }
@@ -94,17 +94,18 @@ class EdgeLights : public ::testing::Test {
     /// A ray that starts in solids knows them, and no light counts for it beyond its way out, if it does not go on
     /// there. Whether it starts in any.
     bool enter_solids(const SceneView<Real>& scene, Ray<Real>& ray, Real& limit, bool goes_on) {
-        ray.after.t = greatest(ray.after.t, Real(0));
+        ray.after.t = max_or_second(ray.after.t, Real(0));
         const Vec3<Real> start = ray.origin + ray.after.t * ray.direction;
         for (const uint32_t index : scene.convex)
             if (inside_convex(scene, scene.solids[index], start)) ray.media.add(index, 1);
         if (ray.media.empty()) return false;
-        limit = goes_on ? RealTraits<Real>::infinity : least(limit, BruteIntersector<Real>{scene}.closest(ray).t);
+        limit =
+            goes_on ? RealTraits<Real>::infinity : min_or_second(limit, BruteIntersector<Real>{scene}.closest(ray).t);
         return true;
     }
     /// Through the rim of a light, from near or far: within rounding of it, or a little off.
     Ray<Real> grazing_ray(const SceneView<Real>& scene) {
-        const auto& light = scene.seen_lights[uint32_t(uniform(0, scene.seen_lights.size - 0.5))];
+        const auto& light = scene.visible_lights[uint32_t(uniform(0, scene.visible_lights.size - 0.5))];
         const Vec3<double> center(light.center), from = center + in_cube() * (uniform(0, 1) < 0.5 ? 0.2 : 2.0);
         const Vec3<double> side = normalized(cross(center - from, in_cube()));
         const double off = uniform(0, 1) < 0.5 ? 1e-7 * uniform(-1, 1) : 0.1 * uniform(-1, 1);
@@ -126,7 +127,7 @@ TYPED_TEST(EdgeLights, AreFoundByAllThatMeetThem) {
     this->compare(edge_lit(3, 0.02, 2.5), 200000);  // solids through one another
     for (const char* name : {"platonic", "infinity", "glass", "hard/lights-on-edges", "hard/tiny-beside-unit"}) {
         const SceneDescription scene = read_scene(source + "/scenes/" + name + ".json");
-        if (compile_scene<TypeParam>(scene)->seen_lights.empty()) continue;
+        if (compile_scene<TypeParam>(scene)->visible_lights.empty()) continue;
         this->compare(scene, 100000);
     }
 }
@@ -148,7 +149,7 @@ TYPED_TEST(EdgeLights, LeaveOtherLightsToTheTree) {
 TYPED_TEST(EdgeLights, AFewAreInNoTree) {
     SceneDescription scene = read_scene(source + "/scenes/benchmark.json");
     for (LightDescription& light : scene.lights) light.radius = 0.5;
-    ASSERT_TRUE(compile_scene<TypeParam>(scene)->seen_tree.empty());
+    ASSERT_TRUE(compile_scene<TypeParam>(scene)->visible_light_tree.empty());
     const Seen seen = this->compare(scene, 100000);
     EXPECT_GT(seen.lights, seen.rays / 10);
 }

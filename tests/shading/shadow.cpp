@@ -24,7 +24,7 @@ class ShadowTest : public testing::Test {
         return (world - scene.center) * std::ldexp(1.0, scene.scale);
     }
     /// A shadow ray to a light, from a point in space.
-    static ShadowRay<Real> toward(const Light<Real>& light, const Vec3<Real>& origin, const MediaList& media = {}) {
+    static ShadowRay<Real> toward(const Light<Real>& light, const Vec3<Real>& origin, const InteriorList& media = {}) {
         const Vec3<Real> to_light = light.position - origin;
         const Real distance = length(to_light);
         ShadowRay<Real> shadow{test::ray_from(origin, to_light / distance), distance, &light};
@@ -164,7 +164,7 @@ TYPED_TEST(ShadowTest, LightsOnASolidObeyItsHalfSpaces) {
                         }
                         if (!clear) continue;
                         const Vec3<Real> origin(TestFixture::in_frame(*scene, center + rotation(p)));
-                        MediaList media;
+                        InteriorList media;
                         if (inside) media.add(0, 1);
                         const Vec3<Real> light =
                             TestFixture::light_at(view, TestFixture::toward(view.lights[0], origin, media));
@@ -208,9 +208,9 @@ TYPED_TEST(ShadowTest, AbsorptionIsExponential) {
                 const dvec3 p(random.between(-0.2, 0.2), random.between(-0.2, 0.2),
                               inside ? random.between(-0.5, 0.1) : -0.9);
                 const double slope = length(light - p) / (light.z - p.z);
-                const double top = least(light.z, half), bottom = greatest(p.z, -half);
+                const double top = min_or_second(light.z, half), bottom = max_or_second(p.z, -half);
                 const double inner = (top - bottom) * slope;
-                MediaList media;
+                InteriorList media;
                 if (inside) media.add(0, 1);
                 const Vec3<Real> origin(TestFixture::in_frame(*scene, p));
                 const Vec3<Real> found =
@@ -220,7 +220,7 @@ TYPED_TEST(ShadowTest, AbsorptionIsExponential) {
                     const double s = c == 0 ? sigma : 2 * sigma, exact = std::exp(-s * inner);
                     const double doubt = s / unit * 32 * u * double(view.extent) + (as_mesh ? 0x1p-31 : 0) + 4 * u;
                     const double error = std::abs(double(found[c]) / exact - 1);
-                    worst = greatest(worst, error / doubt);
+                    worst = max_or_second(worst, error / doubt);
                     ASSERT_LE(error, doubt) << as_mesh << " " << sigma << " " << i;
                 }
             }

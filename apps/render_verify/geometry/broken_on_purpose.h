@@ -21,8 +21,10 @@ CISTULA_HD inline bool meets_own_box(const Cluster<Real>& cluster, uint32_t lane
     float low[3], high[3];
     for (int axis = 0; axis < 3; ++axis) {
         const Real(&corner)[3][3][cluster_lanes] = cluster.corner;
-        low[axis] = float(least(corner[0][axis][lane], least(corner[1][axis][lane], corner[2][axis][lane])));
-        high[axis] = float(greatest(corner[0][axis][lane], greatest(corner[1][axis][lane], corner[2][axis][lane])));
+        low[axis] =
+            float(min_or_second(corner[0][axis][lane], min_or_second(corner[1][axis][lane], corner[2][axis][lane])));
+        high[axis] =
+            float(max_or_second(corner[0][axis][lane], max_or_second(corner[1][axis][lane], corner[2][axis][lane])));
     }
     return box_ray.enter(low, high) < RealTraits<float>::infinity;
 }

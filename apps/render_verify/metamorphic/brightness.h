@@ -16,14 +16,14 @@ namespace cistula::verify::metamorphic {
 /// dim.
 inline void brighten(SceneDescription& scene, int light, int color) {
     const double l = std::ldexp(1.0, light), s = std::ldexp(1.0, light + color);
-    const auto lamp = [&](glm::dvec3& emitted, std::optional<glm::dvec3>& glow) {
+    const auto scale_light = [&](glm::dvec3& emitted, std::optional<glm::dvec3>& glow) {
         glow = glow.value_or(emitted) * s;
         emitted *= l;
     };
-    for (LightDescription& each : scene.lights) lamp(each.color, each.glow);
+    for (LightDescription& each : scene.lights) scale_light(each.color, each.glow);
     for (ObjectDescription& object : scene.objects)
         if (auto* solid = std::get_if<SolidObject>(&object.shape))
-            lamp(solid->edge_lights.color, solid->edge_lights.glow);
+            scale_light(solid->edge_lights.color, solid->edge_lights.glow);
     for (MaterialDescription& m : scene.materials) {
         m.color *= std::ldexp(1.0, color);
         if (color != 0) m.specular = 0;

@@ -24,7 +24,7 @@ struct LineCrossings {
 
     template <class Intersector>
     CISTULA_HD LineCrossings(const Intersector& intersector, Ray<Real> ray) {
-        ray.meet_all();
+        ray.accept_both_sides();
         for (; count < most; ++count) {
             const Hit<Real> hit = intersector.closest(ray);
             if (!hit.found()) return;

@@ -72,7 +72,7 @@ struct FoldedPath {
             for (int axis = 0; axis < 3; ++axis) {
                 const DoubleDouble straight = DoubleDouble(o[axis]) + path * DoubleDouble(double(direction[axis]));
                 const DoubleDouble there = cube || axis == 1 ? fold[axis](straight) : straight;
-                worst = greatest(worst, magnitude(double(there - DoubleDouble(double(s.viewer_side[axis])))));
+                worst = max_or_second(worst, magnitude(double(there - DoubleDouble(double(s.viewer_side[axis])))));
                 turned += way[axis] == -ray.direction[axis] ? 1 : 0;
                 same = same && magnitude(way[axis]) == magnitude(direction[axis]);
             }

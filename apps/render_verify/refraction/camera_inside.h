@@ -30,7 +30,7 @@ struct CameraInside {
         const Real gone = ahead.found() ? ahead.t * Real(0.25 + 0.5 * draw.unit<double>()) : Real(0.5);
         if (!(gone > Real(0x1p-7)) || edge_ahead(setup, intersector, lines, line)) return;
         const Vec3<double> camera = along(Vec3<double>(lines.origin[line]), double(gone), Vec3<double>(direction));
-        MediaList around;
+        InteriorList around;
         bool same = camera_solids(setup.scene, intersector, camera, around);
         for (uint32_t solid = 0; solid < setup.scene.solids.size; ++solid)
             same = same && around.count(solid) == lines.media[line].count(solid);
@@ -57,8 +57,8 @@ struct CameraInside {
             ray.origin[k / 2] += k % 2 != 0 ? beside : -beside;
             ray.media = lines.media[line];
             // Not from the face itself, which lines on its wrong side would hit: from a little farther on.
-            ray.origin =
-                along(ray.origin, least(lines.first[line].t * Real(0.125), Real(0.0625)), lines.direction[line]);
+            ray.origin = along(ray.origin, min_or_second(lines.first[line].t * Real(0.125), Real(0.0625)),
+                               lines.direction[line]);
             if (intersector.closest(ray).key != lines.first[line].key) return true;
         }
         return false;

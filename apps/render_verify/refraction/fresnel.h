@@ -121,11 +121,11 @@ struct FresnelEqual {
         material.transmission = Real(0.5);
         material.tint = Vec3<Real>(Real(1), Real(0.5), Real(0));
         material.fresnel = 1;
-        const Shares<Real> shares = split_at<Real, Effects<all_effects>>(setup.scene, material, direction, normal,
-                                                                         MediaList(), MediaList(), false);
+        const InterfaceSplit<Real> split = split_at<Real, Effects<all_effects>>(
+            setup.scene, material, direction, normal, InteriorList(), InteriorList(), false);
         tally.expect(!found.total && found.reflectance == Real(0) && found.direction == renormalized(direction) &&
-                     !shares.bends && shares.through == direction && shares.reflection == Real(0) &&
-                     shares.filter == material.tint * Real(0.75));
+                     !split.bends && split.through == direction && split.reflection == Real(0) &&
+                     split.filter == material.tint * Real(0.75));
     }
     static void plan(Plan& plan) {
         plan.add("any angle", empty_scene(), FresnelEqual(), {}, plan.rays(1000000, 10000));

@@ -14,7 +14,7 @@ struct Lines {
     Vec3<Real> origin[capacity], direction[capacity];
     double index[capacity];     // of the medium in which the line starts
     Hit<Real> first[capacity];  // the first hit, shaded or not
-    MediaList media[capacity];
+    InteriorList media[capacity];
     int count = 0;
     uint32_t flags = 0;  // RenderFlag bits
     bool cut = false;    // the path is longer than `capacity`
@@ -24,7 +24,7 @@ struct Lines {
 
 template <class Real, class Intersector>
 struct Watched {
-    using Media = MediaList;
+    using Media = InteriorList;
     using Scene = SceneView<Real>;
     const Scene& scene;
     const Intersector& inner;
@@ -46,8 +46,8 @@ struct Watched {
         return hit;
     }
     template <class E>
-    CISTULA_HD Share<Real, E> transmittance(const ShadowRay<Real>&) const {
-        return Share<Real, E>(Real(0));
+    CISTULA_HD Throughput<Real, E> transmittance(const ShadowRay<Real>&) const {
+        return Throughput<Real, E>(Real(0));
     }
 };
 
@@ -60,10 +60,10 @@ struct Unnoted {
 
 /// Follows the ray's tree. Not inlined: every case calls it, and a tree is much code.
 template <class Real, class Intersector>
-CISTULA_SELDOM void trace(const Setup<Real>& setup, const Intersector& intersector, const Ray<Real>& ray,
-                          Lines<Real>& lines) {
+CISTULA_NOINLINE void trace(const Setup<Real>& setup, const Intersector& intersector, const Ray<Real>& ray,
+                            Lines<Real>& lines) {
     using Glass = Effects<effect_reflection | effect_transmission | effect_refraction | effect_insides>;
-    using Stack = StackOf<Real, Glass, MediaList>;
+    using Stack = StackOf<Real, Glass, InteriorList>;
     using Tree = RayTree<Real, Glass, Watched<Real, Intersector>, Stack>;
     TreeSettings settings;
     settings.depth = Lines<Real>::capacity;

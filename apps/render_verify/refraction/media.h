@@ -91,7 +91,7 @@ struct MediaMixed : MediaSequence {
 };
 
 /// Corners moved by an ulp or none each, so that shared faces have gaps and overlaps of up to 2 ulps of M: 4 u a
-/// coordinate, less than half of what a meeting of faces spans (meeting.h).
+/// coordinate, less than half of what a surface event spans (surface_event.h).
 struct MediaMovedTriangles : MediaSequence {
     static constexpr const char* name = "refraction/media/within-rounding/triangles";
     static constexpr const char* exact = "the same where shared faces of meshes are ulps apart, or one in the other";

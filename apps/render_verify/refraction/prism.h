@@ -52,7 +52,7 @@ struct PrismDeviation {
         const Vec3<double> left(lines.direction[2]), came(way);
         const double unit = double(RealTraits<Real>::unit), cosine = dot(left, came);
         tally.expect(dot(left, out) > 0.99);
-        tally.measure(greatest(cosine - least_cosine, 0.0) / unit);
+        tally.measure(max_or_second(cosine - least_cosine, 0.0) / unit);
         if (symmetric) tally.measure(magnitude(cosine - least_cosine) / unit);
         tally.witness(turn != 0 && cosine < least_cosine);
     }

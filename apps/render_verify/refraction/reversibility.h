@@ -16,7 +16,7 @@ struct Condition {
 CISTULA_HD inline Condition condition_of(const Vec3<double>& direction, const Vec3<double>& normal, double from,
                                          double to) {
     const double n = to / from, excess = (n - 1) * (n + 1), c = -dot(direction, normal);
-    const double g2 = excess + c * c, g = g2 > 0 ? square_root(g2) : 0, s = square_root(greatest(1 - c * c, 0.0));
+    const double g2 = excess + c * c, g = g2 > 0 ? square_root(g2) : 0, s = square_root(max_or_second(1 - c * c, 0.0));
     return {c, g, 1 + g / c + s * magnitude(excess) / c * (1 + 1 / (n * n))};
 }
 

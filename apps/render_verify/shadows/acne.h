@@ -15,7 +15,7 @@ struct LitInFull {
         Draw draw = setup.draw(i);
         const Vec3<double> middle(setup.numbers[0], setup.numbers[1], setup.numbers[2]);
         const double radius = setup.numbers[3], extent = double(setup.extent());
-        const double away = least(2.5 * radius, 1.95 * extent - length(middle));
+        const double away = min_or_second(2.5 * radius, 1.95 * extent - length(middle));
         const Vec3<double> from = on_sphere(draw);
         const Vec3<double> at = in_ball(draw);
         const Vec3<Real> origin(middle + from * away), target(middle + at * (0.9 * radius));

@@ -43,9 +43,9 @@ struct FromOutside {
         if (dot(origin, origin) > Real(4 * extent * extent)) return;
         double over = -1e300;
         for (uint32_t k = first_plane; k + 3 < setup.numbers.size; k += 4)
-            over = greatest(over, dot(Vec3<double>(setup.numbers[k], setup.numbers[k + 1], setup.numbers[k + 2]),
-                                      Vec3<double>(origin)) -
-                                      setup.numbers[k + 3]);
+            over = max_or_second(over, dot(Vec3<double>(setup.numbers[k], setup.numbers[k + 1], setup.numbers[k + 2]),
+                                           Vec3<double>(origin)) -
+                                           setup.numbers[k + 3]);
         // Outside for sure: planes, corners and points are rounded by a few u M each.
         if (!(over > 32 * double(RealTraits<Real>::unit) * extent + setup.numbers[1])) return;
         const ShadowRay<Real> shadow = shadow_ray(setup, origin, light);

@@ -66,8 +66,8 @@ struct HalfSpaces {
             double over_incident = -1e300, over = -1e300;
             for (uint32_t f = 0; f < faces; ++f) {
                 const double h = height(setup.numbers, s, f, Vec3<double>(origin));
-                over = greatest(over, h);
-                if (incident >> f & 1u) over_incident = greatest(over_incident, h);
+                over = max_or_second(over, h);
+                if (incident >> f & 1u) over_incident = max_or_second(over_incident, h);
             }
             if (magnitude(over_incident) <= doubt || magnitude(over) <= doubt) return;
             if (over_incident > 0) continue;

@@ -89,7 +89,7 @@ struct LightsOnStar {
         for (uint32_t e = 0; e < 3; ++e) {
             const Vec3<double> first = corner(numbers, triangle, e),
                                edge = corner(numbers, triangle, (e + 1) % 3) - first;
-            least_in = least(least_in, dot(cross(edge, x - first), normal) / length(edge));
+            least_in = min_or_second(least_in, dot(cross(edge, x - first), normal) / length(edge));
         }
         return least_in > aside ? 1 : least_in < -aside ? 0 : 2;
     }

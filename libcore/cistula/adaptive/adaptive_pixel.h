@@ -17,7 +17,7 @@ CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task
     using Hashing = HashingStack<Stack, Real>;
     const uint32_t before = task.work.rays.total();
     TreeSettings settings = task.frame.tree;
-    for (;; settings.budget = 4 * greatest(settings.budget, int64_t(1))) {
+    for (;; settings.budget = 4 * max_or_second(settings.budget, int64_t(1))) {
         begin_pixel(record);
         PathHash hash;
         Hashing stack(task.stack, hash, Real(task.frame.lattice.significant));

@@ -25,20 +25,21 @@ struct CornerFindings {
         if (has_middle) found.add(samples[lattice_middle], *at[0]);
         for (int c = 0; c < 3; ++c) {
             const int64_t a = at[0]->color(c), b = at[1]->color(c), d = at[2]->color(c), e = at[3]->color(c);
-            int64_t low = least(least(a, b), least(d, e)), high = greatest(greatest(a, b), greatest(d, e));
+            int64_t low = min_or_second(min_or_second(a, b), min_or_second(d, e)),
+                    high = max_or_second(max_or_second(a, b), max_or_second(d, e));
             if (has_middle) {
                 const int64_t m = samples[lattice_middle].color(c);
-                low = least(low, m);
-                high = greatest(high, m);
+                low = min_or_second(low, m);
+                high = max_or_second(high, m);
                 // The difference of the middle from the mean of the corners, times four. It counts half: as much as the
                 // diagonals' difference without a middle.
-                found.bend = greatest(found.bend, magnitude(4 * m - a - b - d - e) / 2);
+                found.bend = max_or_second(found.bend, magnitude(4 * m - a - b - d - e) / 2);
             } else {
-                found.bend = greatest(found.bend, magnitude(a + e - b - d));
+                found.bend = max_or_second(found.bend, magnitude(a + e - b - d));
             }
-            found.range = greatest(found.range, high - low);
-            found.across = greatest(found.across, greatest(magnitude(a - b), magnitude(d - e)));
-            found.down = greatest(found.down, greatest(magnitude(a - d), magnitude(b - e)));
+            found.range = max_or_second(found.range, high - low);
+            found.across = max_or_second(found.across, max_or_second(magnitude(a - b), magnitude(d - e)));
+            found.down = max_or_second(found.down, max_or_second(magnitude(a - d), magnitude(b - e)));
         }
         return found;
     }
@@ -46,7 +47,7 @@ struct CornerFindings {
   private:
     CISTULA_INLINE void add(const LatticeSample& sample, const LatticeSample& first) {
         differs |= sample.path_hash != first.path_hash;
-        most_rays = greatest(most_rays, sample.rays);
+        most_rays = max_or_second(most_rays, sample.rays);
     }
 };
 
@@ -57,10 +58,10 @@ struct PixelFindings {
     int64_t jump = 0;                   // between corners of a small cell with equal path hashes
 
     CISTULA_INLINE void add(const LatticeCell& cell) {
-        rays = greatest(rays, cell.rays);
+        rays = max_or_second(rays, cell.rays);
         if (cell.is_whole()) first_rays = cell.rays;
-        range = greatest(range, cell.range);
-        jump = greatest(jump, cell.jump);
+        range = max_or_second(range, cell.range);
+        jump = max_or_second(jump, cell.jump);
     }
 };
 
@@ -133,7 +134,7 @@ struct SideCrossed {
                                           const LatticeSample& b, const LatticeSample& beside, int64_t area) {
         for (int c = 0; c < 3; ++c) {
             const int64_t one = a.color(c), other = b.color(c), there = beside.color(c);
-            const int64_t beyond = greatest(least(one, other) - there, there - greatest(one, other));
+            const int64_t beyond = max_or_second(min_or_second(one, other) - there, there - max_or_second(one, other));
             if (3 * beyond * area > 2 * settings.target * lattice_samples) return true;
         }
         return false;
@@ -194,7 +195,7 @@ struct TextureJumps {
             for (int j = 0; j < i; ++j) {
                 const LatticeSample &a = samples[cell.corner(i)], &b = samples[cell.corner(j)];
                 for (int c = 0; c < 3 && a.path_hash == b.path_hash; ++c)
-                    jump = greatest(jump, magnitude(a.color(c) - b.color(c)));
+                    jump = max_or_second(jump, magnitude(a.color(c) - b.color(c)));
             }
         return jump;
     }

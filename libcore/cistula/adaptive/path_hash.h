@@ -43,8 +43,8 @@ struct HashingIntersector {
     }
 
     template <class E>
-    CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
-        const Share<Real, E> arrives = inner.template transmittance<E>(shadow);
+    CISTULA_INLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
+        const Throughput<Real, E> arrives = inner.template transmittance<E>(shadow);
         if (hash.counts) {
             const uint32_t light = uint32_t(shadow.light - inner.scene.lights.data);
             hash.add(told_apart(channel(arrives, 0)) + 3 * told_apart(channel(arrives, 1)),

@@ -17,10 +17,10 @@ namespace convex_here = convex_host;
 /// Bounding sphere test: whether a ray from outside surely misses the solid or meets it only beyond `limit`. A quick
 /// rejection that never decides a hit.
 template <class Real>
-CISTULA_INLINE bool passes_by(const Ball<Real>& ball, const Vec3<Real>& origin, const Vec3<Real>& direction,
-                              Real limit) {
-    const Vec3<Real> to_center = ball.center - origin;
-    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - ball.padded_square;
+CISTULA_INLINE bool misses_bounds(const BoundingSphere<Real>& sphere, const Vec3<Real>& origin,
+                                  const Vec3<Real>& direction, Real limit) {
+    const Vec3<Real> to_center = sphere.center - origin;
+    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - sphere.padded_square;
     const Real beyond = limit * (Real(2) * ahead - limit), beside = ahead < Real(0) ? Real(0) : ahead * ahead;
     return rest > (ahead > limit ? beyond : beside);
 }
@@ -32,7 +32,7 @@ CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<R
     const Solid& solid = scene.solids[index];
     const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
     const auto exit = convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped);
-    const Real t = greatest(exit.t, Real(0));
+    const Real t = max_or_second(exit.t, Real(0));
     if (!(t <= best.t && t < RealTraits<Real>::infinity)) return;
     const uint64_t key = make_key(CrossingKind::leave, index,
                                   convex_here::face_of(scene, solid, ray.origin, ray.direction, exit, skipped));
@@ -43,7 +43,7 @@ CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<R
 /// which it starts, to within rounding; at a slant it would otherwise stay long in that film. Not inlined, so its
 /// arguments are by value.
 template <class Real, class Scene>
-CISTULA_SELDOM bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real> origin, Vec3<Real> direction) {
+CISTULA_NOINLINE bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real> origin, Vec3<Real> direction) {
     const Solid& solid = scene.solids[index];
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
@@ -67,10 +67,11 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Soli
                                   Hit<Real>& best) {
     const auto interval = convex_here::interval_of(scene, solid, ray.origin, ray.direction, true);
     if (!is_met(interval, scene.extent)) return;
-    const Real t = greatest(interval.enter, Real(0));
+    const Real t = max_or_second(interval.enter, Real(0));
     if (!(t <= best.t && t < RealTraits<Real>::infinity) || t < ray.after.t) return;
     if constexpr (Media::contacts)
-        if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction)) return;
+        if (solid.may_touch && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
+            return;
     const uint64_t key =
         make_key(CrossingKind::enter, index, convex_here::face_of(scene, solid, ray.origin, ray.direction, interval));
     if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);
@@ -78,11 +79,12 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Soli
 
 /// The ray's next crossing of a convex solid, if it is less than `best`.
 template <class Real, class Media, class Scene>
-CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
+CISTULA_HOST_NOINLINE void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
+                                          Hit<Real>& best) {
     if (ray.media.contains(index))
         closest_exit(scene, index, ray, best);
     else if (ray.from_solid != index &&
-             !passes_by(Ball<Real>::of(scene.solids[index]), ray.origin, ray.direction, best.t))
+             !misses_bounds(BoundingSphere<Real>::of(scene.solids[index]), ray.origin, ray.direction, best.t))
         closest_entry(scene, index, scene.solids[index], ray, best);
 }
 
@@ -91,7 +93,7 @@ CISTULA_CALLED void closest_convex(const Scene& scene, uint32_t index, const Ray
 template <class Real, class Media, class Scene>
 CISTULA_INLINE uint32_t enclosing(const Scene& scene, const Ray<Real, Media>& ray) {
     const uint32_t solid = ray.media.only();
-    return solid != no_solid && scene.solids[solid].alone ? solid : no_solid;
+    return solid != no_solid && scene.solids[solid].isolated ? solid : no_solid;
 }
 
 /// The next crossing of a ray for which enclosing() gives a solid; false for any other ray.

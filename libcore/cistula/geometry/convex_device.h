@@ -32,15 +32,15 @@ struct SlabCrossing {
         at_high = (slab.high - no) * inverse;
     }
     CISTULA_INLINE bool is_parallel() const { return magnitude(slope) < least_slope<Real>; }
-    CISTULA_INLINE Real enter() const { return lesser(at_low, at_high); }
-    CISTULA_INLINE Real leave() const { return greater(at_low, at_high); }
+    CISTULA_INLINE Real enter() const { return min_no_nan(at_low, at_high); }
+    CISTULA_INLINE Real leave() const { return max_no_nan(at_low, at_high); }
 };
 
 /// Whether a line is parallel to any slab whose slope was given to take().
 template <class Real>
 class ParallelSlab {
   public:
-    CISTULA_INLINE void take(Real slope) { least_ = lesser(magnitude(slope), least_); }
+    CISTULA_INLINE void take(Real slope) { least_ = min_no_nan(magnitude(slope), least_); }
     CISTULA_INLINE bool found() const { return least_ < least_slope<Real>; }
 
   private:
@@ -74,7 +74,7 @@ CISTULA_INLINE Interval<Real> careful_interval(const Scene& scene, const Solid& 
         const Slab<Real>& slab = scene.slabs.data[i];
         cross_slab(slab.normal, slab.low, slab.high, origin, direction, enter, leave);
         if (enter > interval.enter) interval.enter = enter, interval.enter_slab = i;
-        interval.leave = lesser(leave, interval.leave);
+        interval.leave = min_no_nan(leave, interval.leave);
     }
     return interval;
 }
@@ -91,7 +91,7 @@ CISTULA_INLINE Interval<Real> interval_of(const Scene& scene, const Solid& solid
         const SlabCrossing<Real> crossing(scene.slabs.data[i], origin, direction);
         parallel.take(crossing.slope);
         if (crossing.enter() > interval.enter) interval.enter = crossing.enter(), interval.enter_slab = i;
-        interval.leave = lesser(crossing.leave(), interval.leave);
+        interval.leave = min_no_nan(crossing.leave(), interval.leave);
         if (may_stop && interval.enter > interval.leave) break;
     }
     return parallel.found() ? careful_interval(scene, solid, origin, direction) : interval;

@@ -34,16 +34,16 @@ template <class Real>
 CISTULA_INLINE Real greatest_lane(const Real (&a)[slab_lanes]) {
     alignas(32) Real half[4];
     CISTULA_VECTORS
-    for (int i = 0; i < 4; ++i) half[i] = greatest(a[i], a[i + 4]);
-    return greatest(greatest(half[0], half[2]), greatest(half[1], half[3]));
+    for (int i = 0; i < 4; ++i) half[i] = max_or_second(a[i], a[i + 4]);
+    return max_or_second(max_or_second(half[0], half[2]), max_or_second(half[1], half[3]));
 }
 /// Minimum of eight lanes, by vectorized halves.
 template <class Real>
 CISTULA_INLINE Real least_lane(const Real (&a)[slab_lanes]) {
     alignas(32) Real half[4];
     CISTULA_VECTORS
-    for (int i = 0; i < 4; ++i) half[i] = least(a[i], a[i + 4]);
-    return least(least(half[0], half[2]), least(half[1], half[3]));
+    for (int i = 0; i < 4; ++i) half[i] = min_or_second(a[i], a[i + 4]);
+    return min_or_second(min_or_second(half[0], half[2]), min_or_second(half[1], half[3]));
 }
 
 /// The interval of t in which a line is inside a solid; the unnamed parameter is convex_device's may_stop.
@@ -54,8 +54,8 @@ CISTULA_INLINE Interval<Real> interval_of(const Scene& scene, const Solid& solid
     for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
         alignas(32) Real enter[slab_lanes], leave[slab_lanes];
         cross_slabs(scene.slab_groups[solid.first_group + first / slab_lanes], origin, direction, enter, leave);
-        interval.enter = greatest(greatest_lane(enter), interval.enter);
-        interval.leave = least(least_lane(leave), interval.leave);
+        interval.enter = max_or_second(greatest_lane(enter), interval.enter);
+        interval.leave = min_or_second(least_lane(leave), interval.leave);
     }
     return interval;
 }
@@ -72,7 +72,7 @@ CISTULA_INLINE Exit<Real> exit_of(const Scene& scene, const Solid& solid, const 
         if (skipped / 2 - first < uint32_t(slab_lanes) &&
             leaving_face(skipped / 2, dot(slabs[skipped / 2].normal, direction)) == skipped)
             leave[skipped / 2 - first] = RealTraits<Real>::infinity;
-        exit.t = least(least_lane(leave), exit.t);
+        exit.t = min_or_second(least_lane(leave), exit.t);
     }
     return exit;
 }

@@ -47,11 +47,11 @@ struct Hit {
     uint32_t slot = 0;   // triangles: 8 cluster + lane
     bool enters = true;  // triangles: against the normal; the sign of det, not of a rounded dot product
     /// The smallest t of mesh crossings that were refused because they come from the wrong side (triangle.h).
-    Real passed_over = RealTraits<Real>::infinity;
+    Real wrong_side_t = RealTraits<Real>::infinity;
 
     CISTULA_INLINE bool found() const { return key != no_key; }
 
-    /// Replaces the hit by another crossing, keeping `passed_over`.
+    /// Replaces the hit by another crossing, keeping `wrong_side_t`.
     CISTULA_INLINE void take(Real other_t, uint64_t other_key, Real other_u, Real other_v, uint32_t other_slot,
                              bool other_enters) {
         t = other_t;

@@ -10,7 +10,7 @@ inline constexpr uint32_t no_solid = 0xffffffu;
 /// The medium stack: the solids that contain a point, each with its signed count of entries minus exits. A straight ray
 /// takes every crossing of a mesh in order of t, which rounding may reverse at a grazed edge, so a count of -1 is
 /// legal.
-struct MediaList {
+struct InteriorList {
     static constexpr bool contacts = true;  // a point may be inside several solids
     static constexpr bool meshes = true;    // some may be meshes
     static constexpr int capacity =
@@ -71,7 +71,7 @@ struct MediaList {
 
 /// The medium stack of scenes whose closed solids are all convex and do not touch, so that a ray is inside at most one.
 /// Its state lets a ray enter only from outside and leave only from inside.
-struct OneMedium {
+struct SingleInterior {
     static constexpr bool contacts = false, meshes = false;
 
     uint32_t solid = no_solid;
@@ -94,16 +94,16 @@ struct OneMedium {
     }
 };
 
-/// Converts a MediaList to the form of `to`.
-CISTULA_INLINE void assign(MediaList& to, const MediaList& from) {
+/// Converts a InteriorList to the form of `to`.
+CISTULA_INLINE void assign(InteriorList& to, const InteriorList& from) {
     to = from;
 }
-CISTULA_INLINE void assign(OneMedium& to, const MediaList& from) {
+CISTULA_INLINE void assign(SingleInterior& to, const InteriorList& from) {
     to.solid = from.medium();
 }
 
 /// A ray. Where it passes a face without bending it keeps its origin and direction, and `after` moves on.
-template <class Real, class Media = MediaList>
+template <class Real, class Media = InteriorList>
 struct Ray {
     Vec3<Real> origin;
     Vec3<Real> direction;            // unit to within a few u
@@ -116,7 +116,7 @@ struct Ray {
     /// Whether the ray's first crossing of a mesh must come from the side on which the ray starts.
     CISTULA_INLINE bool by_side() const { return after.t <= Real(-1); }
     /// Makes the ray meet all crossings, from whichever side; used to count them.
-    CISTULA_INLINE void meet_all() { after.t = Real(-0.5); }
+    CISTULA_INLINE void accept_both_sides() { after.t = Real(-0.5); }
 };
 
 /// Whether a ray is finite; one that is not meets nothing.

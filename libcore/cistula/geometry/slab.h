@@ -23,7 +23,7 @@ CISTULA_INLINE void cross_slab(const Vec3<Real>& normal, Real low, Real high, co
     const Real inverse = reciprocal(parallel ? Real(1) : nd);
     const Real at_low = (low - no) * inverse, at_high = (high - no) * inverse;
     const Real beside = no >= high || no <= low ? RealTraits<Real>::infinity : -RealTraits<Real>::infinity;
-    const Real first = lesser(at_low, at_high), last = greater(at_low, at_high);
+    const Real first = min_no_nan(at_low, at_high), last = max_no_nan(at_low, at_high);
     enter = parallel ? beside : first;
     leave = parallel ? RealTraits<Real>::infinity : last;
 }

@@ -216,7 +216,7 @@ CISTULA_INLINE void for_each_crossing(const Cluster<Real>& cluster, const Triang
 
 /// Whether a ray starts on the flat sheet to which a cluster belongs.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE bool leaves_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray) {
+CISTULA_INLINE bool starts_on_flat_sheet(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray) {
     const uint32_t solid = scene.clusters[cluster].solid;
     return solid == ray.from_solid && scene.solids[solid].flat != 0;
 }
@@ -225,20 +225,20 @@ CISTULA_INLINE bool leaves_flat(const Scene& scene, uint32_t cluster, const Ray<
 /// rejection that never decides a hit. (A ray so flat that slant < plane_padding / 4 M stays clear of the whole sheet.)
 /// `off`: signed distance of the origin from the plane; `slant`: direction . normal.
 template <class Real>
-CISTULA_INLINE bool stays_off(Real off, Real slant, Real limit) {
+CISTULA_INLINE bool clears_plane(Real off, Real slant, Real limit) {
     const Real ahead = off < Real(0) ? -slant : slant, far_off = magnitude(off);
     return (far_off > Real(plane_padding)) & (far_off + ahead * limit > Real(plane_padding));
 }
 
-/// Minimum slant for crosses_beside(): a flatter line may cross the plane far from its computed crossing.
+/// Minimum slant for crosses_outside_sheet(): a flatter line may cross the plane far from its computed crossing.
 template <class Real>
 inline constexpr Real least_slant = Real(0x1p-6);
 
 /// Whether a line surely crosses a flat sheet's plane outside the sheet's box. The crossing point is accurate to a few
 /// u M over the slant, at most 2^-13 M; the box is padded by more.
 template <class Real>
-CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                   Real off, Real slant) {
+CISTULA_INLINE bool crosses_outside_sheet(const SheetPlane<Real>& plane, const Vec3<Real>& origin,
+                                          const Vec3<Real>& direction, Real off, Real slant) {
     const Vec3<Real> at = along(origin, -off * reciprocal(slant), direction) - plane.center;
     return (magnitude(slant) > least_slant<Real>)&((magnitude(at.x) > plane.half.x) | (magnitude(at.y) > plane.half.y) |
                                                    (magnitude(at.z) > plane.half.z));
@@ -246,18 +246,18 @@ CISTULA_INLINE bool crosses_beside(const SheetPlane<Real>& plane, const Vec3<Rea
 
 /// Whether a ray surely misses a flat sheet up to `limit`. `from`: the solid that it leaves.
 template <class Real>
-CISTULA_INLINE bool misses_flat(const SheetPlane<Real>& plane, uint32_t from, const Vec3<Real>& origin,
-                                const Vec3<Real>& direction, Real limit) {
+CISTULA_INLINE bool misses_flat_sheet(const SheetPlane<Real>& plane, uint32_t from, const Vec3<Real>& origin,
+                                      const Vec3<Real>& direction, Real limit) {
     const Real off = dot(plane.normal, origin) - plane.offset, slant = dot(plane.normal, direction);
     // Both tests without branches between them, so that their values are computed at once.
-    if ((plane.flat != 0) & ((from == plane.solid) | stays_off(off, slant, limit))) return true;
-    return (plane.flat != 0) & crosses_beside(plane, origin, direction, off, slant);
+    if ((plane.flat != 0) & ((from == plane.solid) | clears_plane(off, slant, limit))) return true;
+    return (plane.flat != 0) & crosses_outside_sheet(plane, origin, direction, off, slant);
 }
 
 /// Whether a ray surely misses a cluster of a flat sheet; false where the cluster belongs to none.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE bool misses_flat(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
-    return misses_flat(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
+CISTULA_INLINE bool misses_flat_sheet(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
+    return misses_flat_sheet(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
 }
 
 /// Takes an accepted crossing as `best` if it is the ray's next.
@@ -273,7 +273,7 @@ CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_
         kind = CrossingKind::sheet;
     } else if (ray.by_side() && c.enters() == ray.media.contains(solid)) {
         // A ray's first crossing of a mesh is from the side on which the ray starts.
-        best.passed_over = lesser(c.t, best.passed_over);
+        best.wrong_side_t = min_no_nan(c.t, best.wrong_side_t);
         return;
     }
     const uint64_t key = make_key(kind, solid, triangle);
@@ -295,7 +295,7 @@ CISTULA_INLINE void closest_triangles(const Scene& scene, uint32_t index, const 
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_cluster(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                     const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
-    if (!leaves_flat(scene, index, ray)) closest_triangles(scene, index, ray, triangle_ray, best);
+    if (!starts_on_flat_sheet(scene, index, ray)) closest_triangles(scene, index, ray, triangle_ray, best);
 }
 
 /// Takes the crossing of one facet as `best` if it is the ray's next; `left` is the flat sheet on which the ray starts,

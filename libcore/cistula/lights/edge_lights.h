@@ -53,14 +53,15 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
             // A line parallel to a slab is near its planes almost everywhere or nowhere.
             const float inverse = 1.0f / (magnitude(nd) < 0x1p-60f ? 0x1p-60f : nd);
             const float at_low = (float(group.low[i]) - no) * inverse, at_high = (float(group.high[i]) - no) * inverse;
-            const float half = reach * magnitude(inverse), in = lesser(at_low, at_high), out = greater(at_low, at_high);
+            const float half = reach * magnitude(inverse), in = min_no_nan(at_low, at_high),
+                        out = max_no_nan(at_low, at_high);
             enter[i] = in - half;
             past[g][i] = in + half;
             soon[g][i] = out - half;
             leave[i] = out + half;
         }
-        from = greatest(convex_host::greatest_lane(enter), from);
-        to = least(convex_host::least_lane(leave), to);
+        from = max_or_second(convex_host::greatest_lane(enter), from);
+        to = min_or_second(convex_host::least_lane(leave), to);
     }
     if (!(from <= to)) return false;
     uint32_t entering = 0, leaving = 0;  // masks of planes near which the line is at `from`, at `to`
@@ -68,19 +69,19 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
     for (int g = 0; g < count; ++g) {
         entering |= lanes_from(past[g], from) << g * slab_lanes;
         leaving |= lanes_to(soon[g], to) << g * slab_lanes;
-        first = least(convex_host::least_lane(soon[g]), first);
-        last = greatest(convex_host::greatest_lane(past[g]), last);
+        first = min_or_second(convex_host::least_lane(soon[g]), first);
+        last = max_or_second(convex_host::greatest_lane(past[g]), last);
     }
     const bool two_at_first = (entering & (entering - 1)) != 0, two_at_last = (leaving & (leaving - 1)) != 0;
     if (!two_at_first && !two_at_last && (entering == 0 || leaving == 0)) return false;
-    if (!two_at_first) from = greatest(first, from);
-    if (!two_at_last) to = least(last, to);
+    if (!two_at_first) from = max_or_second(first, from);
+    if (!two_at_last) to = min_or_second(last, to);
     return from <= to;
 }
 
 /// The solid of an entry of scene.convex, which holds copies or indices.
 template <class Real, class Scene>
-CISTULA_INLINE const Solid& listed(const Scene&, const NumberedSolid<Real>& copy) {
+CISTULA_INLINE const Solid& listed(const Scene&, const IndexedSolid<Real>& copy) {
     return copy.solid;
 }
 template <class Scene>
@@ -90,7 +91,7 @@ CISTULA_INLINE const Solid& listed(const Scene& scene, uint32_t index) {
 
 /// Whether a ray may meet a visible light between `from` and `to`, which are narrowed to where it may.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& ray, Real& from, Real& to) {
+CISTULA_INLINE bool may_hit_visible_lights(const Scene& scene, const Ray<Real, Media>& ray, Real& from, Real& to) {
     if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return true;
     const Vec3<float> origin(ray.origin), direction(ray.direction);
     const auto near = [&](const Solid& solid, const SlabGroup<Real>& first, Real& near_from, Real& near_to) {
@@ -114,8 +115,8 @@ CISTULA_INLINE bool may_see_lights(const Scene& scene, const Ray<Real, Media>& r
         if (passes_edge_lights(solid, first.light_square, ray.origin, ray.direction, from, to) ||
             !near(solid, first, near_from, near_to))
             continue;
-        earliest = least(near_from, earliest);
-        latest = greatest(near_to, latest);
+        earliest = min_or_second(near_from, earliest);
+        latest = max_or_second(near_to, latest);
     }
     from = earliest;
     to = latest;

@@ -11,17 +11,17 @@ inline constexpr uint32_t fewest_in_light_tree = 9;
 
 /// Tests a ray against a node's boxes between its limits, which are finite and not negative. The device tests from t =
 /// 0 on, so it may accept more boxes.
-CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, bool (&meets)[LightNode::width]) {
+CISTULA_INLINE void intersect_boxes(const LightNode& node, const BoxRay& box_ray, bool (&meets)[LightNode::width]) {
     constexpr int width = LightNode::width;
     float near_t[3][width], far_t[3][width];
     for (int k = 0; k < 3; ++k) {  // copies whole lanes, for wide loads
         const LightNode::Lanes center = node.center[k], half = node.half[k];
-        const float pace = magnitude(box_ray.inverse[k]);
+        const float inverse = magnitude(box_ray.inverse[k]);
         CISTULA_VECTORS
         for (int i = 0; i < width; ++i) {
-            const float middle = box_ray.meets(k, center.of[i]);
-            near_t[k][i] = fused(-half.of[i], pace, middle);
-            far_t[k][i] = fused(half.of[i], pace, middle);
+            const float middle = box_ray.plane_t(k, center.of[i]);
+            near_t[k][i] = fused(-half.of[i], inverse, middle);
+            far_t[k][i] = fused(half.of[i], inverse, middle);
         }
     }
 #if CISTULA_ON_DEVICE
@@ -37,8 +37,8 @@ CISTULA_INLINE void meet_boxes(const LightNode& node, const BoxRay& box_ray, boo
 #else
     CISTULA_VECTORS
     for (int i = 0; i < width; ++i)
-        meets[i] = greater(greater(near_t[0][i], near_t[1][i]), greater(near_t[2][i], box_ray.near_limit)) <=
-                   lesser(lesser(far_t[0][i], far_t[1][i]), lesser(far_t[2][i], box_ray.far_limit));
+        meets[i] = max_no_nan(max_no_nan(near_t[0][i], near_t[1][i]), max_no_nan(near_t[2][i], box_ray.near_limit)) <=
+                   min_no_nan(min_no_nan(far_t[0][i], far_t[1][i]), min_no_nan(far_t[2][i], box_ray.far_limit));
 #endif
 }
 
@@ -47,10 +47,10 @@ class LightStack {
   public:
     static constexpr int32_t none = INT32_MIN, root = 0;
     static constexpr int capacity = (LightNode::width - 1) * (max_tree_depth + 1) + 1;
-    using Room = int32_t[capacity];
+    using Storage = int32_t[capacity];
 
     /// Keeps the entries in `room`, apart, so that the rest stays in registers.
-    CISTULA_INLINE explicit LightStack(Room& room) : waiting_(room) {}
+    CISTULA_INLINE explicit LightStack(Storage& storage) : waiting_(storage) {}
 
     CISTULA_INLINE void push(int32_t item) {
         if (next_ != none) waiting_[size_++] = next_;
@@ -65,16 +65,17 @@ class LightStack {
     }
 
   private:
-    Room& waiting_;
+    Storage& waiting_;
     int size_ = 0;
     int32_t next_ = none;  // top of the stack
 };
 
 /// Calls visit(light) for the candidates of box_ray among the entries of `stack`; visit returns the new far limit.
 template <class Visit>
-CISTULA_INLINE void walk_lights(const Span<LightNode>& nodes, BoxRay box_ray, LightStack& stack, const Visit& visit) {
+CISTULA_INLINE void traverse_lights(const Span<LightNode>& nodes, BoxRay box_ray, LightStack& stack,
+                                    const Visit& visit) {
     // The far limit must be finite, since boxes beside which a ray runs give infinite times.
-    const auto limited = [](float far_limit) { return least(far_limit, RealTraits<float>::largest); };
+    const auto limited = [](float far_limit) { return min_or_second(far_limit, RealTraits<float>::largest); };
     box_ray.far_limit = limited(box_ray.far_limit);
     for (int32_t next = stack.pop(); next != LightStack::none; next = stack.pop()) {
         if (next < 0) {
@@ -83,7 +84,7 @@ CISTULA_INLINE void walk_lights(const Span<LightNode>& nodes, BoxRay box_ray, Li
         }
         const LightNode& node = nodes[uint32_t(next)];
         bool meets[LightNode::width];
-        meet_boxes(node, box_ray, meets);
+        intersect_boxes(node, box_ray, meets);
         const LightNode::Children children = node.children;
         for (int i = 0; i < LightNode::width; ++i)
             if (meets[i]) stack.push(children.of[i]);

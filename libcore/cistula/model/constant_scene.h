@@ -62,13 +62,13 @@ struct ConstantScene {
 
     InlineSpan<Solid, ShadowPlan::solids> solids;
     InlineSpan<Slab<Real>, most_slabs> slabs;
-    InlineSpan<NumberedSolid<Real>, ShadowPlan::convex> convex;  // copies, to avoid an indirection
-    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;   // of the clusters, also copies
+    InlineSpan<IndexedSolid<Real>, ShadowPlan::convex> convex;  // copies, to avoid an indirection
+    InlineSpan<SheetPlane<Real>, ShadowPlan::clusters> planes;  // of the clusters, also copies
     InlineSpan<Cluster<Real>, ShadowPlan::clusters> clusters;
     InlineSpan<TriangleSides<Real>, ShadowPlan::clusters * cluster_lanes> sides;  // by slot
     InlineSpan<Material<Real>, most_materials> materials;
     InlineSpan<Light<Real>, ShadowPlan::lights> lights;
-    KnownShare<Real> known_shares[4];  // precomputed for crossings of transparent faces
+    CachedTransmittance<Real> cached_transmittances[4];  // precomputed for crossings of transparent faces
     ShadowPlan plan;
     uint32_t clear_solids, transmitting_solids;  // bit i: solid i's material is clear; transmits
     InlineSpan<Texture, 8> textures;
@@ -77,11 +77,11 @@ struct ConstantScene {
     Span<Facet<Real>> facets;
     Span<Vec2<Real>> uvs;
     Span<Incident> incidents;
-    Span<SeenLight<Real>> seen_lights;
+    Span<VisibleLight<Real>> visible_lights;
     Span<Vec3<float>> texels;
     Span<TreeNode> tree;
     Span<uint32_t> tree_items;
-    Span<LightNode> seen_tree;
+    Span<LightNode> visible_light_tree;
     Vec3<Real> background;
     Vec3<Real> bound;
     Real largest_bound;

@@ -48,7 +48,7 @@ struct Effects {
 
 /// Path throughput type: one value per channel, or a single one where no effect treats channels differently.
 template <class Real, class E>
-using Share = std::conditional_t<E::has(effect_tint | effect_absorption), Vec3<Real>, Real>;
+using Throughput = std::conditional_t<E::has(effect_tint | effect_absorption), Vec3<Real>, Real>;
 
 /// Mask for opaque solids with local light and shadows; `mirrors` adds reflection.
 inline constexpr uint32_t opaque_bodies =

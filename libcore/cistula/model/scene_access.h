@@ -28,20 +28,20 @@ CISTULA_INLINE bool transmits(const ConstantScene<Real>& scene, uint32_t solid) 
 
 /// 2^-loss, the transmittance after a loss.
 template <class Real>
-CISTULA_INLINE Real transmitted_share(const SceneView<Real>&, uint64_t loss) {
-    return share_of<Real>(loss);
+CISTULA_INLINE Real transmittance_of(const SceneView<Real>&, uint64_t loss) {
+    return transmittance_of<Real>(loss);
 }
-/// 2^-loss for a loss that is not among a ConstantScene's known_shares.
+/// 2^-loss for a loss that is not among a ConstantScene's cached_transmittances.
 template <class Real>
-CISTULA_SELDOM Real unknown_share(uint64_t loss) {
-    return share_of<Real>(loss);
+CISTULA_NOINLINE Real uncached_transmittance(uint64_t loss) {
+    return transmittance_of<Real>(loss);
 }
 template <class Real>
-CISTULA_INLINE Real transmitted_share(const ConstantScene<Real>& scene, uint64_t loss) {
-    Real share = Real(-1);
-    for (const KnownShare<Real>& known : scene.known_shares)
-        if (known.loss == loss) share = known.share;
-    return share >= Real(0) ? share : unknown_share<Real>(loss);
+CISTULA_INLINE Real transmittance_of(const ConstantScene<Real>& scene, uint64_t loss) {
+    Real transmittance = Real(-1);
+    for (const CachedTransmittance<Real>& known : scene.cached_transmittances)
+        if (known.loss == loss) transmittance = known.transmittance;
+    return transmittance >= Real(0) ? transmittance : uncached_transmittance<Real>(loss);
 }
 
 /// The outward unit normal of a triangle.

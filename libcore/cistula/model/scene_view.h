@@ -43,20 +43,22 @@ struct alignas(16) Solid {
     uint32_t first_group;             // convex: the same slabs, ceil(slab_count / 8) groups
     uint32_t first_triangle;          // mesh, sheet: scene-wide number of its first triangle
     uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
-    uint32_t flat;     // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
-                       // on it does not meet it again
-    uint32_t touched;  // convex, mesh: 1 if its padded box meets that of another such solid
-    uint32_t alone;    // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
-                       // hits next is its own face
+    uint32_t flat;       // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
+                         // on it does not meet it again
+    uint32_t may_touch;  // convex, mesh: 1 if its padded box meets that of another such solid
+    uint32_t isolated;   // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
+                         // hits next is its own face
 };
 
 /// The bounding sphere of a convex solid.
 template <class Real>
-struct alignas(16) Ball {
+struct alignas(16) BoundingSphere {
     Vec3<Real> center;
     Real padded_square;
 
-    CISTULA_INLINE static Ball of(const Solid& solid) { return {Vec3<Real>(solid.center), Real(solid.padded_square)}; }
+    CISTULA_INLINE static BoundingSphere of(const Solid& solid) {
+        return {Vec3<Real>(solid.center), Real(solid.padded_square)};
+    }
 };
 
 /// The plane of a flat sheet, and a padded box around the sheet.
@@ -76,8 +78,8 @@ struct alignas(16) SheetPlane {
 
 /// A copy of a convex solid with its number and bounding sphere, which is tested first and rejects most rays.
 template <class Real>
-struct NumberedSolid {
-    Ball<Real> ball;
+struct IndexedSolid {
+    BoundingSphere<Real> sphere;
     uint32_t index;
     Solid solid;
 };
@@ -161,7 +163,7 @@ struct Incident {
 
 /// A visible light: a sphere of constant radiance that casts no shadow.
 template <class Real>
-struct SeenLight {
+struct VisibleLight {
     Vec3<Real> center;
     Real radius;
     Vec3<Real> radiance;
@@ -219,12 +221,12 @@ struct SceneView {
     Span<Material<Real>> materials;
     Span<Light<Real>> lights;
     Span<Incident> incidents;
-    Span<SeenLight<Real>> seen_lights;
+    Span<VisibleLight<Real>> visible_lights;
     Span<Texture> textures;
     Span<Vec3<float>> texels;
     Span<TreeNode> tree;  // over primitives; may be empty (then brute force or Embree finds hits)
     Span<uint32_t> tree_items;
-    Span<LightNode> seen_tree;  // over seen_lights; empty where there are few
+    Span<LightNode> visible_light_tree;  // over visible_lights; empty where there are few
     Vec3<Real> background;
     Vec3<Real> bound;    // radiance bound B per channel, at most 1, slack included
     Real largest_bound;  // largest component of bound

@@ -13,10 +13,10 @@ CISTULA_INLINE uint32_t remainder(Real i, uint32_t n) {
     return uint32_t(clamped(r, Real(0), Real(n - 1)));
 }
 /// i modulo n for any integer i, kept out of line.
-CISTULA_SELDOM inline uint32_t any_remainder(float i, uint32_t n) {
+CISTULA_NOINLINE inline uint32_t any_remainder(float i, uint32_t n) {
     return magnitude(i) < 0x1p23f ? remainder(i, n) : remainder(double(i), n);
 }
-CISTULA_SELDOM inline uint32_t any_remainder(double i, uint32_t n) {
+CISTULA_NOINLINE inline uint32_t any_remainder(double i, uint32_t n) {
     return remainder(i, n);
 }
 
@@ -29,7 +29,7 @@ CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
 
 /// Bilinear interpolation between the four texels around (x, y); texel(i, j) gives a texel's color.
 template <class Real, class Texel>
-CISTULA_SELDOM Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
+CISTULA_NOINLINE Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
     const Real left = floor_of(x - Real(0.5)), top = floor_of(y - Real(0.5));
     const Real fx = (x - Real(0.5)) - left, fy = (y - Real(0.5)) - top;
     const Vec3<Real> upper = texel(left, top) * (Real(1) - fx) + texel(left + Real(1), top) * fx;

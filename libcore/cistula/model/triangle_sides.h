@@ -23,14 +23,14 @@ struct Apex {
 
 template <class Real>
 CISTULA_INLINE Real largest_magnitude(const Vec3<Real>& a) {
-    return greatest(magnitude(a.x), greatest(magnitude(a.y), magnitude(a.z)));
+    return max_or_second(magnitude(a.x), max_or_second(magnitude(a.y), magnitude(a.z)));
 }
 
 /// The unit normal of a triangle so small that the square of its area underflows: its edges are scaled first. Not
 /// inlined, so its arguments are by value.
 template <class Real>
-CISTULA_SELDOM Vec3<Real> small_triangle_normal(Vec3<Real> ab, Vec3<Real> ac) {
-    const Real scale = Real(1) / greatest(largest_magnitude(ab), largest_magnitude(ac));
+CISTULA_NOINLINE Vec3<Real> small_triangle_normal(Vec3<Real> ab, Vec3<Real> ac) {
+    const Real scale = Real(1) / max_or_second(largest_magnitude(ab), largest_magnitude(ac));
     const Vec3<Real> scaled = cross(ab * scale, ac * scale);
     return normalized(scaled / largest_magnitude(scaled));
 }

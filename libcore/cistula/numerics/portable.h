@@ -23,17 +23,17 @@
 #error "Cistula's images are defined by IEEE arithmetic: build without -ffast-math."
 #endif
 
-// GCC decides about inlining by size, which is wrong for the ray loops. The primitive tests (CISTULA_CALLED) are calls
-// instead: on the host a call costs nothing measurable, and the code of each effect mask does not repeat them.
+// GCC decides about inlining by size, which is wrong for the ray loops. The primitive tests (CISTULA_HOST_NOINLINE) are
+// calls instead: on the host a call costs nothing measurable, and the code of each effect mask does not repeat them.
 #if defined(__GNUC__)
 #define CISTULA_INLINE CISTULA_HD inline __attribute__((always_inline))
 #else
 #define CISTULA_INLINE CISTULA_HD inline
 #endif
 #if defined(__GNUC__) && !CISTULA_ON_DEVICE
-#define CISTULA_CALLED CISTULA_HD __attribute__((noinline))
+#define CISTULA_HOST_NOINLINE CISTULA_HD __attribute__((noinline))
 #else
-#define CISTULA_CALLED CISTULA_HD inline
+#define CISTULA_HOST_NOINLINE CISTULA_HD inline
 #endif
 
 // Put before a short loop that the compiler should vectorize instead of unrolling.
@@ -51,7 +51,7 @@
 #endif
 
 // A function that is called rarely and kept out of line, so that the hot loop fits the instruction cache.
-#define CISTULA_SELDOM CISTULA_HD __attribute__((noinline))
+#define CISTULA_NOINLINE CISTULA_HD __attribute__((noinline))
 
 namespace cistula {
 
@@ -100,34 +100,34 @@ CISTULA_INLINE double reciprocal(double a) {
 }
 
 /// Minimum and maximum of two numbers that are not NaN and not both zero: one instruction on the device.
-CISTULA_INLINE float lesser(float a, float b) {
+CISTULA_INLINE float min_no_nan(float a, float b) {
 #if CISTULA_ON_DEVICE
     return fminf(a, b);
 #else
     return a < b ? a : b;
 #endif
 }
-CISTULA_INLINE float greater(float a, float b) {
+CISTULA_INLINE float max_no_nan(float a, float b) {
 #if CISTULA_ON_DEVICE
     return fmaxf(a, b);
 #else
     return a < b ? b : a;
 #endif
 }
-CISTULA_INLINE double lesser(double a, double b) {
+CISTULA_INLINE double min_no_nan(double a, double b) {
     return a < b ? a : b;
 }
-CISTULA_INLINE double greater(double a, double b) {
+CISTULA_INLINE double max_no_nan(double a, double b) {
     return a < b ? b : a;
 }
 
 /// Forces `a` into a register: the device compiler might otherwise compute it again at every use.
-CISTULA_INLINE void settle([[maybe_unused]] float& a) {
+CISTULA_INLINE void materialize([[maybe_unused]] float& a) {
 #if CISTULA_ON_DEVICE
     asm volatile("" : "+f"(a));
 #endif
 }
-CISTULA_INLINE void settle(double&) {}
+CISTULA_INLINE void materialize(double&) {}
 
 CISTULA_INLINE float floor_of(float a) {
     return floorf(a);

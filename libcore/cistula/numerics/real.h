@@ -33,11 +33,11 @@ struct RealTraits<double> {
 /// Minimum, as a select: fmin and fmax treat NaN and signed zeros differently on different machines. If a is NaN the
 /// result is b.
 template <class T>
-CISTULA_INLINE T least(T a, T b) {
+CISTULA_INLINE T min_or_second(T a, T b) {
     return a < b ? a : b;
 }
 template <class T>
-CISTULA_INLINE T greatest(T a, T b) {
+CISTULA_INLINE T max_or_second(T a, T b) {
     return a > b ? a : b;
 }
 template <class T>

@@ -35,7 +35,7 @@ CISTULA_HD inline uint64_t loss_of(double share) {
 /// 2^-loss. Exact at whole losses; 0 below the smallest normal Real. Monotonic: neighboring losses differ by at least
 /// ln 2 ulps, and exp2_reduced errs by less than (1 + ln 2) / 2 ulps.
 template <class Real>
-CISTULA_HD inline Real share_of(uint64_t loss) {
+CISTULA_HD inline Real transmittance_of(uint64_t loss) {
     constexpr uint64_t lowest = std::numeric_limits<Real>::max_exponent - 2;  // 126, 1022
     if (loss > lowest << 52) return 0;
     const uint64_t k = (loss + (uint64_t{1} << 51)) >> 52;
@@ -45,9 +45,9 @@ CISTULA_HD inline Real share_of(uint64_t loss) {
 
 /// A loss and its transmittance 2^-loss, computed in advance.
 template <class Real>
-struct KnownShare {
+struct CachedTransmittance {
     uint64_t loss;
-    Real share;
+    Real transmittance;
 };
 
 /// The loss of the Beer-Lambert transmittance exp(-sigma_length), rounded to nearest. Negative arguments count as 0;

@@ -69,14 +69,14 @@ CISTULA_INLINE double channel(double a, int) {
     return a;
 }
 template <class To, class Real>
-CISTULA_INLINE To share_as(const Vec3<Real>& a) {
+CISTULA_INLINE To throughput_as(const Vec3<Real>& a) {
     if constexpr (std::is_same_v<To, Real>)
         return a.x;
     else
         return a;
 }
-template <class Share>
-CISTULA_INLINE auto total(const Share& a) {
+template <class Throughput>
+CISTULA_INLINE auto total(const Throughput& a) {
     return channel(a, 0) + channel(a, 1) + channel(a, 2);
 }
 
@@ -88,7 +88,7 @@ CISTULA_INLINE double largest_component(double a) {
 }
 template <class Real>
 CISTULA_INLINE Real largest_component(const Vec3<Real>& a) {
-    return greatest(a.x, greatest(a.y, a.z));
+    return max_or_second(a.x, max_or_second(a.y, a.z));
 }
 
 }  // namespace cistula

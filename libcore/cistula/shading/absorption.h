@@ -46,7 +46,7 @@ struct Absorption {
     CISTULA_INLINE void dim(const Scene& scene, const Media& media, Real t, Vec3<Real>& weight) {
         add_all(scene, media, t, 1);
         for (int c = 0; c < 3; ++c)
-            if (const uint64_t loss = sum[c].loss(); loss != 0) weight[c] *= share_of<Real>(loss);
+            if (const uint64_t loss = sum[c].loss(); loss != 0) weight[c] *= transmittance_of<Real>(loss);
     }
 };
 

@@ -9,7 +9,7 @@
 namespace cistula {
 
 template <class Real, class Filter = Vec3<Real>>
-struct Shares {
+struct InterfaceSplit {
     Real reflection;  // share of the reflected ray
     Filter filter;    // share of the transmitted ray
     bool bends;       // whether the transmitted ray takes the direction `through`; else it goes straight on
@@ -27,31 +27,32 @@ CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
 /// `fresnel`, kr + kt is split by the exact dielectric terms; nothing is reflected between equal indices. A sheet has
 /// no medium behind it, so it does not bend rays and uses kr and kt unchanged.
 template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE Shares<Real, Share<Real, E>> split_at(const Scene& scene, const Material<Real>& m,
-                                                     const Vec3<Real>& direction, const Vec3<Real>& normal,
-                                                     const Media& before, const Media& beyond, bool sheet) {
-    using Filter = Share<Real, E>;
-    Shares<Real, Filter> shares{m.reflection, share_as<Filter>(m.filter), false, direction};
+CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& scene, const Material<Real>& m,
+                                                                  const Vec3<Real>& direction, const Vec3<Real>& normal,
+                                                                  const Media& before, const Media& beyond,
+                                                                  bool sheet) {
+    using Filter = Throughput<Real, E>;
+    InterfaceSplit<Real, Filter> split{m.reflection, throughput_as<Filter>(m.filter), false, direction};
     if constexpr (E::has(effect_refraction)) {
         const bool fresnel = E::has(effect_fresnel) && m.fresnel != 0 && !sheet;
         const Real both = m.reflection + m.transmission;
         const double from = index_of(scene, before), to = index_of(scene, beyond);
         if (from == to) {
-            if (fresnel) shares.reflection = Real(0), shares.filter = share_as<Filter>(m.tint) * both;
+            if (fresnel) split.reflection = Real(0), split.filter = throughput_as<Filter>(m.tint) * both;
         } else if (m.transmission > Real(0) || fresnel) {
             const Refraction<Real> refraction = refracted<Real>(direction, normal, from, to);
-            shares.bends = true;
-            shares.through = refraction.direction;
+            split.bends = true;
+            split.through = refraction.direction;
             if (refraction.total) {
-                shares.reflection = both;
-                shares.filter = Filter(Real(0));
+                split.reflection = both;
+                split.filter = Filter(Real(0));
             } else if (fresnel) {
-                shares.reflection = both * refraction.reflectance;
-                shares.filter = share_as<Filter>(m.tint) * (both * (Real(1) - refraction.reflectance));
+                split.reflection = both * refraction.reflectance;
+                split.filter = throughput_as<Filter>(m.tint) * (both * (Real(1) - refraction.reflectance));
             }
         }
     }
-    return shares;
+    return split;
 }
 
 }  // namespace cistula

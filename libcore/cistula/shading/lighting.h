@@ -66,7 +66,7 @@ struct LightObserver {
 /// Adds `weight` times the local light of a surface seen along `ray` (docs/design.md, Light).
 template <class Real, class E, class Intersector, class Media, class Scene, class Sums, class Observer = LightObserver>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
-                                    const Hit<Real>& hit, const Surface<Real>& s, const Share<Real, E>& weight,
+                                    const Hit<Real>& hit, const Surface<Real>& s, const Throughput<Real, E>& weight,
                                     Sums& sums, PixelRays& rays, const Observer& observer = {}) {
     const LocalMaterial<Real>& m = scene.materials[s.material];
     sums.add(weight * (s.color * m.ambient));
@@ -86,7 +86,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                 phong<Real, E>(m, s.color, light, s.normal, aim.direction, -ray.direction, aim.cosine, aim.distance);
             observer.unshadowed(i, aim, lit);
             if (lit == Vec3<Real>(Real(0))) continue;
-            Share<Real, E> arrives(Real(1));
+            Throughput<Real, E> arrives(Real(1));
             if constexpr (E::has(effect_opaque_shadows | effect_transparent_shadows)) {
                 const ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, hit, ray.media), aim.distance,
                                                     &light};

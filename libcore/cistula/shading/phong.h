@@ -7,7 +7,7 @@
 
 namespace cistula {
 
-CISTULA_SELDOM inline double fractional_power(double base, double exponent) {
+CISTULA_NOINLINE inline double fractional_power(double base, double exponent) {
     return elementary::pow(base, exponent);
 }
 
@@ -15,7 +15,7 @@ CISTULA_SELDOM inline double fractional_power(double base, double exponent) {
 template <class Real>
 CISTULA_INLINE Real highlight(const LocalMaterial<Real>& material, Real cosine) {
     if (!(cosine > Real(0))) return material.integer_exponent == 0 ? Real(1) : Real(0);
-    const Real base = least(cosine, Real(1));
+    const Real base = min_or_second(cosine, Real(1));
     if (material.integer_exponent >= 0) return elementary::power_by_squaring(base, material.integer_exponent);
     return Real(fractional_power(double(base), double(material.exponent)));
 }
@@ -38,7 +38,7 @@ CISTULA_INLINE Vec3<Real> phong(const LocalMaterial<Real>& material, const Vec3<
     result *= light.intensity;
     if constexpr (E::has(effect_light_falloff)) {
         if (light.clamp_distance > Real(0)) {
-            const Real r = greatest(distance, light.clamp_distance);
+            const Real r = max_or_second(distance, light.clamp_distance);
             result *= Real(1) / (r * r);
         }
     }

@@ -10,22 +10,22 @@
 namespace cistula {
 
 /// A shadow ray, a straight segment to a light; refraction does not bend it. ray.after is not used.
-template <class Real, class Media = MediaList>
+template <class Real, class Media = InteriorList>
 struct ShadowRay {
     Ray<Real, Media> ray;
     Real distance;
     const Light<Real>* light;
 };
 
-/// The losses met so far on the way to a light, per channel or for all channels at once (Share).
+/// The losses met so far on the way to a light, per channel or for all channels at once (Throughput).
 template <class E = Effects<all_effects>>
 struct ShadowSum {
-    static constexpr int channels = std::is_same_v<Share<float, E>, float> ? 1 : 3;
+    static constexpr int channels = std::is_same_v<Throughput<float, E>, float> ? 1 : 3;
     uint64_t loss[channels] = {};
     PathSum path[channels];  // absorption inside meshes
     uint32_t opaque = 0;     // bit c: channel c is blocked
 
-    CISTULA_INLINE bool dark() const { return opaque == 7u; }
+    CISTULA_INLINE bool is_blocked() const { return opaque == 7u; }
 
     template <class Real>
     CISTULA_INLINE void cross(const Material<Real>& material) {
@@ -54,22 +54,22 @@ struct ShadowSum {
     }
 
     template <class Real, class Scene>
-    CISTULA_INLINE Share<Real, E> share(const Scene& scene) const {
-        Real shares[channels];
+    CISTULA_INLINE Throughput<Real, E> transmittance(const Scene& scene) const {
+        Real arriving[channels];
         uint64_t known = 0;  // the last loss and its share: gray materials have the same one in all channels
-        Real known_share = 1;
+        Real known_transmittance = 1;
         for (int c = 0; c < channels; ++c) {
             if constexpr (E::has(effect_transparent_shadows)) {
                 uint64_t total = loss[c];
                 if constexpr (E::has(effect_absorption)) total = saturating_add(total, path[c].loss());
-                if (total != known) known = total, known_share = transmitted_share(scene, total);
+                if (total != known) known = total, known_transmittance = transmittance_of(scene, total);
             }
-            shares[c] = opaque >> c & 1u ? Real(0) : known_share;
+            arriving[c] = opaque >> c & 1u ? Real(0) : known_transmittance;
         }
         if constexpr (channels == 1)
-            return shares[0];
+            return arriving[0];
         else
-            return {shares[0], shares[1], shares[2]};
+            return {arriving[0], arriving[1], arriving[2]};
     }
 };
 
@@ -79,8 +79,8 @@ enum class LightSide { none, inside, outside };  // on no face; inside all plane
 /// Where a point lies relative to the faces of a convex solid that hold a light. `point` is by value: a reference would
 /// force the ray into memory.
 template <class Real, class Scene>
-CISTULA_SELDOM LightSide light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index,
-                                         Vec3<Real> point) {
+CISTULA_NOINLINE LightSide light_on_convex(const Scene& scene, const Light<Real>& light, uint32_t index,
+                                           Vec3<Real> point) {
     LightSide side = LightSide::none;
     for (uint32_t i = 0; i < light.incident_count; ++i) {
         const Incident& face = scene.incidents[light.first_incident + i];
@@ -111,10 +111,11 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     Real leave = shadow.distance;
     if (light_side<E>(scene, index, shadow) == LightSide::none) {
         const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
-        leave = greatest(convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
+        leave = max_or_second(convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
         if (leave < shadow.distance) sum.cross(material);
     }
-    if constexpr (E::has(effect_absorption)) sum.absorb(material, greatest(least(leave, shadow.distance), Real(0)));
+    if constexpr (E::has(effect_absorption))
+        sum.absorb(material, max_or_second(min_or_second(leave, shadow.distance), Real(0)));
 }
 
 /// Adds what a convex solid that the ray may enter takes from a light: one that it does not start in, has not left and
@@ -126,29 +127,29 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid
     const LightSide side = light_side<E>(scene, index, shadow);
     if (side == LightSide::outside) return;
     const auto interval = convex_here::interval_of(scene, solid, ray.origin, ray.direction, side == LightSide::none);
-    const Real enter = greatest(interval.enter, Real(0));
+    const Real enter = max_or_second(interval.enter, Real(0));
     Real leave = shadow.distance;
     const Material<Real>& material = scene.materials[solid.material];
     if (side == LightSide::none) {
         if (!is_met(interval, scene.extent) || !(enter < shadow.distance)) return;
         if constexpr (Media::contacts)
-            if (solid.touched && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
+            if (solid.may_touch && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
                 return;
-        leave = greatest(interval.leave, Real(0));
+        leave = max_or_second(interval.leave, Real(0));
         if (leave < shadow.distance) sum.cross(material);
     }
     sum.cross(material);
     if constexpr (E::has(effect_absorption))
-        sum.absorb(material, greatest(least(leave, shadow.distance) - enter, Real(0)));
+        sum.absorb(material, max_or_second(min_or_second(leave, shadow.distance) - enter, Real(0)));
 }
 
 template <class Real, class E, class Media, class Scene>
-CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                  ShadowSum<E>& sum) {
+CISTULA_HOST_NOINLINE void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                         ShadowSum<E>& sum) {
     if (shadow.ray.media.contains(index))
         shadow_exit<Real, E>(scene, index, shadow, sum);
-    else if (shadow.ray.from_solid != index &&
-             !passes_by(Ball<Real>::of(scene.solids[index]), shadow.ray.origin, shadow.ray.direction, shadow.distance))
+    else if (shadow.ray.from_solid != index && !misses_bounds(BoundingSphere<Real>::of(scene.solids[index]),
+                                                              shadow.ray.origin, shadow.ray.direction, shadow.distance))
         shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
 }
 
@@ -157,7 +158,7 @@ CISTULA_CALLED void shadow_convex(const Scene& scene, uint32_t index, const Shad
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool behind_shadow(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
                                   const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray) {
-    if (!scene.solids[index].touched || !(c.t <= Real(1024) * incidence<Real> * scene.extent)) return false;
+    if (!scene.solids[index].may_touch || !(c.t <= Real(1024) * incidence<Real> * scene.extent)) return false;
     if (c.enters() != ray.media.contains(index)) return false;
     const CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
     return lies_at_start(scene, ray, Hit<Real>{c.t, make_key(kind, index, triangle), c.u(), c.v(), slot, c.enters()});
@@ -205,9 +206,10 @@ CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const S
 }
 
 template <class Real, class E, class Media, class Scene>
-CISTULA_CALLED void shadow_cluster(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                   const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
-    if (!leaves_flat(scene, index, shadow.ray)) shadow_triangles<Real, E>(scene, index, shadow, triangle_ray, sum);
+CISTULA_HOST_NOINLINE void shadow_cluster(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                          const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
+    if (!starts_on_flat_sheet(scene, index, shadow.ray))
+        shadow_triangles<Real, E>(scene, index, shadow, triangle_ray, sum);
 }
 
 /// Adds the crossing of one facet; `left` is the flat sheet on which the ray starts, or no_solid.

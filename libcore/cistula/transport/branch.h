@@ -8,7 +8,7 @@ namespace cistula {
 
 /// A ray of a ray tree and its throughput: the weight, per channel or for all at once, with which what it sees counts
 /// in the pixel.
-template <class Real, class Media = MediaList, class Weight = Vec3<Real>>
+template <class Real, class Media = InteriorList, class Weight = Vec3<Real>>
 struct Branch {
     Ray<Real, Media> ray;
     Weight weight{Real(1)};
@@ -19,7 +19,7 @@ struct Branch {
 
 /// The branch type of trees that are rendered with effects E.
 template <class Real, class E, class Media>
-using BranchOf = Branch<Real, Media, Share<Real, E>>;
+using BranchOf = Branch<Real, Media, Throughput<Real, E>>;
 
 template <class Entry>
 class WaitingBranch;

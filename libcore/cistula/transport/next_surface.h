@@ -1,10 +1,10 @@
 // The search along a branch's line for the next face that is shaded or bends the ray.
 #pragma once
 
-#include "cistula/lights/seen_light.h"
+#include "cistula/lights/visible_light.h"
 #include "cistula/shading/absorption.h"
 #include "cistula/shading/interface.h"
-#include "cistula/shading/meeting.h"
+#include "cistula/shading/surface_event.h"
 #include "cistula/transport/branch.h"
 #include "cistula/transport/pixel_sums.h"
 
@@ -32,29 +32,29 @@ class NextSurface {
 
     /// Finds the branch's next surface. False if there is none: the visible light or background at the end of the ray
     /// is then added, and `light` tells whether it was a light.
-    CISTULA_INLINE bool find(Entry& branch, Meeting<Real, Media>& meeting, bool& light) {
+    CISTULA_INLINE bool find(Entry& branch, SurfaceEvent<Real, Media>& event, bool& light) {
         Absorption<E::has(effect_absorption)> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray);
-            SeenHit<Real> seen;
+            VisibleLightHit<Real> visible;
             if constexpr (E::has(effect_visible_lights)) {
-                seen = light_before(hit, branch);
-                light = seen.light != no_light;
+                visible = light_before(hit, branch);
+                light = visible.light != no_light;
             }
             if (light || !hit.found()) {
-                absorption.dim(scene_, branch.ray.media, light ? seen.t : hit.t, branch.weight);
-                sums_.add(branch.weight * light_or_background(seen));
+                absorption.dim(scene_, branch.ray.media, light ? visible.t : hit.t, branch.weight);
+                sums_.add(branch.weight * light_or_background(visible));
                 return false;
             }
-            meet(scene_, intersector_, branch.ray, hit, meeting);
-            if (!meeting.fits) sums_.flag(flag_media_overflow);
-            if (!invisible(branch.ray, meeting)) {
-                absorption.dim(scene_, branch.ray.media, meeting.hit.t, branch.weight);
+            resolve_event(scene_, intersector_, branch.ray, hit, event);
+            if (!event.fits) sums_.flag(flag_media_overflow);
+            if (!invisible(branch.ray, event)) {
+                absorption.dim(scene_, branch.ray.media, event.hit.t, branch.weight);
                 return true;
             }
-            for (int i = 0; i < meeting.count; ++i) absorption.cross(scene_, meeting.taken[i].key, meeting.taken[i].t);
-            pass(branch.ray, meeting, absorption);
+            for (int i = 0; i < event.count; ++i) absorption.cross(scene_, event.taken[i].key, event.taken[i].t);
+            pass(branch.ray, event, absorption);
             if (crossings == largest_crossings) {
                 sums_.flag(flag_too_many_crossings);
                 return false;
@@ -64,22 +64,22 @@ class NextSurface {
 
     /// Moves a ray straight on through a face.
     template <class Absorbed>
-    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting, Absorbed& absorption) {
-        Media media = meeting.beyond;
+    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event, Absorbed& absorption) {
+        Media media = event.beyond;
         if constexpr (Media::meshes)
-            if (meeting.passed_over) count_passed_over(ray, meeting.taken[0], media, absorption);
+            if (event.wrong_side) count_wrong_side(ray, event.taken[0], media, absorption);
         ray.media = media;
-        ray.after = meeting.last();
+        ray.after = event.last();
     }
 
   private:
     /// Adds refused crossings to the media. A ray's first crossing of a mesh is from the right side; others of the same
     /// mesh that rounding puts before it, at a grazed edge, count as well once the ray goes straight on.
     template <class Absorbed>
-    CISTULA_INLINE void count_passed_over(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media,
-                                          Absorbed& absorption) {
+    CISTULA_INLINE void count_wrong_side(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media,
+                                         Absorbed& absorption) {
         Ray<Real, Media> probe = ray;
-        probe.meet_all();
+        probe.accept_both_sides();
         for (;;) {
             const Hit<Real> next = intersector_.closest(probe);
             if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
@@ -94,36 +94,37 @@ class NextSurface {
 
     /// Whether a crossing has nothing to shade: it lies inside a medium of higher priority, or belongs to a clear face
     /// between equal media.
-    CISTULA_INLINE bool invisible(const Ray<Real, Media>& ray, const Meeting<Real, Media>& meeting) const {
+    CISTULA_INLINE bool invisible(const Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event) const {
         if constexpr (!E::has(effect_transmission | effect_insides)) {
             return false;
         } else {
-            const uint32_t solid = key_solid(meeting.hit.key), medium = ray.media.medium();
-            if (key_kind(meeting.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
+            const uint32_t solid = key_solid(event.hit.key), medium = ray.media.medium();
+            if (key_kind(event.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
             if (!is_clear(scene_, solid)) return false;
             if constexpr (E::has(effect_refraction))
-                return index_of(scene_, ray.media) == index_of(scene_, meeting.beyond);
+                return index_of(scene_, ray.media) == index_of(scene_, event.beyond);
             return true;
         }
     }
 
     /// The radiance of the visible light `seen`, or the background if there is none.
-    CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const SeenHit<Real>& seen) const {
+    CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const VisibleLightHit<Real>& visible) const {
         if constexpr (E::has(effect_visible_lights))
-            if (seen.light != no_light) return scene_.seen_lights[seen.light].radiance;
+            if (visible.light != no_light) return scene_.visible_lights[visible.light].radiance;
         return scene_.background;
     }
 
     /// The visible light that the ray meets before `hit`. If the ray may go straight on from there, its whole line is
     /// searched, and `no_light_ahead` keeps a negative result.
-    CISTULA_INLINE SeenHit<Real> light_before(const Hit<Real>& hit, Entry& branch) const {
+    CISTULA_INLINE VisibleLightHit<Real> light_before(const Hit<Real>& hit, Entry& branch) const {
         if constexpr (lines_go_on<E>)
-            if (branch.no_light_ahead) return SeenHit<Real>();
+            if (branch.no_light_ahead) return VisibleLightHit<Real>();
         const bool goes_on =
             lines_go_on<E> && hit.found() && int(branch.depth) + 1 < depth_ && transmits(scene_, key_solid(hit.key));
-        const SeenHit<Real> seen = closest_seen_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t);
-        if (seen.light == no_light) branch.no_light_ahead = goes_on;
-        return seen.t <= hit.t ? seen : SeenHit<Real>();
+        const VisibleLightHit<Real> visible =
+            closest_visible_light(scene_, branch.ray, goes_on ? RealTraits<Real>::infinity : hit.t);
+        if (visible.light == no_light) branch.no_light_ahead = goes_on;
+        return visible.t <= hit.t ? visible : VisibleLightHit<Real>();
     }
 
     const Scene& scene_;

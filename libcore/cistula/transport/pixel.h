@@ -10,10 +10,10 @@ namespace cistula {
 /// A frame's settings for every pixel. The camera is in the scene's frame.
 struct FrameView {
     Camera camera;
-    MediaList camera_media;  // medium stack at the camera (camera_solids)
-    double unit_length = 1;  // scene units per unit of the frame
-    double half_sample = 0;  // tangent of the angle of half a sample, at the picture's center
-    bool is_far = false;     // the camera is outside the sphere of radius 2 M
+    InteriorList camera_media;  // medium stack at the camera (camera_solids)
+    double unit_length = 1;     // scene units per unit of the frame
+    double half_sample = 0;     // tangent of the angle of half a sample, at the picture's center
+    bool is_far = false;        // the camera is outside the sphere of radius 2 M
     int width = 0, height = 0;
     int supersample = 1;
     TreeSettings tree;
@@ -46,7 +46,7 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, c
     }
     ray.origin = Vec3<Real>(origin);
     ray.direction = Vec3<Real>(direction);
-    for (int axis = 0; axis < 3; ++axis) settle(ray.origin[axis]), settle(ray.direction[axis]);
+    for (int axis = 0; axis < 3; ++axis) materialize(ray.origin[axis]), materialize(ray.direction[axis]);
     assign(ray.media, frame.camera_media);
     return true;
 }
@@ -63,18 +63,18 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, d
 /// more than a medium stack holds.
 template <class Scene, class Intersector>
 CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
-                                     MediaList& media) {
+                                     InteriorList& media) {
     using Real = typename Scene::Scalar;
     // A direction along no axis, edge or symmetry that a scene is likely to have.
     const Vec3<double> direction = normalized(Vec3<double>(0.36, 0.48, 0.8112));
     // The ray starts at the sphere of radius 2 M, like all rays (docs/rules.md, 1).
     const double ahead = dot(point, direction);
     const double rest = 4 * double(scene.extent) * double(scene.extent) - (dot(point, point) - ahead * ahead);
-    const double distance = ahead + square_root(greatest(rest, 0.0));
+    const double distance = ahead + square_root(max_or_second(rest, 0.0));
     Ray<Real> ray;
     ray.origin = Vec3<Real>(along(point, -distance, direction));
     ray.direction = Vec3<Real>(direction);
-    ray.meet_all();
+    ray.accept_both_sides();
     bool fits = true;
     for (;;) {
         const Hit<Real> hit = intersector.closest(ray);
@@ -90,9 +90,9 @@ CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& inte
 /// The solids that contain a point. False if there are more than a medium stack holds.
 template <class Scene, class Intersector>
 CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
-                                     MediaList& media) {
+                                     InteriorList& media) {
     using Real = typename Scene::Scalar;
-    media = MediaList();
+    media = InteriorList();
     if (dot(point, point) > 4 * double(scene.extent) * double(scene.extent)) return true;
     bool fits = true;
     bool meshes = false;

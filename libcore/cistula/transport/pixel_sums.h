@@ -25,7 +25,7 @@ CISTULA_INLINE uint64_t word_of(double a) {
 }
 template <class Real>
 CISTULA_INLINE auto greatest_word(const Vec3<Real>& a) {
-    return greatest(word_of(a.x), greatest(word_of(a.y), word_of(a.z)));
+    return max_or_second(word_of(a.x), max_or_second(word_of(a.y), word_of(a.z)));
 }
 
 /// Replaces a value that is not in [0, scale] by 0, without a branch, and tells whether it did. Such a value is an
@@ -57,8 +57,8 @@ class PixelSums {
 
     /// Whether to follow a branch with this throughput; if not, its bound is added to the ledger. A branch is dropped
     /// if its bound is at most a tenth of the remaining budget, or at most one unit of the sums.
-    template <class Share>
-    CISTULA_INLINE bool afford(const Share& weight) {
+    template <class Throughput>
+    CISTULA_INLINE bool afford(const Throughput& weight) {
         if (left_ == 0 && clearly_counts(weight)) return true;
         int64_t most[3];
         const int64_t worst = most_of(bounded(weight), Real(settings_.fixed_scale), flags_, most);
@@ -69,8 +69,8 @@ class PixelSums {
     }
 
     /// Adds the bound of a branch beyond the depth limit to the ledger.
-    template <class Share>
-    CISTULA_INLINE void cut(const Share& weight) {
+    template <class Throughput>
+    CISTULA_INLINE void cut(const Throughput& weight) {
         int64_t most[3];
         most_of(bounded(weight), Real(settings_.fixed_scale), flags_, most);
         for (int c = 0; c < 3; ++c) record_.cut[c] += most[c];
@@ -92,8 +92,8 @@ class PixelSums {
     }
 
     /// The bound on what a branch can add. The slack of 2^-10 in B covers the rounding of all weights below it.
-    template <class Share>
-    CISTULA_INLINE Vec3<Real> bounded(const Share& weight) const {
+    template <class Throughput>
+    CISTULA_INLINE Vec3<Real> bounded(const Throughput& weight) const {
         return {channel(weight, 0) * bound_[0], channel(weight, 1) * bound_[1], channel(weight, 2) * bound_[2]};
     }
 

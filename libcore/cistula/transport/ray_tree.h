@@ -19,7 +19,7 @@ class RayTree {
     using Sums = PixelSums<Real>;
     using Media = typename Intersector::Media;
     using Scene = typename Intersector::Scene;
-    using Weight = Share<Real, E>;
+    using Weight = Throughput<Real, E>;
     using Entry = BranchOf<Real, E, Media>;
 
     /// `depth`: maximum number of surfaces on a path.
@@ -48,12 +48,12 @@ class RayTree {
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
             // Declared inside the loop, like everything that only some rays need, so that it holds no registers
             // elsewhere.
-            Meeting<Real, Media> meeting;
+            SurfaceEvent<Real, Media> event;
             bool light = false;
-            if (line_.find(branch, meeting, light)) {
-                const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, meeting.hit);
-                if (at_first) first.surface(meeting.hit, s.normal);
-                shade(branch, meeting, s);
+            if (line_.find(branch, event, light)) {
+                const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
+                if (at_first) first.surface(event.hit, s.normal);
+                shade(branch, event, s);
             } else if (at_first) {
                 first.nothing(light);
             }
@@ -78,22 +78,22 @@ class RayTree {
 
     /// Adds a face's local light. The children are pushed before the lights are evaluated, so that nothing of the
     /// branch has to be kept.
-    CISTULA_INLINE void shade(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
+    CISTULA_INLINE void shade(const Entry& branch, const SurfaceEvent<Real, Media>& event, const Surface<Real>& s) {
         if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
-        if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, meeting, s);
+        if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, event, s);
         const Real local = scene_.materials[s.material].local;
         if (local > Real(0))
-            add_local_light<Real, E>(scene_, intersector_, branch.ray, meeting.hit, s, branch.weight * local, sums_,
+            add_local_light<Real, E>(scene_, intersector_, branch.ray, event.hit, s, branch.weight * local, sums_,
                                      rays_);
     }
 
     /// Pushes the heavier of the branch's children and then the lighter, which is followed next.
-    CISTULA_INLINE void send_on(const Entry& branch, const Meeting<Real, Media>& meeting, const Surface<Real>& s) {
-        const bool sheet = key_kind(meeting.hit.key) == CrossingKind::sheet;
-        const Shares<Real, Weight> shares =
+    CISTULA_INLINE void send_on(const Entry& branch, const SurfaceEvent<Real, Media>& event, const Surface<Real>& s) {
+        const bool sheet = key_kind(event.hit.key) == CrossingKind::sheet;
+        const InterfaceSplit<Real, Weight> split =
             split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal, branch.ray.media,
-                              meeting.beyond, sheet);
-        const Weight mirrored = branch.weight * shares.reflection, through = branch.weight * shares.filter;
+                              event.beyond, sheet);
+        const Weight mirrored = branch.weight * split.reflection, through = branch.weight * split.filter;
         // Sums over channels, so that the lighter child has at most half the weight of its parent.
         const Real mirrored_size = total(mirrored),
                    through_size = E::has(effect_transmission) ? total(through) : Real(0);
@@ -105,35 +105,34 @@ class RayTree {
         }
         if constexpr (!E::has(effect_transmission)) {
             // The only child takes the place of its parent, so there is room.
-            if (mirrored_size > Real(0)) stack_.push(child_of(branch, meeting, s, shares, false, mirrored));
+            if (mirrored_size > Real(0)) stack_.push(child_of(branch, event, s, split, false, mirrored));
         } else {
             bool goes_through = through_size >= mirrored_size;
             CISTULA_NOT_UNROLLED
             for (int i = 0; i < 2; ++i, goes_through = !goes_through) {
                 if (!((goes_through ? through_size : mirrored_size) > Real(0))) continue;
-                if (!stack_.push(child_of(branch, meeting, s, shares, goes_through, goes_through ? through : mirrored)))
+                if (!stack_.push(child_of(branch, event, s, split, goes_through, goes_through ? through : mirrored)))
                     sums_.flag(flag_stack_overflow);
             }
         }
     }
 
     /// The transmitted or the reflected child of a branch.
-    CISTULA_INLINE Entry child_of(const Entry& parent, const Meeting<Real, Media>& meeting, const Surface<Real>& s,
-                                  const Shares<Real, Weight>& shares, bool goes_through, const Weight& weight) {
+    CISTULA_INLINE Entry child_of(const Entry& parent, const SurfaceEvent<Real, Media>& event, const Surface<Real>& s,
+                                  const InterfaceSplit<Real, Weight>& split, bool goes_through, const Weight& weight) {
         Entry child;
         child.depth = parent.depth + 1;
         child.weight = weight;
         child.mirrored = !goes_through;
         if (!goes_through) {
-            spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), meeting.hit, parent.ray.media);
-        } else if (shares.bends) {
-            spawn(child.ray, far_side<E>(scene_, meeting.hit, s.point, s.normal), shares.through, meeting.hit,
-                  meeting.beyond);
+            spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), event.hit, parent.ray.media);
+        } else if (split.bends) {
+            spawn(child.ray, far_side<E>(scene_, event.hit, s.point, s.normal), split.through, event.hit, event.beyond);
         } else {
             child.ray = parent.ray;
             if constexpr (lines_go_on<E>) child.no_light_ahead = parent.no_light_ahead;
             Absorption<false> later;  // the child starts its own absorption
-            line_.pass(child.ray, meeting, later);
+            line_.pass(child.ray, event, later);
         }
         return child;
     }

@@ -31,7 +31,7 @@ CISTULA_INLINE void shadow_primitive(const Scene& scene, uint32_t primitive, con
         shadow_cluster<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, sum);
 }
 
-template <class Real, class MediaKind = MediaList, class SceneKind = SceneView<Real>>
+template <class Real, class MediaKind = InteriorList, class SceneKind = SceneView<Real>>
 struct BruteIntersector {
     using Media = MediaKind;
     using Scene = SceneKind;
@@ -53,22 +53,22 @@ struct BruteIntersector {
 
     /// The share of the light's intensity that reaches the ray's origin.
     template <class E>
-    CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
+    CISTULA_INLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
         ShadowSum<E> sum;
         sum.opaque = is_finite(shadow.ray) ? 0u : 7u;
         shadow_start<Real, E>(scene, shadow, sum);
         if constexpr (Media::contacts) {
-            for (uint32_t i = 0; E::solids && i < scene.convex.size && !sum.dark(); ++i)
+            for (uint32_t i = 0; E::solids && i < scene.convex.size && !sum.is_blocked(); ++i)
                 shadow_convex<Real, E>(scene, scene.convex[i], shadow, sum);
-            for (uint32_t i = 0; E::triangles && i < scene.clusters.size && !sum.dark(); ++i)
-                if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
+            for (uint32_t i = 0; E::triangles && i < scene.clusters.size && !sum.is_blocked(); ++i)
+                if (!misses_flat_sheet(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
         } else {
             const uint32_t light = uint32_t(shadow.light - scene.lights.data), from = shadow.ray.from_solid;
             const uint32_t near = from == no_solid ? ~0u : scene.plan.near[from][light];
             if constexpr (E::solids) add_planned_solids(near, light, shadow, sum);
             if constexpr (E::triangles) add_planned_clusters(near, shadow, sum);
         }
-        return sum.template share<Real>(scene);
+        return sum.template transmittance<Real>(scene);
     }
 
   private:
@@ -88,7 +88,7 @@ struct BruteIntersector {
     /// Computes the shear for each cluster, of which there are few: a variable that only some paths set would hold
     /// registers on all.
     CISTULA_INLINE void closest_in_cluster(uint32_t i, const Ray<Real, Media>& ray, Hit<Real>& best) const {
-        if (!misses_flat(scene, i, ray, best.t))
+        if (!misses_flat_sheet(scene, i, ray, best.t))
             closest_triangles(scene, i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), best);
     }
 
@@ -106,13 +106,13 @@ struct BruteIntersector {
             const uint32_t around = E::has(effect_insides) ? ray.media.only() : no_solid;
             if constexpr (E::has(effect_insides)) {
                 if (around != no_solid) closest_exit(scene, around, ray, best);
-                if (around != no_solid && scene.solids[around].alone) return true;
+                if (around != no_solid && scene.solids[around].isolated) return true;
             }
             for (uint32_t left = ahead_of(ray) & scene.plan.all_convex; left != 0; left &= left - 1) {
                 const auto& next = scene.convex[lowest_bit(left)];
                 // One condition instead of several branches, so that all values are loaded at once.
                 if ((next.index != around) & (next.index != ray.from_solid) &
-                    !passes_by(next.ball, ray.origin, ray.direction, best.t))
+                    !misses_bounds(next.sphere, ray.origin, ray.direction, best.t))
                     closest_entry(scene, next.index, next.solid, ray, best);
             }
         }
@@ -122,9 +122,9 @@ struct BruteIntersector {
     template <class E>
     CISTULA_INLINE void add_planned_clusters(uint32_t near, const ShadowRay<Real, Media>& shadow,
                                              ShadowSum<E>& sum) const {
-        for (uint32_t left = near & scene.plan.all_clusters; left != 0 && !sum.dark(); left &= left - 1) {
+        for (uint32_t left = near & scene.plan.all_clusters; left != 0 && !sum.is_blocked(); left &= left - 1) {
             const uint32_t i = lowest_bit(left) - scene.plan.first_cluster;
-            if (!misses_flat(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
+            if (!misses_flat_sheet(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
         }
     }
 
@@ -142,10 +142,10 @@ struct BruteIntersector {
                 else
                     shadow_exit<Real, E>(scene, around, shadow, sum);
             }
-        for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.dark(); left &= left - 1) {
+        for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.is_blocked(); left &= left - 1) {
             const auto& next = scene.convex[lowest_bit(left)];
             if ((next.index != around) & (next.index != from) &
-                !passes_by(next.ball, shadow.ray.origin, shadow.ray.direction, shadow.distance))
+                !misses_bounds(next.sphere, shadow.ray.origin, shadow.ray.direction, shadow.distance))
                 shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);
         }
     }

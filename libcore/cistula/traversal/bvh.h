@@ -25,15 +25,15 @@ struct BoxRay {
     }
 
     /// The time at which x[k] = plane.
-    CISTULA_INLINE float meets(int k, float plane) const { return fused(plane, inverse[k], shift[k]); }
+    CISTULA_INLINE float plane_t(int k, float plane) const { return fused(plane, inverse[k], shift[k]); }
 
     /// The time at which the ray enters the box, or infinity.
     CISTULA_INLINE float enter(const float low[3], const float high[3]) const {
         float near_t = near_limit, far_t = far_limit;
         for (int k = 0; k < 3; ++k) {
-            const float at_low = meets(k, low[k]), at_high = meets(k, high[k]);
-            near_t = greater(lesser(at_low, at_high), near_t);
-            far_t = lesser(greater(at_low, at_high), far_t);
+            const float at_low = plane_t(k, low[k]), at_high = plane_t(k, high[k]);
+            near_t = max_no_nan(min_no_nan(at_low, at_high), near_t);
+            far_t = min_no_nan(max_no_nan(at_low, at_high), far_t);
         }
         return near_t <= far_t ? near_t : RealTraits<float>::infinity;
     }
@@ -49,13 +49,13 @@ CISTULA_INLINE float tree_far(Real t) {
 }
 template <class Real>
 CISTULA_INLINE float tree_near(Real t) {
-    return greatest(float(t) * (1.0f - tree_slack_relative) - tree_slack_absolute, 0.0f);
+    return max_or_second(float(t) * (1.0f - tree_slack_relative) - tree_slack_absolute, 0.0f);
 }
 
 /// Calls visit(item) for the candidates of box_ray, nearer boxes first; visit returns the new far limit.
 template <class Visit>
-CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>& items, BoxRay box_ray,
-                              const Visit& visit) {
+CISTULA_INLINE void traverse_tree(const Span<TreeNode>& nodes, const Span<uint32_t>& items, BoxRay box_ray,
+                                  const Visit& visit) {
     if (nodes.empty()) return;
     int32_t pending[max_tree_depth + 1];
     int depth = 0;
@@ -90,7 +90,7 @@ CISTULA_INLINE void walk_tree(const Span<TreeNode>& nodes, const Span<uint32_t>&
     }
 }
 
-template <class Real, class MediaKind = MediaList, class SceneKind = SceneView<Real>>
+template <class Real, class MediaKind = InteriorList, class SceneKind = SceneView<Real>>
 struct BvhIntersector {
     using Media = MediaKind;
     using Scene = SceneKind;
@@ -105,7 +105,7 @@ struct BvhIntersector {
         box_ray.near_limit = tree_near(ray.after.t);
         box_ray.far_limit = RealTraits<float>::infinity;
         const uint32_t left = flat_start(scene, ray);
-        walk_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
+        traverse_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
             if (!is_solid<E>(scene, primitive) && !scene.facets.empty())
                 closest_facet(scene, primitive - scene.convex.size, ray, triangle_ray, left, best);
             else
@@ -116,23 +116,23 @@ struct BvhIntersector {
     }
 
     template <class E>
-    CISTULA_INLINE Share<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
+    CISTULA_INLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
         ShadowSum<E> sum;
-        if (!is_finite(shadow.ray)) return Share<Real, E>(Real(0));
+        if (!is_finite(shadow.ray)) return Throughput<Real, E>(Real(0));
         shadow_start<Real, E>(scene, shadow, sum);
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(shadow.ray.origin, shadow.ray.direction);
         BoxRay box_ray = BoxRay::of(shadow.ray.origin, shadow.ray.direction);
         box_ray.near_limit = 0.0f;
         box_ray.far_limit = tree_far(shadow.distance);
         const uint32_t left = flat_start(scene, shadow.ray);
-        walk_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
+        traverse_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
             if (!is_solid<E>(scene, primitive) && !scene.facets.empty())
                 shadow_facet<Real, E>(scene, primitive - scene.convex.size, shadow, triangle_ray, left, sum);
             else
                 shadow_primitive<Real, E>(scene, primitive, shadow, triangle_ray, sum);
-            return sum.dark() ? -1.0f : tree_far(shadow.distance);
+            return sum.is_blocked() ? -1.0f : tree_far(shadow.distance);
         });
-        return sum.template share<Real>(scene);
+        return sum.template transmittance<Real>(scene);
     }
 };
 

@@ -25,8 +25,8 @@ GroupBox box_of(const std::vector<GroupBox>& boxes, uint32_t begin, uint32_t end
     GroupBox all = boxes[begin];
     for (uint32_t i = begin + 1; i < end; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
-            all.low[axis] = least(boxes[i].low[axis], all.low[axis]);
-            all.high[axis] = greatest(boxes[i].high[axis], all.high[axis]);
+            all.low[axis] = min_or_second(boxes[i].low[axis], all.low[axis]);
+            all.high[axis] = max_or_second(boxes[i].high[axis], all.high[axis]);
         }
     }
     return all;
@@ -59,7 +59,7 @@ uint32_t halve(Tree& tree, const std::vector<GroupBox>& boxes, uint32_t begin, u
 
 }  // namespace
 
-Groups group_triangles(const FramedMesh& mesh) {
+Groups group_triangles(const NormalizedMesh& mesh) {
     std::vector<RTCBuildPrimitive> primitives(mesh.size());
     for_each_parallel(mesh.size(), [&](uint32_t t) {
         Box box;
@@ -69,7 +69,7 @@ Groups group_triangles(const FramedMesh& mesh) {
     return group_neighbors(primitives);
 }
 
-Tree group_tree(const FramedMesh& mesh, const Groups& groups) {
+Tree group_tree(const NormalizedMesh& mesh, const Groups& groups) {
     if (groups.size() == 0) return {};
     std::vector<GroupBox> boxes(groups.size());
     for_each_parallel(groups.size(), [&](uint32_t g) {
@@ -89,7 +89,7 @@ Tree group_tree(const FramedMesh& mesh, const Groups& groups) {
 }
 
 template <class Real>
-void append_clusters(const FramedMesh& mesh, const Groups& groups, const ApexHeights& heights, uint32_t solid,
+void append_clusters(const NormalizedMesh& mesh, const Groups& groups, const ApexHeights& heights, uint32_t solid,
                      uint32_t first_triangle, std::vector<Cluster<Real>>& clusters) {
     const size_t first_cluster = clusters.size();
     clusters.resize(first_cluster + groups.size());
@@ -110,9 +110,9 @@ void append_clusters(const FramedMesh& mesh, const Groups& groups, const ApexHei
     });
 }
 
-template void append_clusters(const FramedMesh&, const Groups&, const ApexHeights&, uint32_t, uint32_t,
+template void append_clusters(const NormalizedMesh&, const Groups&, const ApexHeights&, uint32_t, uint32_t,
                               std::vector<Cluster<float>>&);
-template void append_clusters(const FramedMesh&, const Groups&, const ApexHeights&, uint32_t, uint32_t,
+template void append_clusters(const NormalizedMesh&, const Groups&, const ApexHeights&, uint32_t, uint32_t,
                               std::vector<Cluster<double>>&);
 
 }  // namespace cistula

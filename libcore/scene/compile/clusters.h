@@ -8,14 +8,14 @@
 
 namespace cistula {
 
-Groups group_triangles(const FramedMesh& mesh);
+Groups group_triangles(const NormalizedMesh& mesh);
 
 /// A tree over the groups' boxes, for queries during compilation; its items are group numbers.
-Tree group_tree(const FramedMesh& mesh, const Groups& groups);
+Tree group_tree(const NormalizedMesh& mesh, const Groups& groups);
 
 /// Appends one cluster per group. Unused lanes hold a corner of lane 0 three times.
 template <class Real>
-void append_clusters(const FramedMesh& mesh, const Groups& groups, const ApexHeights& heights, uint32_t solid,
+void append_clusters(const NormalizedMesh& mesh, const Groups& groups, const ApexHeights& heights, uint32_t solid,
                      uint32_t first_triangle, std::vector<Cluster<Real>>& clusters);
 
 }  // namespace cistula

@@ -14,15 +14,15 @@ dvec3 rounded(const dvec3& v) {
     return dvec3(Vec3<Real>(v));
 }
 
-void add_edge_lights(std::vector<FramedLight>& lights, const SolidObject& object, const std::string& place,
-                     const ConvexSolid& solid, int convex, const Frame& frame) {
+void add_edge_lights(std::vector<NormalizedLight>& lights, const SolidObject& object, const std::string& place,
+                     const ConvexSolid& solid, int convex, const SceneNormalization& normalization) {
     const EdgeLights& on_edges = object.edge_lights;
     for (const auto& edge : platonic_shape(object.solid).edges) {
         const dvec3 &a = solid.vertices[edge.vertices[0]], &b = solid.vertices[edge.vertices[1]];
         for (int i = 0; i < on_edges.count; ++i) {
             const double s = (i + 1.0) / (on_edges.count + 1.0);
             lights.push_back({a + s * (b - a), on_edges.color, on_edges.glow.value_or(on_edges.color),
-                              on_edges.radius * frame.factor, on_edges.falloff, place, convex, edge.faces});
+                              on_edges.radius * normalization.factor, on_edges.falloff, place, convex, edge.faces});
         }
     }
 }
@@ -48,24 +48,24 @@ bool near_triangle(const std::array<dvec3, 3>& corner, const dvec3& p, double to
 
 }  // namespace
 
-std::vector<FramedLight> frame_lights(const SceneSource& source, const Frame& frame,
-                                      const std::vector<ConvexSolid>& convex) {
-    std::vector<FramedLight> lights;
+std::vector<NormalizedLight> normalize_lights(const SceneSource& source, const SceneNormalization& normalization,
+                                              const std::vector<ConvexSolid>& convex) {
+    std::vector<NormalizedLight> lights;
     for (const LightDescription& light : source.description->lights)
-        lights.push_back({frame.point(light.position), light.color, light.glow.value_or(light.color),
-                          light.radius * frame.factor, light.falloff, light.place});
+        lights.push_back({normalization.point(light.position), light.color, light.glow.value_or(light.color),
+                          light.radius * normalization.factor, light.falloff, light.place});
     for (size_t i = 0; i < convex.size(); ++i) {
         const SourceSolid& solid = source.solids[convex[i].solid];
-        add_edge_lights(lights, *solid.platonic, solid.place, convex[i], static_cast<int>(i), frame);
+        add_edge_lights(lights, *solid.platonic, solid.place, convex[i], static_cast<int>(i), normalization);
     }
     // I / r^2 in scene units is I 4^scale / r^2 with r in the frame.
-    for (FramedLight& light : lights)
-        if (light.falloff) light.color *= frame.factor * frame.factor;
+    for (NormalizedLight& light : lights)
+        if (light.falloff) light.color *= normalization.factor * normalization.factor;
     return lights;
 }
 
 template <class Real>
-void find_convex_incidents(const std::vector<FramedLight>& lights, const std::vector<ConvexSolid>& convex,
+void find_convex_incidents(const std::vector<NormalizedLight>& lights, const std::vector<ConvexSolid>& convex,
                            double extent, IncidentLists& incidents) {
     const double tolerance = static_cast<double>(incidence<Real>) * extent;
     const double reach = 4 * tolerance;  // farther than this outside a solid's box, no light can be incident
@@ -97,9 +97,9 @@ void find_convex_incidents(const std::vector<FramedLight>& lights, const std::ve
 }
 
 template <class Real>
-void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, const Groups& groups,
-                             const Tree& tree, uint32_t solid, uint32_t first_triangle, double extent,
-                             IncidentLists& incidents) {
+void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh,
+                             const Groups& groups, const Tree& tree, uint32_t solid, uint32_t first_triangle,
+                             double extent, IncidentLists& incidents) {
     const double tolerance = static_cast<double>(incidence<Real>) * extent;
     for (size_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].lights()) continue;
@@ -119,7 +119,7 @@ void find_triangle_incidents(const std::vector<FramedLight>& lights, const Frame
 }
 
 template <class Real>
-void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid,
+void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh, uint32_t solid,
                              double extent, IncidentLists& incidents) {
     const double tolerance = static_cast<double>(incidence<Real>) * extent;
     for (size_t i = 0; i < lights.size(); ++i) {
@@ -130,8 +130,8 @@ void find_triangle_incidents(const std::vector<FramedLight>& lights, const Frame
     }
 }
 
-std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights,
-                         const IncidentLists& incidents) {
+std::string light_on_face(const SceneSource& source, const std::vector<NormalizedLight>& lights,
+                          const IncidentLists& incidents) {
     for (size_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].lights() || incidents[i].empty()) continue;
         if (lights[i].convex >= 0) return "the lights on the edges of " + lights[i].place + " lie on its faces";
@@ -141,12 +141,13 @@ std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLigh
 }
 
 #define CISTULA_INSTANTIATE(Real)                                                                                     \
-    template void find_convex_incidents<Real>(const std::vector<FramedLight>&, const std::vector<ConvexSolid>&,       \
+    template void find_convex_incidents<Real>(const std::vector<NormalizedLight>&, const std::vector<ConvexSolid>&,   \
                                               double, IncidentLists&);                                                \
-    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, const Groups&,    \
-                                                const Tree&, uint32_t, uint32_t, double, IncidentLists&);             \
-    template void find_triangle_incidents<Real>(const std::vector<FramedLight>&, const FramedMesh&, uint32_t, double, \
-                                                IncidentLists&);
+    template void find_triangle_incidents<Real>(const std::vector<NormalizedLight>&, const NormalizedMesh&,           \
+                                                const Groups&, const Tree&, uint32_t, uint32_t, double,               \
+                                                IncidentLists&);                                                      \
+    template void find_triangle_incidents<Real>(const std::vector<NormalizedLight>&, const NormalizedMesh&, uint32_t, \
+                                                double, IncidentLists&);
 CISTULA_INSTANTIATE(float)
 CISTULA_INSTANTIATE(double)
 #undef CISTULA_INSTANTIATE

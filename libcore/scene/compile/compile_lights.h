@@ -8,12 +8,12 @@
 #include "cistula/model/scene_view.h"
 #include "scene/compile/clusters.h"
 #include "scene/compile/compile_solids.h"
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 
 namespace cistula {
 
 /// A light with position and radius in the frame and radiances as described; with falloff, color is I 4^scale.
-struct FramedLight {
+struct NormalizedLight {
     glm::dvec3 position;
     glm::dvec3 color, radiance;
     double radius;
@@ -26,8 +26,8 @@ struct FramedLight {
 };
 
 /// The description's lights, then those on the edges of `convex`, in file order.
-std::vector<FramedLight> frame_lights(const SceneSource& source, const Frame& frame,
-                                      const std::vector<ConvexSolid>& convex);
+std::vector<NormalizedLight> normalize_lights(const SceneSource& source, const SceneNormalization& normalization,
+                                              const std::vector<ConvexSolid>& convex);
 
 /// For each light, the faces that it lies on, in the order of solids and faces.
 using IncidentLists = std::vector<std::vector<Incident>>;
@@ -35,22 +35,22 @@ using IncidentLists = std::vector<std::vector<Incident>>;
 /// Adds the convex solids' faces on which lights lie: |n.l - h| <= 16 u M inside the solid grown by as much, u and
 /// rounding those of the scene's precision.
 template <class Real>
-void find_convex_incidents(const std::vector<FramedLight>& lights, const std::vector<ConvexSolid>& convex,
+void find_convex_incidents(const std::vector<NormalizedLight>& lights, const std::vector<ConvexSolid>& convex,
                            double extent, IncidentLists& incidents);
 
 /// Adds a mesh's triangles on which lights lie, found through the tree over their groups.
 template <class Real>
-void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, const Groups& groups,
-                             const Tree& tree, uint32_t solid, uint32_t first_triangle, double extent,
-                             IncidentLists& incidents);
+void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh,
+                             const Groups& groups, const Tree& tree, uint32_t solid, uint32_t first_triangle,
+                             double extent, IncidentLists& incidents);
 
 /// Adds a mesh's triangles on which lights lie, without a tree and in the mesh's own numbering.
 template <class Real>
-void find_triangle_incidents(const std::vector<FramedLight>& lights, const FramedMesh& mesh, uint32_t solid,
+void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh, uint32_t solid,
                              double extent, IncidentLists& incidents);
 
 /// Which light lies on a face of which object, in words for explain_effects; empty if none does.
-std::string lamp_on_face(const SceneSource& source, const std::vector<FramedLight>& lights,
-                         const IncidentLists& incidents);
+std::string light_on_face(const SceneSource& source, const std::vector<NormalizedLight>& lights,
+                          const IncidentLists& incidents);
 
 }  // namespace cistula

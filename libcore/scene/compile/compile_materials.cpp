@@ -43,7 +43,7 @@ void append_texture(TextureSet& set, const TextureDescription& description, cons
         for (int c = 0; c < 3; ++c) {
             if (!is_finite(texel[c]) || texel[c] < 0)
                 throw scene_error(scene, place, "a texel is negative or not finite");
-            largest[c] = greatest(largest[c], static_cast<double>(texel[c]));
+            largest[c] = max_or_second(largest[c], static_cast<double>(texel[c]));
         }
     }
     Texture texture;
@@ -80,7 +80,7 @@ TextureSet read_textures(const SceneSource& source) {
 
 template <class Real>
 Material<Real> compile_material(const MaterialDescription& material, const dvec3& ambient, int texture,
-                                const Frame& frame, const SceneDescription& scene) {
+                                const SceneNormalization& normalization, const SceneDescription& scene) {
     Material<Real> m;
     m.color = Vec3<Real>(material.color);
     m.ambient = Vec3<Real>(material.ambient * ambient);
@@ -91,15 +91,15 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
         material.exponent <= largest_integer_exponent && material.exponent == floor_of(material.exponent);
     m.integer_exponent = integer ? static_cast<int32_t>(material.exponent) : -1;
     // Shares may add up to slightly more than 1; that excess must not grow from bounce to bounce.
-    const double whole = greatest(material.reflection + material.transmission, 1.0);
+    const double whole = max_or_second(material.reflection + material.transmission, 1.0);
     const double transmission = material.transmission / whole;
     m.reflection = static_cast<Real>(material.reflection / whole);
     m.transmission = static_cast<Real>(transmission);
     m.local = local_share(material) > 0 ? local_rounded_down(m.reflection, m.transmission) : 0;
     m.filter = Vec3<Real>(transmission * material.tint);
     m.tint = Vec3<Real>(material.tint);
-    const dvec3 absorption = material.absorption / frame.factor;
-    if (largest_component(absorption) * frame.extent > largest_absorption)
+    const dvec3 absorption = material.absorption / normalization.factor;
+    if (largest_component(absorption) * normalization.extent > largest_absorption)
         throw scene_error(scene, "",
                           "material " + material.name + " has an absorption above 2^20 per largest coordinate; " +
                               "such a solid is opaque: give it transmission 0");
@@ -122,9 +122,9 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     return m;
 }
 
-template Material<float> compile_material(const MaterialDescription&, const dvec3&, int, const Frame&,
+template Material<float> compile_material(const MaterialDescription&, const dvec3&, int, const SceneNormalization&,
                                           const SceneDescription&);
-template Material<double> compile_material(const MaterialDescription&, const dvec3&, int, const Frame&,
+template Material<double> compile_material(const MaterialDescription&, const dvec3&, int, const SceneNormalization&,
                                            const SceneDescription&);
 
 }  // namespace cistula

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cistula/model/scene_view.h"
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 
 namespace cistula {
 
@@ -24,6 +24,6 @@ TextureSet read_textures(const SceneSource& source);
 /// scene.
 template <class Real>
 Material<Real> compile_material(const MaterialDescription& material, const glm::dvec3& ambient, int texture,
-                                const Frame& frame, const SceneDescription& scene);
+                                const SceneNormalization& normalization, const SceneDescription& scene);
 
 }  // namespace cistula

@@ -39,34 +39,35 @@ void return_free_memory() {
 
 constexpr size_t most_pairs = 10'000'000;
 constexpr uint32_t most_outlined = 16;  // triangles of a mesh that is outlined by its corners; larger ones by their box
-constexpr double touching = 0x1p-17;    // tolerance for solids in contact, far above that of meetings (meeting.h)
+constexpr double touching =
+    0x1p-17;  // tolerance for solids in contact, far above that of surface events (surface_event.h)
 
 /// One compilation; its steps are called in the order of their dependencies.
 template <class Real>
 class Compiler {
   public:
     explicit Compiler(const SceneDescription& description)
-        : description_(description), source_(gather_scene(description)), frame_(find_frame(source_)) {}
+        : description_(description), source_(gather_scene(description)), normalization_(find_normalization(source_)) {}
 
     std::unique_ptr<CompiledScene<Real>> compile() {
         if (source_.solids.size() >= no_solid)
             throw scene_error(
                 description_, "/objects",
                 std::to_string(source_.solids.size()) + " solids: at most " + std::to_string(no_solid - 1));
-        scene_.center = frame_.center;
-        scene_.scale = frame_.scale;
-        scene_.extent = rounded_up<Real>(frame_.extent);
+        scene_.center = normalization_.center;
+        scene_.scale = normalization_.scale;
+        scene_.extent = rounded_up<Real>(normalization_.extent);
         scene_.solids.resize(source_.solids.size());
         scene_.hulls.resize(source_.solids.size());
         boxes_.resize(source_.solids.size());
         closed_.assign(source_.solids.size(), true);
-        hash_.add(frame_.center);
-        hash_.add(static_cast<uint32_t>(frame_.scale));
+        hash_.add(normalization_.center);
+        hash_.add(static_cast<uint32_t>(normalization_.scale));
 
         compile_convex();
-        lights_ = frame_lights(source_, frame_, convex_);
+        lights_ = normalize_lights(source_, normalization_, convex_);
         incidents_.resize(lights_.size());
-        find_convex_incidents<Real>(lights_, convex_, frame_.extent, incidents_);
+        find_convex_incidents<Real>(lights_, convex_, normalization_.extent, incidents_);
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             scene_.solid_names.push_back(source_.solids[i].name);
             scene_.solids[i].material = source_.solids[i].material;
@@ -75,8 +76,8 @@ class Compiler {
         compile_shading();
         compile_lights();
         add_hulls();
-        find_touched();
-        find_solids_alone();
+        find_touching_solids();
+        find_isolated_solids();
         explain();
         scene_.hash = hash_.hex();
         return std::make_unique<CompiledScene<Real>>(std::move(scene_));
@@ -85,8 +86,9 @@ class Compiler {
   private:
     void compile_convex() {
         for (uint32_t i = 0; i < source_.solids.size(); ++i)
-            if (source_.solids[i].platonic) convex_.push_back(convex_solid(*source_.solids[i].platonic, i, frame_));
-        share_planes(convex_, frame_.extent);
+            if (source_.solids[i].platonic)
+                convex_.push_back(convex_solid(*source_.solids[i].platonic, i, normalization_));
+        merge_coplanar(convex_, normalization_.extent);
         for (const ConvexSolid& convex : convex_) {
             Solid& solid = scene_.solids[convex.solid];
             solid = {};
@@ -107,8 +109,8 @@ class Compiler {
         }
     }
 
-    /// Finds the solids with an inside that may share a face with another solid (meeting.h).
-    void find_touched() {
+    /// Finds the solids with an inside that may share a face with another solid (surface_event.h).
+    void find_touching_solids() {
         std::vector<uint32_t> order;
         for (uint32_t i = 0; i < scene_.solids.size(); ++i)
             if (scene_.solids[i].kind != SolidKind::sheet && !boxes_[i].empty()) order.push_back(i);
@@ -120,26 +122,26 @@ class Compiler {
         for (size_t i = 0; i < order.size(); ++i)
             for (size_t j = i + 1; j < order.size() && near(boxes_[order[i]], boxes_[order[j]], 0); ++j) {
                 if (near(boxes_[order[i]], boxes_[order[j]], 1) && near(boxes_[order[i]], boxes_[order[j]], 2))
-                    scene_.solids[order[i]].touched = scene_.solids[order[j]].touched = 1;
+                    scene_.solids[order[i]].may_touch = scene_.solids[order[j]].may_touch = 1;
             }
     }
 
     /// Finds solids that overlap no other. An optimization, skipped for scenes with very many pairs.
-    void find_solids_alone() {
+    void find_isolated_solids() {
         const SceneView<Real> view = scene_.view();
         const size_t primitives = view.convex.size + view.clusters.size;
         if (view.convex.empty() || view.convex.size * primitives > most_pairs) return;
         std::vector<PaddedBox> boxes;
         for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
         for (uint32_t a = 0; a < view.convex.size; ++a) {
-            bool alone = true;
-            for (uint32_t b = 0; b < primitives && alone; ++b) {
+            bool isolated = true;
+            for (uint32_t b = 0; b < primitives && isolated; ++b) {
                 bool apart = a == b;
                 for (int k = 0; k < 3; ++k)
                     apart |= boxes[a].high[k] < boxes[b].low[k] || boxes[b].high[k] < boxes[a].low[k];
-                alone = apart;
+                isolated = apart;
             }
-            scene_.solids[view.convex[a]].alone = alone ? 1 : 0;
+            scene_.solids[view.convex[a]].isolated = isolated ? 1 : 0;
         }
     }
 
@@ -165,7 +167,7 @@ class Compiler {
         double square = 0;
         for (const dvec3& p : convex.vertices) {
             const dvec3 out = p - dvec3(solid.center);
-            square = greatest(square, dot(out, out));
+            square = max_or_second(square, dot(out, out));
         }
         solid.padded_square = rounded_up<float>(square) + sphere_padding;
     }
@@ -175,7 +177,7 @@ class Compiler {
         hash_mesh(number);
         MeshTopology topology = find_topology(from.mesh);
         warn(from, topology);
-        const FramedMesh mesh(from.mesh, topology, frame_, sizeof(Real) == sizeof(float));
+        const NormalizedMesh mesh(from.mesh, topology, normalization_, sizeof(Real) == sizeof(float));
         ApexHeights heights = apex_heights(mesh);
         topology.next_along_edge = {};
         const Groups groups = group_triangles(mesh);
@@ -186,7 +188,8 @@ class Compiler {
         solid.kind = topology.closed ? SolidKind::mesh : SolidKind::sheet;
         closed_[number] = topology.closed;
         solid.first_slab = solid.slab_count = 0;
-        solid.flat = !topology.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * frame_.extent, solid) ? 1 : 0;
+        solid.flat =
+            !topology.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * normalization_.extent, solid) ? 1 : 0;
         solid.first_triangle = triangle_count_;
         solid.first_uv = static_cast<uint32_t>(scene_.uvs.size());
         append_clusters(mesh, groups, heights, number, triangle_count_, scene_.clusters);
@@ -203,7 +206,7 @@ class Compiler {
 
     /// Whether all corners lie within `tolerance` of the plane of the largest triangle, which is then stored in the
     /// solid.
-    static bool is_flat(const FramedMesh& mesh, double tolerance, Solid& solid) {
+    static bool is_flat(const NormalizedMesh& mesh, double tolerance, Solid& solid) {
         dvec3 normal(0), on(0);
         for (uint32_t t = 0; t < mesh.size(); ++t) {
             const auto corners = mesh.corners(t);
@@ -222,20 +225,21 @@ class Compiler {
     }
 
     /// The steps that need the tree over groups, which is freed before the clusters are filled.
-    void prepare(uint32_t number, const FramedMesh& mesh, const Groups& groups, ApexHeights& heights) {
+    void prepare(uint32_t number, const NormalizedMesh& mesh, const Groups& groups, ApexHeights& heights) {
         const Tree tree = group_tree(mesh, groups);
         const SourceSolid& from = source_.solids[number];
         const uint32_t crossed = check_apexes(mesh, groups, tree, heights);
         if (crossed > 0 && mesh.topology().closed)
             scene_.warnings.push_back(from.place + ": " + from.name + ": the mesh passes through itself at " +
                                       std::to_string(crossed) + " sides of triangles; rays may leak there");
-        find_triangle_incidents<Real>(lights_, mesh, groups, tree, number, triangle_count_, frame_.extent, incidents_);
+        find_triangle_incidents<Real>(lights_, mesh, groups, tree, number, triangle_count_, normalization_.extent,
+                                      incidents_);
     }
 
     void hash_mesh(uint32_t number) {
         const MeshSource& mesh = source_.solids[number].mesh;
         hash_.add(number);
-        for (const dvec3& p : mesh.vertices) hash_.add(frame_.point(p));
+        for (const dvec3& p : mesh.vertices) hash_.add(normalization_.point(p));
         hash_.add_bytes(mesh.triangles.data(), mesh.triangles.size_bytes());
         if (source_.materials[source_.solids[number].material].texture < 0) return;
         for (const auto& uv : mesh.uvs) hash_.add(uv.x), hash_.add(uv.y);
@@ -262,7 +266,7 @@ class Compiler {
         for (const MaterialDescription& material : source_.materials) {
             const int texture = material.texture < 0 ? -1 : textures.number[static_cast<size_t>(material.texture)];
             scene_.materials.push_back(
-                compile_material<Real>(material, scaled(description_.ambient), texture, frame_, description_));
+                compile_material<Real>(material, scaled(description_.ambient), texture, normalization_, description_));
         }
         for (const SourceSolid& solid : source_.solids) {
             const MaterialDescription& material = source_.materials[solid.material];
@@ -288,7 +292,7 @@ class Compiler {
     void compile_lights() {
         std::vector<uint32_t> owners;  // of visible lights
         for (size_t i = 0; i < lights_.size(); ++i) {
-            const FramedLight& light = lights_[i];
+            const NormalizedLight& light = lights_[i];
             hash_.add(light.position);
             hash_.add(light.color);
             hash_.add(light.radiance);
@@ -300,7 +304,7 @@ class Compiler {
                                   std::string("the light is beyond the range of ") + RealTraits<Real>::name);
             if (light.radius > 0) {
                 const Vec3<Real> radiance(scaled(light.radiance));
-                scene_.seen_lights.push_back({position, static_cast<Real>(light.radius), radiance});
+                scene_.visible_lights.push_back({position, static_cast<Real>(light.radius), radiance});
                 owners.push_back(light.convex < 0 ? no_solid : convex_[static_cast<size_t>(light.convex)].solid);
             }
             if (!light.lights()) continue;
@@ -313,15 +317,15 @@ class Compiler {
                                      static_cast<uint32_t>(faces.size())});
             scene_.incidents.insert(scene_.incidents.end(), faces.begin(), faces.end());
         }
-        if (scene_.seen_lights.size() < fewest_in_light_tree) return;
+        if (scene_.visible_lights.size() < fewest_in_light_tree) return;
         std::vector<RTCBuildPrimitive> primitives;
-        for (const auto& light : scene_.seen_lights) {
+        for (const auto& light : scene_.visible_lights) {
             const dvec3 center(light.center), radius{light.radius};
             Box box{center - radius, center + radius};
             primitives.push_back(padded_primitive(box, 0x1p-18 * static_cast<double>(scene_.extent),
                                                   static_cast<uint32_t>(primitives.size())));
         }
-        scene_.seen_tree = light_tree(build_tree(primitives, 1));
+        scene_.visible_light_tree = light_tree(build_tree(primitives, 1));
         reach_edge_lights(scene_, owners);
     }
 
@@ -331,13 +335,13 @@ class Compiler {
         for (uint32_t i = 0; i < source_.solids.size(); ++i)
             if (scene_.hulls[i].points.empty() && !boxes_[i].empty())
                 for (const dvec3& corner : boxes_[i].corners()) scene_.hulls[i].points.push_back(corner);
-        for (const FramedLight& light : lights_) {
+        for (const NormalizedLight& light : lights_) {
             if (!(light.radius > 0)) continue;
             if (light.convex < 0) {
                 scene_.hulls.push_back({{light.position}, light.radius});
             } else {
                 Hull& hull = scene_.hulls[convex_[static_cast<size_t>(light.convex)].solid];
-                hull.reach = greatest(hull.reach, light.radius);
+                hull.reach = max_or_second(hull.reach, light.radius);
             }
         }
     }
@@ -347,7 +351,7 @@ class Compiler {
         for (size_t i = 0; i < source_.solids.size(); ++i)
             uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place, closed_[i],
                             source_.solids[i].platonic != nullptr});
-        scene_.effect_reasons = explain_effects(description_, uses, lamp_on_face(source_, lights_, incidents_));
+        scene_.effect_reasons = explain_effects(description_, uses, light_on_face(source_, lights_, incidents_));
         scene_.effects = required_effects(scene_.effect_reasons);
     }
 
@@ -358,10 +362,10 @@ class Compiler {
 
     const SceneDescription& description_;
     SceneSource source_;
-    Frame frame_;
+    SceneNormalization normalization_;
     CompiledScene<Real> scene_;
     std::vector<ConvexSolid> convex_;
-    std::vector<FramedLight> lights_;
+    std::vector<NormalizedLight> lights_;
     IncidentLists incidents_;
     std::vector<Box> boxes_;    // of each solid
     std::vector<bool> closed_;  // each solid has an inside

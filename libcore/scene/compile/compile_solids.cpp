@@ -15,7 +15,7 @@ bool close(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 /// Gives parallel plane pairs a common normal. Returns the pairs of each direction.
-std::vector<std::vector<PlanePair*>> share_normals(std::vector<PlanePair*>& pairs) {
+std::vector<std::vector<PlanePair*>> merge_normals(std::vector<PlanePair*>& pairs) {
     // Sorted by |n.x|, so that opposite normals are neighbors; each is compared with representatives in a window only.
     std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair* a, const PlanePair* b) {
         return magnitude(a->normal.x) < magnitude(b->normal.x);
@@ -56,7 +56,7 @@ struct Offset {
     bool negated;
 };
 
-void share_offsets(const std::vector<PlanePair*>& pairs, double tolerance) {
+void merge_offsets(const std::vector<PlanePair*>& pairs, double tolerance) {
     std::vector<Offset> offsets;
     for (PlanePair* pair : pairs) {
         const bool negated = pair->normal != pairs[0]->normal;
@@ -74,11 +74,11 @@ void share_offsets(const std::vector<PlanePair*>& pairs, double tolerance) {
 
 }  // namespace
 
-ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Frame& frame) {
+ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const SceneNormalization& normalization) {
     const PlatonicShape& shape = platonic_shape(object.solid);
     const Rotation rotation(object.rotation);
-    const glm::dvec3 center = frame.point(object.center);
-    const double radius = object.radius * frame.factor;
+    const glm::dvec3 center = normalization.point(object.center);
+    const double radius = object.radius * normalization.factor;
     ConvexSolid solid;
     solid.solid = number;
     for (const glm::dvec3& p : shape.vertices) {
@@ -93,11 +93,11 @@ ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Frame
     return solid;
 }
 
-void share_planes(std::vector<ConvexSolid>& solids, double extent) {
+void merge_coplanar(std::vector<ConvexSolid>& solids, double extent) {
     std::vector<PlanePair*> pairs;
     for (ConvexSolid& solid : solids)
         for (PlanePair& pair : solid.planes) pairs.push_back(&pair);
-    for (const auto& direction : share_normals(pairs)) share_offsets(direction, coplanar * extent);
+    for (const auto& direction : merge_normals(pairs)) merge_offsets(direction, coplanar * extent);
 }
 
 }  // namespace cistula

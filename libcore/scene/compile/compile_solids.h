@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scene/base/box.h"
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 
 namespace cistula {
@@ -27,10 +27,10 @@ struct ConvexSolid {
 };
 
 /// A solid's planes, rotated, then translated and scaled into the frame.
-ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Frame& frame);
+ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const SceneNormalization& normalization);
 
 /// Gives planes of different solids that coincide to within 1e-12 one record (n, h), so that touching faces have equal
 /// t: normals equal up to sign, offsets equal.
-void share_planes(std::vector<ConvexSolid>& solids, double extent);
+void merge_coplanar(std::vector<ConvexSolid>& solids, double extent);
 
 }  // namespace cistula

@@ -87,12 +87,12 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.materials = span_of(materials);
     v.lights = span_of(lights);
     v.incidents = span_of(incidents);
-    v.seen_lights = span_of(seen_lights);
+    v.visible_lights = span_of(visible_lights);
     v.textures = span_of(textures);
     v.texels = span_of(texels);
     v.tree = span_of(tree);
     v.tree_items = span_of(tree_items);
-    v.seen_tree = span_of(seen_tree);
+    v.visible_light_tree = span_of(visible_light_tree);
     v.background = background;
     v.bound = bound;
     v.largest_bound = largest_component(bound);
@@ -106,8 +106,8 @@ size_t CompiledScene<Real>::memory() const {
     for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
     return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) +
            bytes_of(clusters) + bytes_of(uvs) + bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) +
-           bytes_of(seen_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
-           bytes_of(seen_tree);
+           bytes_of(visible_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
+           bytes_of(visible_light_tree);
 }
 
 template <class Real>

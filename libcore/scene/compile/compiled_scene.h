@@ -24,12 +24,12 @@ struct CompiledScene {
     std::vector<Material<Real>> materials;
     std::vector<Light<Real>> lights;
     std::vector<Incident> incidents;
-    std::vector<SeenLight<Real>> seen_lights;
+    std::vector<VisibleLight<Real>> visible_lights;
     std::vector<Texture> textures;
     std::vector<Vec3<float>> texels;
     std::vector<TreeNode> tree;  // filled by build_primitive_tree only
     std::vector<uint32_t> tree_items;
-    std::vector<LightNode> seen_tree;
+    std::vector<LightNode> visible_light_tree;
     std::vector<Hull> hulls;  // around everything visible
     Vec3<Real> background, bound;
     Real extent = 1;

@@ -7,8 +7,8 @@ namespace cistula {
 namespace {
 
 template <class Real>
-NumberedSolid<Real> numbered(const SceneView<Real>& scene, uint32_t index) {
-    return {Ball<Real>::of(scene.solids[index]), index, scene.solids[index]};
+IndexedSolid<Real> indexed(const SceneView<Real>& scene, uint32_t index) {
+    return {BoundingSphere<Real>::of(scene.solids[index]), index, scene.solids[index]};
 }
 
 template <class Real>
@@ -19,8 +19,8 @@ SheetPlane<Real> boxed_plane(const SceneView<Real>& scene, uint32_t index) {
         Real low = cluster.corner[0][axis][0], high = low;
         for (uint32_t lane = 0; lane < cluster.count; ++lane)
             for (int c = 0; c < 3; ++c) {
-                low = least(low, cluster.corner[c][axis][lane]);
-                high = greatest(high, cluster.corner[c][axis][lane]);
+                low = min_or_second(low, cluster.corner[c][axis][lane]);
+                high = max_or_second(high, cluster.corner[c][axis][lane]);
             }
         plane.center[axis] = (low + high) * Real(0.5);
         plane.half[axis] = (high - low) * Real(0.5) + Real(plane_padding);
@@ -30,12 +30,12 @@ SheetPlane<Real> boxed_plane(const SceneView<Real>& scene, uint32_t index) {
 
 /// Tabulates the transmitted shares by number of crossings: one crossing of each material first, then two of each, ...
 template <class Real>
-void find_shares(ConstantScene<Real>& to) {
+void cache_transmittances(ConstantScene<Real>& to) {
     int found = 0;
-    for (KnownShare<Real>& known : to.known_shares) known = {0, Real(1)};
+    for (CachedTransmittance<Real>& known : to.cached_transmittances) known = {0, Real(1)};
     const auto is_known = [&](uint64_t loss) {
         bool is = loss == 0;
-        for (int i = 0; i < found; ++i) is |= to.known_shares[i].loss == loss;
+        for (int i = 0; i < found; ++i) is |= to.cached_transmittances[i].loss == loss;
         return is;
     };
     for (uint64_t crossings = 1; crossings <= 4; ++crossings)
@@ -43,7 +43,7 @@ void find_shares(ConstantScene<Real>& to) {
             for (int c = 0; c < 3; ++c) {
                 const uint64_t once = material.filter_loss[c];
                 if (found == 4 || once > largest_loss / 4 || is_known(crossings * once)) continue;
-                to.known_shares[found++] = {crossings * once, share_of<Real>(crossings * once)};
+                to.cached_transmittances[found++] = {crossings * once, transmittance_of<Real>(crossings * once)};
             }
 }
 
@@ -51,9 +51,9 @@ void find_shares(ConstantScene<Real>& to) {
 template <class Real>
 bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantScene<Real>& to) {
     for (const Solid& solid : here.solids)
-        if (solid.kind == SolidKind::mesh || solid.touched) return false;
+        if (solid.kind == SolidKind::mesh || solid.may_touch) return false;
     if (!to.solids.assign(here.solids) || !to.slabs.assign(here.slabs) ||
-        !to.convex.assign(here.convex.size, [&](uint32_t i) { return numbered(here, here.convex[i]); }) ||
+        !to.convex.assign(here.convex.size, [&](uint32_t i) { return indexed(here, here.convex[i]); }) ||
         !to.clusters.assign(here.clusters) || !to.materials.assign(here.materials) || !to.lights.assign(here.lights) ||
         !to.textures.assign(here.textures))
         return false;
@@ -61,17 +61,17 @@ bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantS
     to.facets = there.facets;
     to.uvs = there.uvs;
     to.incidents = there.incidents;
-    to.seen_lights = there.seen_lights;
+    to.visible_lights = there.visible_lights;
     to.texels = there.texels;
     to.tree = there.tree;
     to.tree_items = there.tree_items;
-    to.seen_tree = there.seen_tree;
+    to.visible_light_tree = there.visible_light_tree;
     to.planes.assign(to.clusters.size, [&](uint32_t i) { return boxed_plane(here, i); });
     to.sides.assign(to.clusters.size * cluster_lanes, [&](uint32_t slot) {
         const bool is_used = slot % cluster_lanes < to.clusters[slot / cluster_lanes].count;
         return is_used ? TriangleSides<Real>::of(here, slot) : TriangleSides<Real>();
     });
-    find_shares(to);
+    cache_transmittances(to);
     to.clear_solids = to.transmitting_solids = 0;
     for (uint32_t i = 0; i < to.solids.size; ++i) {
         to.clear_solids |= uint32_t(is_clear(here, i)) << i;

@@ -8,7 +8,7 @@
 namespace cistula {
 
 /// The ConstantScene of a view readable here, with everything precomputed for it. Null if the scene is too large, or if
-/// a ray may be inside more than one solid or inside a mesh, which OneMedium rules out. `there`: the scene where
+/// a ray may be inside more than one solid or inside a mesh, which SingleInterior rules out. `there`: the scene where
 /// kernels read it.
 template <class Real>
 std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there);

@@ -105,7 +105,7 @@ struct ApexView {
 
 }  // namespace
 
-ApexHeights apex_heights(const FramedMesh& mesh) {
+ApexHeights apex_heights(const NormalizedMesh& mesh) {
     const MeshTopology& topology = mesh.topology();
     ApexHeights heights;
     for (auto& side : heights.side) side.resize(mesh.size());
@@ -126,8 +126,8 @@ ApexHeights apex_heights(const FramedMesh& mesh) {
                     const uint32_t other_edge = topology.flipped ? 2 - h % 3 : h % 3;
                     const dvec3 opposite = mesh.vertex(other[(other_edge + 2) % 3]);
                     const AngleFactors f = angle_factors(corner[e], edge, normal, opposite);
-                    inside = least(f.inside, inside);
-                    outside = least(f.outside, outside);
+                    inside = min_or_second(f.inside, inside);
+                    outside = min_or_second(f.outside, outside);
                 }
             }
             const double inradius = perimeter > 0 ? twice_area / perimeter : 0;
@@ -138,7 +138,7 @@ ApexHeights apex_heights(const FramedMesh& mesh) {
     return heights;
 }
 
-uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
+uint32_t check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
     std::atomic<uint32_t> blocked_for_good{0};
     const auto check = [&](uint32_t t, const std::array<dvec3, 3>& corner, const std::vector<const Neighbor*>& near) {
         const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
@@ -181,7 +181,7 @@ uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& 
             for (uint32_t i = groups.first[g]; i < groups.first[g + 1]; ++i) {
                 const uint32_t t = groups.order[i];
                 for (const dvec3& p : mesh.triangle(t)) reach.add(p);
-                highest = greatest(highest, greatest(heights.side[0][t], heights.side[1][t]));
+                highest = max_or_second(highest, max_or_second(heights.side[0][t], heights.side[1][t]));
             }
             reach.low -= dvec3{highest};
             reach.high += dvec3{highest};
@@ -197,7 +197,7 @@ uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& 
                 const uint32_t t = groups.order[i];
                 const auto corner = mesh.triangle(t);
                 Box box = box_of(corner);
-                const double h = greatest(heights.side[0][t], heights.side[1][t]);
+                const double h = max_or_second(heights.side[0][t], heights.side[1][t]);
                 box.low -= dvec3{h};
                 box.high += dvec3{h};
                 near.clear();

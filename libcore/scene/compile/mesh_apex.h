@@ -17,7 +17,7 @@ struct ApexHeights {
 
 /// Initial heights: inradius / 8 * min(1, tan(a / 2)), a the smallest dihedral angle on that side; edges without a
 /// neighbor are ignored.
-ApexHeights apex_heights(const FramedMesh& mesh);
+ApexHeights apex_heights(const NormalizedMesh& mesh);
 
 /// Greatest number of times an apex is halved; its lowest height is 2^-24 of the first.
 inline constexpr int most_halvings = 24;
@@ -25,6 +25,6 @@ inline constexpr int most_halvings = 24;
 /// Halves heights until no other triangle of the mesh intersects the tetrahedra over a triangle: neither the edges to
 /// the apex nor the sides between them. A triangle that still intersects at the lowest height passes through the base
 /// itself and is ignored. Returns the number of triangle sides for which that happened.
-uint32_t check_apexes(const FramedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights);
+uint32_t check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights);
 
 }  // namespace cistula

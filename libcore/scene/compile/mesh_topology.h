@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cistula/numerics/vec.h"
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/description/mesh_source.h"
 
 namespace cistula {
@@ -38,10 +38,11 @@ struct MeshTopology {
 MeshTopology find_topology(const MeshSource& mesh);
 
 /// A mesh as it is rendered: in the frame, rounded to the scene's precision, wound counter-clockwise seen from outside.
-class FramedMesh {
+class NormalizedMesh {
   public:
-    FramedMesh(const MeshSource& source, const MeshTopology& topology, const Frame& frame, bool single_precision)
-        : source_(source), topology_(topology), frame_(frame), single_(single_precision) {}
+    NormalizedMesh(const MeshSource& source, const MeshTopology& topology, const SceneNormalization& normalization,
+                   bool single_precision)
+        : source_(source), topology_(topology), normalization_(normalization), single_(single_precision) {}
 
     uint32_t size() const { return topology_.count; }
     const MeshTopology& topology() const { return topology_; }
@@ -53,7 +54,7 @@ class FramedMesh {
         return c;
     }
     Vec3<double> vertex(uint32_t number) const {
-        const Vec3<double> p = frame_.point(source_.vertices[number]);
+        const Vec3<double> p = normalization_.point(source_.vertices[number]);
         return single_ ? Vec3<double>(Vec3<float>(p)) : p;
     }
     std::array<Vec3<double>, 3> triangle(uint32_t number) const {
@@ -64,7 +65,7 @@ class FramedMesh {
   private:
     const MeshSource& source_;
     const MeshTopology& topology_;
-    const Frame& frame_;
+    const SceneNormalization& normalization_;
     bool single_;
 };
 

@@ -11,22 +11,22 @@ namespace {
 using glm::dvec3;
 
 dvec3 largest_of(const dvec3& a, const dvec3& b) {
-    return {greatest(a.x, b.x), greatest(a.y, b.y), greatest(a.z, b.z)};
+    return {max_or_second(a.x, b.x), max_or_second(a.y, b.y), max_or_second(a.z, b.z)};
 }
 
 double distance_to_box(const Box& box, const dvec3& p) {
     dvec3 d;
     for (int axis = 0; axis < 3; ++axis)
-        d[axis] = greatest(greatest(box.low[axis] - p[axis], p[axis] - box.high[axis]), 0.0);
+        d[axis] = max_or_second(max_or_second(box.low[axis] - p[axis], p[axis] - box.high[axis]), 0.0);
     return length(d);
 }
 
 /// Upper bound on the sum of the lights' contributions at any point of a box.
-dvec3 falloff_light(const std::vector<const FramedLight*>& lights, const Box& box) {
+dvec3 falloff_light(const std::vector<const NormalizedLight*>& lights, const Box& box) {
     dvec3 sum{0};
-    for (const FramedLight* light : lights) {
+    for (const NormalizedLight* light : lights) {
         // The box is that of the exact corners; rounded ones may be slightly nearer.
-        const double distance = greatest(distance_to_box(box, light->position) - 0x1p-18, light->radius);
+        const double distance = max_or_second(distance_to_box(box, light->position) - 0x1p-18, light->radius);
         sum += light->color / (distance * distance);
     }
     return sum;
@@ -34,12 +34,12 @@ dvec3 falloff_light(const std::vector<const FramedLight*>& lights, const Box& bo
 
 }  // namespace
 
-dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, const std::vector<FramedLight>& lights,
+dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, const std::vector<NormalizedLight>& lights,
                      const std::vector<Box>& boxes) {
     const SceneDescription& scene = *source.description;
     dvec3 bound = scene.background, constant{0};
-    std::vector<const FramedLight*> falling;
-    for (const FramedLight& light : lights) {
+    std::vector<const NormalizedLight*> falling;
+    for (const NormalizedLight& light : lights) {
         if (light.radius > 0) bound = largest_of(bound, light.radiance);
         if (light.falloff) {
             falling.push_back(&light);

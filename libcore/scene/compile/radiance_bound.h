@@ -12,8 +12,8 @@ namespace cistula {
 inline constexpr double bound_slack = 1 + 0x1p-10;
 
 /// The bound per channel, without slack, in scene units. `boxes` are the solids' boxes in the frame.
-glm::dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, const std::vector<FramedLight>& lights,
-                          const std::vector<Box>& boxes);
+glm::dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures,
+                          const std::vector<NormalizedLight>& lights, const std::vector<Box>& boxes);
 
 struct RadianceScale {
     glm::dvec3 bound{0};  // slack included, at most 1 after scaling

@@ -25,7 +25,7 @@ std::string number(double value) {
 
 struct SceneLight {
     std::string name;
-    bool several, lights, seen, falloff;
+    bool several, lights, visible, falloff;
 };
 
 std::vector<SceneLight> all_lights(const SceneDescription& scene) {
@@ -42,12 +42,12 @@ std::vector<SceneLight> all_lights(const SceneDescription& scene) {
 }
 
 /// A condition on the whole scene that must hold before a material or a light can require an effect.
-enum class Premise { none, lamp, shown_light, passing_rays };
+enum class Premise { none, point_light, shown_light, passing_rays };
 
 /// Facts about the whole scene.
 struct Facts {
     bool ambient = false;       // there is ambient light
-    bool lamp = false;          // a light has an intensity
+    bool point_light = false;   // a light has an intensity
     bool shown_light = false;   // a surface shows light of a point light
     bool passing_rays = false;  // a material transmits rays
 
@@ -55,8 +55,8 @@ struct Facts {
     const char* against(Premise premise) const {
         if (premise == Premise::none) return nullptr;
         if (premise == Premise::passing_rays) return passing_rays ? nullptr : "no material lets rays pass";
-        if (!lamp) return "no light has an intensity above 0";
-        return premise == Premise::lamp || shown_light ? nullptr : "no surface shows light of any lamp";
+        if (!point_light) return "no light has an intensity above 0";
+        return premise == Premise::point_light || shown_light ? nullptr : "no surface shows light of any lamp";
     }
 };
 
@@ -73,7 +73,7 @@ bool passes(const MaterialDescription& m) {
 
 bool shows_texture(const Use& use) {
     const MaterialDescription& m = use.material;
-    const bool lit = (use.facts.lamp && m.diffuse > 0) || (use.facts.ambient && m.ambient > 0);
+    const bool lit = (use.facts.point_light && m.diffuse > 0) || (use.facts.ambient && m.ambient > 0);
     return m.texture >= 0 && local_share(m) > 0 && any(m.color) && lit;
 }
 
@@ -128,9 +128,9 @@ struct MaterialRow {
 const MaterialRow material_rows[] = {
     {effect_texture, Premise::none, shows_texture, [](const Use&) -> Text { return "has a texture"; },
      "no material has a texture"},
-    {effect_diffuse, Premise::lamp, shows_diffuse, [](const Use& u) { return "has kd " + number(u.material.diffuse); },
-     "no material has kd above 0"},
-    {effect_specular, Premise::lamp, shows_specular,
+    {effect_diffuse, Premise::point_light, shows_diffuse,
+     [](const Use& u) { return "has kd " + number(u.material.diffuse); }, "no material has kd above 0"},
+    {effect_specular, Premise::point_light, shows_specular,
      [](const Use& u) { return "has ks " + number(u.material.specular); }, "no material has ks above 0"},
     {effect_opaque_shadows, Premise::shown_light, keeps_a_color,
      [](const Use& u) -> Text { return u.material.transmission > 0 ? "lets a color not pass" : "has kt 0"; },
@@ -170,7 +170,7 @@ struct LightRow {
 };
 
 const LightRow light_rows[] = {
-    {effect_visible_lights, Premise::none, [](const SceneLight& light) { return light.seen; }, "is seen", "are seen",
+    {effect_visible_lights, Premise::none, [](const SceneLight& light) { return light.visible; }, "is seen", "are seen",
      "no light has a radius above 0"},
     {effect_light_falloff, Premise::shown_light, [](const SceneLight& light) { return light.lights && light.falloff; },
      "falls off with distance", "fall off with distance", "no light falls off with distance"},
@@ -196,10 +196,10 @@ Facts find_facts(const SceneDescription& scene, const std::vector<MaterialUse>& 
                  const std::vector<SceneLight>& lights) {
     Facts facts;
     facts.ambient = any(scene.ambient);
-    for (const SceneLight& light : lights) facts.lamp = facts.lamp || light.lights;
+    for (const SceneLight& light : lights) facts.point_light = facts.point_light || light.lights;
     for (const MaterialUse& one : uses) {
         const Use use{facts, *one.material, one.closed, one.convex};
-        if (facts.lamp && (shows_diffuse(use) || shows_specular(use))) facts.shown_light = true;
+        if (facts.point_light && (shows_diffuse(use) || shows_specular(use))) facts.shown_light = true;
         if (passes(use.material)) facts.passing_rays = true;
     }
     return facts;
@@ -208,7 +208,7 @@ Facts find_facts(const SceneDescription& scene, const std::vector<MaterialUse>& 
 }  // namespace
 
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
-                                          const std::string& lamp_on_face) {
+                                          const std::string& light_on_face) {
     const std::vector<SceneLight> lights = all_lights(scene);
     const Facts facts = find_facts(scene, uses, lights);
     std::vector<EffectReason> reasons(effect_count);
@@ -222,20 +222,20 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene, const s
     };
     for (const MaterialRow& row : material_rows) put(row.effect, row.premise, cause(row, uses, facts), row.otherwise);
     for (const LightRow& row : light_rows) put(row.effect, row.premise, cause(row, lights), row.otherwise);
-    put(effect_lights_on_faces, Premise::shown_light, lamp_on_face, "no lamp lies on a face");
+    put(effect_lights_on_faces, Premise::shown_light, light_on_face, "no lamp lies on a face");
     return reasons;
 }
 
 std::vector<EffectReason> explain_effects(const SceneDescription& scene) {
     const SceneSource source = gather_scene(scene);
-    const Frame frame = find_frame(source);
+    const SceneNormalization normalization = find_normalization(source);
     std::vector<ConvexSolid> convex;
     for (uint32_t i = 0; i < source.solids.size(); ++i)
-        if (source.solids[i].platonic) convex.push_back(convex_solid(*source.solids[i].platonic, i, frame));
-    share_planes(convex, frame.extent);
-    const std::vector<FramedLight> lights = frame_lights(source, frame, convex);
+        if (source.solids[i].platonic) convex.push_back(convex_solid(*source.solids[i].platonic, i, normalization));
+    merge_coplanar(convex, normalization.extent);
+    const std::vector<NormalizedLight> lights = normalize_lights(source, normalization, convex);
     IncidentLists incidents(lights.size());
-    find_convex_incidents<float>(lights, convex, frame.extent, incidents);
+    find_convex_incidents<float>(lights, convex, normalization.extent, incidents);
     std::vector<MaterialUse> uses;
     for (uint32_t i = 0; i < source.solids.size(); ++i) {
         const SourceSolid& solid = source.solids[i];
@@ -243,13 +243,13 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene) {
         if (!solid.platonic) {
             const MeshTopology topology = find_topology(solid.mesh);
             closed = topology.closed;
-            if (lamp_on_face(source, lights, incidents).empty())  // one is enough, and meshes may be large
-                find_triangle_incidents<float>(lights, FramedMesh(solid.mesh, topology, frame, true), i, frame.extent,
-                                               incidents);
+            if (light_on_face(source, lights, incidents).empty())  // one is enough, and meshes may be large
+                find_triangle_incidents<float>(lights, NormalizedMesh(solid.mesh, topology, normalization, true), i,
+                                               normalization.extent, incidents);
         }
         uses.push_back({&source.materials[solid.material], solid.place, closed, solid.platonic != nullptr});
     }
-    return explain_effects(scene, uses, lamp_on_face(source, lights, incidents));
+    return explain_effects(scene, uses, light_on_face(source, lights, incidents));
 }
 
 std::vector<std::string> names_of_effects(uint32_t mask) {

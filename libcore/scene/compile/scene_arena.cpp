@@ -19,12 +19,12 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
     visit(view.materials);
     visit(view.lights);
     visit(view.incidents);
-    visit(view.seen_lights);
+    visit(view.visible_lights);
     visit(view.textures);
     visit(view.texels);
     visit(view.tree);
     visit(view.tree_items);
-    visit(view.seen_tree);
+    visit(view.visible_light_tree);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ bool any(const glm::dvec3& color) {
 void add_light(SceneNames& names, const std::string& name, const std::string& place, const glm::dvec3& color,
                double radius) {
     if (any(color)) names.lights.push_back({name, place});
-    if (radius > 0) names.seen_lights.push_back({name, place});
+    if (radius > 0) names.visible_lights.push_back({name, place});
 }
 
 }  // namespace
@@ -23,7 +23,7 @@ SceneNames name_scene(const SceneDescription& description) {
     SceneNames names;
     for (const SourceSolid& solid : source.solids) names.solids.push_back({solid.name, solid.place});
     for (const MaterialDescription& material : source.materials) names.materials.push_back({material.name, ""});
-    // Lights in the order of frame_lights.
+    // Lights in the order of normalize_lights.
     for (size_t i = 0; i < description.lights.size(); ++i) {
         const LightDescription& light = description.lights[i];
         add_light(names, "light " + std::to_string(i), light.place, light.color, light.radius);

@@ -14,10 +14,10 @@ struct SceneNames {
         std::string name;
         std::string place;  // JSON pointer in the file, "/objects/2"; empty: it has no entry of its own
     };
-    std::vector<Named> solids;       // as CompiledScene::solids
-    std::vector<Named> materials;    // as CompiledScene::materials
-    std::vector<Named> lights;       // as CompiledScene::lights
-    std::vector<Named> seen_lights;  // as CompiledScene::seen_lights
+    std::vector<Named> solids;          // as CompiledScene::solids
+    std::vector<Named> materials;       // as CompiledScene::materials
+    std::vector<Named> lights;          // as CompiledScene::lights
+    std::vector<Named> visible_lights;  // as CompiledScene::visible_lights
 };
 
 /// The names of a scene's parts. Opens its meshes and throws Error as compile_scene does.

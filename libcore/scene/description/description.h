@@ -85,8 +85,8 @@ struct LightDescription {
     std::string place;
 };
 
-/// A path of the camera in cylindrical coordinates, in the seed's sinusoids of time: r = r0 + Ar sin(wr t + pr), z
-/// likewise, phi = phi0 + wphi t. Angles in radians.
+/// A path of the camera in cylindrical coordinates, in the text input's sinusoids of time: r = r0 + Ar sin(wr t + pr),
+/// z likewise, phi = phi0 + wphi t. Angles in radians.
 struct CylindricalPath {
     double r0 = 0, z0 = 0, phi0 = 0, Ar = 0, Az = 0, wr = 0, wz = 0, wphi = 0, pr = 0, pz = 0;
 };
@@ -124,7 +124,7 @@ struct SceneDescription {
     std::vector<ObjectDescription> objects;  // in file order, which is the priority order of their media
     std::vector<LightDescription> lights;
     std::optional<FrameOfReference> frame;
-    bool seed_format = false;  // read from the seed's text input
+    bool from_text_input = false;  // read from the text input
 };
 
 }  // namespace cistula

@@ -20,10 +20,10 @@ struct PixelRect {
 
 /// Allocator that leaves trivial elements uninitialized, so that the rendering threads touch their memory first.
 template <class T>
-struct UnsetAllocator : std::allocator<T> {
+struct DefaultInitAllocator : std::allocator<T> {
     template <class U>
     struct rebind {
-        using other = UnsetAllocator<U>;
+        using other = DefaultInitAllocator<U>;
     };
     template <class U>
     void construct(U* place) {
@@ -43,7 +43,7 @@ struct Film {
     int samples = 1;            // per pixel
     int fixed_shift = 0;        // s of the fixed sums
     double rounding = 0;  // bound on how far rounding moves points, in widths of a pixel at distance 1 (scene units)
-    std::vector<PixelRecord, UnsetAllocator<PixelRecord>> pixels;
+    std::vector<PixelRecord, DefaultInitAllocator<PixelRecord>> pixels;
     RayCounts rays;
     uint32_t flags = 0;  // RenderFlag bits of all pixels
 

@@ -38,7 +38,7 @@ enum class LightFate {
     shadow,   // no channel arrives
 };
 
-struct LightShare {
+struct LightContribution {
     uint32_t light = 0;
     LightFate fate = LightFate::adds;
     double cosine = 0;  // N.L
@@ -64,7 +64,7 @@ struct PixelSurface : FaceMet {
     glm::dvec3 through{0};
     glm::dvec3 ambient{0};  // ambient part of the local term
     FixedColor ambient_adds{};
-    std::vector<LightShare> lights;  // one for each light of the scene, where local is above 0
+    std::vector<LightContribution> lights;  // one for each light of the scene, where local is above 0
 };
 
 struct PixelBranch {
@@ -76,7 +76,7 @@ struct PixelBranch {
     glm::dvec3 origin{0}, direction{0};
     double distance = 0;  // to its end; infinity: the background
     std::vector<FacePassed> passed;
-    uint32_t seen_light = 0;              // with BranchEnd::light
+    uint32_t visible_light = 0;           // with BranchEnd::light
     PixelSurface surface;                 // with BranchEnd::surface
     FixedColor adds{}, adds_below{};      // by the branch itself; by all branches below it
     FixedColor ledger{}, ledger_below{};  // error of the branch if pruned or cut; of those below

@@ -13,8 +13,8 @@ template <class Real>
 void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings, LatticeSettings& lattice) {
     /// For targets above this share of the radiance bound, a pixel's four corners suffice as first samples.
     constexpr double coarse = 0x1p-8;
-    const double target = least(elementary::scaled(settings.target_error, -scene.radiance_exponent), 4.0);
-    lattice.target = greatest(int64_t(floor_of(elementary::scaled(target, color_bits))), int64_t(1));
+    const double target = min_or_second(elementary::scaled(settings.target_error, -scene.radiance_exponent), 4.0);
+    lattice.target = max_or_second(int64_t(floor_of(elementary::scaled(target, color_bits))), int64_t(1));
     lattice.most = settings.max_samples;
     lattice.fine = target < coarse;
     lattice.significant = target / 4;
@@ -49,8 +49,8 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     frame.tree.fixed_scale = float(fixed_scale(shift));
     frame.tree.fixed_unit = float(fixed_scale(-shift));
     // A budget above the radiance bound prunes everything either way.
-    const double budget = least(elementary::scaled(settings.truncation(), -scene.radiance_exponent), 16.0);
-    frame.tree.budget = int64_t(floor_of(least(budget * fixed_scale(shift), 0x1p62)));
+    const double budget = min_or_second(elementary::scaled(settings.truncation(), -scene.radiance_exponent), 16.0);
+    frame.tree.budget = int64_t(floor_of(min_or_second(budget * fixed_scale(shift), 0x1p62)));
     if (settings.adaptive()) set_lattice(scene, settings, frame.lattice);
     return frame;
 }

@@ -10,7 +10,7 @@
 #include "scene/image/exr.h"
 #include "scene/image/picture_oiio.h"
 #include "scene/image/png.h"
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 
 namespace cistula {
 namespace {
@@ -20,7 +20,7 @@ ColorPicture read_any(const std::string& path) {
     if (start.empty()) throw file_error(path, "read", std::string("it is empty; give a picture"));
     const std::string extension = lower_extension(path);
     if (extension == ".exr" || start == "\x76\x2f\x31\x01") return read_exr_texture(path);
-    if (extension == ".data" || extension == ".out") return read_seed_data(path);
+    if (extension == ".data" || extension == ".out") return read_raw_picture(path);
     return oiio_read(path);
 }
 

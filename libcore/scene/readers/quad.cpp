@@ -9,7 +9,7 @@ namespace cistula {
 
 std::optional<std::string> quad_problem(const std::array<glm::dvec3, 4>& corners) {
     const glm::dvec3 first = corners[2] - corners[0], second = corners[3] - corners[1];
-    const double diagonal = greatest(length(first), length(second));
+    const double diagonal = max_or_second(length(first), length(second));
     if (!(diagonal > 0)) return "the four corners of the quad coincide";
     // Twice a quad's area is the length of the cross product of its diagonals.
     const glm::dvec3 a = first / diagonal, b = second / diagonal;

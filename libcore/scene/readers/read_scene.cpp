@@ -12,7 +12,7 @@
 #include "scene/base/error.h"
 #include "scene/base/suggest.h"
 #include "scene/readers/read_json.h"
-#include "scene/readers/read_seed.h"
+#include "scene/readers/read_text_input.h"
 
 namespace cistula {
 namespace {
@@ -57,7 +57,7 @@ SceneDescription read_scene_text(const std::string& text, const std::string& sou
                                                           "stand anywhere after it",
                                                           label, text[first])));
     SceneDescription scene = text[first] == '{' ? read_json_scene(text, label, base_dir)
-                                                : read_seed_scene(text.substr(start), label, base_dir);
+                                                : read_text_input(text.substr(start), label, base_dir);
     scene.source = source_name;
     return scene;
 }

@@ -1,4 +1,4 @@
-// Reads a scene file (JSON or the seed's text) into a description. Meshes and textures are not opened here.
+// Reads a scene file (JSON or the text input) into a description. Meshes and textures are not opened here.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace cistula {
 SceneDescription read_scene(const std::string& path);
 
 /// Parses a scene file's text. `source_name` is for messages; `base_dir` is the folder that file names are relative to
-/// (empty: the working directory). JSON if the first non-white character is '{', else the seed's text.
+/// (empty: the working directory). JSON if the first non-white character is '{', else the text input.
 SceneDescription read_scene_text(const std::string& text, const std::string& source_name, const std::string& base_dir);
 
 }  // namespace cistula

@@ -55,7 +55,7 @@ void expect_adds_up(const SampleTree& sample) {
                                                : rays.transmitted) += 1;
         if (branch.end != BranchEnd::surface) continue;
         FixedColor here = branch.surface.ambient_adds;
-        for (const LightShare& light : branch.surface.lights) {
+        for (const LightContribution& light : branch.surface.lights) {
             here = plus(here, light.adds);
             rays.shadow += light.fate == LightFate::adds || light.fate == LightFate::shadow ? 1 : 0;
             if (light.fate != LightFate::adds) {
@@ -88,7 +88,7 @@ void expect_follows_the_model(const SampleTree& sample, const Film& film, double
             EXPECT_LE(s.local + s.mirrored + s.through[c], 1 + tolerance);
         }
         const double scale = std::ldexp(1.0, film.radiance_exponent);
-        for (const LightShare& light : s.lights) {
+        for (const LightContribution& light : s.lights) {
             const glm::dvec3 adds = radiance_of(light.adds, film);
             for (int c = 0; c < 3; ++c)
                 EXPECT_NEAR(adds[c] / scale,
@@ -201,7 +201,7 @@ TEST(SceneNames, NameWhatIsCompiled) {
         for (size_t i = 0; i < names.solids.size(); ++i) EXPECT_EQ(names.solids[i].name, compiled->solid_names[i]);
         EXPECT_EQ(names.materials.size(), compiled->materials.size());
         EXPECT_EQ(names.lights.size(), compiled->lights.size());
-        EXPECT_EQ(names.seen_lights.size(), compiled->seen_lights.size());
+        EXPECT_EQ(names.visible_lights.size(), compiled->visible_lights.size());
     }
 }
 

@@ -6,14 +6,14 @@
 
 #include "apps/common/backends.h"
 #include "scene/image/exr.h"
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 #include "testing/support/gpu.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {
 namespace {
 
-constexpr const char* seed_text = R"(2
+constexpr const char* text_input = R"(2
 floor.data
 frame%d.out
 32 20 90
@@ -195,10 +195,10 @@ TEST_F(RenderProgram, ReadsStandardInput) {
     EXPECT_EQ(bytes_of(file("file.exr")), bytes_of(file("input.exr")));
 }
 
-TEST_F(RenderProgram, TheSeedsInputGivesTheSeedsFrames) {
+TEST_F(RenderProgram, TheTextInputGivesRawFrames) {
     ColorPicture floor{2, 2, {{1, 1, 1}, {0, 0, 0}, {0, 0, 0}, {1, 1, 1}}};
-    write_seed_frame(file("floor.data"), floor);
-    expect_done({"-", "-q"}, seed_text);
+    write_raw_picture(file("floor.data"), floor);
+    expect_done({"-", "-q"}, text_input);
     EXPECT_TRUE(exists("frame0.out") && exists("frame1.out"));
     EXPECT_FALSE(exists("frame2.out"));
     const std::string bytes = bytes_of(file("frame0.out"));
@@ -208,13 +208,13 @@ TEST_F(RenderProgram, TheSeedsInputGivesTheSeedsFrames) {
     EXPECT_EQ(size[0], 32);
     EXPECT_EQ(size[1], 20);
     // The scene from a file and written as OpenEXR: the same picture before rounding to bytes.
-    put_bytes(file("input.txt"), seed_text);
+    put_bytes(file("input.txt"), text_input);
     expect_done({"input.txt", "-q", "-o", "frame.exr"});
     const LayeredPicture image = read_exr(file("frame.exr"));
     ColorPicture color{32, 20, {}};
     for (size_t i = 0; i < 32 * 20; ++i)
         color.texels.emplace_back(channel(image, "R")[i], channel(image, "G")[i], channel(image, "B")[i]);
-    write_seed_frame(file("again.out"), color);
+    write_raw_picture(file("again.out"), color);
     EXPECT_EQ(bytes_of(file("again.out")), bytes);
 }
 

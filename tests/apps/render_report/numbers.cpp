@@ -309,12 +309,12 @@ TEST(TargetTable, InterpolatesTheSamplesForTheErrorOfAGrid) {
 TEST(Reference, ComesBackFromItsBytes) {
     ReferencePicture reference;
     reference.picture = resolve_picture(film_of({{1, 2, 3}, {4, 5, 6}}));
-    reference.yardstick.remainder = {0.25, 0.5, 1};
+    reference.record.remainder = {0.25, 0.5, 1};
     const std::string bytes = pack_reference(reference, "key");
     const auto back = unpack_reference(bytes, "key");
     ASSERT_TRUE(back.has_value());
     EXPECT_EQ(back->picture.pixels, reference.picture.pixels);
-    EXPECT_EQ(back->yardstick.remainder.rms, 0.5);
+    EXPECT_EQ(back->record.remainder.rms, 0.5);
     EXPECT_FALSE(unpack_reference(bytes, "another key"));
     EXPECT_FALSE(unpack_reference("", "key"));
     EXPECT_FALSE(unpack_reference("{}\n", "key"));

@@ -316,13 +316,13 @@ TYPED_TEST(Cuda, FramesLeaveNothingOfTheOneBefore) {
     }
 }
 
-TYPED_TEST(Cuda, ManySeenLightsAreEqual) {
+TYPED_TEST(Cuda, ManyVisibleLightsAreEqual) {
     CISTULA_NEEDS_GPU();
     SceneDescription scene = scene_of("benchmark");
     const FrameSettings settings = golden::settings_for(scene);
-    for (const int lamps : {10, 90}) {  // blocks know what they show by an outline of each, or know nothing
-        test::add_seen_lights(scene, lamps);
-        EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << lamps;
+    for (const int light_count : {10, 90}) {  // blocks know what they show by an outline of each, or know nothing
+        test::add_visible_lights(scene, light_count);
+        EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << light_count;
     }
 }
 

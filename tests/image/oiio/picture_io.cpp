@@ -8,7 +8,7 @@
 
 #include "scene/image/exr.h"
 #include "scene/image/picture_oiio.h"
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 #include "scene/image/srgb_codes.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
@@ -94,7 +94,7 @@ TEST(Textures, ExrByExtensionOrContentAndData) {
         EXPECT_EQ(read_texture(scratch.file(name)).texels, expected) << name;
     }
     for (const char* name : {"a.data", "a.out"}) {
-        write_seed_frame(scratch.file(name), ColorPicture{1, 1, {decoded(9, 99, 199)}});
+        write_raw_picture(scratch.file(name), ColorPicture{1, 1, {decoded(9, 99, 199)}});
         EXPECT_EQ(read_texture(scratch.file(name)).texels, std::vector<glm::vec3>{decoded(9, 99, 199)}) << name;
     }
 }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/image/picture_io.h"
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 
@@ -31,7 +31,7 @@ TEST(WithoutOpenImageIO, PreviewsAreWritten) {
 
 TEST(WithoutOpenImageIO, DataIsRead) {
     const ScratchDirectory scratch;
-    write_seed_frame(scratch.file("a.data"), ColorPicture{1, 1, {{1, 0, 1}}});
+    write_raw_picture(scratch.file("a.data"), ColorPicture{1, 1, {{1, 0, 1}}});
     EXPECT_EQ(read_texture(scratch.file("a.data")).texels, (std::vector<glm::vec3>{{1, 0, 1}}));
 }
 

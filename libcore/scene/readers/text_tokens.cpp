@@ -1,4 +1,4 @@
-#include "scene/readers/seed_tokens.h"
+#include "scene/readers/text_tokens.h"
 
 #include <algorithm>
 #include <charconv>
@@ -28,7 +28,7 @@ std::optional<double> decimal(std::string_view word) {
 
 }  // namespace
 
-SeedTokens::SeedTokens(std::string_view text, std::string label) : label_(std::move(label)) {
+TextTokens::TextTokens(std::string_view text, std::string label) : label_(std::move(label)) {
     constexpr std::string_view white = " \t\r\n\v\f";
     int line = 1;
     size_t at = 0;
@@ -44,12 +44,12 @@ SeedTokens::SeedTokens(std::string_view text, std::string label) : label_(std::m
     }
 }
 
-std::string_view SeedTokens::word(const std::string& what) {
+std::string_view TextTokens::word(const std::string& what) {
     if (next_ == tokens_.size()) fail(last_line_, fmt::format("expected {}, found the end of the input", what));
     return tokens_[next_++].text;
 }
 
-double SeedTokens::number(const std::string& what, const Range& range) {
+double TextTokens::number(const std::string& what, const Range& range) {
     const std::string expected = fmt::format("{}, a number {}{}", what, range.above ? "" : "from ", range_text(range));
     const std::string_view found = word(expected);
     const std::optional<double> value = decimal(found);
@@ -57,7 +57,7 @@ double SeedTokens::number(const std::string& what, const Range& range) {
     return *value;
 }
 
-int SeedTokens::whole(const std::string& what, const Range& range) {
+int TextTokens::whole(const std::string& what, const Range& range) {
     const std::string expected = fmt::format("{}, a whole number from {}", what, range_text(range));
     const std::string_view found = word(expected);
     const std::optional<double> value = decimal(found);
@@ -66,24 +66,24 @@ int SeedTokens::whole(const std::string& what, const Range& range) {
     return static_cast<int>(*value);
 }
 
-bool SeedTokens::one_more_on_line() const {
+bool TextTokens::one_more_on_line() const {
     if (next_ == 0 || next_ >= tokens_.size() || tokens_[next_].line != tokens_[next_ - 1].line) return false;
     return next_ + 1 == tokens_.size() || tokens_[next_ + 1].line != tokens_[next_].line;
 }
 
-size_t SeedTokens::words_on_new_line() const {
+size_t TextTokens::words_on_new_line() const {
     if (next_ >= tokens_.size() || (next_ > 0 && tokens_[next_ - 1].line == tokens_[next_].line)) return 0;
     size_t count = 1;
     while (next_ + count < tokens_.size() && tokens_[next_ + count].line == tokens_[next_].line) ++count;
     return count;
 }
 
-void SeedTokens::finish() const {
+void TextTokens::finish() const {
     if (next_ < tokens_.size())
         fail(tokens_[next_].line, fmt::format("expected the end of the input, found {}", quoted(tokens_[next_].text)));
 }
 
-void SeedTokens::fail(int line, const std::string& message) const {
+void TextTokens::fail(int line, const std::string& message) const {
     throw Error(ExitCode::usage, one_line(fmt::format("{}:{}: {}", label_, line, message)));
 }
 

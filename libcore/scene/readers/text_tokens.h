@@ -1,4 +1,4 @@
-// Tokenizer of the seed's text input: words and numbers with their line numbers.
+// Tokenizer of the text input: words and numbers with their line numbers.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace cistula {
 
-class SeedTokens {
+class TextTokens {
   public:
-    SeedTokens(std::string_view text, std::string label);
+    TextTokens(std::string_view text, std::string label);
 
     /// The next word; `what` names it in messages. Throws Error (usage) at the end of the text.
     std::string_view word(const std::string& what);

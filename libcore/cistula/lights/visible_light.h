@@ -9,7 +9,7 @@ namespace cistula {
 inline constexpr uint32_t no_light = 0xffffffffu;
 
 template <class Real>
-struct SeenHit {
+struct VisibleLightHit {
     Real t = RealTraits<Real>::infinity;
     uint32_t light = no_light;
 };
@@ -17,8 +17,9 @@ struct SeenHit {
 /// Intersects the front of a sphere, using the ray's closest approach to its center (Haines et al., Ray Tracing Gems,
 /// ch. 7). A ray that starts inside meets nothing.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, SeenHit<Real>& best) {
-    const SeenLight<Real>& light = scene.seen_lights[index];
+CISTULA_INLINE void intersect_visible_light(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
+                                            VisibleLightHit<Real>& best) {
+    const VisibleLight<Real>& light = scene.visible_lights[index];
     const Vec3<Real> to_center = light.center - ray.origin;
     const Real b = dot(to_center, ray.direction);
     const Vec3<Real> across = to_center - b * ray.direction;
@@ -31,30 +32,31 @@ CISTULA_INLINE void see_light(const Scene& scene, uint32_t index, const Ray<Real
 
 /// The nearest visible light at or after ray.after and before t_limit.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE SeenHit<Real> closest_seen_light(const Scene& scene, const Ray<Real, Media>& ray, Real t_limit) {
-    SeenHit<Real> best;
+CISTULA_INLINE VisibleLightHit<Real> closest_visible_light(const Scene& scene, const Ray<Real, Media>& ray,
+                                                           Real t_limit) {
+    VisibleLightHit<Real> best;
     best.t = t_limit;
     if (!is_finite(ray)) return best;
     // Without a tree, all lights are put on the stack of the traversal.
     static_assert(fewest_in_light_tree <= LightStack::capacity);
-    LightStack::Room room;
-    LightStack stack(room);
+    LightStack::Storage storage;
+    LightStack stack(storage);
     Real from = ray.after.t;
-    if (scene.seen_tree.empty()) {
+    if (scene.visible_light_tree.empty()) {
         CISTULA_NOT_UNROLLED
-        for (uint32_t i = 0; i < scene.seen_lights.size; ++i) stack.push(~int32_t(i));
+        for (uint32_t i = 0; i < scene.visible_lights.size; ++i) stack.push(~int32_t(i));
     } else {
         stack.push(LightStack::root);
 #if !CISTULA_ON_DEVICE
-        from = greatest(from, Real(0));
-        if (!may_see_lights(scene, ray, from, t_limit)) return best;
+        from = max_or_second(from, Real(0));
+        if (!may_hit_visible_lights(scene, ray, from, t_limit)) return best;
 #endif
     }
     BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
     box_ray.near_limit = tree_near(from);
     box_ray.far_limit = tree_far(t_limit);
-    walk_lights(scene.seen_tree, box_ray, stack, [&](uint32_t light) {
-        see_light(scene, light, ray, best);
+    traverse_lights(scene.visible_light_tree, box_ray, stack, [&](uint32_t light) {
+        intersect_visible_light(scene, light, ray, best);
         return tree_far(best.t);
     });
     return best;

@@ -1,4 +1,4 @@
-#include "scene/compile/frame.h"
+#include "scene/compile/scene_normalization.h"
 
 #include <cmath>
 
@@ -50,8 +50,8 @@ Box world_box(const SceneSource& source) {
 double largest_coordinate(const Box& box, const glm::dvec3& center) {
     double largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        largest = greatest(largest, magnitude(box.high[axis] - center[axis]));
-        largest = greatest(largest, magnitude(box.low[axis] - center[axis]));
+        largest = max_or_second(largest, magnitude(box.high[axis] - center[axis]));
+        largest = max_or_second(largest, magnitude(box.low[axis] - center[axis]));
     }
     return largest;
 }
@@ -66,37 +66,37 @@ std::vector<glm::dvec3> world_vertices(const SolidObject& solid) {
     return vertices;
 }
 
-Frame find_frame(const SceneSource& source) {
+SceneNormalization find_normalization(const SceneSource& source) {
     const SceneDescription& description = *source.description;
     const Box box = world_box(source);
-    Frame frame;
+    SceneNormalization normalization;
     if (description.frame) {
-        frame.center = description.frame->center;
-        frame.scale = description.frame->scale;
-        if (!is_finite(frame.center) || frame.scale < -1000 || frame.scale > 1000)
+        normalization.center = description.frame->center;
+        normalization.scale = description.frame->scale;
+        if (!is_finite(normalization.center) || normalization.scale < -1000 || normalization.scale > 1000)
             throw scene_error(description, "/frame", "the center must be finite and the scale in [-1000, 1000]");
     } else if (!box.empty()) {
-        frame.center = 0.5 * box.low + 0.5 * box.high;
+        normalization.center = 0.5 * box.low + 0.5 * box.high;
     }
-    const double largest = box.empty() ? 0 : largest_coordinate(box, frame.center);
+    const double largest = box.empty() ? 0 : largest_coordinate(box, normalization.center);
     if (!is_finite(largest) || (largest > 0 && (largest < 0x1p-900 || largest > 0x1p900)))
         throw scene_error(description, "", "the scene's size is outside what doubles can hold (2^-900 to 2^900)");
     if (!description.frame && largest > 0) {
         int exponent;
         std::frexp(largest, &exponent);
-        frame.scale = 1 - exponent;
-        if (std::ldexp(largest, frame.scale) > largest_extent) --frame.scale;
+        normalization.scale = 1 - exponent;
+        if (std::ldexp(largest, normalization.scale) > largest_extent) --normalization.scale;
     }
-    frame.factor = std::ldexp(1.0, frame.scale);
-    const double extent = largest * frame.factor;
+    normalization.factor = std::ldexp(1.0, normalization.scale);
+    const double extent = largest * normalization.factor;
     if (description.frame && extent > largest_extent)
         throw scene_error(description, "/frame",
                           "the largest coordinate is " + std::to_string(extent) +
                               " in the pinned frame; it must stay under 2: choose a lesser scale or another center");
     // If the scene does not give the frame, M may be just under 1 (see largest_extent); what is derived from it is then
     // slightly larger than necessary.
-    frame.extent = description.frame ? (extent > 0 ? extent : 1) : greatest(extent, 1.0);
-    return frame;
+    normalization.extent = description.frame ? (extent > 0 ? extent : 1) : max_or_second(extent, 1.0);
+    return normalization;
 }
 
 }  // namespace cistula

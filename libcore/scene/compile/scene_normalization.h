@@ -9,7 +9,7 @@
 
 namespace cistula {
 
-struct Frame {
+struct SceneNormalization {
     glm::dvec3 center{0};
     int scale = 0;
     double factor = 1;  // 2^scale
@@ -20,7 +20,7 @@ struct Frame {
 
 /// The frame of a scene. M lies in [1, 2), unless the description gives the frame; then M follows from it, and 2 or
 /// more is an error.
-Frame find_frame(const SceneSource& source);
+SceneNormalization find_normalization(const SceneSource& source);
 
 /// A solid's corners in scene units.
 std::vector<glm::dvec3> world_vertices(const SolidObject& solid);

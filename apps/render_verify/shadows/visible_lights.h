@@ -3,12 +3,12 @@
 
 #include "apps/render_verify/shadows/local_light.h"
 #include "apps/render_verify/stage.h"
-#include "cistula/lights/seen_light.h"
+#include "cistula/lights/visible_light.h"
 
 namespace cistula::verify::shadows {
 
 /// The tree over lights compared with a plain loop.
-struct SeenLightTree {
+struct VisibleLightTree {
     static constexpr const char* name = "shadows/seen-lights/tree";
     static constexpr const char* exact =
         "(t, light) of trees over seen lights, anywhere or on edges, equals a plain loop's";
@@ -32,7 +32,7 @@ struct SeenLightTree {
                 light.radius = radius * (k % 5 ? 1 : 0.5);
                 points.push_back(p);
             }
-            plan.add("radius " + std::to_string(radius), scene, SeenLightTree(), {}, plan.rays(100'000, 2500));
+            plan.add("radius " + std::to_string(radius), scene, VisibleLightTree(), {}, plan.rays(100'000, 2500));
         }
         // On the edges of several solids.
         for (const double radius : {0x1p-4, 0x1p-8, 0x1p-14}) {
@@ -46,7 +46,7 @@ struct SeenLightTree {
                 add_solid(scene, Shape::planes, solid);
                 ++k;
             }
-            plan.add("on edges, radius " + std::to_string(radius), scene, SeenLightTree(), {},
+            plan.add("on edges, radius " + std::to_string(radius), scene, VisibleLightTree(), {},
                      plan.rays(100'000, 2500));
         }
     }
@@ -54,8 +54,8 @@ struct SeenLightTree {
     template <class Real, class Intersector>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Intersector&, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const uint32_t aim = draw.below(setup.scene.seen_lights.size);
-        const SeenLight<Real>& light = setup.scene.seen_lights[aim];
+        const uint32_t aim = draw.below(setup.scene.visible_lights.size);
+        const VisibleLight<Real>& light = setup.scene.visible_lights[aim];
         const Vec3<double> from = in_ball(draw);
         const Vec3<double> aside = on_sphere(draw);
         const int graze = draw.between(0, 3);  // the middle, the rim, half of it, anywhere
@@ -65,17 +65,18 @@ struct SeenLightTree {
         const Ray<Real> ray = ray_from(origin, normalized(target - origin));
         if (!is_finite(ray)) return;
         const Real limit = draw.one_in(2) ? RealTraits<Real>::infinity : Real(4) * draw.unit<Real>();
-        const SeenHit<Real> found = closest_seen_light(setup.scene, ray, limit);
-        SeenHit<Real> expected;
+        const VisibleLightHit<Real> found = closest_visible_light(setup.scene, ray, limit);
+        VisibleLightHit<Real> expected;
         expected.t = limit;
-        for (uint32_t k = 0; k < setup.scene.seen_lights.size; ++k) see_light(setup.scene, k, ray, expected);
+        for (uint32_t k = 0; k < setup.scene.visible_lights.size; ++k)
+            intersect_visible_light(setup.scene, k, ray, expected);
         tally.witness(expected.light != no_light);
         tally.expect(found.t == expected.t && found.light == expected.light);
     }
 };
 
 /// A wall of lights that are only visible, some in front of others, behind an octahedron that hides some of them.
-struct SeenLightPixels {
+struct VisibleLightPixels {
     static constexpr const char* name = "shadows/seen-lights/pixels";
     static constexpr const char* exact = "a picture of 4,096 seen lights: the glow of the nearest, every digit";
     static constexpr Bound bound = no_failures("pixels");

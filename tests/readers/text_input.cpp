@@ -1,4 +1,4 @@
-// The seed's text input.
+// The text input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include "scene/description/camera_path.h"
 #include "scene/description/platonic.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_seed.h"
+#include "scene/readers/read_text_input.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
@@ -21,7 +21,7 @@ SceneDescription read(const std::string& text) {
 
 /// The template with the first occurrence of `from` replaced.
 std::string changed(const std::string& from, const std::string& to) {
-    std::string text = seed_template();
+    std::string text = text_input_template();
     const size_t at = text.find(from);
     if (at == std::string::npos) throw std::logic_error("the template has no " + from);
     return text.replace(at, from.size(), to);
@@ -29,9 +29,9 @@ std::string changed(const std::string& from, const std::string& to) {
 
 #define EXPECT_WRONG(text, message) EXPECT_ERROR(read(text), ExitCode::usage, std::string("input.txt:") + message)
 
-TEST(SeedInput, TemplateIsReadWhole) {
-    const SceneDescription scene = read(seed_template());
-    EXPECT_TRUE(scene.seed_format);
+TEST(TextInput, TemplateIsReadWhole) {
+    const SceneDescription scene = read(text_input_template());
+    EXPECT_TRUE(scene.from_text_input);
     EXPECT_EQ(scene.source, "input.txt");
     EXPECT_EQ(scene.film.frames, 300);
     EXPECT_EQ(scene.film.width, 1280);
@@ -57,7 +57,7 @@ TEST(SeedInput, TemplateIsReadWhole) {
     EXPECT_FALSE(scene.frame);
 }
 
-TEST(SeedInput, TheExampleIsTheTemplateForTheRepository) {
+TEST(TextInput, TheExampleIsTheTemplateForTheRepository) {
     const SceneDescription scene = read(bytes_of((source_root() / "scenes/input.txt").string()));
     EXPECT_TRUE(std::filesystem::exists(source_root() / scene.textures.at(0).file));
     EXPECT_EQ(scene.film.output, "out/frames/frame%d.out");
@@ -65,8 +65,8 @@ TEST(SeedInput, TheExampleIsTheTemplateForTheRepository) {
     EXPECT_EQ(SceneDump::of(scene), SceneDump::of(read(same)));
 }
 
-TEST(SeedInput, SolidsFloorAndLights) {
-    const SceneDescription scene = read(seed_template());
+TEST(TextInput, SolidsFloorAndLights) {
+    const SceneDescription scene = read(text_input_template());
     ASSERT_EQ(scene.objects.size(), 4u);
     const auto& dodecahedron = std::get<SolidObject>(scene.objects[1].shape);
     EXPECT_EQ(dodecahedron.solid, PlatonicSolid::dodecahedron);
@@ -99,16 +99,16 @@ TEST(SeedInput, SolidsFloorAndLights) {
     EXPECT_FALSE(red.falloff);
 }
 
-TEST(SeedInput, EqualsTheJsonSceneButForItsCamera) {
+TEST(TextInput, EqualsTheJsonSceneButForItsCamera) {
     SceneDescription json = read_scene((source_root() / "scenes/seed.json").string());
     EXPECT_EQ(std::filesystem::path(json.textures.at(0).file), source_root() / "scenes/floor.data");
     json.textures[0].file = "floor.data";
-    const SceneDescription text = read(seed_template());
+    const SceneDescription text = read(text_input_template());
     json.camera = text.camera;
     EXPECT_EQ(SceneDump::of(text), SceneDump::of(json));
 }
 
-TEST(SeedInput, TheFilmOfTheJsonSceneKeepsItsSolidsInThePicture) {
+TEST(TextInput, TheFilmOfTheJsonSceneKeepsItsSolidsInThePicture) {
     const SceneDescription scene = read_scene((source_root() / "scenes/seed.json").string());
     ASSERT_EQ(scene.film.frames, 300);
     for (int frame = 0; frame < scene.film.frames; ++frame) {
@@ -128,7 +128,7 @@ TEST(SeedInput, TheFilmOfTheJsonSceneKeepsItsSolidsInThePicture) {
     }
 }
 
-TEST(SeedInput, TenthNumberIsTheLightsOnEachEdge) {
+TEST(TextInput, TenthNumberIsTheLightsOnEachEdge) {
     const std::string line = "1.732 0.1 0.6";
     const auto lights = [&](const std::string& more, size_t object = 1) {
         return std::get<SolidObject>(read(changed(line, line + more)).objects.at(object).shape).edge_lights;
@@ -145,29 +145,29 @@ TEST(SeedInput, TenthNumberIsTheLightsOnEachEdge) {
     EXPECT_NEAR(lights(" 6").radius, 1.732 * 0.71364417954617986 / 7 / 4, 1e-15);
     EXPECT_EQ(lights(" 1").radius, 0.1);
 
-    std::string all = std::regex_replace(seed_template(), std::regex("0\\.6\n"), "0.6 2\n");
+    std::string all = std::regex_replace(text_input_template(), std::regex("0\\.6\n"), "0.6 2\n");
     EXPECT_EQ(std::get<SolidObject>(read(all).objects.at(2).shape).edge_lights.count, 2);
     EXPECT_EQ(read(all).lights.size(), 2u);
 }
 
-TEST(SeedInput, AnyWhiteSpaceSeparates) {
-    const std::string expected = SceneDump::of(read(seed_template()));
+TEST(TextInput, AnyWhiteSpaceSeparates) {
+    const std::string expected = SceneDump::of(read(text_input_template()));
     for (const char* white : {" ", "\t", "\r\n", "\n\n", "\n  "}) {
-        const std::string text = std::regex_replace(seed_template(), std::regex("\n"), white);
+        const std::string text = std::regex_replace(text_input_template(), std::regex("\n"), white);
         EXPECT_EQ(SceneDump::of(read(text)), expected);
-        const std::string every = std::regex_replace(seed_template(), std::regex("[ \n]"), white);
+        const std::string every = std::regex_replace(text_input_template(), std::regex("[ \n]"), white);
         EXPECT_EQ(SceneDump::of(read(every)), expected);
     }
 }
 
-TEST(SeedInput, NumbersAsPeopleWriteThem) {
+TEST(TextInput, NumbersAsPeopleWriteThem) {
     EXPECT_EQ(read(changed("1280 720 120", "+1280 720. 1.2e2")).film.height, 720);
     for (const char* wrong : {"nan", "inf", "0x10", "1e999", "1,5", "--1", "+-1", "12a", "1e", "."})
         EXPECT_WRONG(changed("6.0", wrong),
                      "5: expected camera r0, a number from -1e30 to 1e30, found '" + std::string(wrong) + "'");
 }
 
-TEST(SeedInput, WrongValuesNameWhatIsExpected) {
+TEST(TextInput, WrongValuesNameWhatIsExpected) {
     EXPECT_WRONG(changed("300", "many"),
                  "1: expected number of frames, a whole number from 1 to 1000000, found 'many'");
     EXPECT_WRONG(changed("300", "0"), "1: expected number of frames, a whole number from 1 to 1000000, found '0'");
@@ -213,14 +213,14 @@ TEST(SeedInput, WrongValuesNameWhatIsExpected) {
     EXPECT_WRONG(changed("\n4 3", "\n4 65"), "17: expected supersampling k, a whole number from 1 to 64, found '65'");
 }
 
-TEST(SeedInput, TrailingTextIsAnError) {
-    EXPECT_WRONG(seed_template() + "\n1", "19: expected the end of the input, found '1'");
-    EXPECT_WRONG(seed_template() + std::string(100, 'x'),
+TEST(TextInput, TrailingTextIsAnError) {
+    EXPECT_WRONG(text_input_template() + "\n1", "19: expected the end of the input, found '1'");
+    EXPECT_WRONG(text_input_template() + std::string(100, 'x'),
                  "18: expected the end of the input, found '" + std::string(40, 'x') + "...'");
 }
 
-TEST(SeedInput, EveryShorterInputSaysWhatIsMissing) {
-    const std::string text = seed_template();
+TEST(TextInput, EveryShorterInputSaysWhatIsMissing) {
+    const std::string text = text_input_template();
     size_t words = 0;
     std::string last;
     for (size_t end = text.find_last_not_of('\n'); end != std::string::npos && end > 0;) {
@@ -245,7 +245,7 @@ TEST(SeedInput, EveryShorterInputSaysWhatIsMissing) {
                  "17: expected supersampling k, a whole number from 1 to 64, found the end of the input");
 }
 
-TEST(SeedInput, MessagesAreOneLine) {
+TEST(TextInput, MessagesAreOneLine) {
     EXPECT_WRONG("300 a \x01%", "1: expected an output pattern with one %d, found '\\x01%'");
 }
 

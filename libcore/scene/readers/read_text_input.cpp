@@ -1,4 +1,4 @@
-#include "scene/readers/read_seed.h"
+#include "scene/readers/read_text_input.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 #include "scene/readers/quad.h"
 #include "scene/readers/read_json.h"
-#include "scene/readers/seed_tokens.h"
+#include "scene/readers/text_tokens.h"
 
 namespace cistula {
 namespace {
@@ -16,17 +16,17 @@ constexpr double ambient_light = 0.5;
 constexpr double phong_exponent = 110;
 constexpr double glass_index = 1.5;
 constexpr double floor_reflection = 0.5;
-constexpr double seen_radius = 0.1;  // such programs return white for a ray that passes a light closer than this
+constexpr double visible_radius = 0.1;  // such programs return white for a ray that passes a light closer than this
 constexpr double share_slack = 1e-6;
 constexpr Range light_count{0, 100000};
 
-struct SeedSolid {
+struct InputSolid {
     PlatonicSolid solid;
     const char* name;
     double edge;  // edge length for a circumradius of 1
 };
 
-constexpr SeedSolid seed_solids[] = {
+constexpr InputSolid input_solids[] = {
     {PlatonicSolid::octahedron, "octahedron", 1.4142135623730951},
     {PlatonicSolid::dodecahedron, "dodecahedron", 0.7136441795461798},
     {PlatonicSolid::icosahedron, "icosahedron", 1.0514622242382672},
@@ -36,7 +36,7 @@ const Range& range_of(const KeyTable& table, std::string_view key) {
     return table.find(key)->range;
 }
 
-glm::dvec3 read_point(SeedTokens& tokens, const std::string& what) {
+glm::dvec3 read_point(TextTokens& tokens, const std::string& what) {
     const Range& range = range_of(solid_keys, "center");
     glm::dvec3 point;
     point.x = tokens.number(what + " x", range);
@@ -45,7 +45,7 @@ glm::dvec3 read_point(SeedTokens& tokens, const std::string& what) {
     return point;
 }
 
-glm::dvec3 read_color(SeedTokens& tokens, const std::string& what) {
+glm::dvec3 read_color(TextTokens& tokens, const std::string& what) {
     const Range& range = range_of(material_keys, "color");
     glm::dvec3 color;
     color.r = tokens.number(what + " red", range);
@@ -54,7 +54,7 @@ glm::dvec3 read_color(SeedTokens& tokens, const std::string& what) {
     return color;
 }
 
-CylindricalPath read_path(SeedTokens& tokens, const std::string& what) {
+CylindricalPath read_path(TextTokens& tokens, const std::string& what) {
     CylindricalPath path;
     const std::pair<const char*, double*> numbers[] = {
         {"r0", &path.r0}, {"z0", &path.z0}, {"phi0", &path.phi0}, {"Ar", &path.Ar}, {"Az", &path.Az},
@@ -77,18 +77,18 @@ bool is_pattern(std::string_view pattern) {
 EdgeLights edge_lights(int count, double edge_length) {
     EdgeLights lights;
     lights.count = count;
-    if (count > 0) lights.radius = std::min(seen_radius, edge_length / (count + 1) / 4);
+    if (count > 0) lights.radius = std::min(visible_radius, edge_length / (count + 1) / 4);
     return lights;
 }
 
-void read_solid(SeedTokens& tokens, const SeedSolid& seed, SceneDescription& scene) {
-    const std::string name = seed.name;
+void read_solid(TextTokens& tokens, const InputSolid& input, SceneDescription& scene) {
+    const std::string name = input.name;
     if (tokens.words_on_new_line() == 11) {
         tokens.word(name);
         tokens.fail(tokens.line(), fmt::format("expected 9 or 10 numbers for the {}, found 11", name));
     }
     SolidObject solid;
-    solid.solid = seed.solid;
+    solid.solid = input.solid;
     solid.center = read_point(tokens, name + " center");
     ObjectDescription object;
     object.place = fmt::format("line {}", tokens.line());
@@ -109,14 +109,14 @@ void read_solid(SeedTokens& tokens, const SeedSolid& seed, SceneDescription& sce
                     fmt::format("{} reflection + transmission is {}; expected at most 1", name, number_text(shares)));
     if (tokens.one_more_on_line()) {
         const int count = tokens.whole(name + " lights on each edge", range_of(edge_lights_keys, "count"));
-        solid.edge_lights = edge_lights(count, seed.edge * solid.radius);
+        solid.edge_lights = edge_lights(count, input.edge * solid.radius);
     }
     object.shape = solid;
     scene.materials.push_back(material);
     scene.objects.push_back(object);
 }
 
-void read_floor(SeedTokens& tokens, SceneDescription& scene) {
+void read_floor(TextTokens& tokens, SceneDescription& scene) {
     std::array<glm::dvec3, 4> corners;
     ObjectDescription object;
     for (size_t i = 0; i < corners.size(); ++i) {
@@ -137,7 +137,7 @@ void read_floor(SeedTokens& tokens, SceneDescription& scene) {
     scene.objects.push_back(object);
 }
 
-void read_lights(SeedTokens& tokens, SceneDescription& scene) {
+void read_lights(TextTokens& tokens, SceneDescription& scene) {
     const int count = tokens.whole("number of lights", light_count);
     for (int i = 1; i <= count; ++i) {
         LightDescription light;
@@ -146,17 +146,17 @@ void read_lights(SeedTokens& tokens, SceneDescription& scene) {
         light.place = fmt::format("line {}", tokens.line());
         light.color = read_color(tokens, name + " color");
         light.glow = glm::dvec3{1};
-        light.radius = seen_radius;
+        light.radius = visible_radius;
         scene.lights.push_back(light);
     }
 }
 
 }  // namespace
 
-SceneDescription read_seed_scene(const std::string& text, const std::string& label, const std::string& base_dir) {
-    SeedTokens tokens(text, label);
+SceneDescription read_text_input(const std::string& text, const std::string& label, const std::string& base_dir) {
+    TextTokens tokens(text, label);
     SceneDescription scene;
-    scene.seed_format = true;
+    scene.from_text_input = true;
     scene.ambient = glm::dvec3{ambient_light};
     scene.film.frames = tokens.whole("number of frames", range_of(film_keys, "frames"));
     TextureDescription texture;
@@ -172,7 +172,7 @@ SceneDescription read_seed_scene(const std::string& text, const std::string& lab
     scene.camera.field_of_view = tokens.number("horizontal field of view", range_of(camera_keys, "fov"));
     scene.camera.position_path = read_path(tokens, "camera");
     scene.camera.target_path = read_path(tokens, "target");
-    for (const SeedSolid& solid : seed_solids) read_solid(tokens, solid, scene);
+    for (const InputSolid& solid : input_solids) read_solid(tokens, solid, scene);
     read_floor(tokens, scene);
     read_lights(tokens, scene);
     scene.depth = tokens.whole("depth", range_of(scene_keys, "depth"));
@@ -181,7 +181,7 @@ SceneDescription read_seed_scene(const std::string& text, const std::string& lab
     return scene;
 }
 
-std::string seed_template() {
+std::string text_input_template() {
     return R"(300
 floor.data
 frames/frame%d.out

@@ -1,5 +1,5 @@
 // The raw pictures of the course work, byte by byte, and every way in which such a file can be wrong.
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -20,11 +20,11 @@ std::string bytes_from(std::initializer_list<int> values) {
     return bytes;
 }
 
-TEST(SeedData, ReadsTopRowFirstAndDropsAlpha) {
+TEST(RawPicture, ReadsTopRowFirstAndDropsAlpha) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("a.data");
     put_bytes(path, bytes_from({2, 0, 0, 0, 1, 0, 0, 0, 0, 128, 255, 7, 10, 11, 188, 0}));
-    const ColorPicture picture = read_seed_data(path);
+    const ColorPicture picture = read_raw_picture(path);
     ASSERT_EQ(picture.width, 2u);
     ASSERT_EQ(picture.height, 1u);
     ASSERT_EQ(picture.texels.size(), 2u);
@@ -37,31 +37,31 @@ TEST(SeedData, ReadsTopRowFirstAndDropsAlpha) {
     EXPECT_NEAR(picture.texels[1].z, 0.502886458, 1e-7);
 }
 
-TEST(SeedData, WritesTheExactBytes) {
+TEST(RawPicture, WritesTheExactBytes) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("frame0.out");
     const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     const ColorPicture picture{1, 3, {{0, 0.5f, 1}, {-1, 7, 0.2158605f}, {nan, infinity, -infinity}}};
-    write_seed_frame(path, picture);
+    write_raw_picture(path, picture);
     EXPECT_EQ(bytes_of(path), bytes_from({1, 0, 0, 0, 3, 0, 0, 0, 0, 188, 255, 255, 0, 255, 128, 255, 0, 255, 0, 255}));
 }
 
-TEST(SeedData, EveryByteComesBack) {
+TEST(RawPicture, EveryByteComesBack) {
     const ScratchDirectory scratch;
     std::string bytes = bytes_from({16, 0, 0, 0, 16, 0, 0, 0});
     for (int i = 0; i < 256; ++i) bytes += bytes_from({i, 255 - i, i ^ 85, 255});
     put_bytes(scratch.file("a.data"), bytes);
-    write_seed_frame(scratch.file("b.data"), read_seed_data(scratch.file("a.data")));
+    write_raw_picture(scratch.file("b.data"), read_raw_picture(scratch.file("a.data")));
     EXPECT_EQ(bytes_of(scratch.file("b.data")), bytes);
 }
 
-TEST(SeedData, Errors) {
+TEST(RawPicture, Errors) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("a.data");
     const auto message = [&](const std::string& bytes) {
         put_bytes(path, bytes);
         try {
-            read_seed_data(path);
+            read_raw_picture(path);
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ExitCode::file);
             const std::string start = path + ": cannot read: ", what = error.what();
@@ -88,7 +88,7 @@ TEST(SeedData, Errors) {
               "its size is 2147483647x2147483647; width and height of a .data file are 1 to 65536");
     EXPECT_EQ(message(bytes_from({0, 0, 1, 0, 0, 0, 1, 0})),
               "it has 8 bytes, which is too few; a .data file of 65536x65536 texels has 17179869192");
-    EXPECT_ERROR(read_seed_data(scratch.file("no.data")), ExitCode::file,
+    EXPECT_ERROR(read_raw_picture(scratch.file("no.data")), ExitCode::file,
                  scratch.file("no.data") + ": cannot read: No such file or directory; check the spelling");
 }
 

@@ -1,4 +1,4 @@
-// The seed's raw picture format: two little-endian int32, width and height, then RGBA bytes, top row first.
+// Raw pictures, .data and .out: two little-endian int32, width and height, then RGBA bytes, top row first.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 namespace cistula {
 
 /// Reads a .data (or .out) file; its sRGB bytes become linear, its alpha is ignored. Throws Error(ExitCode::file).
-ColorPicture read_seed_data(const std::string& path);
+ColorPicture read_raw_picture(const std::string& path);
 
 /// Writes a frame atomically: clamped to [0, 1], sRGB bytes, alpha 255. Throws Error(ExitCode::file).
-void write_seed_frame(const std::string& path, const ColorPicture& linear);
+void write_raw_picture(const std::string& path, const ColorPicture& linear);
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-#include "scene/image/seed_data.h"
+#include "scene/image/raw_picture.h"
 
 #include <cstdint>
 #include <stdexcept>
@@ -23,7 +23,7 @@ void append_little_endian(std::string& bytes, uint32_t value) {
 
 }  // namespace
 
-ColorPicture read_seed_data(const std::string& path) {
+ColorPicture read_raw_picture(const std::string& path) {
     const std::string bytes = read_file(path);
     if (bytes.size() < header_size)
         throw file_error(path, "read",
@@ -55,7 +55,7 @@ ColorPicture read_seed_data(const std::string& path) {
     return picture;
 }
 
-void write_seed_frame(const std::string& path, const ColorPicture& linear) {
+void write_raw_picture(const std::string& path, const ColorPicture& linear) {
     if (linear.texels.size() != static_cast<size_t>(linear.width) * linear.height)
         throw std::invalid_argument("write_seed_frame: texels must number width * height");
     std::string bytes;
