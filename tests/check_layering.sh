@@ -91,6 +91,9 @@ check() {
         fail 'backend_cuda includes "cistula/...", "scene/...", "backend_cuda/..." and installed libraries'
     includes "${apps[@]}" | { grep -E '"(bench|tests|testing/support)/' || true; } |
         fail 'programs know neither benchmarks nor tests'
+    # FILE:NUMBER:#include "apps/FOLDER/..." of another folder than its own.
+    includes "${apps[@]}" | awk '{ split($0, at, "/"); if (match($0, /"apps\/[a-z_]+\//)) { to = substr($0, RSTART + 6, RLENGTH - 7); if (to != "common" && to != at[2]) print } }' |
+        fail 'a program includes apps/common and its own folder, no other program'
     includes "${bench[@]}" | { grep -E '"(tests|testing/support)/' || true; } |
         fail 'benchmarks know no tests'
     includes "${testing[@]}" | { grep -E '"(bench|tests|apps/[a-z_]+)/' || true; } | { grep -v '"apps/common/' || true; } |
@@ -137,7 +140,7 @@ self_test() {
     trap 'rm -rf "$tree"' EXIT
     fresh() {
         rm -rf "${tree:?}/t"
-        mkdir -p "$tree"/t/{libcore/cistula/{numerics,model,lights},libcore/scene/{base,frame},backend_embree/host,backend_cuda/kernels,testing/support,apps/render,bench/gpu,cmake}
+        mkdir -p "$tree"/t/{libcore/cistula/{numerics,model,lights},libcore/scene/{base,frame},backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
         printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$tree/t/$portable"
         printf 'add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu)\ntarget_compile_options(gpu_check_fast PRIVATE --use_fast_math)\n' >"$tree/t/bench/gpu/CMakeLists.txt"
         printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/numerics/portable.h"\n// not std::pow(x)\n' >"$tree/t/libcore/cistula/model/good.h"
@@ -177,6 +180,8 @@ self_test() {
     breaks backend_cuda/kernels/a.h '#include "testing/draw/draw.h"'
     breaks apps/render/a.cpp '#include "bench/gpu/record.h"'
     breaks apps/render/a.cpp '#include "testing/support/gpu.h"'
+    breaks apps/render/a.cpp '#include "apps/render_report/record.h"'
+    breaks apps/common/a.cpp '#include "apps/render/options.h"'
     breaks bench/gpu/a.cpp '#include "tests/gpu.h"'
     breaks testing/a.cpp '#include "bench/gpu/record.h"'
     breaks testing/support/a.h '#include "apps/render/options.h"'
