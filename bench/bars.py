@@ -21,7 +21,7 @@ class History:
     """Rows of history.csv, of one run; `context` is a record's."""
 
     def __init__(self, context):
-        gpus = context.get("devices") or [gpu["name"] for gpu in context.get("gpu", [])]
+        gpus = context.get("devices", [])
         machine = " and ".join(f"{gpus.count(name)} {name}" for name in dict.fromkeys(gpus))
         date = context.get("date") or datetime.datetime.now(datetime.timezone.utc).isoformat()
         self.key = [date[:10], context["commit"], machine or f"{context['cpu']} with {context['num_cpus']} threads"]
@@ -110,7 +110,7 @@ def main():
     out, *paths = sys.argv[1:]
     records = Records(paths)
     history = History(records.context)
-    (gpu_bars if records.context.keys() & {"gpu", "devices"} else cpu_bars)(history.add, records)
+    (gpu_bars if "devices" in records.context else cpu_bars)(history.add, records)
     if os.path.exists(out):
         os.remove(out)
     history.append_to(out)

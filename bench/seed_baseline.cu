@@ -114,12 +114,7 @@ DeviceRun render_on_device(int depth, int grid, int warm_ups, int repetitions, c
     scene.texels = texels.data();
 
     const Kernel kernel = kernel_of(depth);
-    cudaFuncAttributes attributes;
-    SEED_CHECK(cudaFuncGetAttributes(&attributes, kernel));
     DeviceRun run;
-    run.registers = attributes.numRegs;
-    run.local_bytes = attributes.localSizeBytes;
-
     const dim3 blocks(static_cast<unsigned>(grid), static_cast<unsigned>(grid)), threads(block_side, block_side);
     Event start, end;
     for (int i = 0; i < warm_ups + repetitions; ++i) {
@@ -128,7 +123,7 @@ DeviceRun render_on_device(int depth, int grid, int warm_ups, int repetitions, c
         check(cudaGetLastError(), "launch of the kernel");
         end.record();
         const double time = end.milliseconds_since(start);
-        if (i >= warm_ups) run.milliseconds.push_back(time);
+        if (i >= warm_ups) run.time.runs.push_back(time);
     }
     run.pixels.resize(size);
     SEED_CHECK(cudaMemcpy(run.pixels.data(), pixels.data(), size * sizeof(Pixel), cudaMemcpyDeviceToHost));

@@ -1,25 +1,16 @@
 // seed_baseline: times the course work's algorithm on scenes/benchmark.json, on the GPU or in its loop on the CPU.
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <thread>
 
-#include "apps/common/build_info.h"
 #include "apps/common/command_line.h"
-#include "apps/common/machine.h"
+#include "apps/common/run_context.h"
+#include "apps/common/timing.h"
 #include "bench/seed_baseline_run.h"
 #include "bench/seed_baseline_scene.h"
 #include "scene/base/atomic_file.h"
-#include "scene/image/picture_io.h"
-#include "scene/image/raw_picture.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::seed {
@@ -34,7 +25,7 @@ struct Options {
     std::vector<int> depths = {4, 8}, grids = {16, 64, 256};
     int repetitions = 0;  // 0: 20 on the GPU, 3 on the CPU
     bool cpu = false;
-    std::string json, image, reference;
+    std::string json;
     int width = 0, height = 0;
 };
 
@@ -53,9 +44,6 @@ void declare(CLI::App& app, Options& options) {
         ->check(CLI::Range(1, 100000));
     app.add_flag("--cpu", options.cpu, "The loop on the CPU, one thread, instead of the GPU");
     app.add_option("--json", options.json, "Record, in the shape of Google Benchmark's");
-    app.add_option("--image", options.image, "The picture, as a raw frame (.data); one depth only");
-    app.add_option("--compare", options.reference,
-                   "A picture by Cistula (.exr, .data) to compare with; one depth only");
 }
 
 void check(Options& options) {
@@ -67,25 +55,15 @@ void check(Options& options) {
         fail_usage(fmt::format("--res {}: must be WIDTHxHEIGHT, each from 1 to 16384, as in 1280x720", text));
     options.width = *width;
     options.height = *height;
-    if (options.depths.size() != 1 && !(options.image.empty() && options.reference.empty()))
-        fail_usage("--image and --compare are of one picture: give one --depth");
     if (options.repetitions == 0) options.repetitions = options.cpu ? 3 : 20;
 }
 
 Json context_of(const Options& options) {
-    Json context = {{"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
-                    {"host_name", host_name()},
-                    {"executable", "seed_baseline"},
-                    {"num_cpus", std::thread::hardware_concurrency()},
-                    {"cpu", processor_name()},
-                    {"commit", build_commit()},
-                    {"scene", std::filesystem::path(options.scene).filename().string()},
-                    {"resolution", {options.width, options.height}}};
-    if (options.cpu) {
-        context["compiler"] = __VERSION__;
-        context["flags"] = SEED_HOST_FLAGS;
-        return context;
-    }
+    Json context = run_context("seed_baseline");
+    context["scene"] = std::filesystem::path(options.scene).filename().string();
+    context["resolution"] = {options.width, options.height};
+    context["flags"] = options.cpu ? SEED_HOST_FLAGS : SEED_CUDA_FLAGS;
+    if (options.cpu) return context;
     const DeviceDescription device = describe_device();
     context["gpu"] = device.name;
     context["gpu_capability"] = fmt::format("{}.{}", device.major, device.minor);
@@ -93,73 +71,39 @@ Json context_of(const Options& options) {
     context["cuda_driver"] = device.driver;
     context["cuda_runtime"] = device.runtime;
     context["compiler"] = device.compiler;
-    context["flags"] = SEED_CUDA_FLAGS;
     return context;
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const size_t half = values.size() / 2;
-    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
-Json entry(const std::string& name, const std::vector<double>& milliseconds) {
-    const double time = median(milliseconds);
-    const auto [least, most] = std::minmax_element(milliseconds.begin(), milliseconds.end());
-    print(fmt::format("{:<36} {:10.3f} ms   {:.3f} to {:.3f}\n", name, time, *least, *most));
+Json entry(const std::string& name, const Timing& time) {
+    print(fmt::format("{:<36} {:10.3f} ms   {:.3f} to {:.3f}\n", name, time.median(), time.least(), time.most()));
     return {{"name", name},
             {"run_name", name},
             {"run_type", "iteration"},
-            {"iterations", milliseconds.size()},
-            {"real_time", time},
+            {"iterations", time.runs.size()},
+            {"real_time", time.median()},
             {"time_unit", "ms"},
-            {"repetition_times", milliseconds}};
+            {"repetition_times", time.runs}};
 }
 
-std::vector<Pixel> time_on_host(const Options& options, const OwnedScene& scene, const View& view, int depth,
-                                const std::string& name, Json& records) {
+void time_on_host(const Options& options, const OwnedScene& scene, const View& view, int depth, const std::string& name,
+                  Json& records) {
     std::vector<Pixel> pixels(static_cast<size_t>(view.width) * static_cast<size_t>(view.height));
-    std::vector<double> milliseconds;
-    for (int i = 0; i < options.repetitions; ++i) {
-        const auto start = std::chrono::steady_clock::now();
-        render_on_host(depth, scene.view(), view, pixels.data());
-        milliseconds.push_back(
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    }
-    records.push_back(entry(name + "/cpu", milliseconds));
-    return pixels;
+    Timing time;
+    for (int i = 0; i < options.repetitions; ++i)
+        time.runs.push_back(1e3 * seconds_of([&] { render_on_host(depth, scene.view(), view, pixels.data()); }));
+    records.push_back(entry(name + "/cpu", time));
 }
 
-std::vector<Pixel> time_on_device(const Options& options, const OwnedScene& scene, const View& view, int depth,
-                                  const std::string& name, Json& records) {
+void time_on_device(const Options& options, const OwnedScene& scene, const View& view, int depth,
+                    const std::string& name, Json& records) {
     std::vector<Pixel> pixels;
     for (const int grid : options.grids) {
         DeviceRun run = render_on_device(depth, grid, warm_ups, options.repetitions, scene, view);
-        Json record = entry(fmt::format("{}/grid:{}", name, grid), run.milliseconds);
-        record["warm_ups"] = warm_ups;
-        record["registers"] = run.registers;
-        record["local_bytes"] = run.local_bytes;
-        records.push_back(record);
+        records.push_back(entry(fmt::format("{}/grid:{}", name, grid), run.time));
         if (!pixels.empty() && pixels != run.pixels)
             throw Error(ExitCode::failed, fmt::format("{}: the picture of grid {} is another one", name, grid));
         pixels = std::move(run.pixels);
     }
-    return pixels;
-}
-
-void use_picture(const Options& options, const ColorPicture& picture, Json& record) {
-    if (!options.image.empty()) write_raw_picture(options.image, picture);
-    if (options.reference.empty()) return;
-    const ColorPicture reference = read_texture(options.reference);
-    if (reference.width != picture.width || reference.height != picture.height)
-        fail_usage(fmt::format("--compare {}: is {}x{} and this picture {}x{}; they must be of one size",
-                               options.reference, reference.width, reference.height, picture.width, picture.height));
-    const Difference difference = compare(picture, reference);
-    print(fmt::format("{}: mean absolute difference {:.4f}/255, {:.3f} % of the pixels within 2/255, worst {}/255\n",
-                      options.reference, difference.mean, 100 * difference.within, difference.worst));
-    record["comparison"] = {{"mean_difference", difference.mean / 255},
-                            {"share_within_2_of_255", difference.within},
-                            {"worst_difference", difference.worst / 255.0}};
 }
 
 int run(int argc, char** argv) {
@@ -179,13 +123,11 @@ int run(int argc, char** argv) {
     const SceneDescription description = read_scene(options.scene);
     const OwnedScene scene = make_scene(description);
     const View view = make_view(camera_at(description.camera, 0), options.width, options.height);
-    std::vector<Pixel> pixels;
     for (const int depth : options.depths) {
         const std::string name = fmt::format("seed/{}x{}/depth:{}", view.width, view.height, depth);
         const auto time = options.cpu ? time_on_host : time_on_device;
-        pixels = time(options, scene, view, depth, name, record["benchmarks"]);
+        time(options, scene, view, depth, name, record["benchmarks"]);
     }
-    use_picture(options, picture_of(view, pixels), record);
     if (!options.json.empty()) write_file_atomically(options.json, record.dump(2) + "\n");
     return 0;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/timing.h"
 #include "bench/seed_baseline.h"
 
 namespace cistula::seed {
@@ -25,9 +26,7 @@ struct DeviceDescription {
 DeviceDescription describe_device();
 
 struct DeviceRun {
-    std::vector<double> milliseconds;  // of the kernel, by events, one a repetition
-    int registers = 0;                 // a thread
-    size_t local_bytes = 0;            // a thread: its stack
+    Timing time;  // of the kernel, by events
     std::vector<Pixel> pixels;
 };
 

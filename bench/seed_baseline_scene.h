@@ -1,5 +1,4 @@
-// A scene of Cistula's as the course work's algorithm takes it, all of it triangles, and the comparison of two
-// pictures.
+// A scene of Cistula's as the course work's algorithm takes it, all of it triangles.
 #pragma once
 
 #include "bench/seed_baseline.h"
@@ -7,8 +6,6 @@
 #include "scene/compile/scene_source.h"
 #include "scene/description/camera_path.h"
 #include "scene/description/platonic.h"
-#include "scene/image/picture.h"
-#include "scene/image/srgb_codes.h"
 
 namespace cistula::seed {
 
@@ -100,39 +97,6 @@ inline View make_view(const CameraFrame& frame, int width, int height) {
             vec(camera.up * camera.tan_half_width),
             width,
             height};
-}
-
-inline ColorPicture picture_of(const View& view, const std::vector<Pixel>& pixels) {
-    ColorPicture picture{static_cast<uint32_t>(view.width), static_cast<uint32_t>(view.height), {}};
-    for (const Pixel& p : pixels) picture.texels.emplace_back(p.r, p.g, p.b);
-    return picture;
-}
-
-/// In steps of the 8-bit codes that a screen shows.
-struct Difference {
-    double mean = 0;    // over all channels
-    double within = 0;  // share of pixels none of whose channels is more than 2 steps off
-    int worst = 0;
-};
-
-/// Both of one size.
-inline Difference compare(const ColorPicture& a, const ColorPicture& b) {
-    Difference result;
-    for (size_t i = 0; i < a.texels.size(); ++i) {
-        int worst = 0;
-        for (int c = 0; c < 3; ++c) {
-            const int difference = srgb8_from_linear(a.texels[i][c]) - srgb8_from_linear(b.texels[i][c]);
-            const int apart = difference < 0 ? -difference : difference;
-            result.mean += apart;
-            if (apart > worst) worst = apart;
-        }
-        result.within += worst <= 2 ? 1 : 0;
-        if (worst > result.worst) result.worst = worst;
-    }
-    const double pixels = static_cast<double>(a.texels.size());
-    result.mean /= 3 * pixels;
-    result.within /= pixels;
-    return result;
 }
 
 }  // namespace cistula::seed

@@ -19,13 +19,13 @@ Film time_frame(GpuRecord& record, const std::string& name, Renderer& renderer, 
     settings.depth = depth;
     settings.supersample = supersample;
     Film film;
-    std::vector<double> times;
+    Timing time;
     for (int run = -warm_up; run < runs; ++run) {
         RenderProgress progress;
         renderer.render(camera_at(scene.camera, 0), settings, film, progress);
-        if (run >= 0) times.push_back(renderer.times().kernel * 1e3);
+        if (run >= 0) time.runs.push_back(renderer.times().kernel * 1e3);
     }
-    record.add_times("benchmark.json/3840x2160/" + name, times, {{"rays", film.rays.total()}});
+    record.add_times("benchmark.json/3840x2160/" + name, time, {{"rays", film.rays.total()}});
     return film;
 }
 

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "apps/common/timing.h"
 
 namespace cistula::bench {
 
@@ -13,10 +14,10 @@ using Json = nlohmann::ordered_json;
 class GpuRecord {
   public:
     /// Starts a record with its context: GPU, driver, host, compiler, flags, commit.
-    explicit GpuRecord(const std::string& program = "gpu_check");
+    explicit GpuRecord(const char* program = "gpu_check");
 
-    /// Adds a benchmark of several runs: median, least and most, all runs. Prints a line.
-    void add_times(const std::string& name, const std::vector<double>& milliseconds, Json more = Json::object());
+    /// Adds a benchmark of several runs: their median and all of them. Prints a line.
+    void add_times(const std::string& name, const Timing& time, Json more = Json::object());
 
     /// Adds a comparison of host and device. Prints a line if they differ.
     void add_parity(const std::string& name, uint64_t compared, uint64_t differing, Json more = Json::object());
@@ -30,7 +31,5 @@ class GpuRecord {
     Json all_;
     uint64_t compared_ = 0, differing_ = 0;
 };
-
-double median_of(std::vector<double> values);
 
 }  // namespace cistula::bench
