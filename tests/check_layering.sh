@@ -91,7 +91,7 @@ check() {
         fail 'backend_cuda includes "cistula/...", "scene/...", "backend_cuda/..." and installed libraries'
     includes "${apps[@]}" | { grep -E '"(bench|tests|testing/support)/' || true; } |
         fail 'programs know neither benchmarks nor tests'
-    # FILE:NUMBER:#include "apps/FOLDER/..." of another folder than its own.
+    # Lines that include another program's folder.
     includes "${apps[@]}" | awk '{ split($0, at, "/"); if (match($0, /"apps\/[a-z_]+\//)) { to = substr($0, RSTART + 6, RLENGTH - 7); if (to != "common" && to != at[2]) print } }' |
         fail 'a program includes apps/common and its own folder, no other program'
     includes "${bench[@]}" | { grep -E '"(tests|testing/support)/' || true; } |

@@ -60,12 +60,6 @@ class BlockList {
         return (strips_.first + i / in_strip * strips_.step) * in_strip + i % in_strip;
     }
 
-    /// The inverse of row_of(); -1 if that row of blocks is another device's.
-    int index_of(int row) const {
-        const int in_strip = strip_rows / shape().height, strip = row / in_strip - strips_.first;
-        return strip < 0 || strip % strips_.step != 0 ? -1 : strip / strips_.step * in_strip + row % in_strip;
-    }
-
     PixelRect rect_;
     Strips strips_;
     BlockPlan plan_;

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <atomic>
 #include <optional>
-#include <type_traits>
 
 #include "backend_cuda/host/device_worker.h"
+#include "scene/base/default_rounding.h"
 #include "scene/frame/frame_view.h"
 
 namespace cistula {
@@ -57,17 +57,26 @@ class CudaRenderer : public Renderer {
         prepare_film(film, settings, *scene_, camera);
         if (!begun_ || !same(begun_->camera, camera) || begun_->settings != settings) {
             if (begun_) drop();
-            begun_ = begin(camera, settings);
+            FramePlan fresh = planned(camera, settings);
+            begin(fresh);
+            begun_ = fresh;
         }
         const FramePlan plan = *begun_;
         begun_.reset();
         if (!plan.fits) film.flags |= flag_media_overflow;
+        effects_ = effect_masks[plan.mask];
         for (auto& worker : workers_) worker->totals = {};
-        for (int part = 0; part < plan.parts; ++part) {
-            if (progress.stop || !finish(plan, part, film, progress)) {
-                drop();
-                return false;
-            }
+        bool whole = true;
+        try {
+            for (int part = 0; part < plan.parts && whole; ++part)
+                whole = !progress.stop && finish(plan, part, film, progress);
+        } catch (...) {
+            drop();
+            throw;
+        }
+        if (!whole) {
+            drop();
+            return false;
         }
         expected_.reset();
         for (const auto& worker : workers_) {
@@ -99,8 +108,9 @@ class CudaRenderer : public Renderer {
                                                       known[size_t(index)].obstacle));
     }
 
-    /// Plans a frame and starts its first part.
-    FramePlan begin(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) {
+    /// The plan of a frame, undivided, whose first part is to go to a slot.
+    FramePlan planned(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) const {
+        use_default_rounding();
         FramePlan plan;
         plan.camera = camera;
         plan.settings = settings;
@@ -110,16 +120,19 @@ class CudaRenderer : public Renderer {
                         ? camera_solids(view_, BvhIntersector<Real>{view_}, position, plan.view.camera_media)
                         : camera_solids(view_, BruteIntersector<Real>{view_}, position, plan.view.camera_media);
         plan.mask = mask_to_run(scene_->effects, settings, plan.view);
-        effects_ = effect_masks[plan.mask];
         plan.sampling = settings.adaptive() ? Sampling::adaptive : Sampling::uniform;
         plan.blocks = {plan.view.supersample > 1 ? PixelMapping::shared_tile : PixelMapping::own_tiles,
                        kernel_shapes[plan.mask].warps};
         plan.hints = std::make_shared<const FrameHints>(frame_hints(*scene_, plan.view, settings));
         plan.devices = int(workers_.size());
         plan.first_slot = slot % DeviceWorker<Real>::slots;
+        return plan;
+    }
+
+    /// Takes memory for a planned frame and starts its first part.
+    void begin(FramePlan& plan) {
         divide(plan);
         start(plan, 0);
-        return plan;
     }
 
     /// Divides a frame into parts that fit into memory.
@@ -165,12 +178,22 @@ class CudaRenderer : public Renderer {
                 workers_[d]->start(plan, strips, (plan.first_slot + part) % DeviceWorker<Real>::slots);
     }
 
+    /// Begins the expected frame behind the last part of this one, if it needs no other memory and no other kernel: a
+    /// kernel's first launch waits for all that runs, and writes into a slot.
+    void begin_early(const FramePlan& running) {
+        if (expected_->settings != running.settings) return;
+        FramePlan next = planned(expected_->camera, expected_->settings, running.first_slot + running.parts);
+        if (next.mask != running.mask) return;
+        begin(next);
+        begun_ = next;
+    }
+
     /// Starts the next part and puts this one into the film; false if that was stopped.
     bool finish(const FramePlan& plan, int part, Film& film, RenderProgress& progress) {
         if (part + 1 < plan.parts)
             start(plan, part + 1);
-        else if (expected_ && expected_->settings == plan.settings)  // others may need memory still in use
-            begun_ = begin(expected_->camera, expected_->settings, plan.first_slot + part + 1);
+        else if (expected_)
+            begin_early(plan);
         const int slot = (plan.first_slot + part) % DeviceWorker<Real>::slots;
         std::atomic<bool> stopped{false};
         tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {

@@ -18,7 +18,7 @@ struct FramePlan {
     BlockPlan blocks;
     Sampling sampling = Sampling::uniform;
     int mask = 0;             // index of effect_masks
-    bool fits = true;         // whether the camera's medium stack had room
+    bool fits = true;         // whether the camera's interior list had room
     int devices = 1;          // strip s of the rectangle belongs to device s % devices
     int strips = 0;           // of the whole rectangle
     size_t strip_pixels = 0;  // of whole blocks

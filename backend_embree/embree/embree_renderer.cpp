@@ -14,7 +14,7 @@ class EmbreeRenderer : public Renderer {
         : scene_(std::move(scene)), view_(scene_->view()), tree_(std::move(tree)) {
         if (tree_) return;
         plain_ = make_constant_renderer<Real>(scene_);
-        if (!plain_) plain_ = make_host_renderer<Real>(scene_, HostIntersector::brute);
+        if (!plain_) tree_ = embree_tree(view_, EmbreeOptions{.always_tree = true});
     }
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,

@@ -1,7 +1,6 @@
 // The host's frame loop: render_pixel for any intersector, over tiles that TBB distributes.
 #pragma once
 
-#include <immintrin.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -12,16 +11,12 @@
 
 #include "cistula/adaptive/adaptive_pixel.h"
 #include "cistula/traversal/bvh.h"
+#include "scene/base/default_rounding.h"
 #include "scene/film/put_pixels.h"
 #include "scene/frame/frame_hints.h"
 #include "scene/frame/frame_view.h"
 
 namespace cistula {
-
-/// Sets the rounding mode to nearest and turns flush-to-zero off: other libraries may have left this thread otherwise.
-inline void use_default_rounding() {
-    _mm_setcsr(0x1f80);
-}
 
 /// Whether the render was stopped, so that ray trees end early.
 struct RenderStop {
@@ -31,7 +26,7 @@ struct RenderStop {
 };
 
 /// Whether an intersector is compiled for every effect mask. The device's traversal and the plain loop over a SceneView
-/// are references here and compiled with all effects only, to save compile time.
+/// are references here and compiled with all effects only, which saves compile time.
 template <class Intersector>
 inline constexpr bool runs_every_mask = true;
 template <class Real>
@@ -54,9 +49,8 @@ class FrameTask {
           settings_(settings),
           film_(film),
           progress_(progress),
-          frame_(frame_view(compiled, camera, settings)),
+          frame_((use_default_rounding(), frame_view(compiled, camera, settings))),
           hints_(frame_hints(compiled, frame_, settings)) {
-        use_default_rounding();
         prepare_film(film, settings, compiled, camera);
         if (!camera_solids(scene_, intersector, frame_.camera.position, frame_.camera_media))
             film.flags |= flag_media_overflow;
@@ -64,7 +58,7 @@ class FrameTask {
         if (!runs_every_mask<Intersector> && mask_ != unshadowed_mask) mask_ = effect_mask_count - 1;
     }
 
-    /// The effects that are compiled in: the smallest mask that contains those of the scene and the settings.
+    /// The effects that are compiled into the code that runs (mask_to_run; all of them for references).
     uint32_t effects() const { return effect_masks[mask_]; }
 
     /// Renders the frame; false if it was stopped.

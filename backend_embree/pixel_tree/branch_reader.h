@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "backend_embree/pixel_tree/branch_trace.h"
@@ -234,7 +235,7 @@ class BranchReader {
         }
         void arrives(uint32_t i, const ShadowRay<Real>& shadow, const Vec3<Real>& arrives) const {
             const auto& shadows = replay.trace.shadows;
-            if (next == 0) return;  // no shadow ray was traced
+            if (next == 0 || shadows[next - 1].shadow.light != shadow.light) return;  // no such shadow ray was traced
             LightContribution& to = contribution(i);
             to.arrives = Vec3<double>(arrives);
             to.adds = less(next < shadows.size() ? shadows[next].before : replay.trace.end.radiance,

@@ -1,6 +1,6 @@
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 
-#include <cstring>
+#include <stdexcept>
 
 #include "backend_embree/embree/embree_tree.h"
 #include "backend_embree/host/frame_loop.h"

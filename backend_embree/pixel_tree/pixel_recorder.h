@@ -2,7 +2,6 @@
 // between two queries tell what each part of it adds.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "backend_embree/pixel_tree/branch_reader.h"

@@ -37,7 +37,7 @@ struct ReciprocalCase {
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(reciprocal(in.x)); }
 };
 
-/// Case: lesser() and greater() of numbers that are not NaN and not both zero.
+/// Case: min_no_nan() and max_no_nan() of numbers that are not NaN and not both zero.
 template <class Real>
 struct LesserGreaterCase {
     static constexpr const char* name = "lesser_greater";

@@ -112,8 +112,8 @@ struct CellSide {
 };
 
 /// Splits a cell if a sample right beside it, between two of its corners, is brighter or darker than both by so much
-/// that two thirds of the cell would exceed the target. A feature that enters through that side, such as the tip of a
-/// mirrored edge or a stripe of a texture, may end before it reaches a corner.
+/// that, over all of the cell, it would be worth more than two thirds of the target. A feature that enters through that
+/// side, such as the tip of a mirrored edge or a stripe of a texture, may end before it reaches a corner.
 struct SideCrossed {
     /// `rows`: the samples to look at, by row, one bit per column.
     CISTULA_INLINE static bool splits(const LatticeSettings& settings, const LatticeSample* samples,

@@ -7,8 +7,8 @@ namespace cistula {
 
 inline constexpr uint32_t no_solid = 0xffffffu;
 
-/// The medium stack: the solids that contain a point, each with its signed count of entries minus exits. A straight ray
-/// takes every crossing of a mesh in order of t, which rounding may reverse at a grazed edge, so a count of -1 is
+/// The interior list: the solids that contain a point, each with its signed count of entries minus exits. A straight
+/// ray takes every crossing of a mesh in order of t, which rounding may reverse at a grazed edge, so a count of -1 is
 /// legal.
 struct InteriorList {
     static constexpr bool contacts = true;  // a point may be inside several solids
@@ -69,8 +69,8 @@ struct InteriorList {
     }
 };
 
-/// The medium stack of scenes whose closed solids are all convex and do not touch, so that a ray is inside at most one.
-/// Its state lets a ray enter only from outside and leave only from inside.
+/// The interior list of scenes whose closed solids are all convex and do not touch, so that a ray is inside at most
+/// one. Its state lets a ray enter only from outside and leave only from inside.
 struct SingleInterior {
     static constexpr bool contacts = false, meshes = false;
 
@@ -94,7 +94,7 @@ struct SingleInterior {
     }
 };
 
-/// Converts a InteriorList to the form of `to`.
+/// Converts an InteriorList to the form of `to`.
 CISTULA_INLINE void assign(InteriorList& to, const InteriorList& from) {
     to = from;
 }
@@ -110,7 +110,7 @@ struct Ray {
     uint32_t from_solid = no_solid;  // the solid on whose face the ray starts, if any
     uint32_t from_face = 0;          // that face: 2 slab + side, or the scene-wide triangle number
     Crossing<Real> after;            // the last crossing that the ray has passed
-    Media media;                     // the medium stack at `after`
+    Media media;                     // the interior list at `after`
 
     CISTULA_INLINE bool fresh() const { return after.t < Real(0); }
     /// Whether the ray's first crossing of a mesh must come from the side on which the ray starts.

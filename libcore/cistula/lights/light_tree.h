@@ -49,7 +49,7 @@ class LightStack {
     static constexpr int capacity = (LightNode::width - 1) * (max_tree_depth + 1) + 1;
     using Storage = int32_t[capacity];
 
-    /// Keeps the entries in `room`, apart, so that the rest stays in registers.
+    /// Keeps the entries in `storage`, apart, so that the rest stays in registers.
     CISTULA_INLINE explicit LightStack(Storage& storage) : waiting_(storage) {}
 
     CISTULA_INLINE void push(int32_t item) {

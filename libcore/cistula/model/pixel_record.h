@@ -8,7 +8,7 @@ namespace cistula {
 /// Errors found while rendering; any bit set in a film fails the render with a message.
 enum RenderFlag : uint32_t {
     flag_not_finite = 1u << 0,          // a radiance was infinite or NaN
-    flag_media_overflow = 1u << 1,      // more nested solids than a medium stack holds
+    flag_media_overflow = 1u << 1,      // more nested solids than an interior list holds
     flag_stack_overflow = 1u << 2,      // a ray tree needed more pending branches than the branch stack holds
     flag_too_many_crossings = 1u << 3,  // a straight ray crossed more faces than the limit
 };

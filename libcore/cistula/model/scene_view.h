@@ -113,9 +113,10 @@ struct alignas(16) Facet {
     uint32_t solid, triangle, slot;
 };
 
-/// The material parameters of the local (Phong) light.
+/// A material. The shares of light are: local 1 - kr - kt, reflected kr, transmitted kt * tint.
 template <class Real>
-struct LocalMaterial {
+struct Material {
+    // The local (Phong) light.
     Vec3<Real> color;
     Vec3<Real> ambient;        // ka * A, with the scene's ambient light A
     Vec3<Real> specular;       // ks * S
@@ -123,11 +124,7 @@ struct LocalMaterial {
     Real exponent;             // n; used where integer_exponent < 0
     int32_t integer_exponent;  // n if it is an integer in [0, 1024], else -1
     Real local;                // max(0, 1 - kr - kt), rounded down
-};
-
-/// A material. The shares of light are: local 1 - kr - kt, reflected kr, transmitted kt * tint.
-template <class Real>
-struct Material : LocalMaterial<Real> {
+    // What goes on.
     Real reflection;    // kr
     Real transmission;  // kt
     Vec3<Real> filter;  // kt * tint

@@ -68,7 +68,7 @@ template <class Real, class E, class Intersector, class Media, class Scene, clas
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                     const Hit<Real>& hit, const Surface<Real>& s, const Throughput<Real, E>& weight,
                                     Sums& sums, PixelRays& rays, const Observer& observer = {}) {
-    const LocalMaterial<Real>& m = scene.materials[s.material];
+    const Material<Real>& m = scene.materials[s.material];
     sums.add(weight * (s.color * m.ambient));
     if constexpr (E::has(effect_diffuse | effect_specular)) {
         for (uint32_t i = 0; i < scene.lights.size; ++i) {

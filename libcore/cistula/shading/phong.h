@@ -13,7 +13,7 @@ CISTULA_NOINLINE inline double fractional_power(double base, double exponent) {
 
 /// The highlight max(0, cosine)^n.
 template <class Real>
-CISTULA_INLINE Real highlight(const LocalMaterial<Real>& material, Real cosine) {
+CISTULA_INLINE Real highlight(const Material<Real>& material, Real cosine) {
     if (!(cosine > Real(0))) return material.integer_exponent == 0 ? Real(1) : Real(0);
     const Real base = min_or_second(cosine, Real(1));
     if (material.integer_exponent >= 0) return elementary::power_by_squaring(base, material.integer_exponent);
@@ -30,7 +30,7 @@ CISTULA_INLINE Real mirror_cosine(const Vec3<Real>& normal, const Vec3<Real>& to
 /// What a light adds at unit transmittance, without the local share: I a(r) (C kd N.L + ks S (R.V)^n). n_l = N.L > 0;
 /// `shine` = (R.V)^n.
 template <class Real, class E>
-CISTULA_INLINE Vec3<Real> phong(const LocalMaterial<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
+CISTULA_INLINE Vec3<Real> phong(const Material<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
                                 Real n_l, Real shine, Real distance) {
     Vec3<Real> result(Real(0));
     if constexpr (E::has(effect_diffuse)) result += color * (material.diffuse * n_l);
@@ -46,7 +46,7 @@ CISTULA_INLINE Vec3<Real> phong(const LocalMaterial<Real>& material, const Vec3<
 }
 
 template <class Real, class E>
-CISTULA_INLINE Vec3<Real> phong(const LocalMaterial<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
+CISTULA_INLINE Vec3<Real> phong(const Material<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
                                 const Vec3<Real>& normal, const Vec3<Real>& to_light, const Vec3<Real>& to_viewer,
                                 Real n_l, Real distance) {
     Real shine = Real(0);

@@ -1,6 +1,6 @@
-// A ray's meeting with one or several faces that rounding cannot tell apart: which of their crossings is shaded, and
-// the media beyond them all. Light then passes from one touching body to the other without a gap between them
-// (docs/rules.md, 4), and rays that stay on the viewer's side are in the viewer's medium.
+// A surface event: a ray meets one or several faces that rounding cannot tell apart: which of their crossings is
+// shaded, and the media beyond them all. Light then passes from one touching body to the other without a gap between
+// them (docs/rules.md, 4), and rays that stay on the viewer's side are in the viewer's medium.
 #pragma once
 
 #include "cistula/geometry/ray.h"
@@ -17,7 +17,7 @@ struct SurfaceEvent {
     int count;
     Media beyond;     // media behind all of them
     bool fits;        // whether `beyond` had room
-    bool wrong_side;  // whether refused mesh crossings come before the first (Hit::passed_over)
+    bool wrong_side;  // whether refused mesh crossings come before the first (Hit::wrong_side_t)
 
     CISTULA_INLINE void begin(const Ray<Real, Media>& ray, const Hit<Real>& first) {
         hit = first;
@@ -66,7 +66,7 @@ CISTULA_INLINE void gather_touching(const Scene& scene, const Intersector& inter
     }
 }
 
-/// Finds the meeting at `hit`, the ray's next crossing.
+/// Finds the surface event at `hit`, the ray's next crossing.
 template <class Real, class Intersector, class Media, class Scene>
 CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                   const Hit<Real>& hit, SurfaceEvent<Real, Media>& event) {

@@ -107,7 +107,7 @@ class NextSurface {
         }
     }
 
-    /// The radiance of the visible light `seen`, or the background if there is none.
+    /// The radiance of the visible light `visible`, or the background if there is none.
     CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const VisibleLightHit<Real>& visible) const {
         if constexpr (E::has(effect_visible_lights))
             if (visible.light != no_light) return scene_.visible_lights[visible.light].radiance;

@@ -10,7 +10,7 @@ namespace cistula {
 /// A frame's settings for every pixel. The camera is in the scene's frame.
 struct FrameView {
     Camera camera;
-    InteriorList camera_media;  // medium stack at the camera (camera_solids)
+    InteriorList camera_media;  // interior list at the camera (camera_solids)
     double unit_length = 1;     // scene units per unit of the frame
     double half_sample = 0;     // tangent of the angle of half a sample, at the picture's center
     bool is_far = false;        // the camera is outside the sphere of radius 2 M
@@ -60,7 +60,7 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, d
 }
 
 /// The meshes that contain a point, found by counting the crossings of a straight ray from outside. False if there are
-/// more than a medium stack holds.
+/// more than an interior list holds.
 template <class Scene, class Intersector>
 CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
                                      InteriorList& media) {
@@ -87,7 +87,7 @@ CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& inte
     }
 }
 
-/// The solids that contain a point. False if there are more than a medium stack holds.
+/// The solids that contain a point. False if there are more than an interior list holds.
 template <class Scene, class Intersector>
 CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
                                      InteriorList& media) {

@@ -10,7 +10,7 @@
 namespace cistula {
 
 inline constexpr int largest_depth = 1024;
-/// The number of surfaces between two checks whether the render was stopped.
+/// The number of branches between two checks whether the render was stopped.
 inline constexpr uint32_t turns_between_stops = 64;
 
 template <class Real, class E, class Intersector, class Stack>

@@ -9,7 +9,7 @@ namespace cistula {
 /// The ray of box tests: rounded to float, which the padding of the boxes covers. Times are fused products instead of
 /// quotients of differences, which adds an error of a few u of the coordinates' size.
 struct BoxRay {
-    float inverse[3], shift[3];  // see meets()
+    float inverse[3], shift[3];  // see plane_t()
     float near_limit, far_limit;
 
     template <class Real>
