@@ -56,7 +56,7 @@ named_paths() {
                 rest = substr(text, RSTART + RLENGTH)
                 sub(/^[^A-Za-z0-9_]/, "", found)
                 text = rest
-                if (rest !~ /^[$<{(]/ && found !~ /(NAME|GROUP|PRESET|DIR|FILE|XXX|[*])/) print FILENAME ":" FNR ":" found
+                if (rest !~ /^[$<{(]/ && found !~ /(NAME|FOLDER|GROUP|PRESET|DIR|FILE|XXX|[*])/) print FILENAME ":" FNR ":" found
             }
         }' "$@"
 }
