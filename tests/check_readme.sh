@@ -5,6 +5,7 @@
 # BUILD: a folder in which `make render` has built already. Then `make` compiles nothing; what else its targets do is done.
 # SETUP=no in the environment: no packages are installed.
 set -euo pipefail
+unset MAKEFLAGS MAKELEVEL MFLAGS MAKEOVERRIDES GNUMAKEFLAGS  # those of the `make test` that runs this
 self=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/$(basename "${BASH_SOURCE[0]}")
 
 # What git would check out, with what is not committed yet.
