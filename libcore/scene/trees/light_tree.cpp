@@ -72,7 +72,7 @@ class Widening {
         for (size_t i = 0; i < parts.size(); ++i) {
             const Part& part = parts[i];
             const int32_t child = part.is_light()
-                                      ? ~static_cast<int32_t>(binary_.items[static_cast<size_t>(~part.child)])
+                                      ? ~static_cast<int32_t>(binary_.items[~static_cast<uint32_t>(part.child)])
                                       : static_cast<int32_t>(add(part));
             nodes[index].children.of[i] = child;
         }
