@@ -99,6 +99,7 @@ class CudaRenderer : public Renderer {
         CameraFrame camera;
         FrameSettings settings;
     };
+
     static void require(const std::vector<CudaDevice>& known, int index) {
         if (index < 0 || size_t(index) >= known.size())
             throw Error(ExitCode::device, fmt::format("--device {}: there is no such GPU; this machine has 0 to {}",

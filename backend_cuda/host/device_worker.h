@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <memory>
-#include <string>
 
 #include "backend_cuda/host/frame_plan.h"
 #include "backend_cuda/host/readback.h"
@@ -12,10 +11,6 @@
 #include "scene/film/film.h"
 
 namespace cistula {
-
-/// The compute capabilities that this build's kernels run on, such as "7.5 or later".
-std::string kernel_architectures();
-bool kernels_run_on_capability(int capability);
 
 /// Makes a device current for the calls of this thread.
 void use_device(int device);

@@ -3,7 +3,6 @@
 
 #include "backend_cuda/host/cuda_check.h"
 #include "backend_cuda/host/cuda_renderer.h"
-#include "backend_cuda/host/device_worker.h"
 
 namespace cistula {
 namespace {
@@ -15,6 +14,15 @@ namespace {
         advice =
             "install an NVIDIA driver, or a newer one, for this version of CUDA; --backend embree renders on the CPU";
     throw Error(ExitCode::device, fmt::format("no usable GPU: {}; {}", cudaGetErrorString(error), advice));
+}
+
+/// The compute capabilities that this build's kernels run on, such as "7.5 or later".
+std::string kernel_architectures() {
+    return fmt::format("{}.{} or later", CISTULA_LEAST_CAPABILITY / 10, CISTULA_LEAST_CAPABILITY % 10);
+}
+
+bool kernels_run_on_capability(int capability) {
+    return capability >= CISTULA_LEAST_CAPABILITY;  // the PTX of the lowest capability runs on every later GPU
 }
 
 }  // namespace
@@ -47,14 +55,6 @@ std::string cuda_driver_version() {
     int version = 0;
     if (cudaDriverGetVersion(&version) != cudaSuccess || version == 0) return "none";
     return fmt::format("{}.{}", version / 1000, version % 1000 / 10);
-}
-
-std::string kernel_architectures() {
-    return fmt::format("{}.{} or later", CISTULA_LEAST_CAPABILITY / 10, CISTULA_LEAST_CAPABILITY % 10);
-}
-
-bool kernels_run_on_capability(int capability) {
-    return capability >= CISTULA_LEAST_CAPABILITY;  // the PTX of the lowest capability runs on every later GPU
 }
 
 }  // namespace cistula
