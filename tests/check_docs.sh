@@ -2,7 +2,7 @@
 # What documents and comments say of the source tree: what they name exists, pages stay short, doc comments name their subject.
 # usage: check_docs.sh ROOT | --self-test
 set -euo pipefail
-self=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/$(basename "${BASH_SOURCE[0]}")
+source "$(dirname "${BASH_SOURCE[0]}")/tree_check.sh"
 
 most_words=1200
 references='^docs/(scene|programs|rules)\.md$'  # may be longer
@@ -142,31 +142,20 @@ check() {
         { inside = 0 }' "${sources[@]}"
 }
 
-# Every rule must see the tree that breaks it.
-self_test() {
-    local rule=0 failures=0
-    tree=$(mktemp -d)
-    trap 'rm -rf "$tree"' EXIT
-    fresh() {
-        rm -rf "${tree:?}/t"
-        mkdir -p "$tree"/t/{libcore/cistula/geometry,docs/decisions,tests}
-        printf '# Rules\n\n## 1 One thing\n\n## 2 Another thing: more\n' >"$tree/t/docs/rules.md"
-        printf '# T\n\n[rules](docs/rules.md#1-one-thing), [self](#t), [out](https://example.org/none.md), `geometry/hit.h`, `hit.h`, rules 2 of 1\n\n```\n[no](link.md) libcore/none.h\n```\n' >"$tree/t/README.md"
-        printf '// A hit (docs/rules.md, 1), as in geometry/hit.h and libcore/cistula/geometry/hit.h.\n\n/// The nearest hit.\n/// Of all.\nint f();  // "docs/rules.md"\n' >"$tree/t/libcore/cistula/geometry/hit.h"
-        printf '# Records\n\nTold by `gone.h` of libcore/gone.h.\n' >"$tree/t/docs/decisions/README.md"
-    }
-    breaks() {  # breaks FILE TEXT
-        fresh
-        mkdir -p "$(dirname "$tree/t/$1")"
-        printf '%s\n' "$2" >>"$tree/t/$1"
-        if "$self" "$tree/t" >/dev/null; then
-            echo "not detected in $1: ${2:0:80}"
-            failures=$((failures + 1))
-        fi
-        rule=$((rule + 1))
-    }
-    fresh
-    "$self" "$tree/t" || { echo "a good tree was refused"; failures=1; }
+good_tree() {
+    mkdir -p "$1"/{libcore/cistula/geometry,docs/decisions,tests}
+    printf '# Rules\n\n## 1 One thing\n\n## 2 Another thing: more\n' >"$1/docs/rules.md"
+    printf '# T\n\n[rules](docs/rules.md#1-one-thing), [self](#t), [out](https://example.org/none.md), `geometry/hit.h`, `hit.h`, rules 2 of 1\n\n```\n[no](link.md) libcore/none.h\n```\n' >"$1/README.md"
+    printf '// A hit (docs/rules.md, 1), as in geometry/hit.h and libcore/cistula/geometry/hit.h.\n\n/// The nearest hit.\n/// Of all.\nint f();  // "docs/rules.md"\n' >"$1/libcore/cistula/geometry/hit.h"
+    printf '# Records\n\nTold by `gone.h` of libcore/gone.h.\n' >"$1/docs/decisions/README.md"
+}
+
+put() {
+    mkdir -p "$(dirname "$1")"
+    printf '%s\n' "$2" >>"$1"
+}
+
+all_rules() {
     breaks README.md '[gone](docs/gone.md)'
     breaks README.md '[gone](docs/rules.md#3-none)'
     breaks README.md '[gone](#none)'
@@ -189,15 +178,6 @@ self_test() {
     breaks libcore/cistula/a.cuh '    /// Of the mask.'
     breaks libcore/cistula/a.cu '/// As it is called.'
     breaks tests/a.sh '# See tests/gone.sh.'
-    echo "$rule broken trees tried, $failures failures"
-    [ "$failures" -eq 0 ]
 }
 
-case ${1:-} in
-    --self-test) self_test ;;
-    "" | -*) echo "usage: $0 ROOT | --self-test" >&2; exit 2 ;;
-    *)
-        found=$(check "$1")
-        [ -z "$found" ] || { printf '%s\n' "$found"; exit 1; }
-        ;;
-esac
+run_check "$@"

@@ -3,7 +3,7 @@
 # usage: check_layering.sh ROOT | --self-test
 set -euo pipefail
 shopt -s nullglob globstar
-self=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/$(basename "${BASH_SOURCE[0]}")
+source "$(dirname "${BASH_SOURCE[0]}")/tree_check.sh"
 portable=libcore/cistula/numerics/portable.h
 
 # The folders of libcore, bottom to top: each includes itself and those before it.
@@ -133,29 +133,18 @@ check() {
         fail 'floating-point rules are set in cmake/CistulaContract.cmake alone'
 }
 
-# Every rule must see the tree that breaks it.
-self_test() {
-    local rule=0 failures=0
-    tree=$(mktemp -d)
-    trap 'rm -rf "$tree"' EXIT
-    fresh() {
-        rm -rf "${tree:?}/t"
-        mkdir -p "$tree"/t/{libcore/cistula/{numerics,model,lights},libcore/scene/{base,frame},backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
-        printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$tree/t/$portable"
-        printf 'add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu)\ntarget_compile_options(gpu_check_fast PRIVATE --use_fast_math)\n' >"$tree/t/bench/gpu/CMakeLists.txt"
-        printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/numerics/portable.h"\n// not std::pow(x)\n' >"$tree/t/libcore/cistula/model/good.h"
-    }
-    breaks() {  # breaks FILE TEXT
-        fresh
-        printf '#pragma once\n%s\n' "$2" >"$tree/t/$1"
-        if "$self" "$tree/t" >/dev/null; then
-            echo "not detected in $1: $2"
-            failures=$((failures + 1))
-        fi
-        rule=$((rule + 1))
-    }
-    fresh
-    "$self" "$tree/t" || { echo "a good tree was refused"; failures=1; }
+good_tree() {
+    mkdir -p "$1"/{libcore/cistula/{numerics,model,lights},libcore/scene/{base,frame},backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
+    printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$1/$portable"
+    printf 'add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu)\ntarget_compile_options(gpu_check_fast PRIVATE --use_fast_math)\n' >"$1/bench/gpu/CMakeLists.txt"
+    printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/numerics/portable.h"\n// not std::pow(x)\n' >"$1/libcore/cistula/model/good.h"
+}
+
+put() {
+    printf '#pragma once\n%s\n' "$2" >"$1"
+}
+
+all_rules() {
     breaks libcore/cistula/model/a.h '#include <embree3/rtcore.h>'
     breaks libcore/cistula/model/a.h '#include "scene/description/description.h"'
     breaks libcore/cistula/model/a.h '#include <cuda_runtime.h>'
@@ -199,16 +188,7 @@ install(TARGETS gpu_check_fast)"
     breaks backend_embree/host/a.cpp '__attribute__((optimize("fast-math"))) void f();'
     fresh
     printf 'int x;\n' >"$tree/t/libcore/scene/base/a.h"
-    if "$self" "$tree/t" >/dev/null; then echo "not detected: no #pragma once"; failures=$((failures + 1)); fi
-    echo "$((rule + 1)) broken trees tried, $failures failures"
-    [ "$failures" -eq 0 ]
+    must_detect 'no #pragma once'
 }
 
-case ${1:-} in
-    --self-test) self_test ;;
-    "" | -*) echo "usage: $0 ROOT | --self-test" >&2; exit 2 ;;
-    *)
-        found=$(check "$1")
-        [ -z "$found" ] || { printf '%s\n' "$found"; exit 1; }
-        ;;
-esac
+run_check "$@"
