@@ -10,7 +10,7 @@ template <class Real>
 DevicePath path_for(const SceneView<Real>& scene) {
     constexpr uint32_t most_primitives = 16;
     if (scene.convex.size + scene.clusters.size > most_primitives) return DevicePath::tree;
-    return constant_scene(scene) ? DevicePath::plain_loop : DevicePath::tree;
+    return fits_constant_scene(scene) ? DevicePath::plain_loop : DevicePath::tree;
 }
 
 template <class Real>

@@ -95,6 +95,13 @@ std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& here,
     return scene;
 }
 
+template <class Real>
+bool fits_constant_scene(const SceneView<Real>& scene) {
+    return assign(scene, scene, *std::make_unique<ConstantScene<Real>>());
+}
+
+template bool fits_constant_scene(const SceneView<float>&);
+template bool fits_constant_scene(const SceneView<double>&);
 template std::unique_ptr<ConstantScene<float>> constant_scene(const SceneView<float>&, const SceneView<float>&);
 template std::unique_ptr<ConstantScene<double>> constant_scene(const SceneView<double>&, const SceneView<double>&);
 

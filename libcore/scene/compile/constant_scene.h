@@ -17,4 +17,8 @@ std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& scene
     return constant_scene(scene, scene);
 }
 
+/// Whether constant_scene() would have a result, without finding out anything.
+template <class Real>
+bool fits_constant_scene(const SceneView<Real>& scene);
+
 }  // namespace cistula
