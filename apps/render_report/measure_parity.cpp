@@ -5,6 +5,7 @@
 #include "scene/film/film_difference.h"
 #include "scene/film/film_picture.h"
 #include "small_frame.h"
+#include "testing/reference_renderers.h"
 
 namespace cistula::report {
 namespace {

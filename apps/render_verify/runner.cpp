@@ -10,6 +10,7 @@
 #include "apps/common/backends.h"
 #include "apps/render_verify/ready_part.h"
 #include "backend_embree/embree/embree_renderer.h"
+#include "testing/reference_renderers.h"
 
 namespace cistula::verify {
 namespace {

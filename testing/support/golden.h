@@ -14,6 +14,7 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/film/film_picture.h"
 #include "scene/readers/read_scene.h"
+#include "testing/reference_renderers.h"
 
 namespace cistula::golden {
 

@@ -8,6 +8,7 @@
 #include "scene/film/put_pixels.h"
 #include "scene/frame/frame_view.h"
 #include "testing/generated_scene.h"
+#include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
 

@@ -18,6 +18,7 @@
 #include "scene/film/film_picture.h"
 #include "scene/frame/frame_view.h"
 #include "testing/generated_scene.h"
+#include "testing/reference_renderers.h"
 
 using namespace cistula;
 using glm::dvec3;

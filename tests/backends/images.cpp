@@ -16,6 +16,7 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/description/platonic.h"
 #include "testing/generated_mesh.h"
+#include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 
 using namespace cistula;

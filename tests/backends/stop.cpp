@@ -4,6 +4,7 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/film/film_picture.h"
+#include "testing/reference_renderers.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/stopping.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/image/exr.h"
+#include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 
 using namespace cistula;

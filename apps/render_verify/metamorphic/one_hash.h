@@ -13,6 +13,7 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/film/film_picture.h"
+#include "testing/reference_renderers.h"
 
 namespace cistula::verify::metamorphic {
 

@@ -1,3 +1,5 @@
+#include "testing/reference_renderers.h"
+
 #include "backend_embree/host/host_renderer.h"
 #include "cistula/traversal/bvh.h"
 
