@@ -18,7 +18,7 @@ const char* name_of(BranchEnd end) {
 }
 
 const char* name_of(CrossingKind crossing) {
-    constexpr const char* names[] = {"enters", "leaves", "sheet"};
+    constexpr const char* names[] = {"sheet", "enters", "leaves"};
     return names[static_cast<size_t>(crossing)];
 }
 

@@ -75,7 +75,7 @@ class BranchReader {
             }
             size_t next = at + 1;
             SurfaceEvent<Real> event;
-            resolve_event(scene_, ReplayedIntersector<Real>{looks, next}, ray, hit, event);
+            resolve_event<E>(scene_, ReplayedIntersector<Real>{looks, next}, ray, hit, event);
             const size_t after = next_on_line(looks, next, event.last());
             if (after == looks.size()) {
                 absorption.dim(scene_, ray.media, event.hit.t, replay.weight);
@@ -150,7 +150,7 @@ class BranchReader {
             out.fresnel = 0;
         }
         read_children(replay, split);
-        if (m.local > Real(0)) read_light(replay, ray, event.hit, s);
+        if (m.local > Real(0)) read_light(replay, ray, event, s);
     }
 
     void read_children(Replay& replay, const InterfaceSplit<Real>& split) const {
@@ -189,7 +189,8 @@ class BranchReader {
     }
 
     /// Evaluates the surface's local light again, with the recorded shadows.
-    void read_light(Replay& replay, const Ray<Real>& ray, const Hit<Real>& hit, const Surface<Real>& s) const {
+    void read_light(Replay& replay, const Ray<Real>& ray, const SurfaceEvent<Real>& event,
+                    const Surface<Real>& s) const {
         PixelSurface& out = replay.branch.surface;
         const auto& shadows = replay.trace.shadows;
         out.ambient = Vec3<double>(s.color * scene_.materials[s.material].ambient) * radiance_unit();
@@ -202,7 +203,7 @@ class BranchReader {
         const Local local{*this, replay, s, next};
         DiscardedSums sums;
         PixelRays rays;
-        add_local_light<Real, E>(scene_, replayed, ray, hit, s, replay.weight * scene_.materials[s.material].local,
+        add_local_light<Real, E>(scene_, replayed, ray, event, s, replay.weight * scene_.materials[s.material].local,
                                  sums, rays, local);
         require(replay.trace, agrees, "which lights cast shadows");
         require(replay.trace, next == shadows.size(), "the number of shadow rays");

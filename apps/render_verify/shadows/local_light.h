@@ -43,7 +43,9 @@ CISTULA_HD inline LocalLight local_light(const Setup<Real>& setup, const Interse
     uint32_t flags = 0;
     PixelSums<Real> sums(settings, one_light, record, flags);
     PixelRays rays;
-    add_local_light<Real, All>(one_light, intersector, ray, hit, surface, Vec3<Real>(Real(1)), sums, rays);
+    SurfaceEvent<Real> event;
+    event.begin(ray, hit);
+    add_local_light<Real, All>(one_light, intersector, ray, event, surface, Vec3<Real>(Real(1)), sums, rays);
     return {{record.radiance[0], record.radiance[1], record.radiance[2]}, rays.shadow, flags};
 }
 

@@ -5,6 +5,7 @@
 
 #include "cistula/geometry/convex_device.h"
 #include "cistula/geometry/convex_host.h"
+#include "cistula/geometry/shared_plane.h"
 
 namespace cistula {
 
@@ -25,12 +26,21 @@ CISTULA_INLINE bool misses_bounds(const BoundingSphere<Real>& sphere, const Vec3
     return rest > (ahead > limit ? beyond : beside);
 }
 
+/// The face of a convex solid by which a ray inside it does not leave: that on which the ray starts.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE uint32_t face_left(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray) {
+    if (ray.from_solid == index) return ray.from_face;
+    if constexpr (Media::contacts)
+        if (ray.from_plane != no_plane) return face_on(scene, scene.solids[index], ray.from_plane);
+    return no_face;
+}
+
 /// The crossing by which a ray leaves the convex solid that it is inside, if it is less than `best`. The face is looked
 /// up only if the time does not reject it.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
     const Solid& solid = scene.solids[index];
-    const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
+    const uint32_t skipped = face_left(scene, index, ray);
     const auto exit = convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped);
     const Real t = max_or_second(exit.t, Real(0));
     if (!(t <= best.t && t < RealTraits<Real>::infinity)) return;
@@ -77,12 +87,36 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Soli
     if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);
 }
 
+/// The face of a convex solid on the shared plane on which a ray starts, or no_face.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE uint32_t face_at_start(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray) {
+    if constexpr (Media::contacts)
+        if (ray.from_plane != no_plane) return face_on(scene, scene.solids[index], ray.from_plane);
+    return no_face;
+}
+
+/// The crossing by which a ray enters a convex solid that has a face on the shared plane on which the ray starts.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_entry_beside(const Scene& scene, uint32_t index, uint32_t own_face,
+                                         const Ray<Real, Media>& ray, Hit<Real>& best) {
+    if constexpr (Media::contacts) {
+        const EntryBeside<Real> entry =
+            entry_beside(scene, index, own_face, ray.origin, ray.direction, scene.shared_planes[ray.from_plane].slack);
+        if (entry.face == no_face) return;
+        const Real t = max_or_second(entry.enter, Real(0));
+        const uint64_t key = make_key(CrossingKind::enter, index, entry.face);
+        if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);
+    }
+}
+
 /// The ray's next crossing of a convex solid, if it is less than `best`.
 template <class Real, class Media, class Scene>
 CISTULA_HOST_NOINLINE void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                           Hit<Real>& best) {
     if (ray.media.contains(index))
         closest_exit(scene, index, ray, best);
+    else if (const uint32_t own_face = face_at_start(scene, index, ray); own_face != no_face)
+        closest_entry_beside(scene, index, own_face, ray, best);
     else if (ray.from_solid != index &&
              !misses_bounds(BoundingSphere<Real>::of(scene.solids[index]), ray.origin, ray.direction, best.t))
         closest_entry(scene, index, scene.solids[index], ray, best);

@@ -5,12 +5,15 @@
 
 namespace cistula {
 
-/// The kind of a crossing, in the order in which crossings at equal t are taken.
-enum class CrossingKind : uint32_t { enter = 0, leave = 1, sheet = 2 };
+/// The kind of a crossing, in the order in which crossings at equal t are taken (docs/rules.md, 11): what lies on a
+/// face is met before the face, and a body that begins there before the one that ends.
+enum class CrossingKind : uint32_t { sheet = 0, enter = 1, leave = 2 };
 
-/// Packs kind (8 bits), solid (24 bits) and face (32 bits), so that comparing keys compares (kind, solid, face).
+/// Packs kind (8 bits), solid (24 bits) and face (32 bits), so that comparing keys compares (kind, solid, face). Sheets
+/// are compared in reverse: the one declared last comes first.
 CISTULA_INLINE uint64_t make_key(CrossingKind kind, uint32_t solid, uint32_t face) {
-    return uint64_t(kind) << 56 | uint64_t(solid) << 32 | face;
+    const uint32_t place = kind == CrossingKind::sheet ? solid ^ 0xffffffu : solid;
+    return uint64_t(kind) << 56 | uint64_t(place) << 32 | face;
 }
 CISTULA_INLINE CrossingKind key_kind(uint64_t key) {
     return CrossingKind(key >> 56);
@@ -20,7 +23,8 @@ CISTULA_INLINE int media_change(CrossingKind kind) {
     return kind == CrossingKind::enter ? 1 : kind == CrossingKind::leave ? -1 : 0;
 }
 CISTULA_INLINE uint32_t key_solid(uint64_t key) {
-    return uint32_t(key >> 32) & 0xffffffu;
+    const uint32_t place = uint32_t(key >> 32) & 0xffffffu;
+    return key_kind(key) == CrossingKind::sheet ? place ^ 0xffffffu : place;
 }
 CISTULA_INLINE uint32_t key_face(uint64_t key) {
     return uint32_t(key);

@@ -6,6 +6,7 @@
 namespace cistula {
 
 inline constexpr uint32_t no_solid = 0xffffffu;
+inline constexpr uint32_t no_plane = 0xffffffffu;
 
 /// The interior list: the solids that contain a point, each with its signed count of entries minus exits. A straight
 /// ray takes every crossing of a mesh in order of t, which rounding may reverse at a grazed edge, so a count of -1 is
@@ -59,6 +60,12 @@ struct InteriorList {
         return true;
     }
 
+    /// Removes the solids whose count is below 0: a ray that starts anew knows where it is.
+    CISTULA_INLINE void drop_negative() {
+        for (uint32_t i = size; i-- > 0;)
+            if (count_of(entries[i]) < 0) entries[i] = entries[--size];
+    }
+
     /// The solid of highest priority that contains the point, or no_solid.
     CISTULA_INLINE uint32_t medium() const {
         uint32_t best = no_solid;
@@ -109,6 +116,7 @@ struct Ray {
     Vec3<Real> direction;            // unit to within a few u
     uint32_t from_solid = no_solid;  // the solid on whose face the ray starts, if any
     uint32_t from_face = 0;          // that face: 2 slab + side, or the scene-wide triangle number
+    uint32_t from_plane = no_plane;  // the shared plane on which that face lies, if any
     Crossing<Real> after;            // the last crossing that the ray has passed
     Media media;                     // the interior list at `after`
 

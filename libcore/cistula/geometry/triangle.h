@@ -3,8 +3,7 @@
 // are hit exactly.
 #pragma once
 
-#include "cistula/geometry/ray.h"
-#include "cistula/model/scene_view.h"
+#include "cistula/geometry/shared_plane.h"
 
 namespace cistula {
 
@@ -260,12 +259,25 @@ CISTULA_INLINE bool misses_flat_sheet(const Scene& scene, uint32_t cluster, cons
     return misses_flat_sheet(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
 }
 
+/// The t of an accepted crossing: that of the shared plane on which the triangle lies, if any; -1 if the ray starts on
+/// that plane, whose surfaces it does not meet.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t triangle, Real own, const Ray<Real, Media>& ray) {
+    if constexpr (Media::contacts)
+        if (!scene.triangle_planes.empty())
+            if (const uint32_t plane = scene.triangle_planes[triangle]; plane != no_plane)
+                return plane == ray.from_plane ? Real(-1)
+                                               : plane_time(scene.shared_planes[plane], ray.origin, ray.direction, own);
+    return own;
+}
+
 /// Takes an accepted crossing as `best` if it is the ray's next.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_t triangle, uint32_t slot,
                                      const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray, Hit<Real>& best) {
     const bool own = ray.from_solid == solid;
-    if (!(c.t >= Real(0)) || (own && ray.from_face == triangle)) return;
+    const Real t = crossing_time(scene, triangle, c.t, ray);
+    if (!(t >= Real(0)) || (own && ray.from_face == triangle)) return;
     CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
     if constexpr (!Media::meshes) {
         kind = CrossingKind::sheet;
@@ -273,11 +285,11 @@ CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_
         kind = CrossingKind::sheet;
     } else if (ray.by_side() && c.enters() == ray.media.contains(solid)) {
         // A ray's first crossing of a mesh is from the side on which the ray starts.
-        best.wrong_side_t = min_no_nan(c.t, best.wrong_side_t);
+        best.wrong_side_t = min_no_nan(t, best.wrong_side_t);
         return;
     }
     const uint64_t key = make_key(kind, solid, triangle);
-    if (ray.after.before(c.t, key) && best.improves(c.t, key)) best.take(c.t, key, c.u(), c.v(), slot, c.enters());
+    if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, c.u(), c.v(), slot, c.enters());
 }
 
 /// The ray's next crossing of a cluster's triangles, if it is less than `best`, for a ray that does not start on the

@@ -25,15 +25,16 @@ enum Effect : uint32_t {
     effect_triangles = 1u << 14,        // triangles of meshes and sheets
     effect_insides = 1u << 15,          // rays inside closed solids
     effect_lights_on_faces = 1u << 16,  // a point light lies on a face or an edge (docs/rules.md, 5)
+    effect_contacts = 1u << 17,         // faces of several solids lie in one plane (docs/rules.md, 11)
 };
-inline constexpr int effect_count = 17;
+inline constexpr int effect_count = 18;
 inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// Effect names, in the order of the bits, as in --explain, --stats and the documentation.
 inline constexpr const char* effect_names[effect_count] = {
     "texture",      "diffuse",    "specular",  "opaque-shadows", "transparent-shadows", "reflection",
     "transmission", "refraction", "fresnel",   "absorption",     "visible-lights",      "light-falloff",
-    "tint",         "solids",     "triangles", "insides",        "lights-on-faces"};
+    "tint",         "solids",     "triangles", "insides",        "lights-on-faces",     "contacts"};
 
 /// A set of effects as a type: `if constexpr (E::has(...))` removes the code of all others.
 template <uint32_t Mask>

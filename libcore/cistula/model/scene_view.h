@@ -19,6 +19,15 @@ struct alignas(16) Slab {  // aligned for wide loads
     Real low, high;
 };
 
+/// A plane that faces of several solids share, so that a ray meets them all at one t (docs/rules.md, 11).
+template <class Real>
+struct alignas(16) SharedPlane {
+    Vec3<Real> normal;                  // unit
+    Real offset;                        // normal.x on the plane
+    Real slack;                         // s u M, the unit of all distances from it that count as none
+    uint32_t first_solid, solid_count;  // the convex solids with a face on it: plane_solids[first_solid + i]
+};
+
 inline constexpr int slab_lanes = 8;
 
 /// Eight slabs in structure-of-arrays form, so that the host tests a ray against all at once. Unused lanes have a zero
@@ -48,6 +57,7 @@ struct alignas(16) Solid {
     uint32_t may_touch;  // convex, mesh: 1 if its padded box meets that of another such solid
     uint32_t isolated;   // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
                          // hits next is its own face
+    uint32_t first_near, near_count;  // the shared planes that reach it: near_planes[first_near + i]
 };
 
 /// The bounding sphere of a convex solid.
@@ -211,6 +221,10 @@ struct SceneView {
     Span<Solid> solids;
     Span<Slab<Real>> slabs;
     Span<SlabGroup<Real>> slab_groups;
+    Span<SharedPlane<Real>> shared_planes;  // with the four arrays below: empty where no faces coincide
+    Span<uint32_t> slab_planes;             // shared plane of each slab's low and high side, or no_plane
+    Span<uint32_t> triangle_planes;         // ... of each triangle, by its scene-wide number
+    Span<uint32_t> near_planes, plane_solids;
     Span<uint32_t> convex;         // the convex solids; primitive p < convex.size is convex[p]
     Span<Cluster<Real>> clusters;  // primitive p >= convex.size is clusters[p - convex.size]
     Span<Facet<Real>> facets;      // or, where there are any, facets[p - convex.size]

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cistula/model/pixel_record.h"
+#include "cistula/shading/contact.h"
 #include "cistula/shading/phong.h"
 #include "cistula/shading/shadow.h"
 #include "cistula/shading/surface.h"
@@ -66,8 +67,18 @@ struct LightObserver {
 /// Adds `weight` times the local light of a surface seen along `ray` (docs/design.md, Light).
 template <class Real, class E, class Intersector, class Media, class Scene, class Sums, class Observer = LightObserver>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
-                                    const Hit<Real>& hit, const Surface<Real>& s, const Throughput<Real, E>& weight,
-                                    Sums& sums, PixelRays& rays, const Observer& observer = {}) {
+                                    const SurfaceEvent<Real, Media>& event, const Surface<Real>& surface,
+                                    const Throughput<Real, E>& weight, Sums& sums, PixelRays& rays,
+                                    const Observer& observer = {}) {
+    Surface<Real> s = surface;
+    const Media* around = &ray.media;
+    [[maybe_unused]] Media corrected;
+    if constexpr (meets_contacts<E, Media>)
+        if (starts_at_contact<E>(scene, event)) {
+            corrected = ray.media;
+            start_at_contact(scene, ray, event, s.normal, false, s.viewer_side, corrected);
+            around = &corrected;
+        }
     const Material<Real>& m = scene.materials[s.material];
     sums.add(weight * (s.color * m.ambient));
     if constexpr (E::has(effect_diffuse | effect_specular)) {
@@ -88,8 +99,9 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             if (lit == Vec3<Real>(Real(0))) continue;
             Throughput<Real, E> arrives(Real(1));
             if constexpr (E::has(effect_opaque_shadows | effect_transparent_shadows)) {
-                const ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, hit, ray.media), aim.distance,
-                                                    &light};
+                ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, event.hit, *around), aim.distance,
+                                              &light};
+                find_start_plane<E>(scene, shadow.ray);
                 ++rays.shadow;
                 arrives = intersector.template transmittance<E>(shadow);
                 observer.arrives(i, shadow, arrives);

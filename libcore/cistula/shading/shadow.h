@@ -110,7 +110,7 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
     const Material<Real>& material = scene.materials[solid.material];
     Real leave = shadow.distance;
     if (light_side<E>(scene, index, shadow) == LightSide::none) {
-        const uint32_t skipped = ray.from_solid == index ? ray.from_face : no_face;
+        const uint32_t skipped = face_left(scene, index, ray);
         leave = max_or_second(convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
         if (leave < shadow.distance) sum.cross(material);
     }
@@ -143,11 +143,34 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid
         sum.absorb(material, max_or_second(min_or_second(leave, shadow.distance) - enter, Real(0)));
 }
 
+/// Adds what a convex solid takes from a light that has a face on the shared plane on which the ray starts.
+template <class Real, class E, class Media, class Scene>
+CISTULA_INLINE void shadow_entry_beside(const Scene& scene, uint32_t index, uint32_t own_face,
+                                        const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
+    if constexpr (Media::contacts) {
+        const LightSide side = light_side<E>(scene, index, shadow);
+        if (side == LightSide::outside) return;
+        const Ray<Real, Media>& ray = shadow.ray;
+        const EntryBeside<Real> entry =
+            entry_beside(scene, index, own_face, ray.origin, ray.direction, scene.shared_planes[ray.from_plane].slack);
+        const Real enter = max_or_second(entry.enter, Real(0));
+        if (entry.face == no_face || !(enter < shadow.distance)) return;
+        const Material<Real>& material = scene.materials[scene.solids[index].material];
+        const bool leaves = side == LightSide::none && entry.leave < shadow.distance;
+        sum.cross(material);
+        if (leaves) sum.cross(material);
+        if constexpr (E::has(effect_absorption))
+            sum.absorb(material, max_or_second((leaves ? entry.leave : shadow.distance) - enter, Real(0)));
+    }
+}
+
 template <class Real, class E, class Media, class Scene>
 CISTULA_HOST_NOINLINE void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                          ShadowSum<E>& sum) {
     if (shadow.ray.media.contains(index))
         shadow_exit<Real, E>(scene, index, shadow, sum);
+    else if (const uint32_t own_face = face_at_start(scene, index, shadow.ray); own_face != no_face)
+        shadow_entry_beside<Real, E>(scene, index, own_face, shadow, sum);
     else if (shadow.ray.from_solid != index && !misses_bounds(BoundingSphere<Real>::of(scene.solids[index]),
                                                               shadow.ray.origin, shadow.ray.direction, shadow.distance))
         shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
@@ -180,7 +203,8 @@ template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow,
                                     ShadowSum<E>& sum) {
-    if (!(c.t >= Real(0) && c.t < shadow.distance)) return;
+    const Real t = crossing_time(scene, triangle, c.t, shadow.ray);
+    if (!(t >= Real(0) && t < shadow.distance)) return;
     if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
     if constexpr (E::has(effect_lights_on_faces))
         if (lies_on(scene, *shadow.light, index, triangle)) return;
@@ -191,7 +215,7 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
     sum.cross(material);
     if constexpr (E::has(effect_absorption))
         if (solid.kind == SolidKind::mesh)
-            sum.absorb_rest(material, shadow.distance - c.t, c.enters() ? 1 : -1, scene.extent);
+            sum.absorb_rest(material, shadow.distance - t, c.enters() ? 1 : -1, scene.extent);
 }
 
 /// Adds what a cluster's triangles take from a light, for a ray that does not start on the cluster's flat sheet.

@@ -8,6 +8,18 @@
 
 namespace cistula {
 
+/// The outward normal of a triangle, given its own: that of its shared plane, if it has one.
+template <class Real>
+CISTULA_INLINE Vec3<Real> shared_normal(const SceneView<Real>& scene, uint32_t triangle, const Vec3<Real>& own) {
+    if (scene.triangle_planes.empty() || scene.triangle_planes[triangle] == no_plane) return own;
+    const Vec3<Real> normal = scene.shared_planes[scene.triangle_planes[triangle]].normal;
+    return dot(normal, own) > Real(0) ? normal : -normal;
+}
+template <class Real>
+CISTULA_INLINE const Vec3<Real>& shared_normal(const ConstantScene<Real>&, uint32_t, const Vec3<Real>& own) {
+    return own;
+}
+
 template <class Real>
 struct Surface {
     Vec3<Real> point;
@@ -43,7 +55,8 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
         return outward == hit.enters ? normal : -normal;
     }
     if constexpr (E::triangles) {
-        const Vec3<Real> normal = outward_normal(scene, hit.slot);
+        Vec3<Real> normal = outward_normal(scene, hit.slot);
+        if constexpr (E::has(effect_contacts)) normal = shared_normal(scene, face, normal);
         return hit.enters ? normal : -normal;
     } else {
         return Vec3<Real>();

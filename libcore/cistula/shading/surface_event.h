@@ -1,9 +1,9 @@
-// A surface event: a ray meets one or several faces that rounding cannot tell apart: which of their crossings is
-// shaded, and the media beyond them all. Light then passes from one touching body to the other without a gap between
-// them (docs/rules.md, 4), and rays that stay on the viewer's side are in the viewer's medium.
+// A surface event: a ray meets one face or several in one plane: which of their crossings is shaded, and the media
+// beyond them all. Light then passes from one touching body to the other without a gap between them (docs/rules.md, 4
+// and 11), and rays that stay on the viewer's side are in the viewer's medium.
 #pragma once
 
-#include "cistula/geometry/ray.h"
+#include "cistula/geometry/shared_plane.h"
 #include "cistula/shading/surface.h"
 
 namespace cistula {
@@ -18,12 +18,14 @@ struct SurfaceEvent {
     Media beyond;     // media behind all of them
     bool fits;        // whether `beyond` had room
     bool wrong_side;  // whether refused mesh crossings come before the first (Hit::wrong_side_t)
+    bool changes;     // whether a solid begins or ends here; else the ray goes straight on
 
     CISTULA_INLINE void begin(const Ray<Real, Media>& ray, const Hit<Real>& first) {
         hit = first;
         count = 0;
         beyond = ray.media;
         fits = true;
+        changes = true;
         wrong_side = first.wrong_side_t <= first.t;
         take(first);
     }
@@ -43,36 +45,41 @@ struct SurfaceEvent {
     }
 };
 
-/// Collects crossings of other solids that belong to the same event: those within 16 u M of the face. (A new ray
-/// starts up to 8 u M beyond a mesh, and the rounding of t is as large.)
-template <class Real, class Intersector, class Media, class Scene>
-CISTULA_INLINE void gather_touching(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
-                                    const Hit<Real>& hit, SurfaceEvent<Real, Media>& event) {
-    const Real cosine = magnitude(dot(normal_at(scene, hit), ray.direction));
-    const Real reach = hit.t + incidence<Real> * scene.extent / max_or_second(cosine, Real(0x1p-10));
-    // A mesh's two crossings at an edge may come in the wrong order: then both are taken.
-    const bool turned = hit.enters == ray.media.contains(key_solid(hit.key));
+/// Collects the crossings at exactly the same t, up to a sheet, and chooses what is shaded: the highest solid that
+/// begins or ends there (docs/rules.md, 11, line 6). Not inlined: few events have more than one crossing.
+template <class Real, class Intersector, class Media>
+CISTULA_NOINLINE void gather_shared(const Intersector& intersector, const Ray<Real, Media>& ray,
+                                    SurfaceEvent<Real, Media>& event) {
+    Hit<Real> hits[SurfaceEvent<Real, Media>::capacity];
+    hits[0] = event.hit;
     Ray<Real, Media> probe = ray;
     while (event.count < SurfaceEvent<Real, Media>::capacity) {
         probe.media = event.beyond;
         probe.after = event.last();
         const Hit<Real> next = intersector.closest(probe);
-        const uint32_t solid = key_solid(next.key);
-        if (!(next.t <= reach) || key_kind(next.key) == CrossingKind::sheet || (solid == key_solid(hit.key) && !turned))
-            break;
-        const bool higher = solid > key_solid(event.hit.key);
+        if (!(next.t == event.taken[0].t) || key_kind(next.key) == CrossingKind::sheet) break;
+        hits[event.count] = next;
         event.take(next);
-        if (higher) event.hit = next;
+    }
+    event.changes = false;
+    for (int i = 0; i < event.count; ++i) {
+        const uint32_t solid = key_solid(hits[i].key);
+        if (ray.media.contains(solid) == event.beyond.contains(solid)) continue;
+        if (event.changes && solid < key_solid(event.hit.key)) continue;
+        event.hit = hits[i];
+        event.changes = true;
     }
 }
 
 /// Finds the surface event at `hit`, the ray's next crossing.
-template <class Real, class Intersector, class Media, class Scene>
+template <class E, class Real, class Intersector, class Media, class Scene>
 CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                   const Hit<Real>& hit, SurfaceEvent<Real, Media>& event) {
     event.begin(ray, hit);
-    if constexpr (Media::contacts)
-        if (scene.solids[key_solid(hit.key)].may_touch) gather_touching(scene, intersector, ray, hit, event);
+    if constexpr (meets_contacts<E, Media>)
+        if (key_kind(hit.key) != CrossingKind::sheet &&
+            plane_of_face(scene, key_solid(hit.key), key_face(hit.key)) != no_plane)
+            gather_shared(intersector, ray, event);
 }
 
 }  // namespace cistula

@@ -47,7 +47,7 @@ class NextSurface {
                 sums_.add(branch.weight * light_or_background(visible));
                 return false;
             }
-            resolve_event(scene_, intersector_, branch.ray, hit, event);
+            resolve_event<E>(scene_, intersector_, branch.ray, hit, event);
             if (!event.fits) sums_.flag(flag_media_overflow);
             if (!invisible(branch.ray, event)) {
                 absorption.dim(scene_, branch.ray.media, event.hit.t, branch.weight);
@@ -98,6 +98,8 @@ class NextSurface {
         if constexpr (!E::has(effect_transmission | effect_insides)) {
             return false;
         } else {
+            if constexpr (meets_contacts<E, Media>)
+                if (!event.changes) return true;
             const uint32_t solid = key_solid(event.hit.key), medium = ray.media.medium();
             if (key_kind(event.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
             if (!is_clear(scene_, solid)) return false;

@@ -68,6 +68,7 @@ class RayTree {
             do {
                 if (!stack_.pop(branch)) return false;
             } while (!sums_.afford(branch.weight));
+            find_start_plane<E>(scene_, branch.ray);
             rays_.reflected += branch.mirrored;
             rays_.transmitted += 1 - branch.mirrored;
             return true;
@@ -83,8 +84,7 @@ class RayTree {
         if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, event, s);
         const Real local = scene_.materials[s.material].local;
         if (local > Real(0))
-            add_local_light<Real, E>(scene_, intersector_, branch.ray, event.hit, s, branch.weight * local, sums_,
-                                     rays_);
+            add_local_light<Real, E>(scene_, intersector_, branch.ray, event, s, branch.weight * local, sums_, rays_);
     }
 
     /// Pushes the heavier of the branch's children and then the lighter, which is followed next.
@@ -126,8 +126,10 @@ class RayTree {
         child.mirrored = !goes_through;
         if (!goes_through) {
             spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), event.hit, parent.ray.media);
+            correct_start(child.ray, parent.ray, event, s, false);
         } else if (split.bends) {
             spawn(child.ray, far_side<E>(scene_, event.hit, s.point, s.normal), split.through, event.hit, event.beyond);
+            correct_start(child.ray, parent.ray, event, s, true);
         } else {
             child.ray = parent.ray;
             if constexpr (lines_go_on<E>) child.no_light_ahead = parent.no_light_ahead;
@@ -135,6 +137,14 @@ class RayTree {
             line_.pass(child.ray, event, later);
         }
         return child;
+    }
+
+    /// Corrects a new ray that may start near a shared plane.
+    CISTULA_INLINE void correct_start(Ray<Real, Media>& ray, const Ray<Real, Media>& parent,
+                                      const SurfaceEvent<Real, Media>& event, const Surface<Real>& s,
+                                      bool beyond) const {
+        if (starts_at_contact<E>(scene_, event))
+            start_at_contact(scene_, parent, event, s.normal, beyond, ray.origin, ray.media);
     }
 
     const Scene& scene_;

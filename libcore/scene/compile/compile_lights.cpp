@@ -118,18 +118,6 @@ void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const N
     }
 }
 
-template <class Real>
-void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh, uint32_t solid,
-                             double extent, IncidentLists& incidents) {
-    const double tolerance = static_cast<double>(incidence<Real>) * extent;
-    for (size_t i = 0; i < lights.size(); ++i) {
-        if (!lights[i].lights()) continue;
-        const dvec3 p = rounded<Real>(lights[i].position);
-        for (uint32_t triangle = 0; triangle < mesh.size(); ++triangle)
-            if (near_triangle(mesh.triangle(triangle), p, tolerance)) incidents[i].push_back({solid, triangle});
-    }
-}
-
 std::string light_on_face(const SceneSource& source, const std::vector<NormalizedLight>& lights,
                           const IncidentLists& incidents) {
     for (size_t i = 0; i < lights.size(); ++i) {
@@ -140,14 +128,12 @@ std::string light_on_face(const SceneSource& source, const std::vector<Normalize
     return "";
 }
 
-#define CISTULA_INSTANTIATE(Real)                                                                                     \
-    template void find_convex_incidents<Real>(const std::vector<NormalizedLight>&, const std::vector<ConvexSolid>&,   \
-                                              double, IncidentLists&);                                                \
-    template void find_triangle_incidents<Real>(const std::vector<NormalizedLight>&, const NormalizedMesh&,           \
-                                                const Groups&, const Tree&, uint32_t, uint32_t, double,               \
-                                                IncidentLists&);                                                      \
-    template void find_triangle_incidents<Real>(const std::vector<NormalizedLight>&, const NormalizedMesh&, uint32_t, \
-                                                double, IncidentLists&);
+#define CISTULA_INSTANTIATE(Real)                                                                                   \
+    template void find_convex_incidents<Real>(const std::vector<NormalizedLight>&, const std::vector<ConvexSolid>&, \
+                                              double, IncidentLists&);                                              \
+    template void find_triangle_incidents<Real>(const std::vector<NormalizedLight>&, const NormalizedMesh&,         \
+                                                const Groups&, const Tree&, uint32_t, uint32_t, double,             \
+                                                IncidentLists&);
 CISTULA_INSTANTIATE(float)
 CISTULA_INSTANTIATE(double)
 #undef CISTULA_INSTANTIATE

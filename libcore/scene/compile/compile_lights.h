@@ -44,11 +44,6 @@ void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const N
                              const Groups& groups, const Tree& tree, uint32_t solid, uint32_t first_triangle,
                              double extent, IncidentLists& incidents);
 
-/// Adds a mesh's triangles on which lights lie, without a tree and in the mesh's own numbering.
-template <class Real>
-void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh, uint32_t solid,
-                             double extent, IncidentLists& incidents);
-
 /// Which light lies on a face of which object, in words for explain_effects; empty if none does.
 std::string light_on_face(const SceneSource& source, const std::vector<NormalizedLight>& lights,
                           const IncidentLists& incidents);

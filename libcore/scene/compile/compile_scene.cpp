@@ -17,6 +17,7 @@
 #include "scene/compile/radiance_bound.h"
 #include "scene/compile/required_effects.h"
 #include "scene/compile/scene_hash.h"
+#include "scene/compile/shared_planes.h"
 #include "scene/trees/light_tree.h"
 
 namespace cistula {
@@ -73,6 +74,8 @@ class Compiler {
             scene_.solids[i].material = source_.solids[i].material;
             if (!source_.solids[i].platonic) compile_mesh(i);
         }
+        contact_ = share_planes(scene_, convex_, boxes_, incidents_);
+        add_slabs();
         compile_shading();
         compile_lights();
         add_hulls();
@@ -93,19 +96,27 @@ class Compiler {
             Solid& solid = scene_.solids[convex.solid];
             solid = {};
             solid.kind = SolidKind::convex;
-            solid.first_slab = static_cast<uint32_t>(scene_.slabs.size());
-            solid.slab_count = static_cast<uint32_t>(convex.planes.size());
             for (const PlanePair& p : convex.planes) {
-                scene_.slabs.push_back({Vec3<Real>(p.normal), static_cast<Real>(p.low), static_cast<Real>(p.high)});
                 hash_.add(p.normal);
                 hash_.add(p.low);
                 hash_.add(p.high);
             }
-            group_slabs(solid);
             bound_sphere(convex, solid);
             hash_.add(convex.solid);
             scene_.convex.push_back(convex.solid);
             boxes_[convex.solid] = convex.box;
+        }
+    }
+
+    void add_slabs() {
+        for (const ConvexSolid& convex : convex_) {
+            Solid& solid = scene_.solids[convex.solid];
+            solid.first_slab = static_cast<uint32_t>(scene_.slabs.size());
+            solid.slab_count = static_cast<uint32_t>(convex.planes.size());
+            for (const PlanePair& p : convex.planes)
+                scene_.slabs.push_back({Vec3<Real>(p.normal), static_cast<Real>(p.low), static_cast<Real>(p.high)});
+            scene_.slab_planes.insert(scene_.slab_planes.end(), convex.face_planes.begin(), convex.face_planes.end());
+            group_slabs(solid);
         }
     }
 
@@ -351,8 +362,18 @@ class Compiler {
         for (size_t i = 0; i < source_.solids.size(); ++i)
             uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place, closed_[i],
                             source_.solids[i].platonic != nullptr});
-        scene_.effect_reasons = explain_effects(description_, uses, light_on_face(source_, lights_, incidents_));
+        scene_.effect_reasons =
+            explain_effects(description_, uses, light_on_face(source_, lights_, incidents_), contact());
         scene_.effects = required_effects(scene_.effect_reasons);
+    }
+
+    /// A sentence with the first two objects that touch; empty where none do.
+    std::string contact() const {
+        if (!contact_.found) return "";
+        const std::string &first = source_.solids[contact_.solids[0]].place,
+                          &second = source_.solids[contact_.solids[1]].place;
+        if (first == second) return "faces of " + first + " lie in one plane";
+        return "faces of " + first + " and " + second + " lie in one plane";
     }
 
     dvec3 scaled(const dvec3& radiance) const {
@@ -367,6 +388,7 @@ class Compiler {
     std::vector<ConvexSolid> convex_;
     std::vector<NormalizedLight> lights_;
     IncidentLists incidents_;
+    FirstContact contact_;
     std::vector<Box> boxes_;    // of each solid
     std::vector<bool> closed_;  // each solid has an inside
     uint32_t triangle_count_ = 0;

@@ -9,6 +9,7 @@ namespace cistula {
 namespace {
 
 constexpr double coplanar = 1e-12;
+constexpr double on_face = 1e-9;  // of the solid's size: far above the rounding of a vertex's distance from its planes
 
 bool close(const glm::dvec3& a, const glm::dvec3& b) {
     return magnitude(a.x - b.x) <= coplanar && magnitude(a.y - b.y) <= coplanar && magnitude(a.z - b.z) <= coplanar;
@@ -73,6 +74,24 @@ void merge_offsets(const std::vector<PlanePair*>& pairs, double tolerance) {
 }
 
 }  // namespace
+
+std::vector<glm::dvec3> ConvexSolid::face_corners(uint32_t face) const {
+    const PlanePair& pair = planes[face / 2];
+    const double offset = face % 2 == 1 ? pair.high : pair.low;
+    std::vector<glm::dvec3> corners;
+    if (offset == -INFINITY) return corners;
+    const glm::dvec3 size = box.high - box.low;
+    for (const glm::dvec3& p : vertices)
+        if (magnitude(dot(pair.normal, p) - offset) <= on_face * largest_component(size)) corners.push_back(p);
+    glm::dvec3 middle(0);
+    for (const glm::dvec3& p : corners) middle += p / double(corners.size());
+    const glm::dvec3 right = corners.empty() ? glm::dvec3(0) : corners[0] - middle;
+    const glm::dvec3 up = cross(face % 2 == 1 ? pair.normal : -pair.normal, right);
+    const auto angle = [&](const glm::dvec3& p) { return std::atan2(dot(up, p - middle), dot(right, p - middle)); };
+    std::sort(corners.begin(), corners.end(),
+              [&](const glm::dvec3& a, const glm::dvec3& b) { return angle(a) < angle(b); });
+    return corners;
+}
 
 ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const SceneNormalization& normalization) {
     const PlatonicShape& shape = platonic_shape(object.solid);

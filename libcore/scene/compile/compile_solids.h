@@ -23,7 +23,11 @@ struct ConvexSolid {
     uint32_t solid = 0;  // index in the scene
     std::vector<glm::dvec3> vertices;
     std::vector<PlanePair> planes;
+    std::vector<uint32_t> face_planes;  // the shared plane of each face 2 i + side, or none (shared_planes.h)
     Box box;
+
+    /// The corners of a face in cyclic order; none for the missing side of a single plane.
+    std::vector<glm::dvec3> face_corners(uint32_t face) const;
 };
 
 /// A solid's planes, rotated, then translated and scaled into the frame.

@@ -81,6 +81,11 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.solids = span_of(solids);
     v.slabs = span_of(slabs);
     v.slab_groups = span_of(slab_groups);
+    v.shared_planes = span_of(shared_planes);
+    v.slab_planes = span_of(slab_planes);
+    v.triangle_planes = span_of(triangle_planes);
+    v.near_planes = span_of(near_planes);
+    v.plane_solids = span_of(plane_solids);
     v.convex = span_of(convex);
     v.clusters = span_of(clusters);
     v.uvs = span_of(uvs);
@@ -105,9 +110,10 @@ size_t CompiledScene<Real>::memory() const {
     size_t outlined = bytes_of(hulls);
     for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
     return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) +
-           bytes_of(clusters) + bytes_of(uvs) + bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) +
-           bytes_of(visible_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
-           bytes_of(visible_light_tree);
+           bytes_of(shared_planes) + bytes_of(slab_planes) + bytes_of(triangle_planes) + bytes_of(near_planes) +
+           bytes_of(plane_solids) + bytes_of(clusters) + bytes_of(uvs) + bytes_of(materials) + bytes_of(lights) +
+           bytes_of(incidents) + bytes_of(visible_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) +
+           bytes_of(tree_items) + bytes_of(visible_light_tree);
 }
 
 template <class Real>

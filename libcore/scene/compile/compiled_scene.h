@@ -18,6 +18,8 @@ struct CompiledScene {
     std::vector<Solid> solids;
     std::vector<Slab<Real>> slabs;
     std::vector<SlabGroup<Real>> slab_groups;
+    std::vector<SharedPlane<Real>> shared_planes;  // with the next four: empty where no faces coincide
+    std::vector<uint32_t> slab_planes, triangle_planes, near_planes, plane_solids;
     std::vector<uint32_t> convex;
     std::vector<Cluster<Real>> clusters;
     std::vector<Vec2<Real>> uvs;

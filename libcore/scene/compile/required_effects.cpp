@@ -3,9 +3,8 @@
 #include <bit>
 #include <sstream>
 
-#include "scene/compile/compile_lights.h"
 #include "scene/compile/compile_materials.h"
-#include "scene/compile/mesh_topology.h"
+#include "scene/compile/compiled_scene.h"
 
 namespace cistula {
 namespace {
@@ -208,7 +207,7 @@ Facts find_facts(const SceneDescription& scene, const std::vector<MaterialUse>& 
 }  // namespace
 
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
-                                          const std::string& light_on_face) {
+                                          const std::string& light_on_face, const std::string& contact) {
     const std::vector<SceneLight> lights = all_lights(scene);
     const Facts facts = find_facts(scene, uses, lights);
     std::vector<EffectReason> reasons(effect_count);
@@ -223,33 +222,12 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene, const s
     for (const MaterialRow& row : material_rows) put(row.effect, row.premise, cause(row, uses, facts), row.otherwise);
     for (const LightRow& row : light_rows) put(row.effect, row.premise, cause(row, lights), row.otherwise);
     put(effect_lights_on_faces, Premise::shown_light, light_on_face, "no lamp lies on a face");
+    put(effect_contacts, Premise::none, contact, "no faces of two objects lie in one plane");
     return reasons;
 }
 
 std::vector<EffectReason> explain_effects(const SceneDescription& scene) {
-    const SceneSource source = gather_scene(scene);
-    const SceneNormalization normalization = find_normalization(source);
-    std::vector<ConvexSolid> convex;
-    for (uint32_t i = 0; i < source.solids.size(); ++i)
-        if (source.solids[i].platonic) convex.push_back(convex_solid(*source.solids[i].platonic, i, normalization));
-    merge_coplanar(convex, normalization.extent);
-    const std::vector<NormalizedLight> lights = normalize_lights(source, normalization, convex);
-    IncidentLists incidents(lights.size());
-    find_convex_incidents<float>(lights, convex, normalization.extent, incidents);
-    std::vector<MaterialUse> uses;
-    for (uint32_t i = 0; i < source.solids.size(); ++i) {
-        const SourceSolid& solid = source.solids[i];
-        bool closed = true;
-        if (!solid.platonic) {
-            const MeshTopology topology = find_topology(solid.mesh);
-            closed = topology.closed;
-            if (light_on_face(source, lights, incidents).empty())  // one is enough, and meshes may be large
-                find_triangle_incidents<float>(lights, NormalizedMesh(solid.mesh, topology, normalization, true), i,
-                                               normalization.extent, incidents);
-        }
-        uses.push_back({&source.materials[solid.material], solid.place, closed, solid.platonic != nullptr});
-    }
-    return explain_effects(scene, uses, light_on_face(source, lights, incidents));
+    return compile_scene<float>(scene)->effect_reasons;
 }
 
 std::vector<std::string> names_of_effects(uint32_t mask) {

@@ -20,11 +20,11 @@ struct MaterialUse {
 
 /// The reasons for all effects, in bit order. `uses` in file order; the lights considered give light or are visible.
 /// `light_on_face`: which light lies on which face ("the light /lights/0 lies on a face of /objects/2"); empty: none.
+/// `contact`: which objects have faces in one plane; empty: none.
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
-                                          const std::string& light_on_face);
+                                          const std::string& light_on_face, const std::string& contact);
 
-/// The reasons for all effects of a scene. Opens its meshes but no textures; whether a light lies on a face is decided
-/// in single precision. Throws Error as compile_scene does.
+/// The reasons for all effects of a scene, compiled in single precision. Throws Error as compile_scene does.
 std::vector<EffectReason> explain_effects(const SceneDescription& scene);
 
 /// The names of the effects in a mask, in bit order.

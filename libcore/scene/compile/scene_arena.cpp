@@ -12,6 +12,11 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
     visit(view.solids);
     visit(view.slabs);
     visit(view.slab_groups);
+    visit(view.shared_planes);
+    visit(view.slab_planes);
+    visit(view.triangle_planes);
+    visit(view.near_planes);
+    visit(view.plane_solids);
     visit(view.convex);
     visit(view.clusters);
     visit(view.facets);

@@ -1,0 +1,177 @@
+// Rays that start where bodies share a plane: on which side of every plane near the start, and inside which solids
+// (docs/rules.md, 11, lines 8 to 13). What the parent ray knows decides; the rounded place of the start never does.
+#pragma once
+
+#include "cistula/geometry/shared_plane.h"
+#include "cistula/shading/surface_event.h"
+
+namespace cistula {
+
+/// Distances in units of a plane's slack: of a start from its plane, and within which another plane is near.
+template <class Real>
+inline constexpr Real start_lift = Real(8);
+template <class Real>
+inline constexpr Real near_start = Real(32);
+template <class Real>
+inline constexpr Real deep_inside = Real(16);
+
+/// On which side of a shared plane a convex solid lies: 1 where the plane's normal points, -1 on the other side, 0 if
+/// it has no face there.
+template <class Real>
+CISTULA_INLINE int inner_side(const SceneView<Real>& scene, uint32_t index, uint32_t plane) {
+    const Solid& solid = scene.solids[index];
+    if (solid.kind != SolidKind::convex) return 0;
+    const uint32_t face = face_on(scene, solid, plane);
+    if (face == no_face) return 0;
+    const HalfSpace<Real> half = HalfSpace<Real>::of(scene.slabs[solid.first_slab + face / 2], face & 1u);
+    return dot(half.normal, scene.shared_planes[plane].normal) > Real(0) ? -1 : 1;
+}
+
+/// The start of a ray from a surface event.
+template <class Real, class Media>
+class ContactStart {
+  public:
+    /// `beyond`: the ray goes through the face; else it stays on the viewer's side. `origin` and `media` are those of a
+    /// start without contacts.
+    CISTULA_INLINE ContactStart(const SceneView<Real>& scene, const Ray<Real, Media>& parent,
+                                const SurfaceEvent<Real, Media>& event, const Vec3<Real>& normal, bool beyond,
+                                Vec3<Real>& origin, Media& media)
+        : scene_(scene),
+          parent_(parent),
+          event_(event),
+          hit_(event.hit),
+          solid_(scene.solids[key_solid(event.hit.key)]),
+          normal_(beyond ? -normal : normal),
+          origin_(origin),
+          media_(media) {}
+
+    CISTULA_INLINE void find() {
+        media_.drop_negative();
+        const uint32_t own = plane_of_face(scene_, key_solid(hit_.key), key_face(hit_.key));
+        Vec3<Real> met = origin_;
+        if (own != no_plane) {
+            const SharedPlane<Real>& plane = scene_.shared_planes[own];
+            met = along(parent_.origin, hit_.t, parent_.direction);
+            origin_ = along(met, start_lift<Real> * plane.slack, normal_);
+            drop_beyond(own, own_side(plane));
+        }
+        bool near = false;
+        for (int round = 0; round < 2; ++round)  // a push off one plane may bring the start near another
+            for (uint32_t i = 0; i < solid_.near_count; ++i) {
+                const uint32_t plane = scene_.near_planes[solid_.first_near + i];
+                if (plane != own) near |= leave_plane(plane, met);
+            }
+        if (own != no_plane && near) add_containing(own);
+    }
+
+  private:
+    CISTULA_INLINE int own_side(const SharedPlane<Real>& plane) const {
+        return dot(normal_, plane.normal) > Real(0) ? 1 : -1;
+    }
+
+    /// Moves the start off another plane if that is near, and removes the solids on its other side.
+    CISTULA_INLINE bool leave_plane(uint32_t index, const Vec3<Real>& met) {
+        const SharedPlane<Real>& plane = scene_.shared_planes[index];
+        const Real near = near_start<Real> * plane.slack;
+        const Real off = distance_from(plane, origin_);
+        if (magnitude(off) > near && magnitude(distance_from(plane, met)) > near) return false;
+        const int side = side_of(index, plane);
+        drop_beyond(index, side);
+        if (off * Real(side) < near) origin_ = along(origin_, near * Real(side) - off, plane.normal);
+        return true;
+    }
+
+    /// The side of a near plane on which the ray starts (line 11).
+    CISTULA_INLINE int side_of(uint32_t index, const SharedPlane<Real>& plane) const {
+        int side = 0;
+        if (solid_.kind != SolidKind::convex && scene_.triangle_planes[key_face(hit_.key)] != index)
+            side = side_of_triangle(plane);
+        if (side == 0 && key_kind(hit_.key) != CrossingKind::sheet)
+            side = inner_side(scene_, key_solid(hit_.key), index);
+        for (int i = 0; i < event_.count && side == 0; ++i)
+            if (key_kind(event_.taken[i].key) != CrossingKind::sheet)
+                side = inner_side(scene_, key_solid(event_.taken[i].key), index);
+        media_.for_each([&](uint32_t solid, int) {
+            if (side == 0) side = inner_side(scene_, solid, index);
+        });
+        if (side != 0) return side;
+        const Real slope = dot(plane.normal, parent_.direction);
+        if (parent_.from_plane == index) return slope > Real(0) ? 1 : -1;
+        if (magnitude(slope) < least_slope<Real>) return distance_from(plane, parent_.origin) > Real(0) ? 1 : -1;
+        const bool ahead = plane_time(plane, parent_.origin, parent_.direction, Real(0)) >= hit_.t;
+        return ahead == (slope > Real(0)) ? -1 : 1;
+    }
+
+    /// The side on which all corners of the triangle that was hit lie, or 0.
+    CISTULA_INLINE int side_of_triangle(const SharedPlane<Real>& plane) const {
+        Vec3<Real> corner[3];
+        triangle_corners(scene_, hit_.slot, corner);
+        bool above = false, below = false;
+        for (int c = 0; c < 3; ++c) {
+            const Real off = distance_from(plane, corner[c]);
+            above |= off > near_start<Real> * plane.slack;
+            below |= off < -near_start<Real> * plane.slack;
+        }
+        return above == below ? 0 : above ? 1 : -1;
+    }
+
+    /// Removes the solids that end at a plane, for a start on the other side of it (line 8).
+    CISTULA_INLINE void drop_beyond(uint32_t plane, int side) {
+        Media kept = media_;
+        media_.for_each([&](uint32_t solid, int count) {
+            if (inner_side(scene_, solid, plane) == -side) kept.add(solid, -count);
+        });
+        media_ = kept;
+    }
+
+    /// Adds the convex solids that begin at the start's plane and surely contain it (line 13).
+    CISTULA_INLINE void add_containing(uint32_t own) {
+        const SharedPlane<Real>& plane = scene_.shared_planes[own];
+        for (uint32_t i = 0; i < plane.solid_count; ++i) {
+            const uint32_t index = scene_.plane_solids[plane.first_solid + i];
+            if (media_.contains(index) || inner_side(scene_, index, own) != own_side(plane)) continue;
+            if (contains_start(scene_.solids[index], own, plane.slack)) media_.add(index, 1);
+        }
+    }
+
+    CISTULA_INLINE bool contains_start(const Solid& solid, uint32_t own, Real slack) const {
+        const uint32_t own_face = face_on(scene_, solid, own);
+        for (uint32_t face = 0; face < 2 * solid.slab_count; ++face) {
+            const Slab<Real>& slab = scene_.slabs[solid.first_slab + face / 2];
+            if (face == own_face || (face % 2 == 0 && slab.low == -RealTraits<Real>::infinity)) continue;
+            if (!(HalfSpace<Real>::of(slab, face & 1u).outside(origin_) < -deep_inside<Real> * slack)) return false;
+        }
+        return true;
+    }
+
+    const SceneView<Real>& scene_;
+    const Ray<Real, Media>& parent_;
+    const SurfaceEvent<Real, Media>& event_;
+    const Hit<Real>& hit_;
+    const Solid& solid_;
+    const Vec3<Real> normal_;  // toward the ray's side
+    Vec3<Real>& origin_;
+    Media& media_;
+};
+
+/// Whether rays from a surface event may start near a shared plane.
+template <class E, class Real, class Media, class Scene>
+CISTULA_INLINE bool starts_at_contact(const Scene& scene, const SurfaceEvent<Real, Media>& event) {
+    if constexpr (meets_contacts<E, Media>)
+        return scene.solids[key_solid(event.hit.key)].near_count != 0;
+    else
+        return false;
+}
+
+/// Corrects the origin and the media of a ray from a surface event for which starts_at_contact() holds.
+template <class Real, class Media>
+CISTULA_NOINLINE void start_at_contact(const SceneView<Real>& scene, const Ray<Real, Media>& parent,
+                                       const SurfaceEvent<Real, Media>& event, const Vec3<Real>& normal, bool beyond,
+                                       Vec3<Real>& origin, Media& media) {
+    ContactStart<Real, Media>(scene, parent, event, normal, beyond, origin, media).find();
+}
+template <class Real, class Media>
+CISTULA_INLINE void start_at_contact(const ConstantScene<Real>&, const Ray<Real, Media>&,
+                                     const SurfaceEvent<Real, Media>&, const Vec3<Real>&, bool, Vec3<Real>&, Media&) {}
+
+}  // namespace cistula
