@@ -51,7 +51,9 @@ struct CellBorders {
             const int bits = draw.between(0, 30);  // to 1.07e9 cells out
             const int64_t border = int64_t(draw.bits() >> (63 - bits)) - (int64_t(1) << bits);
             const Real at = Real(double(border) / factor);
-            uv[axis] = draw.one_in(4) ? at : draw.near(at, 1);
+            const Real least = RealTraits<Real>::least_normal;  // numbers by bits end at 0
+            const Real beside = at == Real(0) ? (draw.one_in(2) ? least : -least) : draw.near(at, 1);
+            uv[axis] = draw.one_in(4) ? at : beside;
             if (draw.one_in(8)) uv[axis] += draw.unit<Real>();
             cell[axis] = whole_below(double(uv[axis]) * factor);
         }

@@ -259,15 +259,23 @@ CISTULA_INLINE bool misses_flat_sheet(const Scene& scene, uint32_t cluster, cons
     return misses_flat_sheet(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
 }
 
+/// The largest distance along a line between a triangle's own crossing and its shared plane's: half of what trees
+/// search beyond a box (tree_slack_absolute). Only lines that are flatter over the plane than its distance from the
+/// triangle over this, 2^-9 for 2 u M in float, exceed it; they meet the triangle at its own crossing.
+template <class Real>
+inline constexpr Real contact_reach = Real(0x1p-14);
+
 /// The t of an accepted crossing: that of the shared plane on which the triangle lies, if any; -1 if the ray starts on
-/// that plane, whose surfaces it does not meet.
+/// that plane, whose surfaces it does not meet. `own`: the triangle's.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t triangle, Real own, const Ray<Real, Media>& ray) {
     if constexpr (Media::contacts)
         if (!scene.triangle_planes.empty())
-            if (const uint32_t plane = scene.triangle_planes[triangle]; plane != no_plane)
-                return plane == ray.from_plane ? Real(-1)
-                                               : plane_time(scene.shared_planes[plane], ray.origin, ray.direction, own);
+            if (const uint32_t plane = scene.triangle_planes[triangle]; plane != no_plane) {
+                if (plane == ray.from_plane) return Real(-1);
+                const Real t = plane_time(scene.shared_planes[plane], ray.origin, ray.direction, own);
+                if (magnitude(t - own) <= contact_reach<Real>) return t;
+            }
     return own;
 }
 

@@ -41,6 +41,7 @@ class ContactStart {
           event_(event),
           hit_(event.hit),
           solid_(scene.solids[key_solid(event.hit.key)]),
+          inside_mesh_(solid_.kind == SolidKind::mesh && event.hit.enters == beyond),
           normal_(beyond ? -normal : normal),
           origin_(origin),
           media_(media) {}
@@ -52,7 +53,7 @@ class ContactStart {
         if (own != no_plane) {
             const SharedPlane<Real>& plane = scene_.shared_planes[own];
             met = along(parent_.origin, hit_.t, parent_.direction);
-            origin_ = along(met, start_lift<Real> * plane.slack, normal_);
+            if (!inside_mesh_) origin_ = along(met, start_lift<Real> * plane.slack, normal_);
             drop_beyond(own, own_side(plane));
         }
         bool near = false;
@@ -149,6 +150,7 @@ class ContactStart {
     const SurfaceEvent<Real, Media>& event_;
     const Hit<Real>& hit_;
     const Solid& solid_;
+    const bool inside_mesh_;   // the ray starts inside the mesh that was hit: its start is the mesh's own
     const Vec3<Real> normal_;  // toward the ray's side
     Vec3<Real>& origin_;
     Media& media_;

@@ -1,0 +1,240 @@
+// Scenes of flat bodies that touch, turned and moved at random, and what is true about every ray in them: computed from
+// the ideal bodies, not from what the tracer knows.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "scene/compile/compiled_scene.h"
+#include "testing/support/scene.h"
+
+namespace cistula::test {
+
+/// An orthonormal basis: the columns of a rotation.
+struct Basis {
+    dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+
+    dvec3 operator()(const dvec3& p) const { return x * p.x + y * p.y + z * p.z; }
+    /// The basis turned about its own z by an angle.
+    Basis turned(double radians) const {
+        const double s = std::sin(radians), c = std::cos(radians);
+        return {x * c + y * s, y * c - x * s, z};
+    }
+    /// The angles in degrees of class Rotation.
+    dvec3 degrees() const {
+        constexpr double degree = 180 / 3.14159265358979323846;
+        const double b = std::asin(max_or_second(min_or_second(-x.z, 1.0), -1.0));
+        return {std::atan2(y.z, z.z) * degree, b * degree, std::atan2(x.y, x.x) * degree};
+    }
+    static Basis random(Random& random) {
+        const dvec3 x = random.direction(), y = normalized(cross(random.direction(), x));
+        return {x, y, cross(x, y)};
+    }
+};
+
+/// An ideal body: the points with normal.p <= offset for all planes; or a parallelogram.
+struct IdealBody {
+    std::vector<dvec3> normals;
+    std::vector<double> offsets;
+    bool sheet = false;
+    dvec3 corner{0}, along{0}, across{0};  // of a sheet
+
+    /// How deep a point lies inside; negative outside.
+    double depth(const dvec3& p) const {
+        double least = 1e300;
+        for (size_t i = 0; i < normals.size(); ++i) least = min_or_second(least, offsets[i] - dot(normals[i], p));
+        return least;
+    }
+    /// How far inside the sheet's border a point of its plane lies.
+    double inside_border(const dvec3& p) const {
+        const double a = length(along), b = length(across), u = dot(p - corner, along) / a,
+                     v = dot(p - corner, across) / b;
+        return min_or_second(min_or_second(u, a - u), min_or_second(v, b - v));
+    }
+    dvec3 sheet_normal() const { return normalized(cross(along, across)); }
+};
+
+enum class BodyKind { planes, mesh };
+
+/// A scene under construction, in coordinates that `basis` turns and `origin` moves.
+class ContactScene {
+  public:
+    SceneDescription scene;
+    std::vector<IdealBody> bodies;  // by solid
+
+    ContactScene(const Basis& basis, const dvec3& origin) : basis_(basis), origin_(origin) {}
+
+    /// A cube of side `side` standing on the height z = `low`, turned by an angle about the vertical through its
+    /// middle.
+    void cube(double x, double y, double low, double side, double turn, int material, BodyKind kind) {
+        const Basis own = basis_.turned(turn);
+        const dvec3 middle = place({x, y, low + side / 2});
+        IdealBody body;
+        for (const dvec3& n : {own.x, own.y, own.z})
+            for (const double sign : {-1.0, 1.0}) {
+                body.normals.push_back(n * sign);
+                body.offsets.push_back(dot(n * sign, middle) + side / 2);
+            }
+        bodies.push_back(body);
+        const double radius = side / 2 * square_root(3.0);
+        if (kind == BodyKind::planes)
+            add_solid(scene, PlatonicSolid::cube, middle, radius, own.degrees(), material);
+        else
+            add_object(scene, solid_mesh(PlatonicSolid::cube, middle, radius, own.degrees()), material);
+    }
+
+    /// The parallelogram corner, corner + along, corner + along + across, corner + across.
+    void quad(const dvec3& corner, const dvec3& along, const dvec3& across, int material) {
+        IdealBody body;
+        body.sheet = true;
+        body.corner = place(corner), body.along = basis_(along), body.across = basis_(across);
+        bodies.push_back(body);
+        TrianglesObject quad;
+        quad.vertices = {body.corner, body.corner + body.along, body.corner + body.along + body.across,
+                         body.corner + body.across};
+        quad.triangles = {{0, 1, 2}, {0, 2, 3}};
+        add_object(scene, quad, material);
+    }
+
+    dvec3 place(const dvec3& p) const { return origin_ + basis_(p); }
+
+  private:
+    Basis basis_;
+    dvec3 origin_;
+};
+
+/// Counts of what was asked, and of answers that the ideal bodies contradict.
+struct ContactCounts {
+    size_t lines = 0, shadows = 0;
+    size_t media = 0;        // a solid is around a line that lies well outside it, or the other way round
+    size_t passed = 0;       // a line goes through a sheet
+    size_t false_sheet = 0;  // a sheet is hit well outside its border
+    size_t later = 0;        // a sheet is hit although a later one lies on it
+    size_t shaded = 0;       // a shadow ray's faces are miscounted
+};
+
+/// Checks every query of a ray tree against the ideal bodies. Every material must let half of all light pass.
+template <class Real, class Inner>
+class CheckedIntersector {
+  public:
+    using Media = typename Inner::Media;
+    using Scene = typename Inner::Scene;
+
+    CheckedIntersector(const CompiledScene<Real>& compiled, const std::vector<IdealBody>& bodies, const Inner& inner,
+                       ContactCounts& counts)
+        : scene(inner.scene), inner_(inner), compiled_(compiled), bodies_(bodies), counts_(counts) {}
+
+    const Scene& scene;
+
+    template <class E = Effects<all_effects>>
+    Hit<Real> closest(const Ray<Real, Media>& ray) const {
+        const Hit<Real> hit = inner_.template closest<E>(ray);
+        check(ray, hit);
+        return hit;
+    }
+
+    template <class E>
+    Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
+        const Throughput<Real, E> arrives = inner_.template transmittance<E>(shadow);
+        ++counts_.shadows;
+        int certain = 0, possible = 0;
+        const dvec3 from = world(shadow.ray.origin);
+        const dvec3 to = world(along(shadow.ray.origin, shadow.distance, shadow.ray.direction));
+        for (uint32_t i = 0; i < bodies_.size(); ++i) {
+            const Crossings crossings = crossings_of(bodies_[i], from, to, shadow.ray.media.contains(i));
+            certain += crossings.certain, possible += crossings.possible;
+        }
+        const double halvings = -std::log2(double(largest_component(Vec3<Real>(arrives))));
+        if (halvings < certain - 0.01 || halvings > possible + 0.01) ++counts_.shaded;
+        return arrives;
+    }
+
+  private:
+    struct Crossings {
+        int certain, possible;
+    };
+
+    double tolerance() const {
+        return 512 * double(RealTraits<Real>::unit) * double(compiled_.extent) / std::ldexp(1.0, compiled_.scale);
+    }
+    dvec3 world(const Vec3<Real>& p) const {
+        return dvec3(Vec3<double>(p)) / std::ldexp(1.0, compiled_.scale) + compiled_.center;
+    }
+
+    /// The faces of a body that a segment crosses, for the body grown and shrunk by the tolerance. `listed`: the
+    /// segment starts inside by what its ray knows, which decides where the start is on a face.
+    Crossings crossings_of(const IdealBody& body, const dvec3& from, const dvec3& to, bool listed) const {
+        if (body.sheet) {
+            const int crossed = crosses(body, from, to);
+            return {crossed == 1, crossed != 0};
+        }
+        const double begin = body.depth(from), end = body.depth(to);
+        const bool grown = chord(body, from, to, tolerance()), shrunk = chord(body, from, to, -tolerance());
+        if (magnitude(begin) > tolerance() && (begin > 0) != listed) ++counts_.media;
+        if (listed && !grown) ++counts_.media;
+        if (magnitude(end) < tolerance()) return {0, 2};
+        if (listed) return end > 0 ? Crossings{0, 0} : Crossings{1, 1};
+        if (end > 0) return {1, 1};
+        return {shrunk ? 2 : 0, grown ? 2 : 0};
+    }
+    static bool chord(const IdealBody& body, const dvec3& from, const dvec3& to, double grown) {
+        double enter = 0, leave = 1;
+        for (size_t i = 0; i < body.normals.size(); ++i) {
+            const double a = dot(body.normals[i], from) - body.offsets[i] - grown,
+                         b = dot(body.normals[i], to) - body.offsets[i] - grown;
+            if (a > 0 && b > 0) return false;
+            if (a > 0) enter = max_or_second(enter, a / (a - b));
+            if (b > 0) leave = min_or_second(leave, a / (a - b));
+        }
+        return enter < leave;
+    }
+    /// Whether a segment crosses a sheet: 1 surely, 0 surely not, -1 near its border or at an end.
+    int crosses(const IdealBody& sheet, const dvec3& from, const dvec3& to) const {
+        const dvec3 n = sheet.sheet_normal();
+        const double a = dot(n, from - sheet.corner), b = dot(n, to - sheet.corner);
+        if (magnitude(a) < tolerance() || magnitude(b) < tolerance()) return -1;
+        if ((a > 0) == (b > 0)) return 0;
+        const double inside = sheet.inside_border(from + (to - from) * (a / (a - b)));
+        const double border = tolerance() * length(to - from) / magnitude(a - b);
+        return inside > border ? 1 : inside < -border ? 0 : -1;
+    }
+
+    void check(const Ray<Real, Media>& ray, const Hit<Real>& hit) const {
+        ++counts_.lines;
+        const Real begin = max_or_second(ray.after.t, Real(0));
+        const Real end = hit.found() ? hit.t : Real(8);
+        const dvec3 from = world(along(ray.origin, begin, ray.direction)),
+                    to = world(along(ray.origin, end, ray.direction));
+        if (length(to - from) < 4 * tolerance()) return;
+        for (uint32_t i = 0; i < bodies_.size(); ++i) {
+            if (bodies_[i].sheet) {
+                counts_.passed += crosses(bodies_[i], from, to) == 1;
+                continue;
+            }
+            bool wrong = false;
+            for (const double share : {0.01, 0.3, 0.5, 0.9, 0.99}) {
+                const double depth = bodies_[i].depth(from + (to - from) * share);
+                if (magnitude(depth) > tolerance()) wrong |= (depth > 0) != ray.media.contains(i);
+            }
+            counts_.media += wrong;
+        }
+        if (hit.found() && key_kind(hit.key) == CrossingKind::sheet) check_sheet(ray, hit, to);
+    }
+    void check_sheet(const Ray<Real, Media>& ray, const Hit<Real>& hit, const dvec3& at) const {
+        const uint32_t met = key_solid(hit.key);
+        const double slant = magnitude(dot(bodies_[met].sheet_normal(), dvec3(Vec3<double>(ray.direction))));
+        const double border = tolerance() / max_or_second(slant, 1e-3);
+        counts_.false_sheet += bodies_[met].inside_border(at) < -border;
+        for (uint32_t i = met + 1; i < bodies_.size(); ++i)
+            if (bodies_[i].sheet && magnitude(dot(bodies_[i].sheet_normal(), at - bodies_[i].corner)) < tolerance() &&
+                magnitude(dot(bodies_[i].sheet_normal(), bodies_[met].sheet_normal())) > 0.999)
+                counts_.later += ray.fresh() && bodies_[i].inside_border(at) > border;
+    }
+
+    const Inner& inner_;
+    const CompiledScene<Real>& compiled_;
+    const std::vector<IdealBody>& bodies_;
+    ContactCounts& counts_;
+};
+
+}  // namespace cistula::test
