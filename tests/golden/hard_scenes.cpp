@@ -146,6 +146,22 @@ TYPED_TEST(HardScenes, CopiesAndTrianglesWithoutAreaAreNotSeen) {
     EXPECT_EQ(this->differing(with, this->render(scene)), 0u);
 }
 
+/// The faces that come first make the same meshes alone.
+TYPED_TEST(HardScenes, DoubledFacesAreSeenOnce) {
+    SceneDescription scene = load("doubled");
+    const Film with = this->render(scene);
+    const auto triangles = [&](size_t object) -> auto& {
+        return std::get<TrianglesObject>(scene.objects[object].shape).triangles;
+    };
+    ASSERT_EQ(triangles(1).size(), 48u);
+    for (size_t i = 0; i < 24; ++i) triangles(1)[i] = triangles(1)[2 * i];
+    triangles(1).resize(24);
+    ASSERT_EQ(triangles(2).size(), 32u);
+    triangles(2).resize(16);
+    EXPECT_TRUE(compile_scene<TypeParam>(scene)->warnings.empty());
+    EXPECT_EQ(this->differing(with, this->render(scene)), 0u);
+}
+
 TYPED_TEST(HardScenes, HugeAndTinyAreOnePicture) {
     const Film huge = this->render(load("huge"));
     Film tiny = this->render(load("tiny"));

@@ -260,6 +260,9 @@ class Compiler {
         const std::string place = solid.place + ": " + solid.name + ": ";
         if (const std::string left_out = topology.left_out(); !left_out.empty())
             scene_.warnings.push_back(place + left_out);
+        if (const uint32_t doubled = solid.mesh.doubled_polygons + topology.doubled; doubled > 0)
+            scene_.warnings.push_back(place + "merged " + std::to_string(doubled) +
+                                      (doubled == 1 ? " face" : " faces") + " with the corners of an earlier one");
         const double index = source_.materials[solid.material].index;
         const dvec3 absorption = source_.materials[solid.material].absorption;
         if (!topology.closed && (index != 1 || largest_component(absorption) > 0))

@@ -2,36 +2,56 @@
 
 #include <algorithm>
 #include <atomic>
+#include <tuple>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
+
+#include "scene/description/weld.h"
 
 namespace cistula {
 namespace {
 
 using glm::dvec3;
-constexpr uint32_t no_vertex = 0xffffffffu;
 
-/// For every vertex the lowest-numbered one at its position; no_vertex if it is not finite.
-std::vector<uint32_t> weld(const MeshSource& mesh) {
-    const auto& v = mesh.vertices;
-    std::vector<uint32_t> order, welded(v.size(), no_vertex);
-    order.reserve(v.size());
-    for (uint32_t i = 0; i < v.size(); ++i)
-        if (is_finite(v[i])) order.push_back(i);
-    tbb::parallel_sort(order.begin(), order.end(), [&v](uint32_t a, uint32_t b) {
-        if (v[a].x != v[b].x) return v[a].x < v[b].x;
-        if (v[a].y != v[b].y) return v[a].y < v[b].y;
-        if (v[a].z != v[b].z) return v[a].z < v[b].z;
-        return a < b;
+/// A triangle, stored in the bucket of its lowest vertex.
+struct BucketTriangle {
+    uint32_t middle_vertex, high_vertex, number;
+};
+
+/// For every triangle 1 if an earlier one has the same three vertices in any order, else 0.
+std::vector<uint8_t> doubled_triangles(const MeshSource& mesh, const std::vector<uint32_t>& welded) {
+    const auto total = static_cast<uint32_t>(mesh.triangles.size());
+    const auto sorted = [&](uint32_t triangle) {
+        const auto& t = mesh.triangles[triangle];
+        std::array<uint32_t, 3> corners{welded[t[0]], welded[t[1]], welded[t[2]]};
+        std::sort(corners.begin(), corners.end());
+        return corners;
+    };
+    std::vector<uint32_t> first(mesh.vertices.size() + 1, 0);
+    for (uint32_t t = 0; t < total; ++t)
+        if (const auto corners = sorted(t); corners[2] != no_vertex) ++first[corners[0]];
+    uint32_t sum = 0;
+    for (uint32_t& f : first) sum += f, f = sum;
+    std::vector<BucketTriangle> triangles(sum);
+    for (uint32_t t = total; t-- > 0;)
+        if (const auto corners = sorted(t); corners[2] != no_vertex)
+            triangles[--first[corners[0]]] = {corners[1], corners[2], t};
+
+    std::vector<uint8_t> doubled(total, 0);
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertices.size(), 4096), [&](const auto& range) {
+        for (size_t v = range.begin(); v != range.end(); ++v) {
+            const auto begin = triangles.begin() + first[v], end = triangles.begin() + first[v + 1];
+            std::sort(begin, end, [](const BucketTriangle& a, const BucketTriangle& b) {
+                return std::tie(a.middle_vertex, a.high_vertex, a.number) <
+                       std::tie(b.middle_vertex, b.high_vertex, b.number);
+            });
+            for (auto t = begin; t != end; ++t)
+                doubled[t->number] =
+                    t != begin && t->middle_vertex == (t - 1)->middle_vertex && t->high_vertex == (t - 1)->high_vertex;
+        }
     });
-    uint32_t first = no_vertex;
-    for (const uint32_t i : order) {
-        if (first == no_vertex || v[i] != v[first]) first = i;
-        welded[i] = first;
-    }
-    return welded;
+    return doubled;
 }
 
 bool has_zero_area(const MeshSource& mesh, const std::array<uint32_t, 3>& t) {
@@ -41,11 +61,11 @@ bool has_zero_area(const MeshSource& mesh, const std::array<uint32_t, 3>& t) {
 }
 
 /// Fills the list of kept triangles and counts those left out.
-void keep_triangles(const MeshSource& mesh, const std::vector<uint32_t>& welded, bool drop_zero_area,
-                    MeshTopology& topology) {
+void keep_triangles(const MeshSource& mesh, const std::vector<uint32_t>& welded, const std::vector<uint8_t>& doubled,
+                    bool drop_zero_area, MeshTopology& topology) {
     topology.kept.clear();
     topology.all_kept = true;
-    topology.not_finite = topology.repeated_vertex = topology.zero_area = 0;
+    topology.not_finite = topology.repeated_vertex = topology.doubled = topology.zero_area = 0;
     const auto total = static_cast<uint32_t>(mesh.triangles.size());
     for (uint32_t i = 0; i < total; ++i) {
         const auto& t = mesh.triangles[i];
@@ -55,6 +75,8 @@ void keep_triangles(const MeshSource& mesh, const std::vector<uint32_t>& welded,
             reason = &topology.not_finite;
         } else if (a == b || b == c || c == a) {
             reason = &topology.repeated_vertex;
+        } else if (doubled[i]) {
+            reason = &topology.doubled;
         } else if (drop_zero_area && has_zero_area(mesh, t)) {
             reason = &topology.zero_area;
         }
@@ -150,13 +172,14 @@ std::string MeshTopology::left_out() const {
 
 MeshTopology find_topology(const MeshSource& mesh) {
     MeshTopology topology;
-    const std::vector<uint32_t> welded = weld(mesh);
-    keep_triangles(mesh, welded, true, topology);
+    const std::vector<uint32_t> welded = weld(mesh.vertices);
+    const std::vector<uint8_t> doubled = doubled_triangles(mesh, welded);
+    keep_triangles(mesh, welded, doubled, true, topology);
     link_edges(mesh, welded, topology);
     if (topology.open_edges > 0 && topology.zero_area > 0) {
         // Zero-area triangles may close a mesh along edges that their neighbors subdivide.
         MeshTopology sealed;
-        keep_triangles(mesh, welded, false, sealed);
+        keep_triangles(mesh, welded, doubled, false, sealed);
         link_edges(mesh, welded, sealed);
         if (sealed.open_edges == 0) topology = std::move(sealed);
     }

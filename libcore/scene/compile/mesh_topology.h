@@ -25,16 +25,17 @@ struct MeshTopology {
     std::vector<uint32_t> next_along_edge;
 
     uint32_t repeated_vertex = 0, not_finite = 0, zero_area = 0;  // triangles left out
-    uint32_t open_edges = 0;                                      // edges that prevent it from being closed
+    uint32_t doubled = 0;     // triangles left out: an earlier one has the same corners, in either winding
+    uint32_t open_edges = 0;  // edges that prevent it from being closed
 
     uint32_t source_triangle(uint32_t triangle) const { return all_kept ? triangle : kept[triangle]; }
     /// A summary: "left out 3 triangles with a repeated vertex and 1 of zero area"; empty if there are none.
     std::string left_out() const;
 };
 
-/// The topology of a mesh. Triangles with a repeated vertex or a coordinate that is not finite are left out. Zero-area
-/// ones stay only in a mesh that would not be closed without them. Never throws for broken meshes. `vertices` of
-/// triangles must be in range.
+/// The topology of a mesh. Triangles with a repeated vertex or a coordinate that is not finite are left out; of several
+/// with the same corners the first one stays. Zero-area ones stay only in a mesh that would not be closed without them.
+/// Never throws for broken meshes. `vertices` of triangles must be in range.
 MeshTopology find_topology(const MeshSource& mesh);
 
 /// A mesh as it is rendered: in the frame, rounded to the scene's precision, wound counter-clockwise seen from outside.

@@ -88,6 +88,7 @@ bool join_closed(std::vector<MeshPart>& parts) {
         if (with_uvs) to.owned_uvs.insert(to.owned_uvs.end(), part.mesh.uvs.begin(), part.mesh.uvs.end());
         for (const auto& t : part.mesh.triangles)
             to.owned_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+        to.doubled_polygons += part.mesh.doubled_polygons;
     }
     joined.mesh.view_owned();
     if (!find_topology(joined.mesh).closed) return false;

@@ -17,6 +17,7 @@ struct MeshSource {
     std::span<const glm::dvec3> vertices;
     std::span<const std::array<uint32_t, 3>> triangles;
     std::span<const glm::dvec2> uvs;  // one per vertex, or none
+    uint32_t doubled_polygons = 0;    // of the file, left out since an earlier one has the same corners
 
     std::vector<glm::dvec3> owned_vertices;
     std::vector<std::array<uint32_t, 3>> owned_triangles;

@@ -13,6 +13,7 @@
 #include "scene/base/file_bytes.h"
 #include "scene/base/suggest.h"
 #include "scene/description/rotation.h"
+#include "scene/readers/doubled_polygons.h"
 #include "scene/readers/polygon.h"
 
 namespace cistula {
@@ -96,14 +97,21 @@ MeshPart part_of(const aiMesh& from, const MeshObject& object) {
         const aiVector3D& p = from.mVertices[i];
         mesh.owned_vertices.push_back(object.center + rotation(object.scale * dvec3{p.x, p.y, p.z}));
     }
-    mesh.owned_triangles.reserve(from.mNumFaces);
+    std::vector<std::span<const uint32_t>> polygons;
+    polygons.reserve(from.mNumFaces);
     for (unsigned i = 0; i < from.mNumFaces; ++i) {
-        const aiFace& face = from.mFaces[i];
-        const bool in_range = std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
-                                          [&from](unsigned corner) { return corner < from.mNumVertices; });
-        if (in_range)
-            append_polygon(mesh.owned_vertices, {face.mIndices, face.mIndices + face.mNumIndices},
-                           mesh.owned_triangles);
+        const std::span<const uint32_t> polygon(from.mFaces[i].mIndices, from.mFaces[i].mNumIndices);
+        if (std::all_of(polygon.begin(), polygon.end(),
+                        [&from](uint32_t corner) { return corner < from.mNumVertices; }))
+            polygons.push_back(polygon);
+    }
+    const std::vector<bool> doubled = doubled_polygons(mesh.owned_vertices, polygons);
+    mesh.owned_triangles.reserve(polygons.size());
+    for (size_t i = 0; i < polygons.size(); ++i) {
+        if (doubled[i])
+            ++mesh.doubled_polygons;
+        else
+            append_polygon(mesh.owned_vertices, {polygons[i].begin(), polygons[i].end()}, mesh.owned_triangles);
     }
     if (from.HasTextureCoords(0)) {
         mesh.owned_uvs.reserve(from.mNumVertices);
