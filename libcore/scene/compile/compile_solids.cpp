@@ -87,7 +87,10 @@ std::vector<glm::dvec3> ConvexSolid::face_corners(uint32_t face) const {
     for (const glm::dvec3& p : corners) middle += p / double(corners.size());
     const glm::dvec3 right = corners.empty() ? glm::dvec3(0) : corners[0] - middle;
     const glm::dvec3 up = cross(face % 2 == 1 ? pair.normal : -pair.normal, right);
-    const auto angle = [&](const glm::dvec3& p) { return std::atan2(dot(up, p - middle), dot(right, p - middle)); };
+    const auto angle = [&](const glm::dvec3& p) {  // not in radians, but in the same order: from -2 to 2
+        const double x = dot(right, p - middle), y = dot(up, p - middle), sum = magnitude(x) + magnitude(y);
+        return x >= 0 ? y / sum : y >= 0 ? 2 - y / sum : -2 - y / sum;
+    };
     std::sort(corners.begin(), corners.end(),
               [&](const glm::dvec3& a, const glm::dvec3& b) { return angle(a) < angle(b); });
     return corners;
