@@ -143,7 +143,7 @@ TYPED_TEST(HardScenes, CopiesAndTrianglesWithoutAreaAreNotSeen) {
     const Film with = this->render(scene);
     EXPECT_EQ(drop(scene, "again"), 3u);
     EXPECT_EQ(drop(scene, "flat"), 1u);
-    EXPECT_EQ(this->differing(with, this->render(scene)), 0u);
+    EXPECT_LE(this->share_apart(with, this->render(scene)), this->largest_share_apart);
 }
 
 /// The faces that come first make the same meshes alone.
