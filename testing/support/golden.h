@@ -30,7 +30,8 @@ Film render_embree(const SceneDescription& description, const EmbreeOptions& opt
     return render_with(*renderer, description, settings_for(description));
 }
 
-/// The largest difference of R, G and B between two pictures of one size, and its pixel.
+/// The largest difference of R, G and B between two pictures of one size, and its pixel: the first by name of the channel
+/// and place.
 struct Difference {
     double worst = 0;
     std::string channel;
@@ -40,7 +41,9 @@ struct Difference {
 
 inline Difference compare(const LayeredPicture& a, const LayeredPicture& b, bool colors_only) {
     Difference result;
-    for (const auto& channel : a.channels) {
+    auto channels = a.channels;
+    std::sort(channels.begin(), channels.end(), [](const auto& x, const auto& y) { return x.name < y.name; });
+    for (const auto& channel : channels) {
         if (colors_only && channel.name != "R" && channel.name != "G" && channel.name != "B") continue;
         const auto other =
             std::find_if(b.channels.begin(), b.channels.end(), [&](const auto& c) { return c.name == channel.name; });
