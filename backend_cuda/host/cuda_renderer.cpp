@@ -116,10 +116,8 @@ class CudaRenderer : public Renderer {
         plan.camera = camera;
         plan.settings = settings;
         plan.view = frame_view(*scene_, camera, settings);
-        const Vec3<double> position = plan.view.camera.position;
-        plan.fits = path_ == DevicePath::tree
-                        ? camera_solids(view_, BvhIntersector<Real>{view_}, position, plan.view.camera_media)
-                        : camera_solids(view_, BruteIntersector<Real>{view_}, position, plan.view.camera_media);
+        plan.fits = path_ == DevicePath::tree ? find_camera_solids(view_, BvhIntersector<Real>{view_}, plan.view)
+                                              : find_camera_solids(view_, BruteIntersector<Real>{view_}, plan.view);
         plan.mask = mask_to_run(scene_->effects, settings, plan.view);
         plan.sampling = settings.adaptive() ? Sampling::adaptive : Sampling::uniform;
         plan.blocks = {plan.view.supersample > 1 ? PixelMapping::shared_tile : PixelMapping::own_tiles,

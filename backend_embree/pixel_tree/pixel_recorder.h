@@ -115,7 +115,7 @@ PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real
                        const Intersector& intersector, const CameraFrame& camera, const FrameSettings& settings, int x,
                        int y, uint32_t& flags) {
     FrameView frame = frame_view(compiled, camera, settings);
-    if (!camera_solids(scene, intersector, frame.camera.position, frame.camera_media)) flags |= flag_media_overflow;
+    if (!find_camera_solids(scene, intersector, frame)) flags |= flag_media_overflow;
     const BranchReader<Real, Intersector> reader(compiled, scene, intersector, frame);
     const int k = settings.supersample;
     PixelTree pixel;

@@ -63,7 +63,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
             frame.camera = looking(forward * -distance, forward, max_or_second(4 / distance, 0.01));
             frame.is_far = is_far(frame.camera, double(scene.extent));
             frame.width = frame.height = 100;
-            frame.camera_media.add(3, 1);
+            frame.camera_sides[0].media.add(3, 1);
             Ray<Real> ray;
             dvec3 direction;
             double start;

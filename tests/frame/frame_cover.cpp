@@ -28,7 +28,7 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
                   const FrameSettings& settings, const std::string& what, Share& share) {
     const BvhIntersector<Real> intersector{view};
     FrameView frame = frame_view(scene, camera, settings);
-    camera_solids(view, intersector, frame.camera.position, frame.camera_media);
+    find_camera_solids(view, intersector, frame);
     const PixelRect& rect = settings.crop;
     const FrameHints hints = frame_hints(scene, frame, settings);
     const bool gradual = shades_gradually(view);

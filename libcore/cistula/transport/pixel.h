@@ -7,18 +7,37 @@
 
 namespace cistula {
 
+/// Where primary rays start, and inside which solids.
+struct CameraSide {
+    Vec3<double> start;  // of a camera that lies on faces; else rays start at the camera
+    InteriorList media;  // found by camera_solids
+};
+
 /// A frame's settings for every pixel. The camera is in the scene's frame.
 struct FrameView {
+    static constexpr int most_planes = 3;
+
     Camera camera;
-    InteriorList camera_media;  // interior list at the camera (camera_solids)
-    double unit_length = 1;     // scene units per unit of the frame
-    double half_sample = 0;     // tangent of the angle of half a sample, at the picture's center
-    bool is_far = false;        // the camera is outside the sphere of radius 2 M
+    /// The faces on which the camera lies, by their normals: a ray starts on the side to which it goes (docs/rules.md,
+    /// 11).
+    int camera_planes = 0;
+    Vec3<double> camera_normals[most_planes];
+    CameraSide camera_sides[1 << most_planes];  // bit i: the side of normal i; without such faces the first alone
+    double unit_length = 1;                     // scene units per unit of the frame
+    double half_sample = 0;                     // tangent of the angle of half a sample, at the picture's center
+    bool is_far = false;                        // the camera is outside the sphere of radius 2 M
     int width = 0, height = 0;
     int supersample = 1;
     TreeSettings tree;
     LatticeSettings lattice;  // if it has a target: supersample is then 16
 };
+
+/// The number of the CameraSide of a ray.
+CISTULA_INLINE int camera_side(const FrameView& frame, const Vec3<double>& direction) {
+    int side = 0;
+    for (int i = 0; i < frame.camera_planes; ++i) side |= int(dot(frame.camera_normals[i], direction) > 0) << i;
+    return side;
+}
 
 /// Whether primary rays start at the sphere of radius 2 M instead of at the camera.
 CISTULA_HD inline bool is_far(const Camera& camera, double extent) {
@@ -30,7 +49,8 @@ CISTULA_HD inline bool is_far(const Camera& camera, double extent) {
 template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, const Vec3<double>& direction,
                                    Ray<Real, Media>& ray, double& start) {
-    Vec3<double> origin = frame.camera.position;
+    const CameraSide& side = frame.camera_sides[camera_side(frame, direction)];
+    Vec3<double> origin = frame.camera_planes == 0 ? frame.camera.position : side.start;
     start = 0;
     if (frame.is_far) {
         // Computed from the closest approach, so that a camera at a distance of 1e9 loses no more than its own
@@ -47,7 +67,7 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, c
     ray.origin = Vec3<Real>(origin);
     ray.direction = Vec3<Real>(direction);
     for (int axis = 0; axis < 3; ++axis) materialize(ray.origin[axis]), materialize(ray.direction[axis]);
-    assign(ray.media, frame.camera_media);
+    assign(ray.media, side.media);
     return true;
 }
 
@@ -103,6 +123,19 @@ CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& inte
     }
     if constexpr (Intersector::Media::meshes)
         if (meshes) fits &= camera_meshes(scene, intersector, point, media);
+    return fits;
+}
+
+/// Finds the solids around the camera, on each side of the faces on which it lies. False if there are more than an
+/// interior list holds.
+template <class Scene, class Intersector>
+CISTULA_HD inline bool find_camera_solids(const Scene& scene, const Intersector& intersector, FrameView& frame) {
+    bool fits = true;
+    for (int i = 0; i < 1 << frame.camera_planes; ++i) {
+        CameraSide& side = frame.camera_sides[i];
+        fits &= camera_solids(scene, intersector, frame.camera_planes == 0 ? frame.camera.position : side.start,
+                              side.media);
+    }
     return fits;
 }
 

@@ -35,6 +35,8 @@ bool within(const ConvexSolid& solid, const dvec3& p, double tolerance) {
     });
 }
 
+}  // namespace
+
 bool near_triangle(const std::array<dvec3, 3>& corner, const dvec3& p, double tolerance) {
     const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const double size = length(normal);
@@ -45,8 +47,6 @@ bool near_triangle(const std::array<dvec3, 3>& corner, const dvec3& p, double to
     }
     return true;
 }
-
-}  // namespace
 
 std::vector<NormalizedLight> normalize_lights(const SceneSource& source, const SceneNormalization& normalization,
                                               const std::vector<ConvexSolid>& convex) {

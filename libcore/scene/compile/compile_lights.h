@@ -44,6 +44,9 @@ void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const N
                              const Groups& groups, const Tree& tree, uint32_t solid, uint32_t first_triangle,
                              double extent, IncidentLists& incidents);
 
+/// Whether a point lies within `tolerance` of a triangle's plane and of the triangle.
+bool near_triangle(const std::array<glm::dvec3, 3>& corner, const glm::dvec3& p, double tolerance);
+
 /// Which light lies on a face of which object, in words for explain_effects; empty if none does.
 std::string light_on_face(const SceneSource& source, const std::vector<NormalizedLight>& lights,
                           const IncidentLists& incidents);

@@ -5,6 +5,7 @@
 #include "scene/base/error.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/film/renderer.h"
+#include "scene/frame/camera_sides.h"
 
 namespace cistula {
 
@@ -20,7 +21,7 @@ void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings
     lattice.significant = target / 4;
 }
 
-/// The view of a frame, except the solids around the camera, which need an intersector (camera_solids).
+/// The view of a frame, except the solids around the camera, which need an intersector (find_camera_solids).
 template <class Real>
 FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera, const FrameSettings& settings) {
     const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, what); };
@@ -44,6 +45,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     frame.supersample = settings.grid();
     frame.half_sample = frame.camera.tan_half_width / (double(frame.width) * frame.supersample);
     frame.is_far = is_far(frame.camera, double(scene.extent));
+    set_camera_sides(scene, frame);
     frame.tree.depth = settings.depth;
     const int shift = fixed_shift(uint32_t(frame.supersample * frame.supersample));
     frame.tree.fixed_scale = float(fixed_scale(shift));
@@ -55,12 +57,14 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     return frame;
 }
 
-/// Index in effect_masks of the kernel for a scene that requires `effects`. Call it after camera_solids: a camera
-/// inside a body adds effects. Adaptive sampling runs with all effects.
+/// Index in effect_masks of the kernel for a scene that requires `effects`. Call it after find_camera_solids: a
+/// camera inside a body adds effects. Adaptive sampling runs with all effects.
 inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.unshadowed) return unshadowed_mask;
     if (settings.adaptive()) return effect_mask_count - 1;
-    const uint32_t of_camera = frame.camera_media.empty() ? 0u : uint32_t(effect_insides);
+    uint32_t of_camera = 0;
+    for (int i = 0; i < 1 << frame.camera_planes; ++i)
+        if (!frame.camera_sides[i].media.empty()) of_camera = effect_insides;
     return least_mask(settings.effects | effects | of_camera);
 }
 

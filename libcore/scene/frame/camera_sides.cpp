@@ -1,0 +1,117 @@
+#include "scene/frame/camera_sides.h"
+
+#include <array>
+#include <vector>
+
+#include "scene/base/box.h"
+#include "scene/compile/compile_lights.h"
+#include "scene/compile/solid_planes.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+struct Plane {
+    dvec3 normal;
+    double offset;
+};
+
+/// Collects the planes of the faces on which a camera lies.
+template <class Real>
+class FacesAtCamera {
+  public:
+    FacesAtCamera(const CompiledScene<Real>& scene, const dvec3& camera)
+        : scene_(scene),
+          view_(scene.view()),
+          camera_(camera),
+          unit_(double(RealTraits<Real>::unit) * double(scene.extent)) {}
+
+    std::vector<Plane> find() {
+        std::vector<bool> near(scene_.solids.size());
+        for (size_t i = 0; i < scene_.solids.size(); ++i) near[i] = may_touch(scene_.hulls[i]);
+        for (const uint32_t i : scene_.convex)
+            if (near[i]) look_at_solid(scene_.solids[i]);
+        for (const Cluster<Real>& cluster : scene_.clusters)
+            if (near[cluster.solid]) look_at_triangles(cluster);
+        return std::move(planes_);
+    }
+
+  private:
+    static constexpr double touching = 16, apart = 32;  // u M
+
+    bool may_touch(const Hull& hull) const {
+        Box box;
+        for (const Vec3<double>& p : hull.points) box.add(p);
+        bool inside = !box.empty();
+        for (int axis = 0; axis < 3; ++axis)
+            inside = inside && camera_[axis] >= box.low[axis] - apart * unit_ &&
+                     camera_[axis] <= box.high[axis] + apart * unit_;
+        return inside;
+    }
+
+    void look_at_solid(const Solid& solid) {
+        std::vector<Plane> at_camera;
+        for (const SolidPlane& plane : solid_planes(view_, solid)) {
+            const double outside = dot(plane.normal, camera_) - plane.offset;
+            if (outside > touching * unit_) return;
+            if (outside >= -touching * unit_) at_camera.push_back({plane.normal, plane.offset});
+        }
+        for (const Plane& plane : at_camera) add(plane);
+    }
+
+    void look_at_triangles(const Cluster<Real>& cluster) {
+        for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+            std::array<dvec3, 3> corner;
+            for (size_t c = 0; c < 3; ++c)
+                for (int axis = 0; axis < 3; ++axis) corner[c][axis] = double(cluster.corner[c][axis][lane]);
+            if (!near_triangle(corner, camera_, touching * unit_)) continue;
+            const dvec3 normal = normalized(cross(corner[1] - corner[0], corner[2] - corner[0]));
+            add({normal, dot(normal, corner[0])});
+        }
+    }
+
+    /// Adds a plane that is not yet among them, in either direction.
+    void add(const Plane& plane) {
+        if (planes_.size() == FrameView::most_planes) return;
+        for (const Plane& known : planes_) {
+            const dvec3 across = cross(known.normal, plane.normal);
+            if (dot(across, across) < same_direction) return;
+        }
+        planes_.push_back(plane);
+    }
+    static constexpr double same_direction = 0x1p-30;  // square of a sine: planes within 2^-15 of one direction are one
+
+    const CompiledScene<Real>& scene_;
+    const SceneView<Real> view_;
+    const dvec3 camera_;
+    const double unit_;  // u M
+    std::vector<Plane> planes_;
+};
+
+}  // namespace
+
+template <class Real>
+void set_camera_sides(const CompiledScene<Real>& scene, FrameView& frame) {
+    const dvec3 camera = frame.camera.position;
+    std::vector<Plane> planes;
+    if (!frame.is_far) planes = FacesAtCamera<Real>(scene, camera).find();
+    const double off = 32 * double(RealTraits<Real>::unit) * double(scene.extent);
+    frame.camera_planes = int(planes.size());
+    for (size_t i = 0; i < planes.size(); ++i) frame.camera_normals[i] = planes[i].normal;
+    for (int side = 0; side < 1 << frame.camera_planes; ++side) {
+        dvec3 start = camera;
+        for (int round = 0; round < 4; ++round)  // a step off one plane may lead back to another
+            for (size_t i = 0; i < planes.size(); ++i) {
+                const double sign = side >> i & 1 ? 1 : -1;
+                const double distance = sign * (dot(planes[i].normal, start) - planes[i].offset);
+                if (distance < off) start += (off - distance) * sign * planes[i].normal;
+            }
+        frame.camera_sides[side].start = start;
+    }
+}
+
+template void set_camera_sides(const CompiledScene<float>&, FrameView&);
+template void set_camera_sides(const CompiledScene<double>&, FrameView&);
+
+}  // namespace cistula

@@ -1,0 +1,14 @@
+// Cameras that lie on faces (docs/rules.md, 11, line 17).
+#pragma once
+
+#include "cistula/transport/pixel.h"
+#include "scene/compile/compiled_scene.h"
+
+namespace cistula {
+
+/// Sets where a frame's rays start: at the camera, or 32 u M off each plane of a face that lies within 16 u M of it, on
+/// either side. Of more than three such planes the first three count. The camera's position is already in the frame.
+template <class Real>
+void set_camera_sides(const CompiledScene<Real>& scene, FrameView& frame);
+
+}  // namespace cistula
