@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "scene/compile/compiled_scene.h"
@@ -111,6 +112,13 @@ struct ContactCounts {
     size_t false_sheet = 0;  // a sheet is hit well outside its border
     size_t later = 0;        // a sheet is hit although a later one lies on it
     size_t shaded = 0;       // a shadow ray's faces are miscounted
+    size_t gaps = 0;         // a new line ends where it starts, away from edges: a gap between bodies that touch
+
+    size_t faults() const { return media + passed + false_sheet + later + shaded + gaps; }
+    void add(const ContactCounts& other) {
+        lines += other.lines, shadows += other.shadows, media += other.media, passed += other.passed;
+        false_sheet += other.false_sheet, later += other.later, shaded += other.shaded, gaps += other.gaps;
+    }
 };
 
 /// Checks every query of a ray tree against the ideal bodies. Every material must let half of all light pass.
@@ -146,8 +154,12 @@ class CheckedIntersector {
         }
         const double halvings = -std::log2(double(largest_component(Vec3<Real>(arrives))));
         if (halvings < certain - 0.01 || halvings > possible + 0.01) ++counts_.shaded;
+        if (target) look_at_target(shadow.ray);
         return arrives;
     }
+
+    /// Draws points at which one line more is sent from each surface that shadow rays leave; none if empty.
+    std::function<dvec3()> target;
 
   private:
     struct Crossings {
@@ -199,8 +211,64 @@ class CheckedIntersector {
         return inside > border ? 1 : inside < -border ? 0 : -1;
     }
 
+    /// Sends a ray from a shadow ray's start to a target on the same side of the face that it leaves, and straight on.
+    void look_at_target(const Ray<Real, Media>& shadow) const {
+        const dvec3 from = world(shadow.origin), way = target() - from;
+        const dvec3 normal = normal_left(shadow);
+        const dvec3 light(Vec3<double>(shadow.direction));
+        if (!(length(way) > 0) || !(dot(normal, way) * dot(normal, light) > 0)) return;
+        Ray<Real, Media> ray = shadow;
+        ray.direction = Vec3<Real>(normalized(way));
+        const double slope = double(dot(Vec3<Real>(normal), ray.direction));
+        if (magnitude(slope) < 0x1p-10 || !(slope * dot(normal, light) > 0)) return;
+        for (int faces = 0; faces < 8; ++faces) {
+            const Hit<Real> hit = closest(ray);
+            if (!hit.found()) return;
+            if (const int change = media_change(key_kind(hit.key)); change != 0)
+                ray.media.add(key_solid(hit.key), change);
+            ray.after = {hit.t, hit.key};
+        }
+    }
+
+    /// A normal of the face that a ray leaves.
+    dvec3 normal_left(const Ray<Real, Media>& ray) const {
+        const Solid& solid = scene.solids[ray.from_solid];
+        if (solid.kind == SolidKind::convex)
+            return dvec3(Vec3<double>(scene.slabs[solid.first_slab + ray.from_face / 2].normal));
+        for (uint32_t slot = 0; slot < scene.clusters.size * cluster_lanes; ++slot) {
+            const auto& cluster = scene.clusters[slot / cluster_lanes];
+            if (slot % cluster_lanes < cluster.count && cluster.triangle[slot % cluster_lanes] == ray.from_face)
+                return dvec3(Vec3<double>(outward_normal(scene, slot)));
+        }
+        return dvec3(0);
+    }
+
+    /// Whether a point lies where faces of different directions meet, or at a sheet's border.
+    bool at_edge(const dvec3& p) const {
+        dvec3 first(0);
+        bool edge = false;
+        const auto add = [&](const dvec3& normal) {
+            if (dot(first, first) > 0 && magnitude(dot(first, normal)) < 0.999) edge = true;
+            first = normal;
+        };
+        for (const IdealBody& body : bodies_) {
+            if (body.sheet) {
+                if (magnitude(dot(body.sheet_normal(), p - body.corner)) > 2 * tolerance()) continue;
+                if (body.inside_border(p) > -2 * tolerance()) add(body.sheet_normal());
+                edge |= magnitude(body.inside_border(p)) < 2 * tolerance();
+            } else if (body.depth(p) > -2 * tolerance()) {
+                for (size_t i = 0; i < body.normals.size(); ++i)
+                    if (magnitude(dot(body.normals[i], p) - body.offsets[i]) < 2 * tolerance()) add(body.normals[i]);
+            }
+        }
+        return edge;
+    }
+
     void check(const Ray<Real, Media>& ray, const Hit<Real>& hit) const {
         ++counts_.lines;
+        if (ray.fresh() && ray.from_solid != no_solid && hit.found() &&
+            double(hit.t) < 64 * double(RealTraits<Real>::unit) && !at_edge(world(ray.origin)))
+            ++counts_.gaps;
         const Real begin = max_or_second(ray.after.t, Real(0));
         const Real end = hit.found() ? hit.t : Real(8);
         const dvec3 from = world(along(ray.origin, begin, ray.direction)),
@@ -223,7 +291,8 @@ class CheckedIntersector {
     void check_sheet(const Ray<Real, Media>& ray, const Hit<Real>& hit, const dvec3& at) const {
         const uint32_t met = key_solid(hit.key);
         const double slant = magnitude(dot(bodies_[met].sheet_normal(), dvec3(Vec3<double>(ray.direction))));
-        const double border = tolerance() / max_or_second(slant, 1e-3);
+        if (slant < 0x1p-10) return;  // the place of so flat a crossing is not known well enough
+        const double border = tolerance() / slant;
         counts_.false_sheet += bodies_[met].inside_border(at) < -border;
         for (uint32_t i = met + 1; i < bodies_.size(); ++i)
             if (bodies_[i].sheet && magnitude(dot(bodies_[i].sheet_normal(), at - bodies_[i].corner)) < tolerance() &&

@@ -137,7 +137,8 @@ ContactCounts walk(const ContactScene& contact, Random& random, int rays) {
     using Brute = BruteIntersector<Real>;
     const Brute brute{view};
     using Checked = test::CheckedIntersector<Real, Brute>;
-    const Checked checked(*compiled, contact.bodies, brute, counts);
+    Checked checked(*compiled, contact.bodies, brute, counts);
+    checked.target = [&] { return target_in(contact, random); };
     using Stack = BranchStack<Branch<Real>>;
     const double factor = std::ldexp(1.0, compiled->scale);
     const double tolerance = 512 * double(RealTraits<Real>::unit) * double(compiled->extent) / factor;
@@ -194,22 +195,32 @@ class Contacts : public testing::Test {};
 using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(Contacts, Reals);
 
-TYPED_TEST(Contacts, SolidsAndSheetsHaveNoFault) {
+/// Walks through all kinds of scenes, prints what was counted and returns the faults.
+template <class Real>
+size_t faults(bool meshes) {
+    ContactCounts all;
     for (const Arrangement& arrangement : arrangements) {
         Random random(7);
         ContactCounts sum;
-        for (int turn = 0; turn < 40; ++turn) {
-            const ContactScene scene = arranged(arrangement, random, getenv("MESH") != nullptr);
-            const ContactCounts counts = walk<TypeParam>(scene, random, 250);
-            sum.lines += counts.lines, sum.shadows += counts.shadows, sum.media += counts.media;
-            sum.passed += counts.passed, sum.false_sheet += counts.false_sheet, sum.later += counts.later;
-            sum.shaded += counts.shaded;
-        }
-        std::printf("%-6s %-38s lines %7zu shadows %7zu | media %zu passed %zu off %zu earlier %zu shadow %zu\n",
-                    RealTraits<TypeParam>::name, arrangement.name, sum.lines, sum.shadows, sum.media, sum.passed,
-                    sum.false_sheet, sum.later, sum.shaded);
-        EXPECT_EQ(sum.media + sum.passed + sum.false_sheet + sum.later + sum.shaded, 0u) << arrangement.name;
+        for (int turn = 0; turn < 40; ++turn) sum.add(walk<Real>(arranged(arrangement, random, meshes), random, 250));
+        std::printf(
+            "%-6s %-38s lines %7zu shadows %7zu | media %zu passed %zu off %zu earlier %zu shadow %zu gaps %zu\n",
+            RealTraits<Real>::name, arrangement.name, sum.lines, sum.shadows, sum.media, sum.passed, sum.false_sheet,
+            sum.later, sum.shaded, sum.gaps);
+        all.add(sum);
     }
+    EXPECT_GT(all.lines, 2000000u);
+    EXPECT_GT(all.shadows, 500000u);
+    return all.faults();
+}
+
+TYPED_TEST(Contacts, SolidsAndSheetsHaveNoFault) {
+    EXPECT_EQ(faults<TypeParam>(false), 0u);
+}
+
+/// Two of three cubes are meshes, whose rules are not complete (docs/rules.md, 11).
+TYPED_TEST(Contacts, MeshesHaveFewFaults) {
+    EXPECT_LE(faults<TypeParam>(true), 9000u);
 }
 
 }  // namespace
