@@ -128,7 +128,7 @@ class TreeText {
         return verbs[static_cast<size_t>(met.crossing)];
     }
     static const char* side(const FaceMet& met) {
-        constexpr const char* sides[] = {", from outside", ", from inside", ""};
+        constexpr const char* sides[] = {"", ", from outside", ", from inside"};
         return sides[static_cast<size_t>(met.crossing)];
     }
 

@@ -52,8 +52,7 @@ class FrameTask {
           frame_((use_default_rounding(), frame_view(compiled, camera, settings))),
           hints_(frame_hints(compiled, frame_, settings)) {
         prepare_film(film, settings, compiled, camera);
-        if (!find_camera_solids(scene_, intersector, frame_))
-            film.flags |= flag_media_overflow;
+        if (!find_camera_solids(scene_, intersector, frame_)) film.flags |= flag_media_overflow;
         mask_ = mask_to_run(compiled.effects, settings, frame_);
         if (!runs_every_mask<Intersector> && mask_ != unshadowed_mask) mask_ = effect_mask_count - 1;
     }

@@ -30,8 +30,8 @@ Film render_embree(const SceneDescription& description, const EmbreeOptions& opt
     return render_with(*renderer, description, settings_for(description));
 }
 
-/// The largest difference of R, G and B between two pictures of one size, and its pixel: the first by name of the channel
-/// and place.
+/// The largest difference of R, G and B between two pictures of one size, and its pixel: the first by name of the
+/// channel and place.
 struct Difference {
     double worst = 0;
     std::string channel;

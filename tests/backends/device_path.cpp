@@ -51,8 +51,7 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
     FrameView frame = frame_view(compiled, camera, settings);
     Film film;
     prepare_film(film, settings, compiled, camera);
-    if (!find_camera_solids(view, BruteIntersector<Real>{view}, frame))
-        film.flags |= flag_media_overflow;
+    if (!find_camera_solids(view, BruteIntersector<Real>{view}, frame)) film.flags |= flag_media_overflow;
     const Intersector intersector{scene};
     // Few masks stand for all, which spares the compiler half of its work; tests of their own compare masks.
     constexpr int opaque = 0, middle = 2;

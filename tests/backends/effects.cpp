@@ -69,6 +69,7 @@ TYPED_TEST(EffectTest, NoGeneratedSceneDoes) {
 }
 
 /// Most generated scenes call for much: here less is left of them, so that every mask but the largest has its share.
+/// Contacts cannot be taken out, so scenes that have some run the largest.
 TYPED_TEST(EffectTest, NorDoGeneratedScenesOfFewerEffects) {
     std::map<uint32_t, int> ran;
     for (uint64_t seed = 0; seed < generated_scene_count; ++seed) {
@@ -81,7 +82,7 @@ TYPED_TEST(EffectTest, NorDoGeneratedScenesOfFewerEffects) {
         ++ran[this->compare(scene, generated_settings(scene),
                             "generated scene " + std::to_string(seed) + " with less")];
     }
-    for (int mask = 0; mask + 1 < effect_mask_count; ++mask) EXPECT_GE(ran[effect_masks[mask]], 10) << "mask " << mask;
+    for (int mask = 0; mask + 1 < effect_mask_count; ++mask) EXPECT_GE(ran[effect_masks[mask]], 8) << "mask " << mask;
 }
 
 /// The benchmark's scene, less and less of it, then more: each mask of the table has one that runs it.

@@ -1,4 +1,4 @@
-// Many coincident triangles: each is hit once, in the order of the keys.
+// Many coincident triangles: each is hit once, the last sheet first; copies within one sheet count once.
 #pragma once
 
 #include "apps/render_verify/geometry/upright_solids.h"
@@ -7,7 +7,8 @@ namespace cistula::verify::geometry {
 
 struct Coincident {
     static constexpr const char* name = "geometry/coincident-triangles";
-    static constexpr const char* exact = "a thousand in one place: the least key first, then all others in order";
+    static constexpr const char* exact =
+        "a thousand sheets in one place: the last first, then all others in order; a thousand copies in one: one";
     static constexpr Bound bound = no_failures("rays");
     static constexpr bool needs_witness = true;
 
@@ -38,16 +39,16 @@ struct Coincident {
         uint32_t met = 0;
         Real t = 0;
         bool in_order = true;
-        for (; met <= copies; ++met) {
+        for (; met <= solids; ++met) {
             const Hit<Real> hit = intersector.closest(ray);
             if (!hit.found()) break;
             if (met == 0) t = hit.t;
-            in_order =
-                in_order && hit.t == t && key_face(hit.key) == met && key_solid(hit.key) == (solids == 1 ? 0 : met);
+            const uint32_t last = solids - 1 - met;
+            in_order = in_order && hit.t == t && key_face(hit.key) == last && key_solid(hit.key) == last;
             ray.after = {hit.t, hit.key};
         }
-        tally.witness(met == copies);
-        tally.expect(in_order && (met == 0 || met == copies));
+        tally.witness(met == solids);
+        tally.expect(in_order && (met == 0 || met == solids));
     }
 };
 

@@ -115,10 +115,13 @@ struct IndexOne {
             add_solid(scene, Shape::planes, solid_object(PlatonicSolid::cube, {3, -3, 3}, std::sqrt(3.0)), clear);
         };
         compare(room(), true, everywhere);
-        // Last in the file they would carve a hole into what they overlap: beside it; two stand on the floor.
+        // Last in the file they would carve a hole into what they overlap: beside it. (On the floor they would
+        // change t by rounding: the group contact has such.)
         const Change beside = [](SceneDescription& scene, int clear) {
-            add_solid(scene, Shape::planes, solid_object(PlatonicSolid::cube, {2.75, 1.75, 0}, std::sqrt(3.0)), clear);
-            add_solid(scene, Shape::triangles, solid_object(PlatonicSolid::cube, {-3, -3, 0}, std::sqrt(3.0)), clear);
+            add_solid(scene, Shape::planes, solid_object(PlatonicSolid::cube, {2.75, 1.75, 0.25}, std::sqrt(3.0)),
+                      clear);
+            add_solid(scene, Shape::triangles, solid_object(PlatonicSolid::cube, {-3, -3, 0.25}, std::sqrt(3.0)),
+                      clear);
             TrianglesObject ring = torus(0.5, 0.2, 24, 12), spikes = star();
             for (glm::dvec3& p : ring.vertices) p += glm::dvec3(1.5, -2.5, 0.5);
             for (glm::dvec3& p : spikes.vertices) p += glm::dvec3(-1.5, 4, 1);

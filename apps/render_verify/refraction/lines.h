@@ -62,7 +62,8 @@ struct Unnoted {
 template <class Real, class Intersector>
 CISTULA_NOINLINE void trace(const Setup<Real>& setup, const Intersector& intersector, const Ray<Real>& ray,
                             Lines<Real>& lines) {
-    using Glass = Effects<effect_reflection | effect_transmission | effect_refraction | effect_insides>;
+    using Glass =
+        Effects<effect_reflection | effect_transmission | effect_refraction | effect_insides | effect_contacts>;
     using Stack = StackOf<Real, Glass, InteriorList>;
     using Tree = RayTree<Real, Glass, Watched<Real, Intersector>, Stack>;
     TreeSettings settings;

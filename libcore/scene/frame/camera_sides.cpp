@@ -15,6 +15,7 @@ using glm::dvec3;
 struct Plane {
     dvec3 normal;
     double offset;
+    double apart;  // how far from the plane rays start
 };
 
 /// Collects the planes of the faces on which a camera lies.
@@ -38,7 +39,17 @@ class FacesAtCamera {
     }
 
   private:
-    static constexpr double touching = 16, apart = 32;  // u M
+    static constexpr double touching = 16, apart = 32;  // units of rounding
+
+    /// The rounding of a point's distance from a plane: u times the terms of the sum. A camera near a plane through the
+    /// middle of a large scene knows its side better than to u M.
+    double rounding_of(const dvec3& normal, const dvec3& size, double offset) const {
+        double sum =
+            0x1p-20 * double(scene_.extent) + magnitude(offset);  // never nothing: rays must start off the plane
+        for (int axis = 0; axis < 3; ++axis) sum += magnitude(normal[axis]) * size[axis];
+        return double(RealTraits<Real>::unit) * sum;
+    }
+    dvec3 camera_size() const { return {magnitude(camera_.x), magnitude(camera_.y), magnitude(camera_.z)}; }
 
     bool may_touch(const Hull& hull) const {
         Box box;
@@ -54,8 +65,9 @@ class FacesAtCamera {
         std::vector<Plane> at_camera;
         for (const SolidPlane& plane : solid_planes(view_, solid)) {
             const double outside = dot(plane.normal, camera_) - plane.offset;
-            if (outside > touching * unit_) return;
-            if (outside >= -touching * unit_) at_camera.push_back({plane.normal, plane.offset});
+            const double rounding = rounding_of(plane.normal, camera_size(), plane.offset);
+            if (outside > touching * rounding) return;
+            if (outside >= -touching * rounding) at_camera.push_back({plane.normal, plane.offset, apart * rounding});
         }
         for (const Plane& plane : at_camera) add(plane);
     }
@@ -67,7 +79,13 @@ class FacesAtCamera {
                 for (int axis = 0; axis < 3; ++axis) corner[c][axis] = double(cluster.corner[c][axis][lane]);
             if (!near_triangle(corner, camera_, touching * unit_)) continue;
             const dvec3 normal = normalized(cross(corner[1] - corner[0], corner[2] - corner[0]));
-            add({normal, dot(normal, corner[0])});
+            const double offset = dot(normal, corner[0]);
+            dvec3 size = camera_size();
+            for (const dvec3& p : corner)
+                for (int axis = 0; axis < 3; ++axis) size[axis] = max_or_second(size[axis], magnitude(p[axis]));
+            const double rounding = rounding_of(normal, size, offset);
+            if (magnitude(dot(normal, camera_) - offset) <= touching * rounding)
+                add({normal, offset, apart * rounding});
         }
     }
 
@@ -96,7 +114,6 @@ void set_camera_sides(const CompiledScene<Real>& scene, FrameView& frame) {
     const dvec3 camera = frame.camera.position;
     std::vector<Plane> planes;
     if (!frame.is_far) planes = FacesAtCamera<Real>(scene, camera).find();
-    const double off = 32 * double(RealTraits<Real>::unit) * double(scene.extent);
     frame.camera_planes = int(planes.size());
     for (size_t i = 0; i < planes.size(); ++i) frame.camera_normals[i] = planes[i].normal;
     for (int side = 0; side < 1 << frame.camera_planes; ++side) {
@@ -105,7 +122,7 @@ void set_camera_sides(const CompiledScene<Real>& scene, FrameView& frame) {
             for (size_t i = 0; i < planes.size(); ++i) {
                 const double sign = side >> i & 1 ? 1 : -1;
                 const double distance = sign * (dot(planes[i].normal, start) - planes[i].offset);
-                if (distance < off) start += (off - distance) * sign * planes[i].normal;
+                if (distance < planes[i].apart) start += (planes[i].apart - distance) * sign * planes[i].normal;
             }
         frame.camera_sides[side].start = start;
     }
