@@ -13,6 +13,7 @@
 #include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/precision_choice.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
@@ -24,6 +25,7 @@
 #include "scene/base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/required_effects.h"
+#include "scene/compile/scene_source.h"
 #include "scene/readers/read_scene.h"
 #include "scene/readers/read_text_input.h"
 
@@ -48,11 +50,19 @@ void print_warnings(const std::vector<std::string>& warnings, const RenderOption
     for (const std::string& warning : warnings) fmt::print(stderr, "render: warning: {}\n", one_line(warning));
 }
 
+/// Sets the precision of the frames, and says so where the scene decides it.
+void choose_precision(RenderOptions& options, const SceneSource& source) {
+    const PrecisionChoice choice = choose_precision(options.wanted_precision, smallest_part(source));
+    options.precision = choice.precision;
+    if (!choice.warning.empty()) print_warnings({choice.warning}, options);
+    if (!choice.note.empty() && !options.quiet) fmt::print(stderr, "render: {}\n", one_line(choice.note));
+}
+
 template <class Real>
-std::unique_ptr<Renderer> prepare(const SceneDescription& scene, const RenderOptions& options, const CudaOptions& cuda,
+std::unique_ptr<Renderer> prepare(SceneSource source, const RenderOptions& options, const CudaOptions& cuda,
                                   RunStats& stats) {
     std::shared_ptr<const CompiledScene<Real>> compiled;
-    stats.compile_seconds = seconds_of([&] { compiled = compile_scene<Real>(scene); });
+    stats.compile_seconds += seconds_of([&] { compiled = compile_scene<Real>(std::move(source)); });
     stats.scene_hash = compiled->hash;
     stats.required_effects = compiled->effects;
     print_warnings(compiled->warnings, options);
@@ -121,7 +131,7 @@ void judge_target(const RunStats& stats, const FrameSettings& settings, const Re
     if (!options.quiet) fmt::print(stderr, "render: {}\n", text);
 }
 
-void render_scene(const RenderOptions& options) {
+void render_scene(RenderOptions options) {
     const bool explain = options.action == Action::explain;
     const ChosenDevices devices = explain ? ChosenDevices() : choose_devices(options.backend, options.devices);
     RunStats stats;
@@ -139,9 +149,15 @@ void render_scene(const RenderOptions& options) {
     stats.scene = options.scene;
     stats.threads = threads_of(options);
     on_threads(options, [&] {
-        const std::unique_ptr<Renderer> renderer = options.precision == Precision::double_
-                                                       ? prepare<double>(scene, options, devices.options, stats)
-                                                       : prepare<float>(scene, options, devices.options, stats);
+        SceneSource source;
+        stats.compile_seconds = seconds_of([&] {
+            source = gather_scene(scene);
+            choose_precision(options, source);
+        });
+        const std::unique_ptr<Renderer> renderer =
+            options.precision == Precision::double_
+                ? prepare<double>(std::move(source), options, devices.options, stats)
+                : prepare<float>(std::move(source), options, devices.options, stats);
         const auto write_stats = [&] {
             stats.intersector = renderer->intersector();
             stats.effects = renderer->effects();
@@ -179,7 +195,7 @@ std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const Rende
                                cuda, options.intersection);
 }
 
-void measure_scene(const RenderOptions& options) {
+void measure_scene(RenderOptions options) {
     const ChosenDevices devices = choose_devices(options.backend, options.devices);
     const SceneDescription scene = read_scene(options.scene);
     const FrameSettings settings = frame_settings(options, scene);
@@ -188,6 +204,7 @@ void measure_scene(const RenderOptions& options) {
     InterruptGuard guard;
     guard.watch(progress.render.stop);
     on_threads(options, [&] {
+        choose_precision(options, gather_scene(scene));
         const auto make = [&](const SceneDescription& of) {
             return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
                                                            : renderer_of<float>(of, options, devices.options);
@@ -199,9 +216,9 @@ void measure_scene(const RenderOptions& options) {
 }
 
 template <class Real>
-void report_pixel(const RenderOptions& options, const SceneDescription& scene, const FrameSettings& settings,
-                  const CameraFrame& camera) {
-    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
+void report_pixel(const RenderOptions& options, const SceneDescription& scene, SceneSource source,
+                  const FrameSettings& settings, const CameraFrame& camera) {
+    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
     print_warnings(compiled->warnings, options);
     const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, options.pixel.x, options.pixel.y);
     const SceneNames names = name_scene(scene);
@@ -216,7 +233,7 @@ void report_pixel(const RenderOptions& options, const SceneDescription& scene, c
                                                   options.pixel.x, options.pixel.y, describe_flags(tree.film.flags)));
 }
 
-void report_pixel(const RenderOptions& options) {
+void report_pixel(RenderOptions options) {
     const SceneDescription scene = read_scene(options.scene);
     const FrameSettings settings = frame_settings(options, scene);
     const CameraFrame camera = camera_at(scene.camera, options.frames.empty() ? 0 : options.frames.front());
@@ -226,10 +243,12 @@ void report_pixel(const RenderOptions& options) {
     }
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<size_t>(threads_of(options)));
+    SceneSource source = gather_scene(scene);
+    choose_precision(options, source);
     if (options.precision == Precision::double_)
-        report_pixel<double>(options, scene, settings, camera);
+        report_pixel<double>(options, scene, std::move(source), settings, camera);
     else
-        report_pixel<float>(options, scene, settings, camera);
+        report_pixel<float>(options, scene, std::move(source), settings, camera);
 }
 
 void run(const RenderOptions& options) {

@@ -9,7 +9,7 @@ namespace cistula {
 struct OptionTexts {
     std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, target_error,
         max_samples, threads, layers, device, pixel, json, explain;
-    std::string backend = "embree", precision = "float", intersector = "exact", effects = "auto", bits = "float",
+    std::string backend = "embree", precision = "auto", intersector = "exact", effects = "auto", bits = "float",
                 progress = "auto";
     bool resume = false, quiet = false, verbose = false, version = false, print_template = false, list_devices = false;
 };

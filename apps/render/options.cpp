@@ -43,7 +43,9 @@ void declare(CLI::App& app, OptionTexts& texts) {
     app.add_option("--effects", texts.effects,
                    "auto: compiled are those the scene calls for; all: every one, to compare")
         ->type_name("NAME");
-    app.add_option("--precision", texts.precision, "float or double")->type_name("NAME");
+    app.add_option("--precision", texts.precision,
+                   "auto (float, or double where parts are too small for it), float or double")
+        ->type_name("NAME");
     app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
     app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
     app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
@@ -85,8 +87,10 @@ RenderOptions checked(const OptionTexts& texts) {
     options.backend = parse_backend(texts.backend);
     options.devices = parse_devices(texts.device, options.backend);
     options.intersection = parse_intersection(texts.intersector, options.backend);
-    options.precision = chosen<Precision>("--precision", texts.precision,
-                                          {{"float", Precision::single_}, {"double", Precision::double_}});
+    options.wanted_precision = chosen<std::optional<Precision>>(
+        "--precision", texts.precision,
+        {{"auto", std::nullopt}, {"float", Precision::single_}, {"double", Precision::double_}});
+    options.precision = options.wanted_precision.value_or(Precision::single_);
     options.all_effects = chosen<bool>("--effects", texts.effects, {{"auto", false}, {"all", true}});
     options.progress = chosen<ProgressStyle>(
         "--progress", texts.progress,

@@ -20,6 +20,7 @@ struct PixelPlace {
 enum class Action { render, explain, measure, pixel, print_help, print_version, print_template, list_devices };
 
 struct RenderOptions : FilmOptions {
+    std::optional<Precision> wanted_precision;  // none: auto, which the scene decides (precision_choice.h)
     Action action = Action::render;
     std::string scene;        // "-": standard input
     std::string output;       // as given; empty: default_output

@@ -52,6 +52,7 @@ std::string bound_text(const Outcome& outcome) {
 std::string complaint(const Outcome& outcome) {
     if (outcome.holds()) return "";
     if (!outcome.problem.empty()) return one_line(outcome.problem);
+    if (outcome.must_warn() && outcome.warned == 0) return "float does not warn";
     if (outcome.tally.tried == 0) return "nothing was tried";
     if (outcome.info->needs_witness && outcome.tally.witnesses == 0) return "no try met the hazard";
     if (outcome.info->bound.must_fail) return "what is broken on purpose is not caught";
@@ -71,22 +72,26 @@ std::string table_row(const Outcome& outcome, const std::vector<const CaseEntry*
     return fmt::format("{:<{}}  {:<6}  {:<6}  {:>20}  {:>16}  {:>7.2f}  {:<7}  {}\n", outcome.info->name,
                        widest_name(cases), intersector_name(outcome.intersector), precision_name(outcome),
                        measured_text(outcome), bound_text(outcome), outcome.seconds,
-                       outcome.holds() ? "holds" : "FAILS", outcome.info->exact);
+                       !outcome.holds()     ? "FAILS"
+                       : outcome.warned > 0 ? "warns"
+                                            : "holds",
+                       outcome.info->exact);
 }
 
 std::string summary(const std::vector<Outcome>& outcomes) {
     std::string text;
-    size_t failing = 0, known = 0;
+    size_t failing = 0, warning = 0;
     for (const Outcome& outcome : outcomes) {
+        warning += outcome.warned > 0 ? 1 : 0;
         if (outcome.holds()) continue;
         ++failing;
-        known += outcome.is_known() ? 1 : 0;
-        text += fmt::format("{}{} on {} in {}: {}\n", outcome.is_known() ? "as known, " : "", outcome.info->name,
-                            intersector_name(outcome.intersector), precision_name(outcome), complaint(outcome));
+        text += fmt::format("{} on {} in {}: {}\n", outcome.info->name, intersector_name(outcome.intersector),
+                            precision_name(outcome), complaint(outcome));
     }
-    return text + (failing == 0 ? fmt::format("all {} hold\n", outcomes.size())
-                                : fmt::format("{} of {} do not hold, {} of them as known (docs/numerics.md)\n", failing,
-                                              outcomes.size(), known));
+    text += failing == 0 ? fmt::format("all {} hold", outcomes.size())
+                         : fmt::format("{} of {} do not hold", failing, outcomes.size());
+    if (warning > 0) text += fmt::format("; {} warn in float of parts too small for it", warning);
+    return text + "\n";
 }
 
 std::string list_text(const std::vector<CaseEntry>& cases) {
@@ -124,7 +129,8 @@ Json report_json(const std::vector<Outcome>& outcomes, const VerifyOptions& opti
                     {"witnesses", outcome.tally.witnesses},
                     {"seconds", outcome.seconds}};
         if (!outcome.worst_label.empty()) one["worst_at"] = outcome.worst_label;
-        if (!outcome.holds()) one["complaint"] = complaint(outcome), one["known"] = outcome.is_known();
+        if (outcome.warned > 0) one["scenes_warned_of"] = outcome.warned;
+        if (!outcome.holds()) one["complaint"] = complaint(outcome);
         cases.push_back(std::move(one));
     }
     return {{"context", context}, {"cases", cases}};

@@ -62,7 +62,7 @@ std::string row(const Outcome& outcome, bool first, size_t of_case) {
                     intersector_name(outcome.intersector), outcome.precision == Precision::double_ ? "double" : "float",
                     escaped(measured_text(outcome)), escaped(bound_text(outcome)));
     const std::string why = complaint(outcome);
-    text += outcome.holds() ? "<td class=\"holds\">holds"
+    text += outcome.holds() ? fmt::format("<td class=\"holds\">{}", outcome.warned > 0 ? "warns" : "holds")
                             : fmt::format("<td class=\"fails\">fails<br><span class=\"small\">{}</span>", escaped(why));
     return text + fmt::format("</td><td class=\"n\">{:.2f}</td></tr>\n", outcome.seconds);
 }

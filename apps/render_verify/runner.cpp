@@ -98,6 +98,11 @@ class CaseRun {
             entry_.plan(plan);
             if (plan.parts.empty()) problem = "the case has no parts";
             for (uint64_t number = 0; number < plan.parts.size() && problem.empty(); ++number) {
+                if (entry_.info.float_warns && precision_ == Precision::single_ &&
+                    smallest_part(plan.parts[number].scene).share < least_share(Precision::single_)) {
+                    for (Outcome& outcome : outcomes_) ++outcome.warned;
+                    continue;
+                }
                 ReadyPart<Real> ready(plan.parts[number], number);
                 problem = ready.missing_warning();
                 if (problem.empty()) run_part(plan.parts[number], number, ready);
@@ -180,6 +185,7 @@ class CaseRun {
         Stage stage(settings_.quick, precision_, intersector_name(kind), film);
         outcome.tally.place = 0;
         entry_.render(stage, outcome.tally);
+        outcome.warned = stage.warned();
         if (outcome.tally.worst_at != no_place) outcome.worst_label = fmt::format("try {}", outcome.tally.worst_at);
     }
 
@@ -200,13 +206,9 @@ double Outcome::measured() const {
     return info->bound.measure == Measure::failures ? double(tally.failures) : tally.worst;
 }
 
-bool Outcome::is_known() const {
-    const bool here =
-        info->fails_in == FailsIn::both || (info->fails_in == FailsIn::single && precision == Precision::single_);
-    return here && !holds() && problem.empty() && tally.tried != 0;
-}
-
 bool Outcome::holds() const {
+    if (must_warn() && problem.empty() && tally.tried == 0) return warned > 0;
+    if (must_warn() && warned == 0) return false;
     if (!problem.empty() || tally.tried == 0 || (info->needs_witness && tally.witnesses == 0)) return false;
     if (info->bound.must_fail) return measured() >= limit();
     if (info->bound.measure == Measure::worst && tally.failures != 0) return false;

@@ -22,14 +22,15 @@ struct Outcome {
     Tally tally;
     std::string worst_label;  // part and ray with the largest deviation; empty: none deviates
     std::string problem;      // reason why it could not be judged; it then fails
+    uint64_t warned = 0;      // scenes of a `float_warns` case that float warns of, and was not judged by
     double seconds = 0;
 
     double limit() const { return info->bound.limit[precision == Precision::double_]; }
     /// The value that is compared with the limit.
     double measured() const;
     bool holds() const;
-    /// Whether it fails as documented (FailsIn).
-    bool is_known() const;
+    /// Whether it must warn of scenes: a `float_warns` case in float.
+    bool must_warn() const { return info->float_warns && precision == Precision::single_; }
 };
 
 struct RunSettings {

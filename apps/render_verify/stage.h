@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "scene/compile/compiled_scene.h"
+#include "scene/compile/smallest_part.h"
 #include "scene/description/description.h"
 #include "scene/film/film.h"
 #include "scene/film/renderer.h"
@@ -25,6 +26,14 @@ class Stage {
     /// u: half an ulp of 1.
     double unit() const { return in_double() ? 0x1p-53 : 0x1p-24; }
 
+    /// Whether this is float and warns of the scene, whose picture then need not hold (`float_warns`).
+    bool warns_of(const SceneDescription& scene) {
+        const bool warns = !in_double() && smallest_part(scene).share < least_share(Precision::single_);
+        warned_ += warns ? 1 : 0;
+        return warns;
+    }
+    uint64_t warned() const { return warned_; }
+
     /// Renders a frame. Throws Error if the film is unreliable (film.flags).
     Film render(const SceneDescription& scene, const FrameSettings& settings, int frame = 0) const {
         return render_(scene, settings, frame);
@@ -39,6 +48,7 @@ class Stage {
 
   private:
     Render render_;
+    uint64_t warned_ = 0;
 };
 
 }  // namespace cistula::verify

@@ -47,8 +47,8 @@ constexpr double touching =
 template <class Real>
 class Compiler {
   public:
-    explicit Compiler(const SceneDescription& description)
-        : description_(description), source_(gather_scene(description)), normalization_(find_normalization(source_)) {}
+    explicit Compiler(SceneSource source)
+        : description_(*source.description), source_(std::move(source)), normalization_(find_normalization(source_)) {}
 
     std::unique_ptr<CompiledScene<Real>> compile() {
         if (source_.solids.size() >= no_solid)
@@ -403,10 +403,17 @@ class Compiler {
 
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description) {
-    return Compiler<Real>(description).compile();
+    return compile_scene<Real>(gather_scene(description));
+}
+
+template <class Real>
+std::unique_ptr<CompiledScene<Real>> compile_scene(SceneSource source) {
+    return Compiler<Real>(std::move(source)).compile();
 }
 
 template std::unique_ptr<CompiledScene<float>> compile_scene(const SceneDescription&);
 template std::unique_ptr<CompiledScene<double>> compile_scene(const SceneDescription&);
+template std::unique_ptr<CompiledScene<float>> compile_scene(SceneSource);
+template std::unique_ptr<CompiledScene<double>> compile_scene(SceneSource);
 
 }  // namespace cistula

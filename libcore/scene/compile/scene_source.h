@@ -1,6 +1,7 @@
-// The input of a compilation: a description with its meshes read and its materials numbered. Private to libcore/scene.
+// The input of a compilation: a description with its meshes read and its materials numbered.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,14 @@ struct SceneSource {
 
 /// Checks every number that affects the compiled scene, and reads the meshes. Throws Error with the place.
 SceneSource gather_scene(const SceneDescription& description);
+
+template <class Real>
+struct CompiledScene;
+
+/// Compiles a description whose meshes have been read; the description must outlive the call. Throws Error with the
+/// place.
+template <class Real>
+std::unique_ptr<CompiledScene<Real>> compile_scene(SceneSource source);
 
 /// An error with its place: "scene.json: /objects/2: TEXT".
 Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text);

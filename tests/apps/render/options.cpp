@@ -42,7 +42,7 @@ TEST(RenderOptions, Defaults) {
     EXPECT_EQ(options.backend, Backend::embree);
     EXPECT_FALSE(options.devices.all);
     EXPECT_EQ(options.devices.indices, (std::vector<int>{0}));
-    EXPECT_EQ(options.precision, Precision::single_);
+    EXPECT_EQ(options.wanted_precision, std::nullopt);
     EXPECT_EQ(options.progress, ProgressStyle::automatic);
     EXPECT_TRUE(options.output.empty() && options.frames.empty() && options.preview.empty() && options.stats.empty());
     EXPECT_FALSE(options.resolution || options.crop || options.supersample || options.depth || options.cutoff);
@@ -100,7 +100,7 @@ TEST(RenderOptions, AllTogether) {
     EXPECT_EQ(options.supersample, 3);
     EXPECT_EQ(options.depth, 9);
     EXPECT_EQ(options.cutoff, 1e-3);
-    EXPECT_EQ(options.precision, Precision::double_);
+    EXPECT_EQ(options.wanted_precision, Precision::double_);
     EXPECT_EQ(options.threads, 2);
     EXPECT_EQ(options.preview, "p.png");
     EXPECT_EQ(options.stats, "s.json");
@@ -189,7 +189,7 @@ TEST(RenderOptions, Errors) {
             std::string("--cutoff ") + cutoff + ": must be a number, 0 or above, in the scene's units of radiance");
     expect_refused({"s", "--backend", "cud"}, "--backend cud: must be embree or cuda; did you mean 'cuda'?");
     expect_refused({"s", "--precision", "half"},
-                   "--precision half: must be float or double; known names: float, double");
+                   "--precision half: must be auto or float or double; known names: auto, float, double");
     expect_refused({"s", "--bits", "hal"}, "--bits hal: must be float or half; did you mean 'half'?");
     expect_refused({"s", "--progress", "plane"},
                    "--progress plane: must be auto or plain or none; did you mean 'plain'?");

@@ -433,6 +433,38 @@ TEST_F(RenderProgram, ATargetThatRoundingMissesAsksForDoublePrecision) {
     expect_done(fine);
 }
 
+TEST_F(RenderProgram, ThePrecisionIsTheOneThatTheSceneNeedsUnlessOneIsWanted) {
+    put_bytes(file("small.json"), R"({"film": {"width": 8, "height": 6}, "materials": {"m": {}}, "objects": [
+        {"quad": [[-1e6, -1e6, 0], [1e6, -1e6, 0], [1e6, 1e6, 0], [-1e6, 1e6, 0]], "material": "m"},
+        {"name": "pebble", "solid": "cube", "center": [0, 0, 2], "material": "m"}]})");
+    const auto precision = [&] {
+        return std::get<std::string>(read_exr(file("a.exr")).attributes.at("cistula:precision"));
+    };
+    const std::string facts =
+        "/objects/1: pebble: its inradius is 5.8e-07 of the scene's extent; float holds from 1.2e-04 on";
+    const auto said = [&](const Arguments& more) {
+        Arguments arguments{"small.json", "-o", "a.exr", "--stats", "s.stats.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.code, 0) << result.error;
+        const auto stats = nlohmann::json::parse(bytes_of(file("s.stats.json")));
+        EXPECT_EQ(stats.at("context").at("precision"), precision());
+        return result.error;
+    };
+    EXPECT_NE(said({}).find("render: double: " + facts + "\n"), std::string::npos);
+    EXPECT_EQ(precision(), "double");
+    EXPECT_NE(said({"--precision", "float"}).find("render: warning: float: " + facts), std::string::npos);
+    EXPECT_EQ(precision(), "float");
+    EXPECT_EQ(said({"--precision", "double"}).find("pebble"), std::string::npos);
+    EXPECT_EQ(said({"-q"}), "");
+    EXPECT_EQ(precision(), "double");
+    const ProgramResult pixel = run({"small.json", "--pixel", "4,3", "--json", "-"});
+    EXPECT_EQ(nlohmann::json::parse(pixel.out).at("precision"), "double");
+    EXPECT_NE(pixel.error.find(facts), std::string::npos);
+    expect_done({"s.json", "-o", "a.exr"});
+    EXPECT_EQ(precision(), "float");
+}
+
 TEST_F(RenderProgram, NativeImagesSaySoAndAreNotResumedAsExactOnes) {
     const auto intersector = [&] {
         return nlohmann::json::parse(bytes_of(file("s.stats.json"))).at("context").at("intersector").get<std::string>();

@@ -1,0 +1,27 @@
+// How thin a mesh is and how small its triangles are. Private to libcore/scene.
+#pragma once
+
+#include "scene/base/box.h"
+#include "scene/compile/scene_normalization.h"
+#include "scene/description/mesh_source.h"
+
+namespace cistula {
+
+/// Sizes of a mesh in the frame, over its triangles with an area and finite corners.
+struct MeshSize {
+    Box box;
+    size_t triangles = 0;
+    bool closed = false;      // it encloses a volume: its triangles' area vectors cancel
+    double thickness = 0;     // closed: volume / area, a third of the inradius of what surrounds a ball and all of a
+                              // plate's; else half the width: area / 2 over the diagonal of the box
+    double least_height = 0;  // of a triangle that is higher than asked for; infinity: there is none
+};
+
+MeshSize mesh_size(const MeshSource& mesh, const SceneNormalization& normalization, double least_height);
+
+/// The least distance of a point from the planes of those triangles that it lies over, of all that are more than
+/// `least`; infinity if none is less than `most`.
+double distance_to_triangles(const MeshSource& mesh, const SceneNormalization& normalization, const glm::dvec3& point,
+                             double least, double most);
+
+}  // namespace cistula

@@ -1,0 +1,32 @@
+// The least size that a scene's precision must tell apart (docs/rules.md, 12).
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "scene/compile/scene_source.h"
+#include "scene/film/renderer.h"
+
+namespace cistula {
+
+/// The part of a scene that is smallest beside the scene's extent M.
+struct SmallestPart {
+    double share = std::numeric_limits<double>::infinity();  // its size as a share of M; infinity: there is none
+    std::string what;                                        // "/objects/1: pebble: its inradius"
+};
+
+/// The least share of M of which a precision keeps its promises: 2^11 u, so 2^-13 in float and 2^-42 in double.
+constexpr double least_share(Precision precision) {
+    return precision == Precision::single_ ? 0x1p-13 : 0x1p-42;
+}
+
+/// The smallest of: inradii of convex solids; thicknesses of meshes (a closed one's volume over its area, half the
+/// width of others: half the area over the diagonal of the box); heights of triangles in meshes that mirror or
+/// transmit, but those too low for double; distances of lights from faces, but those up to 16 u M in float, where they
+/// lie on them; radii of visible lights. Gaps do not count, nor do the pieces of one mesh. The camera does not matter.
+SmallestPart smallest_part(const SceneSource& source);
+
+/// The smallest part of a scene. Opens its meshes. Throws Error as compile_scene does.
+SmallestPart smallest_part(const SceneDescription& description);
+
+}  // namespace cistula
