@@ -24,6 +24,7 @@
 #include "scene/base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/required_effects.h"
+#include "scene/description/camera_turns.h"
 #include "scene/readers/read_scene.h"
 #include "scene/readers/read_text_input.h"
 
@@ -133,6 +134,8 @@ void render_scene(const RenderOptions& options) {
 
     const FrameSettings settings = frame_settings(options, scene);
     const Outputs outputs = plan_outputs(options, scene);
+    if (const std::string turns = camera_turns(scene.camera, outputs.frames); !turns.empty())
+        print_warnings({turns}, options);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
 

@@ -287,6 +287,34 @@ TEST_F(RenderProgram, OptionsReachTheImage) {
         EXPECT_EQ(one.half, one.name != "Z");
 }
 
+TEST_F(RenderProgram, AFilmOverTheZenithSaysWhereItTurns) {
+    std::string over = scene_text;
+    const std::string path = R"({"r0": 5, "z0": 3, "wphi": 0.1})";
+    over.replace(over.find(path), path.size(), R"({"z0": 6, "Ar": 3, "wr": 0.5, "pr": -0.5})");
+    put_bytes(file("over.json"), over);
+    const ProgramResult result = run({"over.json", "-o", "o.#.exr"});
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_NE(result.error.find("render: warning: over.json: /camera/path: the view passes along up and the picture "
+                                "turns at once: by 180 degrees between frames 1 and 2\n"),
+              std::string::npos)
+        << result.error;
+    EXPECT_EQ(run({"over.json", "-f", "1", "-o", "o.exr"}).error.find("turns"), std::string::npos);
+    // The text input has no `up` to change.
+    std::string text = text_input;
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+    };
+    replace("6.0 5.0 0.0 2.0 1.0 0.05 0.1 0.05 0.0 0.0", "0 9 0 0 0 0 0 0 0 0");
+    replace("3.0 0.0 3.1415926 1.5 0.5 0.03 0.07 0.02 0.0 0.0", "0 0 0 0 0 0 0 0 0 0");
+    write_raw_picture(file("floor.data"), ColorPicture{1, 1, {glm::vec3(1, 1, 1)}});
+    expect_done({"-", "-q", "-o", "down.exr", "-f", "0", "--aov", "id"}, text);
+    const LayeredPicture down = read_exr(file("down.exr"));
+    // As from a little off the axis, on its +x side: the right is +y, below is +x.
+    const auto id_at = [&](size_t x, size_t y) { return channel(down, "id")[y * 32 + x]; };
+    EXPECT_EQ((std::vector{id_at(21, 4), id_at(21, 15), id_at(10, 15), id_at(10, 4)}),
+              (std::vector<float>{1, 2, 3, 4}));
+}
+
 TEST_F(RenderProgram, TheHeaderSaysWhatTheImageDependsOn) {
     expect_done(
         {"s.json", "-q", "-o", "a.exr", "-f", "2", "--cutoff", "0.125", "--precision", "double", "--supersample", "2"});
