@@ -1,4 +1,6 @@
 // The built `render` from outside: exit codes, messages, files.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -285,6 +287,36 @@ TEST_F(RenderProgram, OptionsReachTheImage) {
     expect_done({"s.json", "-q", "-o", "other.exr", "--bits", "half", "--aov", "Z"});
     for (const LayeredPicture::Channel& one : read_exr(file("other.exr")).channels)
         EXPECT_EQ(one.half, one.name != "Z");
+}
+
+TEST_F(RenderProgram, HalfNeverHoldsAnInfinity) {
+    std::string bright = scene_text;
+    const std::string light = R"({"position": [-4, 4, 5]})";
+    bright.replace(bright.find(light), light.size(), R"({"position": [-4, 4, 5], "color": 2e6})");
+    put_bytes(file("bright.json"), bright);
+    const Arguments film{"bright.json", "-o", "b.#.exr", "--bits", "half", "--aov", "error", "--depth", "2"};
+    const ProgramResult result = run(film);
+    EXPECT_EQ(result.code, 0) << result.error;
+    uint64_t at_most = 0;
+    for (const char* name : {"b.0.exr", "b.1.exr", "b.2.exr"})
+        for (const LayeredPicture::Channel& one : read_exr(file(name)).channels)
+            for (const float value : one.values) {
+                EXPECT_LE(value, 65504) << one.name;
+                at_most += value == 65504;
+            }
+    EXPECT_GT(at_most, 1000u);
+    const std::string said = fmt::format(
+        "render: warning: b.#.exr: in 3 of 3 frames: clamped: {} values are over 65504, the largest half", at_most);
+    EXPECT_NE(result.error.find(said), std::string::npos) << said << "\n" << result.error;
+    EXPECT_EQ(result.error.find("largest half"), result.error.rfind("largest half")) << "one line";
+    Arguments strict = film;
+    strict.insert(strict.end(), {"--strict", "-q", "-f", "1", "-o", "strict.exr"});
+    strict.erase(strict.begin() + 1, strict.begin() + 3);
+    expect_refused(strict, ExitCode::failed, "strict.exr: not written: ");
+    EXPECT_FALSE(exists("strict.exr"));
+    expect_done({"bright.json", "-q", "-o", "float.exr", "--strict"});  // floats hold all
+    expect_done({"s.json", "-q", "-o", "dim.exr", "--bits", "half", "--strict"});
+    EXPECT_EQ(run({"s.json", "-o", "dim.exr", "--bits", "half"}).error.find("half"), std::string::npos);
 }
 
 TEST_F(RenderProgram, AFilmOverTheZenithSaysWhereItTurns) {
