@@ -153,6 +153,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
                 header_attributes(job.scene_hash, job.settings, options.precision, cameras[i], options.intersection);
             finished.stats = stats_of(finished.film, frame, finished.path, seconds, renderer.times());
             finished.settings = job.settings;
+            finished.strict = options.strict;
             if (options.verbose)
                 report.say(fmt::format("render: frame {}: {:.3f} s, {} rays, {}", frame, seconds,
                                        finished.film.rays.total(),

@@ -17,6 +17,7 @@ struct FilmOptions {
     OutputChannels channels;
     std::string stats;  // file for times and counts, as given; empty: none
     bool resume = false, quiet = false, verbose = false;
+    bool strict = false;  // values that the file's type does not hold are an error
     ProgressStyle progress = ProgressStyle::automatic;
 };
 

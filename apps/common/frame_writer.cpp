@@ -1,9 +1,12 @@
 #include "apps/common/frame_writer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "apps/common/output_name.h"
 #include "apps/common/timing.h"
+#include "scene/base/error.h"
 #include "scene/image/exr.h"
 #include "scene/image/picture_io.h"
 #include "scene/image/raw_picture.h"
@@ -22,6 +25,11 @@ size_t bytes_of(const LayeredPicture& layers, const ColorPicture& color) {
 }
 
 }  // namespace
+
+std::string over_largest_half(uint64_t values) {
+    return fmt::format("{} value{} over {:.0f}, the largest half; --bits float holds {}", values,
+                       values == 1 ? " is" : "s are", largest_half, values == 1 ? "it" : "them");
+}
 
 FrameWriter::FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits,
                          std::atomic<bool>& stop, std::vector<FrameStats>& written)
@@ -135,9 +143,11 @@ void FrameWriter::write(Task& task) {
     ColorPicture color;
     stats.encode_seconds = seconds_of([&] {
         if (raw || !frame.preview.empty()) color = to_color(frame.film);
-        if (!raw) layers = to_layers(frame.film, channels_);
+        if (!raw) layers = to_layers(frame.film, channels_, &stats.clamped);
         layers.attributes = std::move(frame.attributes);
     });
+    if (frame.strict && stats.clamped != 0)
+        throw Error(ExitCode::failed, fmt::format("{}: not written: {}", frame.path, over_largest_half(stats.clamped)));
     if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
     if (measure_) {
         stats.hash = film_hash(frame.film);

@@ -24,8 +24,9 @@ struct FinishedFrame {
     Film film;
     Attributes attributes;
     std::string path, preview;  // empty preview: none
-    FrameStats stats;           // the writer adds error totals, hash, times, and the target report
+    FrameStats stats;           // the writer adds what depends on the film
     FrameSettings settings;
+    bool strict = false;  // not written, but an Error (failed), if a value is over the largest half
 };
 
 /// Limits on the frames in a FrameWriter.
@@ -35,6 +36,9 @@ struct WriterLimits {
     int exr_threads =
         0;  // OpenEXR's own threads, shared by all frames and additional to those above; see set_exr_threads
 };
+
+/// What is said of values that half precision does not hold.
+std::string over_largest_half(uint64_t values);
 
 /// Writes frames concurrently; each is processed by one thread from its film to its files.
 class FrameWriter {

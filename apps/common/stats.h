@@ -28,6 +28,7 @@ struct FrameStats {
     RayCounts rays;
     LedgerTotals pruned, cut;  // error bounds of branches pruned by the cutoff, and cut by the depth limit
     TargetReport target;       // for frames with a target error
+    uint64_t clamped = 0;      // values of the file that were over the largest half
 };
 
 struct RunStats {

@@ -37,6 +37,7 @@ void refuse_exclusions(const OptionTexts& texts) {
         {"--pixel", texts.pixel, "--stats", !texts.stats.empty(), "nothing is timed"},
         {"--pixel", texts.pixel, "--aov", !texts.layers.empty(), no_image},
         {"--pixel", texts.pixel, "--bits", texts.bits != defaults.bits, no_image},
+        {"--pixel", texts.pixel, "--strict", texts.strict, no_image},
         {"--pixel", texts.pixel, "--crop", !texts.crop.empty(), "the pixel counts from the top left of the full frame"},
         {"--pixel", texts.pixel, "--resume", texts.resume, no_image},
         {"--pixel", texts.pixel, "--progress", texts.progress != defaults.progress, "one pixel takes no time"},

@@ -26,6 +26,7 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/required_effects.h"
 #include "scene/compile/scene_source.h"
+#include "scene/description/camera_turns.h"
 #include "scene/readers/read_scene.h"
 #include "scene/readers/read_text_input.h"
 
@@ -122,6 +123,20 @@ void print_summary(const RunStats& stats, const OutputName& image, double second
                format_rate(render_seconds > 0 ? static_cast<double>(rays) / render_seconds : 0));
 }
 
+/// Prints a warning if values of the written frames were clamped to half precision.
+void warn_of_clamped(const RunStats& stats, const OutputName& image, const RenderOptions& options) {
+    uint64_t values = 0, frames = 0;
+    for (const FrameStats& frame : stats.frames) {
+        values += frame.clamped;
+        frames += frame.clamped != 0;
+    }
+    if (values == 0) return;
+    const std::string where = stats.frames.size() == 1
+                                  ? stats.frames[0].file
+                                  : fmt::format("{}: in {} of {} frames", image.text(), frames, stats.frames.size());
+    print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(values))}, options);
+}
+
 /// Prints the target report. Throws Error (target) if pixels missed the target.
 void judge_target(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
     const bool reached =
@@ -143,6 +158,8 @@ void render_scene(RenderOptions options) {
 
     const FrameSettings settings = frame_settings(options, scene);
     const Outputs outputs = plan_outputs(options, scene);
+    if (const std::string turns = camera_turns(scene.camera, outputs.frames); !turns.empty())
+        print_warnings({turns}, options);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
 
@@ -174,12 +191,14 @@ void render_scene(RenderOptions options) {
         try {
             seconds = seconds_of([&] { render_film(job, *renderer, progress, stats); });
         } catch (const Error&) {
+            warn_of_clamped(stats, outputs.image, options);
             try {
                 write_stats();        // of the finished frames
             } catch (const Error&) {  // the original error is the one to report
             }
             throw;
         }
+        warn_of_clamped(stats, outputs.image, options);
         write_stats();
         if (options.verbose && !stats.frames.empty())  // the renderer knows which effects it used
             fmt::print(stderr, "render: effects: {}\n", fmt::join(names_of_effects(stats.effects), ", "));

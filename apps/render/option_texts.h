@@ -11,7 +11,8 @@ struct OptionTexts {
         max_samples, threads, layers, device, pixel, json, explain;
     std::string backend = "embree", precision = "auto", intersector = "exact", effects = "auto", bits = "float",
                 progress = "auto";
-    bool resume = false, quiet = false, verbose = false, version = false, print_template = false, list_devices = false;
+    bool resume = false, strict = false, quiet = false, verbose = false, version = false, print_template = false,
+         list_devices = false;
 };
 
 }  // namespace cistula

@@ -48,6 +48,7 @@ void declare(CLI::App& app, OptionTexts& texts) {
         ->type_name("NAME");
     app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
     app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
+    app.add_flag("--strict", texts.strict, "with --bits half: a value over 65504 is an error, and not clamped");
     app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
     app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
@@ -81,6 +82,7 @@ RenderOptions checked(const OptionTexts& texts) {
     options.preview = texts.preview;
     options.stats = texts.stats;
     options.resume = texts.resume;
+    options.strict = texts.strict;
     options.quiet = texts.quiet;
     options.verbose = texts.verbose;
     options.json = texts.json;

@@ -121,7 +121,10 @@ class PixelJson {
             face["because"] = passed.inside ? "precedence" : "clear";
             json["passed"].push_back(std::move(face));
         }
-        if (branch.end == BranchEnd::light) json["light"] = named(report_.names.visible_lights[branch.visible_light]);
+        if (branch.end == BranchEnd::light) {
+            json["light"] = named(report_.names.visible_lights[branch.visible_light]);
+            json["light"]["id"] = report_.names.solids.size() + branch.visible_light + 1;
+        }
         if (branch.end == BranchEnd::surface) json["surface"] = surface_entry(branch.surface);
         json["adds"] = sum(branch.adds);
         if (branch.end != BranchEnd::surface) return json;

@@ -66,9 +66,9 @@ TEST(CameraPath, FollowsTheSinusoids) {
 TEST(CameraPath, RefusesViewsThatDefineNoPicture) {
     CameraDescription description;
     description.position = description.target = {1, 2, 3};
-    expect_error([&] { camera_at(description, 0); }, ExitCode::usage, "position and target coincide");
-    description.target = {1, 2, 9};
-    expect_error([&] { camera_at(description, 4); }, ExitCode::usage, "camera at frame 4: the view is along up");
+    description.place = "a.json: /camera/path";
+    expect_error([&] { camera_at(description, 4); }, ExitCode::usage,
+                 "a.json: /camera/path: at frame 4 the camera's position and target coincide");
     description.target = {2, 2, 3};
     description.up = glm::dvec3{0};
     expect_error([&] { camera_at(description, 0); }, ExitCode::usage, "up is the zero vector");

@@ -113,6 +113,10 @@ TEST(FilmPicture, LedgerRoundsUpByTheLeastStep) {
                 ASSERT_LT(static_cast<long double>(std::nextafter(bound, 0.0f)), exact) << value;
             }
             const float half_bound = channel(to_layers(film, everything_half), "error.R").values[0];
+            if (bound > largest_half) {
+                ASSERT_EQ(half_bound, largest_half);
+                continue;
+            }
             ASSERT_GE(half_bound, bound);
             if (half_bound > 0) {
                 half below(half_bound);
@@ -137,7 +141,38 @@ TEST(FilmPicture, LedgerRoundsUpOverSamples) {
     EXPECT_GE(9.0 * bound, 64);
     EXPECT_LT(9.0 * std::nextafter(bound, 0.0f), 64);
     const Film bright = film_of(1, 20, {pixel});
-    EXPECT_EQ(channel(to_layers(bright, everything_half), "error.G").values[0], infinity);
+    EXPECT_EQ(channel(to_layers(bright, everything_half), "error.G").values[0], largest_half);
+}
+
+TEST(FilmPicture, HalfChannelsAreClampedToTheLargestHalf) {
+    EXPECT_EQ(largest_half, static_cast<float>(std::numeric_limits<half>::max()));
+    PixelRecord dim = some_pixel(), bright = some_pixel();
+    for (PixelRecord* pixel : {&dim, &bright})
+        for (int c = 0; c < 3; ++c) pixel->pruned[c] = pixel->cut[c] = 0;
+    const int64_t most = int64_t(65504) << 42;  // in units of 2^-62 and radiances of 2^20
+    dim.radiance[0] = most, dim.radiance[1] = most / 2, dim.radiance[2] = 0;
+    bright.radiance[0] = most + (int64_t(1) << 42), bright.radiance[1] = most + (int64_t(1) << 36);
+    bright.radiance[2] = most << 3;
+    dim.cut[0] = most;
+    bright.pruned[2] = most + 1;  // rounded up
+    dim.z = 1e30f;
+    const Film film = film_of(1, 20, {dim, bright, dim});
+    uint64_t clamped = 0;
+    const LayeredPicture picture = to_layers(film, everything_half, &clamped);
+    EXPECT_EQ(clamped, 4u);
+    EXPECT_EQ(channel(picture, "R").values, (std::vector<float>{65504, 65504, 65504}));
+    EXPECT_EQ(channel(picture, "G").values, (std::vector<float>{32752, 65504, 32752}));
+    EXPECT_EQ(channel(picture, "B").values, (std::vector<float>{0, 65504, 0}));
+    EXPECT_EQ(channel(picture, "error.R").values[0], 65504);
+    EXPECT_EQ(channel(picture, "error.B").values[1], 65504);
+    for (const LayeredPicture::Channel& one : picture.channels)
+        for (const float value : one.values)
+            EXPECT_TRUE(!one.half || std::isfinite(static_cast<float>(half(value)))) << one.name;
+    EXPECT_EQ(channel(picture, "Z").values[0], 1e30f);
+    // Floats hold them.
+    clamped = 0;
+    EXPECT_EQ(channel(to_layers(film, everything, &clamped), "R").values[1], 65505);
+    EXPECT_EQ(clamped, 0u);
 }
 
 TEST(FilmPicture, HashIsFnv1a) {

@@ -55,7 +55,6 @@ struct Watched {
 struct Unnoted {
     template <class Hit, class Normal>
     CISTULA_HD void surface(const Hit&, const Normal&) const {}
-    CISTULA_HD void nothing(bool) const {}
 };
 
 /// Follows the ray's tree. Not inlined: every case calls it, and a tree is much code.

@@ -30,6 +30,19 @@ CISTULA_INLINE void intersect_visible_light(const Scene& scene, uint32_t index, 
     if (t >= ray.after.t && (t < best.t || (t == best.t && index < best.light))) best = {t, index};
 }
 
+/// The outward unit normal of a visible light where the ray meets it: from the center to the closest approach, and back
+/// from there. Rounding makes the first a little oblique, and more so the farther and the smaller the sphere is, so the
+/// sum is normalized.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE Vec3<Real> visible_light_normal(const Scene& scene, const VisibleLightHit<Real>& hit,
+                                               const Ray<Real, Media>& ray) {
+    const VisibleLight<Real>& light = scene.visible_lights[hit.light];
+    const Vec3<Real> to_center = light.center - ray.origin;
+    const Vec3<Real> across = to_center - dot(to_center, ray.direction) * ray.direction;
+    const Real back = square_root(max_or_second(light.radius * light.radius - dot(across, across), Real(0)));
+    return Vec3<Real>(Real(0)) - normalized(reciprocal(light.radius) * (across + back * ray.direction));
+}
+
 /// The nearest visible light at or after ray.after and before t_limit.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE VisibleLightHit<Real> closest_visible_light(const Scene& scene, const Ray<Real, Media>& ray,

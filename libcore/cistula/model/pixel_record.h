@@ -64,7 +64,8 @@ struct PixelRecord {
     int64_t radiance[3];
     uint32_t hits;          // samples whose primary ray hit anything (visible lights included)
     uint32_t rays;          // rays of all kinds
-    int32_t id;             // 1 + solid under the sample nearest the pixel's center; 0: none
+    int32_t id;             // under the sample nearest the pixel's center: 1 + solid, or 1 + number of solids + visible
+                            // light; 0: none
     float z;                // that sample's distance along the view axis in scene units; infinity: none
     float normal[3];        // that sample's unit normal, toward the viewer, in world axes; 0: none
     uint32_t samples : 31;  // samples that were rendered

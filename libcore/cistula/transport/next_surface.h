@@ -31,17 +31,14 @@ class NextSurface {
         : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums) {}
 
     /// Finds the branch's next surface. False if there is none: the visible light or background at the end of the ray
-    /// is then added, and `light` tells whether it was a light.
-    CISTULA_INLINE bool find(Entry& branch, SurfaceEvent<Real, Media>& event, bool& light) {
+    /// is then added, and `visible` is the light, if it was one.
+    CISTULA_INLINE bool find(Entry& branch, SurfaceEvent<Real, Media>& event, VisibleLightHit<Real>& visible) {
         Absorption<E::has(effect_absorption)> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray);
-            VisibleLightHit<Real> visible;
-            if constexpr (E::has(effect_visible_lights)) {
-                visible = light_before(hit, branch);
-                light = visible.light != no_light;
-            }
+            if constexpr (E::has(effect_visible_lights)) visible = light_before(hit, branch);
+            const bool light = visible.light != no_light;
             if (light || !hit.found()) {
                 absorption.dim(scene_, branch.ray.media, light ? visible.t : hit.t, branch.weight);
                 sums_.add(branch.weight * light_or_background(visible));

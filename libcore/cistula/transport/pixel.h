@@ -147,12 +147,20 @@ struct FirstSeen {
     PixelRecord& record;
     bool middle;  // whether this sample gives the pixel's id, depth and normal
 
-    CISTULA_INLINE void nothing(bool light) const { record.hits += light ? 1 : 0; }
     CISTULA_INLINE void surface(const Hit<Real>& hit, const Vec3<Real>& normal) const {
         ++record.hits;
-        if (!middle) return;
-        record.id = int32_t(key_solid(hit.key)) + 1;
-        record.z = float((work.start + double(hit.t)) * work.facing * frame.unit_length);
+        if (middle) keep(key_solid(hit.key), hit.t, normal);
+    }
+    template <class Scene, class Media>
+    CISTULA_INLINE void light(const Scene& scene, const VisibleLightHit<Real>& hit, const Ray<Real, Media>& ray) const {
+        ++record.hits;
+        if (middle) keep(scene.solids.size + hit.light, hit.t, visible_light_normal(scene, hit, ray));
+    }
+
+  private:
+    CISTULA_INLINE void keep(uint32_t index, Real t, const Vec3<Real>& normal) const {
+        record.id = int32_t(index) + 1;
+        record.z = float((work.start + double(t)) * work.facing * frame.unit_length);
         for (int c = 0; c < 3; ++c) record.normal[c] = float(normal[c]);
     }
 };

@@ -34,8 +34,7 @@ class RayTree {
           stack_(stack) {}
 
     /// Traces the tree of a primary ray and adds what it sees to the sums. Reports the first hit by first.surface(hit,
-    /// normal), or by first.nothing(light) if the ray meets no surface; `light` tells whether it ends on a visible
-    /// light.
+    /// normal), or by first.light(scene, hit, ray) if the ray ends on a visible light.
     template <class First>
     CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
         Entry branch;
@@ -49,13 +48,13 @@ class RayTree {
             // Declared inside the loop, like everything that only some rays need, so that it holds no registers
             // elsewhere.
             SurfaceEvent<Real, Media> event;
-            bool light = false;
+            VisibleLightHit<Real> light;
             if (line_.find(branch, event, light)) {
                 const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
                 if (at_first) first.surface(event.hit, s.normal);
                 shade(branch, event, s);
-            } else if (at_first) {
-                first.nothing(light);
+            } else if constexpr (E::has(effect_visible_lights)) {
+                if (at_first && light.light != no_light) first.light(scene_, light, branch.ray);
             }
             at_first = false;
         } while (next(branch));

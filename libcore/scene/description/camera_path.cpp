@@ -1,16 +1,106 @@
 #include "scene/description/camera_path.h"
 
+#include <optional>
+
 #include "cistula/numerics/trigonometry.h"
 #include "scene/base/error.h"
+#include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {
 
-glm::dvec3 at_time(const CylindricalPath& path, double t) {
+using glm::dvec3;
+
+constexpr double unit = RealTraits<double>::unit;
+
+/// A point of a path, with a bound on its rounding.
+struct PathPoint {
+    dvec3 place;
+    double rounding;
+};
+
+/// Each of r and z is a constant plus a sinusoid. Decimal input, the products and sums in an angle of P = |w t| + |p|,
+/// and t itself move the angle by 4 u P at most, and the sinusoid is within 2 u: with its own input, product and sum it
+/// is within (5 + 4 P) u of its amplitude. The rotation by phi adds (5 + 4 |phi|) u of r. 8 u (1 + P) covers all.
+PathPoint at_time(const CylindricalPath& path, double t) {
     const double r = path.r0 + path.Ar * elementary::sin(path.wr * t + path.pr);
     const double z = path.z0 + path.Az * elementary::sin(path.wz * t + path.pz);
     const double phi = path.phi0 + path.wphi * t;
-    return {r * elementary::cos(phi), r * elementary::sin(phi), z};
+    const auto angle = [t](double velocity, double start) { return 1 + magnitude(velocity * t) + magnitude(start); };
+    const double terms = magnitude(path.r0) + magnitude(path.Ar) * angle(path.wr, path.pr) + magnitude(path.z0) +
+                         magnitude(path.Az) * angle(path.wz, path.pz) + magnitude(r) * angle(path.wphi, path.phi0);
+    return {{r * elementary::cos(phi), r * elementary::sin(phi), z}, 8 * unit * terms};
+}
+
+/// A point as written is within half an ulp of its decimal.
+PathPoint as_written(const dvec3& point) {
+    return {point, unit * length(point)};
+}
+
+struct View {
+    dvec3 position, direction;
+    double distance;
+    double rounding;  // bound on how far rounding turns the direction or `up`, as a sine
+};
+
+View view_at(const CameraDescription& description, double time) {
+    const PathPoint position =
+        description.position_path ? at_time(*description.position_path, time) : as_written(description.position);
+    const PathPoint target =
+        description.target_path ? at_time(*description.target_path, time) : as_written(description.target);
+    const dvec3 view = target.place - position.place;
+    const double distance = length(view);
+    // 16 u: up as written, 1 u; normalizing it and the view, 3 u each; their cross product, 3 u.
+    return {position.place, normalized(view), distance, 16 * unit + (position.rounding + target.rounding) / distance};
+}
+
+/// How far off `up` a view must be, in roundings, to say where the picture's right is to within 2^-20 radians.
+constexpr double clearly_off = 0x1p20;
+
+/// The right of a view that is more than `roundings` roundings off `up`.
+std::optional<dvec3> right_of(const View& view, const dvec3& up, double roundings) {
+    const dvec3 right = cross(view.direction, up);
+    if (length(right) > roundings * view.rounding) return normalized(right);
+    return std::nullopt;
+}
+
+/// The right just before a frame; just after frame 0, which has none before.
+std::optional<dvec3> right_beside(const CameraDescription& description, int frame, const dvec3& up) {
+    const double side = frame == 0 ? 1 : -1;
+    for (double step = 0x1p-32; step <= 1; step *= 2)
+        if (const auto right =
+                right_of(view_at(description, (frame + side * step) * description.time_step), up, clearly_off))
+            return right;
+    return std::nullopt;
+}
+
+/// The right if the position were a little farther from the z axis, or the target where only that has a path.
+std::optional<dvec3> right_of_azimuth(const CameraDescription& description, double time, const dvec3& up) {
+    const bool of_position = description.position_path.has_value();
+    if (!of_position && !description.target_path) return std::nullopt;
+    const CylindricalPath& path = of_position ? *description.position_path : *description.target_path;
+    const double phi = path.phi0 + path.wphi * time;
+    const dvec3 outward{elementary::cos(phi), elementary::sin(phi), 0};
+    const dvec3 right = cross(of_position ? -outward : outward, up);
+    if (length(right) > clearly_off * 16 * unit) return normalized(right);
+    return std::nullopt;
+}
+
+/// The axis that is least along the view; of axes that rounding does not tell apart, the first.
+dvec3 axis_across(const View& view) {
+    int least = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (magnitude(view.direction[axis]) < magnitude(view.direction[least]) - view.rounding) least = axis;
+    dvec3 right{0};
+    right[least] = 1;
+    return right;
+}
+
+dvec3 right_along_up(const CameraDescription& description, const CameraFrame& at, const View& view, const dvec3& up) {
+    std::optional<dvec3> right = right_beside(description, at.frame, up);
+    if (!right) right = right_of_azimuth(description, at.time, up);
+    if (!right) right = axis_across(view);
+    return normalized(*right - dot(*right, view.direction) * view.direction);
 }
 
 }  // namespace
@@ -19,27 +109,22 @@ CameraFrame camera_at(const CameraDescription& description, int frame) {
     CameraFrame result;
     result.frame = frame;
     result.time = frame * description.time_step;
-    const glm::dvec3 position =
-        description.position_path ? at_time(*description.position_path, result.time) : description.position;
-    const glm::dvec3 target =
-        description.target_path ? at_time(*description.target_path, result.time) : description.target;
+    const View view = view_at(description, result.time);
 
-    const std::string place = "camera at frame " + std::to_string(frame);
-    const glm::dvec3 view = target - position;
-    if (!is_finite(view) || !(length(view) > 0))
-        throw Error(ExitCode::usage, place + ": position and target coincide; they must be apart");
+    const std::string place = one_line(description.place) + ": at frame " + std::to_string(frame) + " ";
+    if (!is_finite(view.direction) || !(view.distance > 0))
+        throw Error(ExitCode::usage, place + "the camera's position and target coincide; they must be apart");
     if (!is_finite(description.up) || !(length(description.up) > 0))
-        throw Error(ExitCode::usage, place + ": up is the zero vector; it must point somewhere, such as [0, 0, 1]");
+        throw Error(ExitCode::usage, place + "up is the zero vector; it must point somewhere, such as [0, 0, 1]");
     if (!(description.field_of_view > 0 && description.field_of_view < 180))
-        throw Error(ExitCode::usage, place + ": the field of view must be above 0 and below 180 degrees");
+        throw Error(ExitCode::usage, place + "the field of view must be above 0 and below 180 degrees");
 
+    const dvec3 up = normalized(description.up);
     Camera& camera = result.camera;
-    camera.position = position;
-    camera.forward = normalized(view);
-    const glm::dvec3 right = cross(camera.forward, normalized(description.up));
-    if (!(length(right) > 1e-9))
-        throw Error(ExitCode::usage, place + ": the view is along up; give the camera another up");
-    camera.right = normalized(right);
+    camera.position = view.position;
+    camera.forward = view.direction;
+    const std::optional<dvec3> right = right_of(view, up, 1);
+    camera.right = right ? *right : right_along_up(description, result, view, up);
     camera.up = normalized(cross(camera.right, camera.forward));
     camera.tan_half_width = elementary::tan(description.field_of_view * (3.14159265358979323846 / 360));
     return result;

@@ -12,8 +12,11 @@ struct CameraFrame {
     Camera camera;  // scene units
 };
 
-/// The camera at frame number `frame`, t = frame * time_step. Its sinusoids are those of elementary.h. Throws Error
-/// (usage) where position and target coincide or the view direction is parallel to `up`.
+/// The camera at frame number `frame`, t = frame * time_step. Its sinusoids are those of elementary.h. Where the view
+/// is along `up`, to within rounding, the picture's right is the first of these that there is: the limit of the picture
+/// along the path from the frame before (for frame 0, from the one after); the limit as the position's r grows a
+/// little, or the target's if only that has a path; the world axis that is least along the view, x before y before z. A
+/// function of `frame` alone. Throws Error (usage), with the camera's place, where position and target coincide.
 CameraFrame camera_at(const CameraDescription& description, int frame);
 
 }  // namespace cistula

@@ -95,8 +95,9 @@ struct CameraDescription {
     glm::dvec3 position{0, -5, 2}, target{0};
     std::optional<CylindricalPath> position_path, target_path;  // replace position and target
     glm::dvec3 up{0, 0, 1};
-    double field_of_view = 60;  // horizontal, degrees
-    double time_step = 1;       // increase of t per frame
+    double field_of_view = 60;     // horizontal, degrees
+    double time_step = 1;          // increase of t per frame
+    std::string place = "camera";  // what moves it, for messages: "scene.json: /camera/path", "input.txt:5"
 };
 
 struct FilmDescription {

@@ -45,9 +45,19 @@ float rounded_up_to_half(float value) {
     return static_cast<float>(nearest);
 }
 
+/// Brings values to the largest half at most. Returns how many were over it.
+uint64_t clamp_to_half(float* begin, const float* end) {
+    uint64_t count = 0;
+    for (float* value = begin; value != end; ++value) {
+        count += *value > largest_half;
+        *value = std::min(*value, largest_half);
+    }
+    return count;
+}
+
 }  // namespace
 
-LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
+LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped) {
     check(film);
     LayeredPicture picture;
     picture.width = film.rect.width;
@@ -71,13 +81,16 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
 
     // All channels of one block of pixels before the next block, while its pixels are still in a cache.
     constexpr size_t block = 1024;
+    uint64_t over = 0;
     for (size_t begin = 0; begin < film.pixels.size(); begin += block) {
         const PixelRecord* first = film.pixels.data() + begin;
         const PixelRecord* last = first + std::min(block, film.pixels.size() - begin);
         size_t next = 0;
         const auto fill = [&](const auto& value) {
-            float* to = picture.channels[next++].values.data() + begin;
+            LayeredPicture::Channel& channel = picture.channels[next++];
+            float *start = channel.values.data() + begin, *to = start;
             for (const PixelRecord* pixel = first; pixel != last; ++pixel) *to++ = value(*pixel);
+            if (channel.half) over += clamp_to_half(start, to);
         };
         for (int c = 0; c < 3; ++c) fill([&film, c](const PixelRecord& pixel) { return radiance(film, pixel, c); });
         fill([&film](const PixelRecord& pixel) {
@@ -94,6 +107,7 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels) {
         if (channels.z) fill([](const PixelRecord& pixel) { return pixel.z; });
         for (int c = 0; c < 3 && channels.normal; ++c) fill([c](const PixelRecord& pixel) { return pixel.normal[c]; });
     }
+    if (clamped) *clamped += over;
     return picture;
 }
 

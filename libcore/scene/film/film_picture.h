@@ -14,12 +14,16 @@ struct OutputChannels {
     bool error = false, id = false, samples = false, cost = false, z = false, normal = false;
 };
 
+/// The largest finite number in half precision.
+inline constexpr float largest_half = 65504;
+
 /// All channels of a file. R G B: mean radiance. A: share of samples that hit anything. error.R error.G error.B: bound
-/// on the error from pruned and cut branches, rounded up so that it stays a bound in the file's precision (infinity
-/// beyond the largest half). id: 1 + solid, 0 for none. samples: per pixel. cost: rays. Z: distance along the view
-/// axis, infinity for none. N.X N.Y N.Z: unit normal in world axes, 0 for none. The data window is the film's
-/// rectangle.
-LayeredPicture to_layers(const Film& film, const OutputChannels& channels);
+/// on the error from pruned and cut branches, rounded up so that it stays a bound in the file's precision. id: 1 +
+/// solid, or 1 + solids + visible light; 0 for none. samples: per pixel. cost: rays. Z: distance along the view axis,
+/// infinity for none. N.X N.Y N.Z: unit normal in world axes, 0 for none. Values of
+/// half channels that are over largest_half become that, and are added to `clamped`; such an error.* is no bound. The
+/// data window is the film's rectangle.
+LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped = nullptr);
 
 /// The mean radiance in the film's rectangle.
 ColorPicture to_color(const Film& film);

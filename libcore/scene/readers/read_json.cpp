@@ -193,7 +193,10 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
     keys.read("ambient", scene.ambient);
     keys.read("background", scene.background);
     if (keys.has("film")) scene.film = read_film(keys.at("film"));
-    if (keys.has("camera")) scene.camera = read_camera(keys.at("camera"));
+    if (keys.has("camera")) {
+        scene.camera = read_camera(keys.at("camera"));
+        scene.camera.place = label + ": /camera/path";
+    }
     if (keys.has("frame")) scene.frame = read_frame(keys.at("frame"));
     NameIndices textures, materials;
     if (keys.has("textures"))

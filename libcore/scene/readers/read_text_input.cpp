@@ -171,6 +171,7 @@ SceneDescription read_text_input(const std::string& text, const std::string& lab
     scene.film.height = tokens.whole("picture height", range_of(film_keys, "height"));
     scene.camera.field_of_view = tokens.number("horizontal field of view", range_of(camera_keys, "fov"));
     scene.camera.position_path = read_path(tokens, "camera");
+    scene.camera.place = fmt::format("{}:{}", label, tokens.line());
     scene.camera.target_path = read_path(tokens, "target");
     for (const InputSolid& solid : input_solids) read_solid(tokens, solid, scene);
     read_floor(tokens, scene);

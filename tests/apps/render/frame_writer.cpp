@@ -11,6 +11,7 @@
 #include "cistula/numerics/fixed_sum.h"
 #include "scene/base/error.h"
 #include "scene/image/exr.h"
+#include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
@@ -133,6 +134,34 @@ TEST_F(Writers, TheFirstFailureEndsAllAndIsTheOneReported) {
     expect_whole(0, big);
     EXPECT_FALSE(exists(3));
     for (const std::string& name : folder_.names()) EXPECT_EQ(name.find(".part"), name.npos) << name;
+}
+
+TEST_F(Writers, WhatHalfDoesNotHoldIsCountedOrFails) {
+    OutputChannels half;
+    half.half = true;
+    const auto bright = [&](int number) {
+        FinishedFrame one = frame(number, small);
+        one.film.radiance_exponent = 40;
+        one.film.pixels[0].radiance[1] = 0;
+        return one;
+    };
+    FrameWriter writer(half, false, {1}, stop_, written_);
+    writer.put(frame(0, small));
+    writer.put(bright(1));
+    writer.finish();
+    EXPECT_EQ(written_[0].clamped, 0u);
+    EXPECT_EQ(written_[1].clamped, 3u * small * small - 1);
+    FinishedFrame strict = frame(2, small);
+    strict.strict = true;
+    writer.put(std::move(strict));
+    writer.finish();
+    EXPECT_TRUE(exists(2));
+    strict = bright(3);
+    strict.strict = true;
+    writer.put(std::move(strict));
+    samples::expect_error([&] { writer.finish(); }, ExitCode::failed,
+                          "3.exr: not written: 191 values are over 65504, the largest half; --bits float holds them");
+    EXPECT_FALSE(exists(3));
 }
 
 TEST_F(Writers, FilmsComeBackForTheirMemory) {

@@ -1,4 +1,6 @@
 // The built `render` from outside: exit codes, messages, files.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -285,6 +287,64 @@ TEST_F(RenderProgram, OptionsReachTheImage) {
     expect_done({"s.json", "-q", "-o", "other.exr", "--bits", "half", "--aov", "Z"});
     for (const LayeredPicture::Channel& one : read_exr(file("other.exr")).channels)
         EXPECT_EQ(one.half, one.name != "Z");
+}
+
+TEST_F(RenderProgram, HalfNeverHoldsAnInfinity) {
+    std::string bright = scene_text;
+    const std::string light = R"({"position": [-4, 4, 5]})";
+    bright.replace(bright.find(light), light.size(), R"({"position": [-4, 4, 5], "color": 2e6})");
+    put_bytes(file("bright.json"), bright);
+    const Arguments film{"bright.json", "-o", "b.#.exr", "--bits", "half", "--aov", "error", "--depth", "2"};
+    const ProgramResult result = run(film);
+    EXPECT_EQ(result.code, 0) << result.error;
+    uint64_t at_most = 0;
+    for (const char* name : {"b.0.exr", "b.1.exr", "b.2.exr"})
+        for (const LayeredPicture::Channel& one : read_exr(file(name)).channels)
+            for (const float value : one.values) {
+                EXPECT_LE(value, 65504) << one.name;
+                at_most += value == 65504;
+            }
+    EXPECT_GT(at_most, 1000u);
+    const std::string said = fmt::format(
+        "render: warning: b.#.exr: in 3 of 3 frames: clamped: {} values are over 65504, the largest half", at_most);
+    EXPECT_NE(result.error.find(said), std::string::npos) << said << "\n" << result.error;
+    EXPECT_EQ(result.error.find("largest half"), result.error.rfind("largest half")) << "one line";
+    Arguments strict = film;
+    strict.insert(strict.end(), {"--strict", "-q", "-f", "1", "-o", "strict.exr"});
+    strict.erase(strict.begin() + 1, strict.begin() + 3);
+    expect_refused(strict, ExitCode::failed, "strict.exr: not written: ");
+    EXPECT_FALSE(exists("strict.exr"));
+    expect_done({"bright.json", "-q", "-o", "float.exr", "--strict"});  // floats hold all
+    expect_done({"s.json", "-q", "-o", "dim.exr", "--bits", "half", "--strict"});
+    EXPECT_EQ(run({"s.json", "-o", "dim.exr", "--bits", "half"}).error.find("half"), std::string::npos);
+}
+
+TEST_F(RenderProgram, AFilmOverTheZenithSaysWhereItTurns) {
+    std::string over = scene_text;
+    const std::string path = R"({"r0": 5, "z0": 3, "wphi": 0.1})";
+    over.replace(over.find(path), path.size(), R"({"z0": 6, "Ar": 3, "wr": 0.5, "pr": -0.5})");
+    put_bytes(file("over.json"), over);
+    const ProgramResult result = run({"over.json", "-o", "o.#.exr"});
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_NE(result.error.find("render: warning: over.json: /camera/path: the view passes along up and the picture "
+                                "turns at once: by 180 degrees between frames 1 and 2\n"),
+              std::string::npos)
+        << result.error;
+    EXPECT_EQ(run({"over.json", "-f", "1", "-o", "o.exr"}).error.find("turns"), std::string::npos);
+    // The text input has no `up` to change.
+    std::string text = text_input;
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+    };
+    replace("6.0 5.0 0.0 2.0 1.0 0.05 0.1 0.05 0.0 0.0", "0 9 0 0 0 0 0 0 0 0");
+    replace("3.0 0.0 3.1415926 1.5 0.5 0.03 0.07 0.02 0.0 0.0", "0 0 0 0 0 0 0 0 0 0");
+    write_raw_picture(file("floor.data"), ColorPicture{1, 1, {glm::vec3(1, 1, 1)}});
+    expect_done({"-", "-q", "-o", "down.exr", "-f", "0", "--aov", "id"}, text);
+    const LayeredPicture down = read_exr(file("down.exr"));
+    // As from a little off the axis, on its +x side: the right is +y, below is +x.
+    const auto id_at = [&](size_t x, size_t y) { return channel(down, "id")[y * 32 + x]; };
+    EXPECT_EQ((std::vector{id_at(21, 4), id_at(21, 15), id_at(10, 15), id_at(10, 4)}),
+              (std::vector<float>{1, 2, 3, 4}));
 }
 
 TEST_F(RenderProgram, TheHeaderSaysWhatTheImageDependsOn) {
