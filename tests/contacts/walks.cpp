@@ -125,7 +125,8 @@ dvec3 target_in(const ContactScene& scene, Random& random) {
 struct NothingSeen {
     template <class Hit, class Normal>
     void surface(const Hit&, const Normal&) const {}
-    void nothing(bool) const {}
+    template <class Scene, class Light, class Line>
+    void light(const Scene&, const Light&, const Line&) const {}
 };
 
 /// Traces the trees of `rays` primary rays from random places.
