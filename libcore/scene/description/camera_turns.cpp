@@ -1,10 +1,8 @@
 #include "scene/description/camera_turns.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 
+#include "cistula/numerics/trigonometry.h"
 #include "scene/description/camera_path.h"
 
 namespace cistula {
@@ -22,6 +20,13 @@ double turn_cosine(const Camera& from, const Camera& to) {
     return dot(from.right + moved + cross(axis, moved) / (1 + cosine), to.right);
 }
 
+/// The angle with a cosine below 0, in whole degrees.
+int degrees_of(double cosine) {
+    int degrees = 90;
+    while (degrees < 180 && elementary::cos((degrees + 0.5) * (3.14159265358979323846 / 180)) > cosine) ++degrees;
+    return degrees;
+}
+
 }  // namespace
 
 std::string camera_turns(const CameraDescription& description, const std::vector<int>& frames) {
@@ -34,8 +39,7 @@ std::string camera_turns(const CameraDescription& description, const std::vector
         const double cosine = i > 0 && at.frame == before.frame + 1 ? turn_cosine(before.camera, at.camera) : 1;
         before = at;
         if (cosine >= 0 || ++count > most_named) continue;
-        const double degrees = std::acos(std::max(cosine, -1.0)) * (180 / 3.14159265358979323846);
-        places += fmt::format("{}by {:.0f} degrees between frames {} and {}", count == 1 ? "" : ", ", degrees,
+        places += fmt::format("{}by {} degrees between frames {} and {}", count == 1 ? "" : ", ", degrees_of(cosine),
                               at.frame - 1, at.frame);
     }
     if (count == 0) return "";

@@ -329,6 +329,20 @@ TEST_F(PixelReports, WriteFilesAndStandardInput) {
     EXPECT_FALSE(exists("s.exr"));
 }
 
+TEST_F(PixelReports, ShowTheIdOfALight) {
+    put_bytes(file("lamp.json"), R"({"film": {"width": 40, "height": 24},
+        "camera": {"position": [0, -5, 0]}, "materials": {"m": {}},
+        "objects": [{"solid": "cube", "center": [3, 3, 0], "material": "m"},
+                    {"name": "lit", "solid": "cube", "center": [-3, 3, 0], "material": "m",
+                     "edge_lights": {"count": 1, "radius": 0.1}}],
+        "lights": [{"position": [9, 9, 9]}, {"position": [2, 0, 0], "radius": 0.1}, {"position": [0, 0, 0], "radius": 1}]})");
+    const json tree = report({"lamp.json", "--pixel", "20,12"});
+    EXPECT_EQ(tree["totals"]["id"], 4);  // two solids, one light before it
+    EXPECT_NEAR(tree["totals"]["Z"].get<double>(), 4, 0.01);
+    EXPECT_NEAR(tree["totals"]["N"][1].get<double>(), -1, 0.01);
+    EXPECT_EQ(tree["samples"][0]["tree"]["light"], (json{{"id", 4}, {"name", "light 2"}, {"place", "/lights/2"}}));
+}
+
 TEST_F(PixelReports, RefuseInOneLine) {
     for (const char* text : {"12", "1;2", "1,", ",2", "1,2,3", "-1,2", "1.5,2", "x,y", " 1,2"})
         expect_refused({"s.json", std::string("--pixel=") + text}, ExitCode::usage,
@@ -339,9 +353,10 @@ TEST_F(PixelReports, RefuseInOneLine) {
             std::string("--pixel ") + text + ": is outside of the frame, which is 40x24; its last pixel is 39,23");
     expect_refused({"s.json", "--pixel", "16,8", "--res", "16x9"}, ExitCode::usage,
                    "which is 16x9; its last pixel is 15,8");
-    const std::vector<Arguments> senseless = {
-        {"-o", "a.exr"},       {"--preview", "p.png"}, {"--stats", "t.json"},   {"--aov", "id"}, {"--bits", "half"},
-        {"--crop", "4x4+0+0"}, {"--resume"},           {"--progress", "plain"}, {"--explain"},   {"--backend", "cuda"}};
+    const std::vector<Arguments> senseless = {{"-o", "a.exr"},       {"--preview", "p.png"}, {"--stats", "t.json"},
+                                              {"--aov", "id"},       {"--bits", "half"},     {"--strict"},
+                                              {"--crop", "4x4+0+0"}, {"--resume"},           {"--progress", "plain"},
+                                              {"--explain"},         {"--backend", "cuda"}};
     for (const Arguments& more : senseless) {
         Arguments arguments = {"s.json", "--pixel", "1,2"};
         arguments.insert(arguments.end(), more.begin(), more.end());
