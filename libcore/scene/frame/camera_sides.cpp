@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "cistula/geometry/shared_plane.h"
 #include "scene/base/box.h"
 #include "scene/compile/compile_lights.h"
 #include "scene/compile/solid_planes.h"
@@ -32,20 +33,20 @@ class FacesAtCamera {
         std::vector<bool> near(scene_.solids.size());
         for (size_t i = 0; i < scene_.solids.size(); ++i) near[i] = may_touch(scene_.hulls[i]);
         for (const uint32_t i : scene_.convex)
-            if (near[i]) look_at_solid(scene_.solids[i]);
+            if (near[i]) look_at_solid(i);
         for (const Cluster<Real>& cluster : scene_.clusters)
             if (near[cluster.solid]) look_at_triangles(cluster);
         return std::move(planes_);
     }
 
   private:
-    static constexpr double touching = 16, apart = 32;  // units of rounding
+    static constexpr double touching = 16;  // times the rounding of a distance
+    static constexpr double apart = 32;     // u M
 
     /// The rounding of a point's distance from a plane: u times the terms of the sum. A camera near a plane through the
     /// middle of a large scene knows its side better than to u M.
     double rounding_of(const dvec3& normal, const dvec3& size, double offset) const {
-        double sum =
-            0x1p-20 * double(scene_.extent) + magnitude(offset);  // never nothing: rays must start off the plane
+        double sum = magnitude(offset);
         for (int axis = 0; axis < 3; ++axis) sum += magnitude(normal[axis]) * size[axis];
         return double(RealTraits<Real>::unit) * sum;
     }
@@ -61,13 +62,22 @@ class FacesAtCamera {
         return inside;
     }
 
-    void look_at_solid(const Solid& solid) {
+    /// The rounding of a distance from a face: at least the slack of its shared plane, if it has one.
+    double with_slack(double rounding, uint32_t plane) const {
+        return plane == no_plane ? rounding : max_or_second(rounding, double(scene_.shared_planes[plane].slack));
+    }
+
+    void look_at_solid(uint32_t index) {
+        const Solid& solid = scene_.solids[index];
+        const dvec3 size = camera_size() + dvec3(square_root(double(solid.padded_square)));
         std::vector<Plane> at_camera;
         for (const SolidPlane& plane : solid_planes(view_, solid)) {
             const double outside = dot(plane.normal, camera_) - plane.offset;
-            const double rounding = rounding_of(plane.normal, camera_size(), plane.offset);
+            const double rounding =
+                with_slack(rounding_of(plane.normal, size, plane.offset), plane_of_face(view_, index, plane.face));
             if (outside > touching * rounding) return;
-            if (outside >= -touching * rounding) at_camera.push_back({plane.normal, plane.offset, apart * rounding});
+            if (outside >= -touching * rounding)
+                at_camera.push_back({plane.normal, plane.offset, apart * max_or_second(unit_, rounding)});
         }
         for (const Plane& plane : at_camera) add(plane);
     }
@@ -83,9 +93,10 @@ class FacesAtCamera {
             dvec3 size = camera_size();
             for (const dvec3& p : corner)
                 for (int axis = 0; axis < 3; ++axis) size[axis] = max_or_second(size[axis], magnitude(p[axis]));
-            const double rounding = rounding_of(normal, size, offset);
+            const double rounding = with_slack(rounding_of(normal, size, offset),
+                                               plane_of_face(view_, cluster.solid, cluster.triangle[lane]));
             if (magnitude(dot(normal, camera_) - offset) <= touching * rounding)
-                add({normal, offset, apart * rounding});
+                add({normal, offset, apart * max_or_second(unit_, rounding)});
         }
     }
 

@@ -7,8 +7,8 @@
 namespace cistula {
 
 /// Sets where a frame's rays start: at the camera, or, where it lies on faces to within 16 times the rounding of its
-/// distance from their planes, 32 times that off each plane, on either side. Of more than three planes the first three
-/// count. The camera's position is already in the frame.
+/// distance from their planes, 32 u M off each plane, on either side. Of more than three planes the first three count.
+/// The camera's position is already in the frame.
 template <class Real>
 void set_camera_sides(const CompiledScene<Real>& scene, FrameView& frame);
 
