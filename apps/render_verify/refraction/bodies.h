@@ -142,30 +142,21 @@ inline std::string label(Form form, const char* name, const std::vector<Body>& b
     return text;
 }
 
-/// Moves a number up or down by an ulp or leaves it, depending on its value and owner, so that a mesh stays closed.
+/// Compiles the scene again with each body moved by an ulp of M or not at all along each axis, in the same frame.
 template <class Real>
-Real moved(Real x, uint64_t whose) {
-    if (!is_finite(x) || x == Real(0)) return x;
-    Draw draw(whose, uint64_t(bits_as<typename parity::Layout<Real>::Bits>(x)));
-    return parity::stepped(x, draw.between(-1, 1));
-}
-template <class Real>
-void move_planes(CompiledScene<Real>& compiled, uint64_t seed) {
-    for (const Solid& solid : compiled.solids)
-        for (uint32_t i = 0; i < solid.slab_count; ++i) {
-            const uint64_t whose = 256 * seed + solid.first_slab + i;
-            Slab<Real>& slab = compiled.slabs[solid.first_slab + i];
-            SlabGroup<Real>& group = compiled.slab_groups[solid.first_group + i / slab_lanes];
-            group.low[i % slab_lanes] = slab.low = moved(slab.low, whose);
-            group.high[i % slab_lanes] = slab.high = moved(slab.high, whose);
-        }
-}
-template <class Real>
-void move_corners(CompiledScene<Real>& compiled, uint64_t seed) {
-    for (Cluster<Real>& cluster : compiled.clusters)
-        for (auto& corner : cluster.corner)
-            for (int axis = 0; axis < 3; ++axis)
-                for (Real& x : corner[axis]) x = moved(x, 1024 * seed + 4 * cluster.solid + uint64_t(axis));
+void move_bodies(CompiledScene<Real>& compiled, SceneDescription scene, uint64_t seed) {
+    const double ulp =
+        2 * double(RealTraits<Real>::unit) * double(compiled.extent) * elementary::power_of_two(-compiled.scale);
+    for (size_t k = 0; k < scene.objects.size(); ++k) {
+        Draw draw(256 * seed + k, 0);
+        glm::dvec3 by;
+        for (int axis = 0; axis < 3; ++axis) by[axis] = ulp * draw.between(-1, 1);
+        if (auto* solid = std::get_if<SolidObject>(&scene.objects[k].shape)) solid->center += by;
+        if (auto* mesh = std::get_if<TrianglesObject>(&scene.objects[k].shape))
+            for (glm::dvec3& p : mesh->vertices) p += by;
+    }
+    scene.frame = FrameOfReference{compiled.center, compiled.scale, {}};
+    compiled = std::move(*compile_scene<Real>(scene));
 }
 
 }  // namespace cistula::verify::refraction

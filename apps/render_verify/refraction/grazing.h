@@ -58,7 +58,7 @@ struct Grazing {
         tally.expect(good);
     }
 
-    /// Adds the parts; `changed`: planes and corners are moved by an ulp or not at all.
+    /// Adds the parts; `changed`: bodies are moved by an ulp or not at all.
     template <class Functor>
     static void plan_faces(Plan& plan, bool changed) {
         uint64_t number = 0;
@@ -87,9 +87,8 @@ struct Grazing {
                                 numbers.insert(numbers.end(), {at, onward, before, behind, double(solids)});
                             };
                             if (changed)
-                                part.edit([seed = number++](auto& compiled) {
-                                    move_planes(compiled, seed);
-                                    move_corners(compiled, seed);
+                                part.edit([seed = number++, scene = part.scene](auto& compiled) {
+                                    move_bodies(compiled, scene, seed);
                                 });
                         }
                 } while (std::next_permutation(bodies.begin(), bodies.end()));

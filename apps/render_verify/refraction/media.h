@@ -90,27 +90,26 @@ struct MediaMixed : MediaSequence {
     }
 };
 
-/// Corners moved by an ulp or none each, so that shared faces have gaps and overlaps of up to 2 ulps of M: 4 u a
-/// coordinate, less than half of what a surface event spans (surface_event.h).
+/// Bodies moved by an ulp of M or not at all along each axis, so that shared faces have gaps and overlaps of up to
+/// 2 ulps a coordinate: 7 u M, less than half of the 16 u M within which faces share a plane.
 struct MediaMovedTriangles : MediaSequence {
     static constexpr const char* name = "refraction/media/within-rounding/triangles";
     static constexpr const char* exact = "the same where shared faces of meshes are ulps apart, or one in the other";
     static constexpr Bound bound = no_failures("rays");
     static void plan(Plan& plan) {
         plan_bodies<MediaMovedTriangles>(plan, {Form::wide_boxes}, [](Part& part, uint64_t number) {
-            part.edit([number](auto& compiled) { move_corners(compiled, number); });
+            part.edit([number, scene = part.scene](auto& compiled) { move_bodies(compiled, scene, number); });
         });
     }
 };
-/// Planes moved by an ulp or not at all, in float only: planes closer than 1e-12 M become one when a scene is read, so
-/// in double they are never just a few ulps apart.
 struct MediaMovedPlanes : MediaSequence {
     static constexpr const char* name = "refraction/media/within-rounding/planes";
-    static constexpr const char* exact = "the same where shared faces of solids of planes are ulps apart in float";
+    static constexpr const char* exact =
+        "the same where shared faces of solids of planes are ulps apart, or one in the other";
     static constexpr Bound bound = no_failures("rays");
     static void plan(Plan& plan) {
         plan_bodies<MediaMovedPlanes>(plan, {Form::cubes}, [](Part& part, uint64_t number) {
-            part.edit_float = [number](CompiledScene<float>& compiled) { move_planes(compiled, number); };
+            part.edit([number, scene = part.scene](auto& compiled) { move_bodies(compiled, scene, number); });
         });
     }
 };

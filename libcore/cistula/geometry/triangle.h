@@ -261,9 +261,9 @@ CISTULA_INLINE bool misses_flat_sheet(const Scene& scene, uint32_t cluster, cons
 
 /// The largest distance along a line between a triangle's own crossing and its shared plane's: half of what trees
 /// search beyond a box (tree_slack_absolute). Only lines that are flatter over the plane than its distance from the
-/// triangle over this, 2^-9 for 2 u M in float, exceed it; they meet the triangle at its own crossing.
+/// triangle over this, 2^-9 for 8 u M in float, exceed it; they meet the triangle at its own crossing.
 template <class Real>
-inline constexpr Real contact_reach = Real(0x1p-14);
+inline constexpr Real contact_reach = Real(0x1p-12);
 
 /// The t of an accepted crossing: that of the shared plane on which the triangle lies, if any; -1 if the ray starts on
 /// that plane, whose surfaces it does not meet. `own`: the triangle's.

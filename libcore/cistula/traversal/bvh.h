@@ -41,7 +41,7 @@ struct BoxRay {
 
 /// Outward slack of the limits of a box ray: relative for the rounding of t, absolute for that of the boxes' sides and
 /// for contact_reach (triangle.h).
-inline constexpr float tree_slack_relative = 0x1p-21f, tree_slack_absolute = 0x1p-13f;
+inline constexpr float tree_slack_relative = 0x1p-21f, tree_slack_absolute = 0x1p-11f;
 
 template <class Real>
 CISTULA_INLINE float tree_far(Real t) {
