@@ -18,7 +18,8 @@ inline SceneDescription cut_cube(const Ground& ground, int cut, uint64_t seed, S
     std::vector<int> order(size_t(cut * cut * cut));
     std::iota(order.begin(), order.end(), 0);
     parity::Draw draw(seed, 1);
-    for (size_t i = order.size() - 1; i > 0 && seed != 0; --i) std::swap(order[i], order[size_t(draw.between(0, int(i)))]);
+    for (size_t i = order.size() - 1; i > 0 && seed != 0; --i)
+        std::swap(order[i], order[size_t(draw.between(0, int(i)))]);
     const double side = 1.2 / cut;
     for (const int i : order) {
         const int across = i % cut, along = i / cut % cut, up = i / cut / cut;

@@ -7,6 +7,7 @@
 #include "apps/render_verify/contact/blocks.h"
 #include "apps/render_verify/contact/decals.h"
 #include "apps/render_verify/contact/invisible.h"
+#include "apps/render_verify/contact/optical.h"
 #include "apps/render_verify/contact/shadows.h"
 #include "testing/reference_renderers.h"
 
@@ -17,8 +18,8 @@ template <class Real>
 Film film_without_contacts(const SceneDescription& scene, const FrameSettings& settings, int frame) {
     std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(scene);
     compiled->shared_planes.clear();
-    for (auto* numbers : {&compiled->slab_planes, &compiled->triangle_planes, &compiled->near_planes,
-                          &compiled->plane_solids})
+    for (auto* numbers :
+         {&compiled->slab_planes, &compiled->triangle_planes, &compiled->near_planes, &compiled->plane_solids})
         numbers->clear();
     for (Solid& solid : compiled->solids) solid.near_count = 0;
     Film film;
@@ -54,6 +55,9 @@ struct BrokenInvisibleInCorner : WithoutMeasured<InvisibleInCorner> {
 };
 struct BrokenBlocks : Without<EightBlocks> {
     static constexpr const char* name = "contact/broken/blocks";
+};
+struct BrokenOptical : Without<OpticalContact> {
+    static constexpr const char* name = "contact/broken/optical";
 };
 struct BrokenDecals : Without<DecalsOnFloor> {
     static constexpr const char* name = "contact/broken/decals";

@@ -43,8 +43,8 @@ inline SceneDescription with_decals(const Ground& ground, Under under, double li
     return site.scene;
 }
 
-/// A foil lets most of a light through and is itself no obstacle to the light of what it lies on: with lights it differs
-/// from one that is raised, so it is there in ambient light alone.
+/// A foil lets most of a light through and is itself no obstacle to the light of what it lies on: with lights it
+/// differs from one that is raised, so it is there in ambient light alone.
 template <Under... unders>
 struct Decals {
     static constexpr const char* exact = "the picture with each decal raised by 2^-14";

@@ -30,11 +30,14 @@ inline Site with_clear_bodies(const Ground& ground, Build build, Shape shape) {
     return site;
 }
 
-/// Of a scene of size 4 in which colors are smooth: what lies on the paper is displaced by less than 2^-12.
+/// Lines are turned at up to eight faces, over ways of up to 2: what is seen is displaced by less than 2^-11, and
+/// colors of the paper change by less than 1/2 per unit of length.
+inline constexpr Bound bound_of_displaced = at_most(0x1p-12, "of 1");
+
 template <Shape shape, Build... builds>
 struct Invisible {
     static constexpr const char* exact = "the colors of the paper alone";
-    static constexpr Bound bound = at_most(0x1p-12, "of 1");
+    static constexpr Bound bound = bound_of_displaced;
 
     static void render(Stage& stage, Tally& tally) {
         uint64_t number = 0;
@@ -82,7 +85,7 @@ struct InvisibleMeshesInCorner : Invisible<Shape::triangles, side_by_side, in_a_
 struct InvisibleSolids {
     static constexpr const char* name = "contact/invisible/solids";
     static constexpr const char* exact = "the colors of the paper alone, under every face of the Platonic solids";
-    static constexpr Bound bound = at_most(0x1p-12, "of 1");
+    static constexpr Bound bound = bound_of_displaced;
 
     static void render(Stage& stage, Tally& tally) {
         uint64_t number = 0;

@@ -78,8 +78,8 @@ struct TintedShadow : Straight<with_tinted_bodies<on_floor>, with_tinted_bodies<
 struct TintedShadowOnSolid : Straight<with_tinted_bodies<on_solid>> {
     static constexpr const char* name = "contact/shadows/tinted/on-a-solid";
 };
-struct OpaqueShadow : Straight<with_opaque_bodies<on_floor>, with_opaque_bodies<on_tessellated_floor>,
-                               with_opaque_bodies<on_solid>> {
+struct OpaqueShadow
+    : Straight<with_opaque_bodies<on_floor>, with_opaque_bodies<on_tessellated_floor>, with_opaque_bodies<on_solid>> {
     static constexpr const char* name = "contact/shadows/no-leak";
 };
 struct OpaqueNeighbors : Straight<with_opaque_bodies<side_by_side>, with_opaque_bodies<along_an_edge>,

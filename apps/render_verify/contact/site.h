@@ -89,9 +89,7 @@ class Site {
         decals_ += lift;
         quad(corner + normalized(cross(along, across)) * decals_, along, across, material);
     }
-    void floor(int material, double half = 2) {
-        quad({-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0}, material);
-    }
+    void floor(int material, double half = 2) { quad({-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0}, material); }
     /// A floor of cells x cells squares, two triangles each, whose corners lie unevenly.
     void tessellated_floor(int material, int cells, double half = 2) {
         sheets.push_back({{-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0}, material});

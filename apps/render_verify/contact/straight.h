@@ -1,6 +1,6 @@
-// What is seen along straight lines, in closed form: opaque cubes and parallelograms, cubes of index 1 that tint the light
-// at each face, ambient light, and diffuse light that they shadow. Bodies are ideal; lines that come within a margin of an
-// edge have no answer.
+// What is seen along straight lines, in closed form: opaque cubes and parallelograms, cubes of index 1 that tint the
+// light at each face, ambient light, and diffuse light that they shadow. Bodies are ideal; lines that come within a
+// margin of an edge have no answer.
 #pragma once
 
 #include <optional>
@@ -46,8 +46,8 @@ class StraightLight {
 
     struct Chord {
         double enter = -far_away, leave = far_away;
-        dvec3 normal{0};             // of the face by which the line enters
-        double second = -far_away;   // the next to last plane that it enters by
+        dvec3 normal{0};            // of the face by which the line enters
+        double second = -far_away;  // the next to last plane that it enters by
     };
     struct Meeting {
         double t = far_away;
