@@ -146,7 +146,7 @@ inline MaterialDescription glass(double index, const dvec3& absorption = dvec3(0
 }
 
 inline Film film_of(const Stage& stage, const SceneDescription& scene) {
-    const int times = stage.quick ? 1 : 2;
+    const int times = stage.quick ? 1 : 4;
     return stage.render(scene, scene.film.width * times, scene.film.height * times);
 }
 
