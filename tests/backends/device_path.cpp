@@ -12,6 +12,7 @@
 #include "scene/film/put_pixels.h"
 #include "scene/frame/frame_view.h"
 #include "testing/generated_scene.h"
+#include "testing/support/contact_search.h"
 #include "testing/support/golden.h"
 
 using namespace cistula;
@@ -139,6 +140,13 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfGeneratedScenes) {
         plain_loops += check<TypeParam>("seed " + std::to_string(seed), scene, generated_settings(scene));
     }
     EXPECT_GT(plain_loops, 0);
+}
+
+TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfScenesWithContacts) {
+    for (uint64_t seed = 0; seed < test::contact_scene_count; ++seed) {
+        const SceneDescription scene = test::ContactSearch(seed).scene();
+        check<TypeParam>("contacts, seed " + std::to_string(seed), scene, generated_settings(scene));
+    }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "backend_cuda/host/cuda_renderer.h"
 #include "scene/description/without_effect.h"
 #include "testing/generated_scene.h"
+#include "testing/support/contact_search.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/golden.h"
@@ -102,6 +103,21 @@ TYPED_TEST(Cuda, AdaptiveFramesAreEqual) {
                 EXPECT_EQ(render(*this->gpu(scene, options), scene, settings), this->expected(scene, settings))
                     << scene.source << ", target " << target;
             }
+        }
+    }
+}
+
+TYPED_TEST(Cuda, ScenesWithContactsAreEqualWhateverThePath) {
+    CISTULA_NEEDS_GPU();
+    for (uint64_t seed = 0; seed < test::contact_scene_count; ++seed) {
+        const SceneDescription scene = test::ContactSearch(seed).scene();
+        const FrameSettings settings = generated_settings(scene);
+        const Image expected = this->expected(scene, settings);
+        for (const bool always_tree : {false, true}) {
+            CudaOptions options;
+            options.always_tree = always_tree;
+            EXPECT_EQ(render(*this->gpu(scene, options), scene, settings), expected)
+                << "seed " << seed << (always_tree ? ", tree" : "");
         }
     }
 }
