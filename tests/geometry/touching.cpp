@@ -155,4 +155,24 @@ TYPED_TEST(Touching, ATwinCastsNoShadowOnItsTwin) {
     }
 }
 
+/// Glass that stands on an opaque box shows the box's face, whichever comes later in the file.
+TYPED_TEST(Touching, AnOpaqueBodyUnderGlassIsSeenInEitherOrder) {
+    SceneDescription empty = floor_and_light();
+    const int opaque = test::add_material(empty);
+    const int glass = test::add_material(empty, 0, 1, dvec3(1), 1.5);
+    std::vector<Film> films;
+    for (const bool glass_first : {false, true}) {
+        SceneDescription scene = empty;
+        add_box(scene, Shape::planes, glass_first, glass_first ? glass : opaque);
+        add_box(scene, Shape::planes, !glass_first, glass_first ? opaque : glass);
+        films.push_back(film_of<TypeParam>(scene));
+        SceneDescription other = empty;  // left and right exchanged: what is where must not matter
+        add_box(other, Shape::planes, !glass_first, glass_first ? glass : opaque);
+        add_box(other, Shape::planes, glass_first, glass_first ? opaque : glass);
+        films.push_back(film_of<TypeParam>(other));
+    }
+    EXPECT_LE(apart(films[0], films[2]), past_edges<TypeParam>);
+    EXPECT_LE(apart(films[1], films[3]), past_edges<TypeParam>);
+}
+
 }  // namespace

@@ -45,11 +45,19 @@ struct SurfaceEvent {
     }
 };
 
-/// Collects the crossings at exactly the same t, up to a sheet, and chooses what is shaded: the highest solid that
-/// begins or ends there (docs/rules.md, 11, line 6). Not inlined: few events have more than one crossing.
+/// Whether no light passes a solid's faces.
+template <class Real>
+CISTULA_INLINE bool is_opaque(const SceneView<Real>& scene, uint32_t solid) {
+    const Material<Real>& material = scene.materials[scene.solids[solid].material];
+    return !(material.transmission > Real(0)) && material.fresnel == 0;
+}
+
+/// Collects the crossings at exactly the same t, up to a sheet, and chooses what is shaded: an opaque solid that begins
+/// there and is the medium beyond, else the highest solid that begins or ends there (docs/rules.md, 11, line 6). Not
+/// inlined: few events have more than one crossing.
 template <class Real, class Intersector, class Media>
-CISTULA_NOINLINE void gather_shared(const Intersector& intersector, const Ray<Real, Media>& ray,
-                                    SurfaceEvent<Real, Media>& event) {
+CISTULA_NOINLINE void gather_shared(const SceneView<Real>& scene, const Intersector& intersector,
+                                    const Ray<Real, Media>& ray, SurfaceEvent<Real, Media>& event) {
     Hit<Real> hits[SurfaceEvent<Real, Media>::capacity];
     hits[0] = event.hit;
     Ray<Real, Media> probe = ray;
@@ -62,10 +70,12 @@ CISTULA_NOINLINE void gather_shared(const Intersector& intersector, const Ray<Re
         event.take(next);
     }
     event.changes = false;
-    for (int i = 0; i < event.count; ++i) {
+    bool covered = false;
+    for (int i = 0; i < event.count && !covered; ++i) {
         const uint32_t solid = key_solid(hits[i].key);
         if (ray.media.contains(solid) == event.beyond.contains(solid)) continue;
-        if (event.changes && solid < key_solid(event.hit.key)) continue;
+        covered = solid == event.beyond.medium() && is_opaque(scene, solid);
+        if (event.changes && !covered && solid < key_solid(event.hit.key)) continue;
         event.hit = hits[i];
         event.changes = true;
     }
@@ -79,7 +89,7 @@ CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& interse
     if constexpr (meets_contacts<E, Media>)
         if (key_kind(hit.key) != CrossingKind::sheet &&
             plane_of_face(scene, key_solid(hit.key), key_face(hit.key)) != no_plane)
-            gather_shared(intersector, ray, event);
+            gather_shared(scene, intersector, ray, event);
 }
 
 }  // namespace cistula

@@ -98,7 +98,9 @@ class NextSurface {
             if constexpr (meets_contacts<E, Media>)
                 if (!event.changes) return true;
             const uint32_t solid = key_solid(event.hit.key), medium = ray.media.medium();
-            if (key_kind(event.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid) return true;
+            bool within_higher = key_kind(event.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid;
+            if constexpr (meets_contacts<E, Media>) within_higher = within_higher && event.beyond.contains(medium);
+            if (within_higher) return true;
             if (!is_clear(scene_, solid)) return false;
             if constexpr (E::has(effect_refraction))
                 return index_of(scene_, ray.media) == index_of(scene_, event.beyond);
