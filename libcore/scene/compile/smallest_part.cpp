@@ -89,11 +89,13 @@ class Search {
                 }
                 add_distance(magnitude(beyond), [&] { return near(light, source_.solids[solid.solid]); });
             }
-            for (const auto& [solid, box] : meshes_)
-                if (!apart(at, box, range_))
-                    add_distance(
-                        distance_to_triangles(solid->mesh, normalization_, light.position, contact * extent_, range_),
-                        [&] { return near(light, *solid); });
+            for (const auto& [mesh, box] : meshes_) {
+                if (apart(at, box, range_)) continue;
+                const SourceSolid& solid = *mesh;
+                add_distance(
+                    distance_to_triangles(solid.mesh, normalization_, light.position, contact * extent_, range_),
+                    [&] { return near(light, solid); });
+            }
         }
     }
     static std::string near(const NormalizedLight& light, const SourceSolid& solid) {
