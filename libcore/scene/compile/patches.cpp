@@ -85,10 +85,16 @@ std::vector<Patch> touching_patches(const CompiledScene<Real>& scene, const std:
     std::vector<bool> near(boxes.size());
     for (uint32_t i = 0; i < boxes.size(); ++i) near[i] = !boxes[i].empty() && meets_another(boxes[i], i);
 
+    std::vector<uint32_t> triangles(scene.solids.size());
+    for (const Cluster<Real>& cluster : scene.clusters) triangles[cluster.solid] += cluster.count;
     std::vector<Patch> patches;
+    const auto with_own = [&](uint32_t solid) {
+        return scene.solids[solid].kind == SolidKind::sheet && triangles[solid] <= most_with_own;
+    };
     const auto add = [&](std::optional<Patch> patch) {
-        const bool sheet = patch && scene.solids[patch->solid].kind == SolidKind::sheet;
-        if (patch && (sheet || meets_another(patch->box, patch->solid))) patches.push_back(std::move(*patch));
+        if (!patch) return;
+        patch->with_own = with_own(patch->solid);
+        if (patch->with_own || meets_another(patch->box, patch->solid)) patches.push_back(std::move(*patch));
     };
     for (int32_t i = 0; i < int32_t(convex.size()); ++i) {
         const ConvexSolid& solid = convex[size_t(i)];
@@ -98,8 +104,7 @@ std::vector<Patch> touching_patches(const CompiledScene<Real>& scene, const std:
                 add(make_patch(solid.solid, i, face, std::move(corners)));
     }
     for (const Cluster<Real>& cluster : scene.clusters) {
-        const bool sheet = scene.solids[cluster.solid].kind == SolidKind::sheet;
-        if (!near[cluster.solid] && !sheet) continue;
+        if (!near[cluster.solid] && !with_own(cluster.solid)) continue;
         for (uint32_t lane = 0; lane < cluster.count; ++lane) {
             std::vector<dvec3> corners;
             for (const auto& corner : cluster.corner)

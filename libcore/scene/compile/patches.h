@@ -17,6 +17,7 @@ struct Patch {
     glm::dvec3 normal;  // unit
     double offset;
     double area;
+    bool with_own = false;  // of a sheet that may overlap itself: compared with patches of its own solid, too
 
     /// The largest distance of another patch's corners from this one's plane.
     double farthest(const Patch& other) const;
@@ -32,8 +33,11 @@ Box padded(const Box& box, double pad);
 /// Whether two patches of one plane overlap by more than `least` in every direction.
 bool overlap(const Patch& a, const Patch& b, double least);
 
-/// The faces of all solids that come within `pad` of another solid's box, and the triangles of open sheets that may
-/// overlap themselves, in the order of solids. Triangles have the corners that the tracer sees. Empty where no two
+/// The largest open sheet that is searched for faces of its own that overlap, in triangles.
+constexpr uint32_t most_with_own = 4096;
+
+/// The faces of all solids that come within `pad` of another solid's box, and all triangles of sheets of up to
+/// most_with_own, in the order of solids. Triangles have the corners that the tracer sees. Empty where no two
 /// boxes touch and no sheet can overlap itself.
 template <class Real>
 std::vector<Patch> touching_patches(const CompiledScene<Real>& scene, const std::vector<ConvexSolid>& convex,

@@ -68,7 +68,7 @@ class PlaneSharing {
             for_each_in_box(tree, padded(patches_[i].box, reach * unit_), [&](uint32_t j) {
                 if (j <= i || !touch(patches_[i].box, patches_[j].box, reach * unit_)) return;
                 const bool one_solid = patches_[i].solid == patches_[j].solid;
-                if (one_solid && scene_.solids[patches_[i].solid].kind != SolidKind::sheet) return;
+                if (one_solid && !patches_[i].with_own) return;
                 pairs_.push_back({i, j, one_solid});
             });
         std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
