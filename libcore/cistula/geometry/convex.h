@@ -26,13 +26,18 @@ CISTULA_INLINE bool misses_bounds(const BoundingSphere<Real>& sphere, const Vec3
     return rest > (ahead > limit ? beyond : beside);
 }
 
-/// The face of a convex solid by which a ray inside it does not leave: that on which the ray starts.
+/// The face of a convex solid on the shared plane on which a ray starts, or no_face.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE uint32_t face_left(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray) {
-    if (ray.from_solid == index) return ray.from_face;
+CISTULA_INLINE uint32_t face_at_start(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray) {
     if constexpr (Media::contacts)
         if (ray.from_plane != no_plane) return face_on(scene, scene.solids[index], ray.from_plane);
     return no_face;
+}
+
+/// The face of a convex solid by which a ray inside it does not leave: that on which the ray starts.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE uint32_t face_left(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray) {
+    return ray.from_solid == index ? ray.from_face : face_at_start(scene, index, ray);
 }
 
 /// The crossing by which a ray leaves the convex solid that it is inside, if it is less than `best`. The face is looked
@@ -85,14 +90,6 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Soli
     const uint64_t key =
         make_key(CrossingKind::enter, index, convex_here::face_of(scene, solid, ray.origin, ray.direction, interval));
     if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);
-}
-
-/// The face of a convex solid on the shared plane on which a ray starts, or no_face.
-template <class Real, class Media, class Scene>
-CISTULA_INLINE uint32_t face_at_start(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray) {
-    if constexpr (Media::contacts)
-        if (ray.from_plane != no_plane) return face_on(scene, scene.solids[index], ray.from_plane);
-    return no_face;
 }
 
 /// The crossing by which a ray enters a convex solid that has a face on the shared plane on which the ray starts.

@@ -40,7 +40,6 @@ class PlaneSharing {
     PlaneSharing(CompiledScene<Real>& scene, std::vector<ConvexSolid>& convex, const std::vector<Box>& boxes)
         : scene_(scene),
           convex_(convex),
-          boxes_(boxes),
           unit_(double(RealTraits<Real>::unit) * double(scene.extent)),
           patches_(touching_patches(scene, convex, boxes, reach * unit_)) {}
 
@@ -224,7 +223,6 @@ class PlaneSharing {
 
     CompiledScene<Real>& scene_;
     std::vector<ConvexSolid>& convex_;
-    const std::vector<Box>& boxes_;
     const double unit_;  // u M
     const std::vector<Patch> patches_;
     std::vector<Pair> pairs_;
