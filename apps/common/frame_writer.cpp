@@ -141,14 +141,15 @@ void FrameWriter::write(Task& task) {
     const bool raw = file_kind(frame.path) == FileKind::raw;
     LayeredPicture layers;
     ColorPicture color;
+    if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
     stats.encode_seconds = seconds_of([&] {
         if (raw || !frame.preview.empty()) color = to_color(frame.film);
         if (!raw) layers = to_layers(frame.film, channels_, &stats.clamped);
         layers.attributes = std::move(frame.attributes);
+        if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
     });
     if (frame.strict && stats.clamped != 0)
         throw Error(ExitCode::failed, fmt::format("{}: not written: {}", frame.path, over_largest_half(stats.clamped)));
-    if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
     if (measure_) {
         stats.hash = film_hash(frame.film);
         stats.pruned = ledger_totals(frame.film, &PixelRecord::pruned);

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "apps/common/target.h"
 #include "scene/description/camera_path.h"
 #include "scene/film/renderer.h"
 #include "scene/image/picture.h"
@@ -21,6 +22,9 @@ using Attributes = decltype(LayeredPicture::attributes);
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera, Intersection intersection = Intersection::exact);
 
+/// Adds what is proven and estimated of the image: provenTruncation, checkedPixels and offPixels.
+void add_target_attributes(const TargetReport& report, Attributes& attributes);
+
 /// Matrix from world to camera space (x right, y up, looking along -z): 16 numbers for row vectors, p' = p M.
 std::vector<float> world_to_camera(const Camera& camera);
 
@@ -29,7 +33,7 @@ std::vector<float> world_to_camera(const Camera& camera);
 std::vector<float> world_to_ndc(const Camera& camera, int width, int height);
 
 /// Whether `picture` is the image that the attributes, windows and channels of `expected` describe. The values of
-/// `expected` are ignored.
+/// `expected` are ignored, and so is what add_target_attributes() added to the picture.
 bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected);
 
 }  // namespace cistula

@@ -37,13 +37,16 @@ Json ledger(const LedgerTotals& totals) {
 }
 
 Json target_entry(const TargetReport& target) {
-    return {{"reached", target.missed == 0},
-            {"pixels_missed", target.missed},
-            {"pixels_truncated", target.truncated},
-            {"pixels_bushy", target.bushy},
-            {"pixels_undersampled", target.undersampled},
-            {"pixels_rounded", target.rounded},
-            {"worst_truncation", target.worst_truncation}};
+    const Json proven = {{"reached", target.proven()},
+                         {"worst", target.worst_truncation},
+                         {"pixels_truncated", target.truncated},
+                         {"pixels_bushy", target.bushy}};
+    const Json estimated = {{"pixels_checked", target.checked},
+                            {"pixels_off", target.off},
+                            {"rate_at_most", rate_at_most(target.off, target.checked)},
+                            {"pixels_undersampled", target.undersampled},
+                            {"pixels_rounded", target.rounded}};
+    return {{"pixels_missed", target.missed}, {"truncation_proven", proven}, {"sampling_estimated", estimated}};
 }
 
 Json frame_entry(const FrameStats& frame, const FrameSettings& settings, bool has_device) {

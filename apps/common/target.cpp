@@ -4,12 +4,43 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/common/stats.h"
 #include "cistula/adaptive/path_hash.h"
 #include "cistula/model/lattice_settings.h"
 
 namespace cistula {
+namespace {
+
+/// The probability that at most k of n pixels are off, if each is with probability p.
+double at_most(uint64_t k, uint64_t n, double p) {
+    const auto log_factorial = [](uint64_t i) { return std::lgamma(static_cast<double>(i) + 1); };
+    double sum = 0;
+    for (uint64_t i = 0; i <= k; ++i)
+        sum += std::exp(log_factorial(n) - log_factorial(i) - log_factorial(n - i) +
+                        static_cast<double>(i) * std::log(p) + static_cast<double>(n - i) * std::log1p(-p));
+    return sum;
+}
+
+std::string describe_sampling(const TargetReport& report) {
+    if (report.checked == 0) return "sampling is an estimate that no pixel was there to check";
+    return fmt::format(
+        "sampling, an estimate, is off by more in {} of {} checked pixels: in at most {:.2g} % of all (95 %)",
+        report.off, report.checked, 100 * rate_at_most(report.off, report.checked));
+}
+
+}  // namespace
+
+double rate_at_most(uint64_t off, uint64_t checked) {
+    if (off >= checked) return 1;
+    double low = 0, high = 1;
+    for (int i = 0; i < 50; ++i) {
+        const double middle = (low + high) / 2;
+        (at_most(off, checked, middle) > 0.05 ? low : high) = middle;
+    }
+    return high;
+}
 
 void TargetReport::add(const TargetReport& other) {
     samples += other.samples;
@@ -18,6 +49,8 @@ void TargetReport::add(const TargetReport& other) {
     undersampled += other.undersampled;
     rounded += other.rounded;
     missed += other.missed;
+    checked += other.checked;
+    off += other.off;
     worst_truncation = std::max(worst_truncation, other.worst_truncation);
 }
 
@@ -38,6 +71,8 @@ TargetReport target_report(const Film& film, const FrameSettings& settings) {
         report.truncated += truncated;
         report.bushy += pruned > settings.truncation();
         report.undersampled += pixel.unmet;
+        report.checked += pixel.checked;
+        report.off += pixel.off;
         const int64_t brightest = *std::max_element(pixel.radiance, pixel.radiance + 3);
         const bool rounded = pixel.samples > least_lattice_samples &&
                              static_cast<double>(pixel.z) < worth * static_cast<double>(brightest);
@@ -55,10 +90,11 @@ std::string describe_target(const std::vector<FrameStats>& frames, const FrameSe
         all.add(frame.target);
         pixels += static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
     }
-    const std::string cost =
-        fmt::format("{:.3g} samples a pixel; truncation takes {:.3g} from a pixel at most",
-                    static_cast<double>(all.samples) / static_cast<double>(pixels), all.worst_truncation);
-    if (all.missed == 0) return fmt::format("target error {:g} reached: {}", settings.target_error, cost);
+    const std::string known = fmt::format(
+        "truncation is proven to {} its quarter, taking {:.3g} from a pixel at most; {}; {:.3g} samples a pixel",
+        all.proven() ? "reach" : "miss", all.worst_truncation, describe_sampling(all),
+        static_cast<double>(all.samples) / static_cast<double>(pixels));
+    if (all.missed == 0) return fmt::format("target error {:g}: {}", settings.target_error, known);
     const std::string text =
         fmt::format("target error {:g} missed in {} of {} pixels: ", settings.target_error, all.missed, pixels);
     std::vector<std::string> reasons;
@@ -74,7 +110,7 @@ std::string describe_target(const std::vector<FrameStats>& frames, const FrameSe
     if (all.rounded != 0)
         reasons.push_back(fmt::format("{} have borders that rounding may move by more{}", all.rounded,
                                       precision == Precision::single_ ? "; --precision double" : ""));
-    return fmt::format("{}{} ({})", text, fmt::join(reasons, "; "), cost);
+    return fmt::format("{}{} ({})", text, fmt::join(reasons, "; "), known);
 }
 
 }  // namespace cistula

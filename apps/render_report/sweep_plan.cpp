@@ -94,12 +94,12 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
     // more or equal truncation.
     for (const double cutoff : cutoffs)
         if (cutoff > 0) plan.add(with(base, deepest, cutoff, single, reference_supersample));
-    for (const double target : quick ? std::vector<double>{0.3, 0.1, 0.03, 0.01, 0.004}
-                                     : std::vector<double>{0.3, 0.1, 0.03, 0.01, 0.004, 0.002, 0.001}) {
+    for (const double target : quick ? std::vector<double>{0.1, 0.05, 0.02, 0.01, 0.004}
+                                     : std::vector<double>{0.3, 0.1, 0.05, 0.02, 0.01, 0.004, 0.002, 0.001}) {
         plan.add(with_target(base, target)).alone["target"] = reference_setting(base, quick);
-        if (target > 0.004) continue;
-        plan.add(with(base, deepest, target / 4, single, reference_supersample));
-        // Where rounding moves edges, no number of samples in float meets a small target.
+        if (target > 0.05) continue;
+        if (target <= 0.004) plan.add(with(base, deepest, target / 4, single, reference_supersample));
+        // Where rounding moves edges, no number of samples in float meets a target.
         Setting exact = with_target(base, target);
         exact.precision = twice;
         plan.add(exact);

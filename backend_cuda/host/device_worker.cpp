@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <thread>
 
 #include "scene/film/put_pixels.h"
@@ -191,19 +192,19 @@ void DeviceWorker<Real>::wait() {
 /// Fills the pixels that no block renders with background.
 template <class Real>
 void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
-    const BackgroundPixel& background = slot.hints->background;
-    std::atomic<uint64_t> pixels{0};
+    std::mutex together;
     tbb::parallel_for(0, slot.list.rows(), [&](int i) {
         const PixelWriter writer;
-        uint64_t count = 0;
+        RayCounts rays;
+        uint32_t flags = 0;
         slot.list.for_each_gap(i, [&](int row, int begin, int end) {
-            writer.fill(&film.pixels[size_t(row) * size_t(film.rect.width) + size_t(begin)], size_t(end - begin),
-                        background.record);
-            count += uint64_t(end - begin);
+            slot.hints->fill(writer, film.rect.x + begin, film.rect.y + row, end - begin,
+                             &film.pixels[size_t(row) * size_t(film.rect.width) + size_t(begin)], rays, flags);
         });
-        pixels += count;
+        const std::lock_guard<std::mutex> lock(together);
+        totals.rays.add(rays);
+        totals.flags |= flags;
     });
-    background.count(pixels, totals.rays, totals.flags);
 }
 
 template class DeviceWorker<float>;

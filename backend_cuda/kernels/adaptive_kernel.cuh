@@ -1,4 +1,4 @@
-// The kernel for adaptively sampled pixels, which take from 4 to 256 samples with ray trees of all sizes. A warp works
+// The kernel for adaptively sampled pixels, which take from 5 to 256 samples with ray trees of all sizes. A warp works
 // on several neighboring pixels, and its lanes take the samples that these want at the time, so that no lane waits for
 // one pixel.
 #pragma once
@@ -111,7 +111,7 @@ class WarpPixels {
         const WarpScheduler cells = WarpScheduler::of(ready ? cells_ : 0);
         cells.for_each([&](int pixel, int i) { storage_[pixel].pixel.judge(settings, storage_[pixel].samples, i); });
         if (ready) {
-            storage_[lane_].pixel.divide(settings);
+            storage_[lane_].pixel.divide(settings, storage_[lane_].samples);
             note_wishes();
         }
         __syncwarp();
@@ -126,13 +126,10 @@ class WarpPixels {
             // Summed locally: reading the next sample right after an atomic addition would wait for it.
             PixelRecord cell = PixelRecord();
             storage_[pixel].pixel.accumulate(
-                settings, i, [&](int slot, int weight) { storage_[pixel].samples[slot].give(cell, weight, Plus()); });
+                i, [&](int slot, int weight) { storage_[pixel].samples[slot].give(cell, weight, Plus()); });
             cell.give(to, AtomicAdd());
         }
-        if (!done) return;
-        const uint32_t taken = uint32_t(storage_[lane_].pixel.taken()), unmet = storage_[lane_].pixel.unmet();
-        records_[record_].samples = taken;
-        records_[record_].unmet = unmet;
+        if (done) storage_[lane_].pixel.describe(records_[record_]);
     }
 
   private:
@@ -145,7 +142,7 @@ class WarpPixels {
         if (column >= job_.width || row >= job_.height) return;
         x_ = job_.x + column;
         y_ = job_.y + row;
-        storage_[lane_].pixel.begin(job_.frame.lattice);
+        storage_[lane_].pixel.begin(is_checked(x_, y_));
         note_wishes();
     }
 
@@ -193,7 +190,7 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
                             gradual, taken);
             pixel.samples[slot].keep(taken, hash);
             AtomicAdd()(record.rays, taken.rays);
-            if (LatticePixel::is_chosen(job.frame.lattice, slot)) choose_sample(taken, record);
+            if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
         });
         if (!any || __any_sync(whole_warp, ends)) break;
         pixels.finish_round();

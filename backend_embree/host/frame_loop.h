@@ -146,8 +146,8 @@ class FrameTask {
             hints_.cover.for_each_part(y, tile.x, tile.x + tile.width, [&](int begin, int end, bool covered) {
                 PixelRecord* pixels = &film_.pixels[size_t(y) * size_t(film_.rect.width) + size_t(begin)];
                 if (!covered) {
-                    writer.fill(pixels, size_t(end - begin), hints_.background.record);
-                    hints_.background.count(uint64_t(end - begin), counts.rays, counts.flags);
+                    hints_.fill(writer, film_.rect.x + begin, film_.rect.y + y, end - begin, pixels, counts.rays,
+                                counts.flags);
                     return;
                 }
                 for (int x = begin; x < end && !stopped(); ++x) {

@@ -2,6 +2,8 @@
 // is reached.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "cistula/adaptive/adaptive_pixel.h"
 #include "scene/description/without_effect.h"
 #include "scene/film/film_difference.h"
@@ -124,8 +126,12 @@ TEST(Adaptive, OfBackgroundAloneTakesTheFewest) {
     settings.target_error = 0.001;
     const auto renderer = make_embree_renderer<float>(test::compile<float>(scene));
     const Film film = golden::render_with(*renderer, scene, settings);
-    for (const PixelRecord& pixel : film.pixels) {
-        EXPECT_EQ(pixel.samples, 5u);
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        const PixelRecord& pixel = film.pixels[i];
+        const bool checked = is_checked(int(i % 8), int(i / 8));
+        EXPECT_EQ(pixel.samples, checked ? 256u : 5u);
+        EXPECT_EQ(pixel.checked, checked ? 1u : 0u);
+        EXPECT_EQ(pixel.off, 0u);
         EXPECT_EQ(pixel.hits, 0u);
         EXPECT_EQ(resolve<float>(pixel.radiance[1], film.fixed_shift, uint32_t(film.samples), film.radiance_exponent),
                   0.5f);
@@ -186,6 +192,36 @@ TEST(Adaptive, IsWithinItsTargetOfTheWholeLattice) {
         for (const PixelRecord& pixel : film.pixels)
             for (int c = 0; c < 3; ++c) EXPECT_LE(double(pixel.pruned[c]) * film.unit(), settings.truncation());
     }
+}
+
+TEST(Adaptive, OnePixelOfEachBlockIsCheckedAndTakesAllSamples) {
+    int checked = 0;
+    std::set<int> places;
+    for (int y = 0; y < 512; ++y)
+        for (int x = 0; x < 512; ++x)
+            if (is_checked(x, y)) ++checked, places.insert(y % 16 * 16 + x % 16);
+    EXPECT_EQ(checked, 32 * 32);
+    EXPECT_GT(places.size(), 230u);  // of 256; evenly spread, 251 are expected
+
+    const SceneDescription scene = read_scene(scenes / "platonic.json");
+    FrameSettings settings = small(scene, 128, 72);
+    settings.target_error = 0.01;
+    FrameSettings whole = settings;
+    whole.supersample = 16;
+    whole.cutoff = settings.truncation();
+    const auto renderer = make_embree_renderer<float>(test::compile<float>(scene));
+    const Film film = golden::render_with(*renderer, scene, settings);
+    const Film reference = golden::render_with(*renderer, scene, whole);
+    size_t count = 0;
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        const PixelRecord& pixel = film.pixels[i];
+        EXPECT_EQ(pixel.checked, is_checked(int(i % 128), int(i / 128)) ? 1u : 0u);
+        if (pixel.checked == 0) continue;
+        ++count;
+        EXPECT_EQ(pixel.samples, 256u);
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(pixel.radiance[c], reference.pixels[i].radiance[c]) << i;
+    }
+    EXPECT_GE(count, 32u);
 }
 
 TEST(Adaptive, TreesWithoutEndAreGivenUpAndTheLedgerSaysSo) {

@@ -48,11 +48,13 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
                     render_adaptive_pixel(task, gradual, record);
                 else
                     render_pixel(task, SampleRange(), record);
-                const bool is_background = test::same_bytes(record, hints.background.record);
+                const bool checked = settings.adaptive() && is_checked(task.x, task.y);
+                const BackgroundPixel& background = checked ? hints.checked : hints.background;
+                const bool is_background = test::same_bytes(record, background.record);
                 share.all += 1;
                 share.background += is_background;
                 share.left_out += !covered;
-                if (!covered) wrong += !is_background || work.rays.total() != hints.background.work.rays.total();
+                if (!covered) wrong += !is_background || work.rays.total() != background.work.rays.total();
             }
         });
     EXPECT_EQ(wrong, 0u) << what;

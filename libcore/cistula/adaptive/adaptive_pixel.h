@@ -41,33 +41,33 @@ CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel)
 /// Takes all samples that the pixel wants into `record`, with local storage for them. take(slot, taken) renders a
 /// sample into `taken` and returns its path hash.
 template <class Take>
-CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, PixelRecord& record, const Take& take) {
+CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, bool checked, PixelRecord& record,
+                                      const Take& take) {
     LatticeSample samples[lattice_samples];
     PixelRecord taken;
     LatticePixel pixel;
     record = PixelRecord();
-    for (pixel.begin(settings); pixel.wanted() > 0;) {
+    for (pixel.begin(checked); pixel.wanted() > 0;) {
         for (int i = 0; i < pixel.wanted(); ++i) {
             const int slot = pixel.wanted(i);
             const uint32_t hash = take(slot, taken);
             samples[slot].keep(taken, hash);
             record.rays += taken.rays;
-            if (LatticePixel::is_chosen(settings, slot)) choose_sample(taken, record);
+            if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
         }
         for (int i = 0; i < pixel.cells(); ++i) pixel.judge(settings, samples, i);
-        pixel.divide(settings);
+        pixel.divide(settings, samples);
     }
     for (int i = 0; i < pixel.cells(); ++i)
-        pixel.accumulate(settings, i, [&](int slot, int weight) { samples[slot].give(record, weight, Plus()); });
-    record.samples = uint32_t(pixel.taken());
-    record.unmet = pixel.unmet();
+        pixel.accumulate(i, [&](int slot, int weight) { samples[slot].give(record, weight, Plus()); });
+    pixel.describe(record);
 }
 
 /// Renders a pixel of a frame with a target error.
 template <class E, class Intersector, class Stack>
 CISTULA_INLINE void render_adaptive_pixel(const PixelTask<E, Intersector, Stack>& task, bool gradual,
                                           PixelRecord& record) {
-    sample_adaptively(task.frame.lattice, record,
+    sample_adaptively(task.frame.lattice, is_checked(task.x, task.y), record,
                       [&](int slot, PixelRecord& taken) { return take_sample(task, slot, gradual, taken); });
 }
 

@@ -12,24 +12,26 @@ namespace cistula {
 /// (adaptive_rules.h); otherwise the corners stand for all of it. A straight edge through a rectangle separates its
 /// corners, so it is never missed. With all 256 samples the result is that of the uniform 16 x 16 grid. Cells share no
 /// samples. In each step of a round, any thread may work on any sample or cell. The caller stores the samples, by slot.
+/// A pixel that is checked takes all other samples in a last round: they say whether its cells stood for them.
 class LatticePixel {
   public:
-    CISTULA_INLINE void begin(const LatticeSettings& settings) {
+    /// `checked`: whether the pixel is to be checked.
+    CISTULA_INLINE void begin(bool checked) {
         const LatticeCell whole = LatticeCell::whole_pixel();
         cells_[0] = whole;
         // Equals want() for the corners and the middle, but reads nothing: a device would wait for every read.
-        const int middle_row = settings.fine ? lattice_middle / lattice_side : lattice_side;
         for (int y = 0; y < lattice_side; ++y) {
             const bool is_outer = y == 0 || y == lattice_side - 1;
-            taken_[y] = fresh_[y] = is_outer          ? uint16_t(1u | 1u << (lattice_side - 1))
-                                    : y == middle_row ? uint16_t(1u << lattice_middle % lattice_side)
-                                                      : uint16_t(0);
+            taken_[y] = fresh_[y] = is_outer                             ? uint16_t(1u | 1u << (lattice_side - 1))
+                                    : y == lattice_middle / lattice_side ? uint16_t(1u << lattice_middle % lattice_side)
+                                                                         : uint16_t(0);
         }
         for (int c = 0; c < 4; ++c) slots_[c] = uint8_t(whole.corner(c));
         slots_[4] = uint8_t(lattice_middle);
         Tally now = Tally();
         now.cells = 1;
-        now.due = now.wanted = settings.fine ? least_lattice_samples : least_lattice_samples - 1;
+        now.due = now.wanted = least_lattice_samples;
+        now.check = checked ? Check::planned : Check::none;
         tally_ = now;
     }
 
@@ -46,13 +48,17 @@ class LatticePixel {
         const uint16_t* beside = cell.is_new ? taken_ : fresh_;
         if (cell.is_new) judge_corners(settings, samples, cell);
         if (!cell.wants_split && cell.area() > 4)
-            cell.wants_split = SideCrossed::splits(settings, samples, cell, beside) ||
-                               SlopeBends::splits(settings, samples, cell, beside);
+            cell.wants_split = SideCrossed::splits(settings, samples, cell, beside);
     }
 
-    /// Splits the cells that should be split, as far as the number of samples allows.
-    CISTULA_INLINE void divide(const LatticeSettings& settings) {
+    /// Splits the cells that should be split, as far as the number of samples allows. If there are none, the pixel is
+    /// done, or its check begins or ends.
+    CISTULA_INLINE void divide(const LatticeSettings& settings, const LatticeSample* samples) {
         Tally now = tally_;
+        if (now.check == Check::under_way) {
+            end_check(settings, samples);
+            return;
+        }
         const int count = now.cells;
         for (int i = 0; i < count; ++i) now.seen.add(cells_[i]);
         now.wanted = 0;
@@ -60,9 +66,9 @@ class LatticePixel {
         for (int i = 0; i < count; ++i) {
             const LatticeCell cell = cells_[i];
             const bool splits = cell.wants_split || UnlikeCorners::splits(settings, now.seen, cell) ||
-                                splits_by_pixel(settings, now.seen, cell.area());
+                                LargeTrees::splits(settings, now.seen, cell.area());
             if (cell.area() == 4 || !splits) continue;
-            const bool first = settings.fine && cell.is_whole();
+            const bool first = cell.is_whole();
             const int in_four = first ? 11 : 12, in_two = 4;  // the first split has its middle sample already
             if ((first || wants_four(settings, now.seen, cell)) && now.due + in_four <= settings.most) {
                 now.due += in_four;
@@ -75,15 +81,16 @@ class LatticePixel {
                 now.unmet = true;
             }
         }
+        if (now.wanted == 0 && now.check == Check::planned) begin_check(now);
         tally_ = now;
     }
 
     /// Calls add(slot, weight) for the samples that represent cell i once the pixel is done.
     template <class Add>
-    CISTULA_INLINE void accumulate(const LatticeSettings& settings, int i, const Add& add) const {
+    CISTULA_INLINE void accumulate(int i, const Add& add) const {
         const LatticeCell& cell = cells_[i];
         int each = cell.area() / 4;
-        if (settings.fine && cell.is_whole()) {
+        if (cell.is_whole()) {
             // Close to Simpson's rule where the pixel is smooth.
             each = cell.differs ? 32 : 24;
             add(lattice_middle, lattice_samples - 4 * each);
@@ -91,23 +98,29 @@ class LatticePixel {
         for (int c = 0; c < 4; ++c) add(cell.corner(c), each);
     }
 
-    /// The number of samples taken.
-    CISTULA_INLINE int taken() const { return tally_.due; }
-    CISTULA_INLINE bool unmet() const { return tally_.unmet; }
-
-    /// Whether this sample gives the pixel's id, depth and normal: the middle one if it is taken, else the first.
-    CISTULA_INLINE static bool is_chosen(const LatticeSettings& settings, int slot) {
-        return slot == lattice_middle || (slot == 0 && !settings.fine);
+    /// Writes what is known of a pixel that is done, beside its sums.
+    CISTULA_INLINE void describe(PixelRecord& record) const {
+        record.samples = uint32_t(tally_.due);
+        record.unmet = tally_.unmet;
+        record.checked = tally_.check != Check::none;
+        record.off = tally_.check == Check::off;
     }
+
+    /// Whether this sample gives the pixel's id, depth and normal.
+    CISTULA_INLINE static bool is_chosen(int slot) { return slot == lattice_middle; }
 
   private:
     static constexpr int most_cells = lattice_samples / 4;
+
+    /// The check of a pixel. held, off: its cells stood for all samples within the target, or did not.
+    enum class Check : uint8_t { none, planned, under_way, held, off };
 
     /// Counters of a pixel. They are updated in a local copy, which stays in registers: the compiler must assume that
     /// stores of bytes, such as slots, alias any member.
     struct Tally {
         int cells, due, wanted;  // due: samples taken and wanted
         bool unmet;
+        Check check;
         PixelFindings seen;
     };
 
@@ -123,14 +136,13 @@ class LatticePixel {
 
     CISTULA_INLINE static void judge_corners(const LatticeSettings& settings, const LatticeSample* samples,
                                              LatticeCell& cell) {
-        const CornerFindings found = CornerFindings::of(samples, cell, settings.fine && cell.is_whole());
+        const CornerFindings found = CornerFindings::of(samples, cell);
         cell.is_new = false;
         cell.wants_split = CornersDisagree::splits(settings, cell, found);
         cell.across = is_split_across(cell, found.across, found.down);
         cell.differs = found.differs;
         cell.rays = found.most_rays;
         cell.range = found.range;
-        cell.jump = TextureJumps::jump_in(samples, cell);
     }
 
     /// Whether to split across the direction in which colors differ more, unless that makes cells too narrow.
@@ -144,7 +156,7 @@ class LatticePixel {
     /// show.
     CISTULA_INLINE static bool wants_four(const LatticeSettings& settings, const PixelFindings& seen,
                                           const LatticeCell& cell) {
-        return cell.width >= 4 && cell.height >= 4 && splits_by_pixel(settings, seen, cell.area() / 2);
+        return cell.width >= 4 && cell.height >= 4 && LargeTrees::splits(settings, seen, cell.area() / 2);
     }
 
     /// Stores part `nth` of cell i, the first in place of the cell and the others at the end, and wants its missing
@@ -154,9 +166,31 @@ class LatticePixel {
         cells_[nth == 0 ? i : now.cells++] = child;
     }
 
+    CISTULA_INLINE void begin_check(Tally& now) {
+        now.check = Check::under_way;
+        for (int slot = 0; slot < lattice_samples; ++slot) want(now, slot);
+        now.due = lattice_samples;
+        if (now.wanted == 0) now.check = Check::held;
+    }
+
+    /// Compares the cells with all samples, and puts the smallest cells in their place, which stand for themselves.
+    CISTULA_INLINE void end_check(const LatticeSettings& settings, const LatticeSample* samples) {
+        tally_.check = Check::held;
+        for (int c = 0; c < 3; ++c) {
+            int64_t difference = 0;
+            for (int slot = 0; slot < lattice_samples; ++slot) difference -= samples[slot].color(c);
+            for (int i = 0; i < tally_.cells; ++i)
+                accumulate(i, [&](int slot, int weight) { difference += weight * samples[slot].color(c); });
+            if (magnitude(difference) > settings.target * lattice_samples) tally_.check = Check::off;
+        }
+        for (int i = 0; i < most_cells; ++i) cells_[i] = LatticeCell::smallest(i);
+        tally_.cells = most_cells;
+        tally_.wanted = 0;
+    }
+
     Tally tally_;
     uint16_t taken_[lattice_side], fresh_[lattice_side];  // samples by row, one bit per column: all, and this round's
-    uint8_t slots_[lattice_samples * 3 / 4];              // a split wants at most three new samples of four
+    uint8_t slots_[lattice_samples];
     LatticeCell cells_[most_cells];
 };
 

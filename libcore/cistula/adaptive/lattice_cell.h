@@ -42,19 +42,28 @@ struct LatticeSample {
     }
 };
 
-/// A rectangle of samples that is known by its four corners; for small targets, the whole pixel by its middle too.
+/// A rectangle of samples that is known by its four corners; the whole pixel by its middle too.
 struct LatticeCell {
     uint8_t x, y, width, height;
     bool is_new, wants_split;
-    bool across;          // split into a left and a right half, not an upper and a lower one
-    bool differs;         // whether the path hashes differ
-    uint32_t rays;        // rays of the largest tree
-    int64_t range, jump;  // of colors: all corners; corners with equal path hashes
+    bool across;    // split into a left and a right half, not an upper and a lower one
+    bool differs;   // whether the path hashes differ
+    uint32_t rays;  // rays of the largest tree
+    int64_t range;  // of the corners' colors
 
     CISTULA_INLINE static LatticeCell whole_pixel() {
         LatticeCell cell = LatticeCell();
         cell.width = cell.height = lattice_side;
         cell.is_new = true;
+        return cell;
+    }
+
+    /// The i-th of the cells of 2 x 2 samples, by rows.
+    CISTULA_INLINE static LatticeCell smallest(int i) {
+        LatticeCell cell = LatticeCell();
+        cell.x = uint8_t(2 * i % lattice_side);
+        cell.y = uint8_t(2 * (2 * i / lattice_side));
+        cell.width = cell.height = 2;
         return cell;
     }
 

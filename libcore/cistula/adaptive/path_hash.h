@@ -1,5 +1,5 @@
-// A hash of what a sample's rays met: samples with equal hashes differ only by gradual changes. It is a sum over the
-// queries to the intersector, so it does not depend on their order.
+// A hash of what a sample's rays met: faces, texels and lights. Samples with equal hashes differ only by gradual
+// changes. It is a sum over the queries to the intersector, so it does not depend on their order.
 #pragma once
 
 #include "cistula/model/effects.h"
@@ -22,8 +22,8 @@ struct PathHash {
     }
 };
 
-/// An intersector that adds the faces that are hit and the transmittance toward lights to a hash; of a transmittance
-/// that varies gradually only whether it is above zero.
+/// An intersector that adds the faces and texels that are hit and the transmittance toward lights to a hash; of a
+/// transmittance that varies gradually only whether it is above zero.
 template <class Inner>
 struct HashingIntersector {
     using Media = typename Inner::Media;
@@ -39,6 +39,7 @@ struct HashingIntersector {
         // A primary ray that hits nothing counts like one that misses the scene.
         if (hash.counts && (hit.found() || ray.from_solid != no_solid))
             hash.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
+        if (hash.counts && hit.found()) add_texel(hit);
         return hit;
     }
 
@@ -54,6 +55,16 @@ struct HashingIntersector {
     }
 
   private:
+    CISTULA_INLINE void add_texel(const Hit<Real>& hit) const {
+        const auto& scene = inner.scene;
+        const Solid& solid = scene.solids[key_solid(hit.key)];
+        const int32_t texture = scene.materials[solid.material].texture;
+        if (texture < 0) return;
+        const Texture& of = scene.textures[uint32_t(texture)];
+        const Vec2<Real> texel = first_texel(of, texture_uv(scene, hit));
+        hash.add(bits_as<uint32_t>(float(texel.x)), bits_as<uint32_t>(float(texel.y)), solid.material);
+    }
+
     CISTULA_INLINE uint32_t told_apart(Real share) const {
         return gradual ? (share > Real(0) ? 1u : 0u) : bits_as<uint32_t>(float(share));
     }

@@ -17,7 +17,6 @@ inline constexpr int color_bits = 44, color_shift = 54 - color_bits;
 struct LatticeSettings {
     int64_t target = 0;          // target error in units of 2^-color_bits; 0: no adaptive sampling
     int most = lattice_samples;  // maximum number of samples of a pixel
-    bool fine = true;            // for small targets: also samples every pixel's middle, and splits it in four first
     double significant = 0;      // branches of less throughput than this do not enter the path hash
 
     /// Whether an error of `color` (in units of 2^-color_bits) over `area` samples changes the pixel by more than the
@@ -26,5 +25,12 @@ struct LatticeSettings {
         return color * area > target * lattice_samples;
     }
 };
+
+/// Whether a pixel of a frame with a target error is checked: one in each block of 16 x 16 pixels, at a place that
+/// depends on the block.
+CISTULA_INLINE bool is_checked(int x, int y) {
+    const uint32_t block = uint32_t(x / 16) * 0x9e3779b1u + uint32_t(y / 16) * 0x85ebca77u;
+    return ((block ^ block >> 15) * 0xc2b2ae35u) >> 24 == uint32_t(y % 16 * 16 + x % 16);
+}
 
 }  // namespace cistula

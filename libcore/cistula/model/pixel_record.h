@@ -68,8 +68,10 @@ struct PixelRecord {
                             // light; 0: none
     float z;                // that sample's distance along the view axis in scene units; infinity: none
     float normal[3];        // that sample's unit normal, toward the viewer, in world axes; 0: none
-    uint32_t samples : 31;  // samples that were rendered
+    uint32_t samples : 29;  // samples that were rendered
     uint32_t unmet : 1;     // adaptive sampling wanted more samples than `most`
+    uint32_t checked : 1;   // adaptive sampling took all samples, to check whether those that it wanted sufficed
+    uint32_t off : 1;       // they did not: their estimate missed the mean of all by more than the target
     int64_t pruned[3];      // upper bound on what the cutoff took away
     int64_t cut[3];         // upper bound on what the depth limit took away
 

@@ -37,13 +37,27 @@ CISTULA_NOINLINE Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
     return upper * (Real(1) - fy) + lower * fy;
 }
 
-/// The color of a texture at uv, the object's coordinates, to which Texture::repeat applies. Texel centers lie at
-/// half-integers.
+/// The place of uv, the object's coordinates, in units of texels, whose centers lie at half-integers. Texture::repeat
+/// applies to uv.
+template <class Real>
+CISTULA_INLINE Vec2<Real> in_texels(const Texture& texture, const Vec2<Real>& uv) {
+    return {uv.x * Real(texture.repeat[0]) * Real(texture.width), uv.y * Real(texture.repeat[1]) * Real(texture.height)};
+}
+
+/// The first of the texels that give the color at uv: the only one, or the upper left one of four.
+template <class Real>
+CISTULA_INLINE Vec2<Real> first_texel(const Texture& texture, const Vec2<Real>& uv) {
+    const Vec2<Real> place = in_texels(texture, uv);
+    const Real offset = texture.filter == TextureFilter::nearest ? Real(0) : Real(0.5);
+    return {floor_of(place.x - offset), floor_of(place.y - offset)};
+}
+
+/// The color of a texture at uv, the object's coordinates.
 template <class Real, class Scene>
 CISTULA_HD inline Vec3<Real> texture_at(const Scene& scene, const Texture& texture, const Vec2<Real>& uv) {
     const Vec3<float>* texels = scene.texels.data + texture.first_texel;
-    const Real x = uv.x * Real(texture.repeat[0]) * Real(texture.width);
-    const Real y = uv.y * Real(texture.repeat[1]) * Real(texture.height);
+    const Vec2<Real> place = in_texels(texture, uv);
+    const Real x = place.x, y = place.y;
     const auto texel = [&](Real i, Real j) {
         return Vec3<Real>(texels[repeated(j, texture.height) * texture.width + repeated(i, texture.width)]);
     };

@@ -70,6 +70,14 @@ CISTULA_INLINE bool lies_at_start(const Scene& scene, const Ray<Real, Media>& ra
     return hit.t * magnitude(dot(normal_at(scene, hit), ray.direction)) <= incidence<Real> * scene.extent;
 }
 
+/// The texture coordinates of a hit on a triangle that has them.
+template <class Real, class Scene>
+CISTULA_INLINE Vec2<Real> texture_uv(const Scene& scene, const Hit<Real>& hit) {
+    const Solid& solid = scene.solids[key_solid(hit.key)];
+    const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (key_face(hit.key) - solid.first_triangle);
+    return uv[0] * (Real(1) - hit.u - hit.v) + uv[1] * hit.u + uv[2] * hit.v;
+}
+
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
@@ -92,10 +100,7 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     }
     if constexpr (E::has(effect_texture)) {
         if (material.texture >= 0) {
-            const uint32_t face = key_face(hit.key);
-            const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (face - solid.first_triangle);
-            const Vec2<Real> at = uv[0] * (Real(1) - hit.u - hit.v) + uv[1] * hit.u + uv[2] * hit.v;
-            s.color *= texture_at(scene, scene.textures[uint32_t(material.texture)], at);
+            s.color *= texture_at(scene, scene.textures[uint32_t(material.texture)], texture_uv(scene, hit));
         }
     }
     return s;

@@ -6,7 +6,7 @@
 namespace cistula {
 namespace {
 
-constexpr uint64_t values_of_pixel = 18, values_of_frame = 5;  // of a frame: ray counts and flags
+constexpr uint64_t values_of_pixel = 20, values_of_frame = 5;  // of a frame: ray counts and flags
 
 /// Number of a pixel's integers and floats that differ in any bit.
 uint64_t differing_values(const PixelRecord& a, const PixelRecord& b) {
@@ -15,7 +15,8 @@ uint64_t differing_values(const PixelRecord& a, const PixelRecord& b) {
         count += (a.radiance[c] != b.radiance[c]) + (a.pruned[c] != b.pruned[c]) + (a.cut[c] != b.cut[c]) +
                  (std::bit_cast<uint32_t>(a.normal[c]) != std::bit_cast<uint32_t>(b.normal[c]));
     return count + (a.hits != b.hits) + (a.rays != b.rays) + (a.id != b.id) + (a.samples != b.samples) +
-           (a.unmet != b.unmet) + (std::bit_cast<uint32_t>(a.z) != std::bit_cast<uint32_t>(b.z));
+           (a.unmet != b.unmet) + (a.checked != b.checked) + (a.off != b.off) +
+           (std::bit_cast<uint32_t>(a.z) != std::bit_cast<uint32_t>(b.z));
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ FrameCover frame_cover(const CompiledScene<Real>& scene, const FrameView& frame,
 }
 
 template <class Real>
-BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameView& frame, bool adaptive) {
+BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameView& frame, bool adaptive,
+                                 bool checked) {
     const SceneView<Real> view = scene.view();
     BackgroundPixel pixel;
     const auto add_sample = [&](PixelRecord& record) {
@@ -44,7 +45,7 @@ BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameVi
     PixelRecord& record = pixel.record;
     begin_pixel(record);
     if (adaptive) {
-        sample_adaptively(frame.lattice, record, [&](int, PixelRecord& taken) {
+        sample_adaptively(frame.lattice, checked, record, [&](int, PixelRecord& taken) {
             begin_pixel(taken);
             add_sample(taken);
             return 0u;
@@ -60,7 +61,9 @@ BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameVi
 
 template <class Real>
 FrameHints frame_hints(const CompiledScene<Real>& scene, const FrameView& frame, const FrameSettings& settings) {
-    return {frame_cover(scene, frame, settings.crop), background_pixel(scene, frame, settings.adaptive())};
+    const bool adaptive = settings.adaptive();
+    return {frame_cover(scene, frame, settings.crop), background_pixel(scene, frame, adaptive, false),
+            background_pixel(scene, frame, adaptive, adaptive), adaptive};
 }
 
 template FrameHints frame_hints(const CompiledScene<float>&, const FrameView&, const FrameSettings&);

@@ -12,12 +12,9 @@ namespace cistula {
 /// The parameters of adaptive sampling for a frame with a target error.
 template <class Real>
 void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings, LatticeSettings& lattice) {
-    /// For targets above this share of the radiance bound, a pixel's four corners suffice as first samples.
-    constexpr double coarse = 0x1p-8;
     const double target = min_or_second(elementary::scaled(settings.target_error, -scene.radiance_exponent), 4.0);
     lattice.target = max_or_second(int64_t(floor_of(elementary::scaled(target, color_bits))), int64_t(1));
     lattice.most = settings.max_samples;
-    lattice.fine = target < coarse;
     lattice.significant = target / 4;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/common/backends.h"
+#include "apps/common/target.h"
 #include "scene/image/exr.h"
 #include "scene/image/raw_picture.h"
 #include "testing/support/gpu.h"
@@ -421,11 +422,13 @@ TEST_F(RenderProgram, StatsAreJson) {
     EXPECT_LE(frame.at("ledger").at("pruned").at("worst").at(0).get<double>(), 0.05);
 }
 
-TEST_F(RenderProgram, ATargetIsReachedAndSaid) {
+TEST_F(RenderProgram, OfATargetItIsSaidWhatIsProvenAndWhatIsEstimated) {
     const ProgramResult result = run({"s.json", "-o", "a.exr", "--target-error", "0.02", "--aov", "samples,error",
                                       "--stats", "s.stats.json", "--progress", "none"});
     EXPECT_EQ(result.code, 0) << result.error;
-    EXPECT_NE(result.error.find("render: target error 0.02 reached: "), std::string::npos) << result.error;
+    EXPECT_NE(result.error.find("render: target error 0.02: truncation is proven to reach its quarter, taking "),
+              std::string::npos)
+        << result.error;
     const LayeredPicture image = read_exr(file("a.exr"));
     EXPECT_EQ(std::get<double>(image.attributes.at("cistula:targetError")), 0.02);
     EXPECT_EQ(std::get<int>(image.attributes.at("cistula:maxSamples")), 256);
@@ -435,7 +438,7 @@ TEST_F(RenderProgram, ATargetIsReachedAndSaid) {
 
     const std::vector<float>& samples = channel(image, "samples");
     const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
-    EXPECT_GE(*least, 4);
+    EXPECT_GE(*least, 5);
     EXPECT_LT(*least, *most);
     EXPECT_LE(*most, 256);
     for (const char* name : {"error.R", "error.G", "error.B"})
@@ -451,14 +454,33 @@ TEST_F(RenderProgram, ATargetIsReachedAndSaid) {
     EXPECT_EQ(frame.at("samples").get<double>(), sum);
     EXPECT_EQ(frame.at("rays").at("primary").get<double>(), sum);
     const auto& target = frame.at("target");
-    EXPECT_EQ(target.at("reached"), true);
-    for (const char* key : {"pixels_missed", "pixels_truncated", "pixels_undersampled", "pixels_rounded"})
-        EXPECT_EQ(target.at(key), 0);
-    EXPECT_LE(target.at("worst_truncation").get<double>(), 0.005);
-    EXPECT_GT(target.at("worst_truncation").get<double>(), 0);
+    EXPECT_EQ(target.at("pixels_missed"), 0);
+    const auto& proven = target.at("truncation_proven");
+    EXPECT_EQ(proven.at("reached"), true);
+    EXPECT_EQ(proven.at("pixels_truncated"), 0);
+    EXPECT_LE(proven.at("worst").get<double>(), 0.005);
+    EXPECT_GT(proven.at("worst").get<double>(), 0);
+    const auto& estimated = target.at("sampling_estimated");
+    for (const char* key : {"pixels_undersampled", "pixels_rounded"}) EXPECT_EQ(estimated.at(key), 0);
+    const uint64_t checked = estimated.at("pixels_checked"), off = estimated.at("pixels_off");
+    EXPECT_GT(checked, 0u);
+    EXPECT_LE(checked, 6u);  // blocks of 16 x 16 pixels
+    EXPECT_GE(size_t(std::count(samples.begin(), samples.end(), 256.0f)), checked);
+    EXPECT_EQ(estimated.at("rate_at_most"), rate_at_most(off, checked));
+    EXPECT_NE(result.error.find(fmt::format("is off by more in {} of {} checked pixels", off, checked)),
+              std::string::npos)
+        << result.error;
+    EXPECT_EQ(std::get<double>(image.attributes.at("cistula:provenTruncation")), proven.at("worst").get<double>());
+    EXPECT_EQ(std::get<int>(image.attributes.at("cistula:checkedPixels")), int(checked));
+    EXPECT_EQ(std::get<int>(image.attributes.at("cistula:offPixels")), int(off));
+    // What is known of the image afterwards does not make it another.
+    EXPECT_NE(run({"s.json", "-o", "a.exr", "--target-error", "0.02", "--aov", "samples,error", "--resume"})
+                  .error.find("1 of 1 frames are complete"),
+              std::string::npos);
 
     expect_done({"s.json", "-q", "-o", "b.exr"});
-    EXPECT_EQ(read_exr(file("b.exr")).attributes.count("cistula:targetError"), 0u);
+    for (const char* name : {"cistula:targetError", "cistula:provenTruncation", "cistula:checkedPixels"})
+        EXPECT_EQ(read_exr(file("b.exr")).attributes.count(name), 0u);
     EXPECT_EQ(run({"s.json", "-q", "-o", "a.exr", "--target-error", "0.02"}).error, "");
 }
 
@@ -470,11 +492,12 @@ TEST_F(RenderProgram, AMissedTargetIsCountedAndTheImageWritten) {
     EXPECT_EQ(std::get<int>(read_exr(file("a.exr")).attributes.at("cistula:depth")), 1);
     const auto target = nlohmann::json::parse(bytes_of(file("s.stats.json"))).at("benchmarks").back().at("target");
     const uint64_t missed = target.at("pixels_missed");
-    EXPECT_EQ(target.at("reached"), false);
+    const auto& proven = target.at("truncation_proven");
+    EXPECT_EQ(proven.at("reached"), false);
     EXPECT_GT(missed, 0u);
     EXPECT_LE(missed, 40u * 24);
-    EXPECT_EQ(target.at("pixels_truncated"), missed);
-    EXPECT_GT(target.at("worst_truncation").get<double>(), 0.005);
+    EXPECT_EQ(proven.at("pixels_truncated"), missed);
+    EXPECT_GT(proven.at("worst").get<double>(), 0.005);
     expect_refused(shallow, ExitCode::target,
                    std::to_string(missed) + " of 960 pixels: " + std::to_string(missed) +
                        " lose more than a quarter of it below depth 1; a larger --depth may reach it");
