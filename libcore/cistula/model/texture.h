@@ -41,7 +41,8 @@ CISTULA_NOINLINE Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
 /// applies to uv.
 template <class Real>
 CISTULA_INLINE Vec2<Real> in_texels(const Texture& texture, const Vec2<Real>& uv) {
-    return {uv.x * Real(texture.repeat[0]) * Real(texture.width), uv.y * Real(texture.repeat[1]) * Real(texture.height)};
+    return {uv.x * Real(texture.repeat[0]) * Real(texture.width),
+            uv.y * Real(texture.repeat[1]) * Real(texture.height)};
 }
 
 /// The first of the texels that give the color at uv: the only one, or the upper left one of four.
