@@ -141,7 +141,7 @@ struct UnlikeCorners {
 /// mirrored image of a small light, lies between samples that agree, even if their own trees are small: a light ends a
 /// tree early.
 struct LargeTrees {
-    static constexpr uint32_t large_tree = 96;  // rays
+    static constexpr uint32_t large_tree = 16;  // rays
     static constexpr int64_t unseen_range = (int64_t(1) << color_bits) / 32;
     static constexpr int largest_area = lattice_samples / 16;
 
