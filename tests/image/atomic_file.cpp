@@ -1,8 +1,11 @@
 // Files are whole or untouched, whatever goes wrong while they are written, and errors say what to do.
 #include "scene/base/atomic_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "testing/support/expect_error.h"
 #include "testing/support/file_size_limit.h"
@@ -27,20 +30,12 @@ TEST(AtomicFile, WritesAndReplaces) {
     EXPECT_EQ(scratch.names(), Names{"a.bin"});
 }
 
-TEST(AtomicFile, TemporaryIsHiddenRecognizableAndUnique) {
+TEST(AtomicFile, TemporariesAreHiddenAndUnique) {
     const ScratchDirectory scratch;
     const AtomicFile one(scratch.file("frame.exr")), two(scratch.file("frame.exr"));
-    EXPECT_NE(one.temporary(), two.temporary());
-    for (const AtomicFile* file : {&one, &two}) {
-        const fs::path temporary(file->temporary());
-        const std::string name = temporary.filename().string();
-        ASSERT_EQ(name.size(), std::string(".frame.exr.123456.part").size());
-        EXPECT_EQ(name.substr(0, 11), ".frame.exr.");
-        EXPECT_EQ(name.substr(11, 6).find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789"), std::string::npos);
-        EXPECT_EQ(name.substr(17), ".part");
-        EXPECT_EQ(temporary.parent_path(), fs::path(scratch.file("frame.exr")).parent_path());
-        EXPECT_TRUE(fs::exists(temporary));
-    }
+    EXPECT_EQ(one.temporary(), ".frame.exr.0.part");
+    EXPECT_EQ(two.temporary(), ".frame.exr.1.part");
+    EXPECT_EQ(scratch.names().size(), 2u);
 }
 
 TEST(AtomicFile, OldFileStaysWithoutCommit) {
@@ -58,10 +53,10 @@ TEST(AtomicFile, OldFileStaysWithoutCommit) {
     EXPECT_EQ(scratch.names(), Names{"a.txt"});
 }
 
-TEST(AtomicFile, OthersMayWriteTheTemporary) {
+TEST(AtomicFile, OthersMayWriteThroughTheDescriptor) {
     const ScratchDirectory scratch;
     AtomicFile file(scratch.file("a.txt"));
-    put_bytes(file.temporary(), "by a library");
+    ASSERT_EQ(write(file.descriptor(), "by a library", 12), 12);
     EXPECT_FALSE(fs::exists(scratch.file("a.txt")));
     file.commit();
     EXPECT_EQ(bytes_of(scratch.file("a.txt")), "by a library");
@@ -78,6 +73,81 @@ TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
     EXPECT_TRUE(fs::is_symlink(link));
     EXPECT_EQ(bytes_of(path), "new");
     EXPECT_EQ(static_cast<unsigned>(fs::status(path).permissions()), 0604u);
+}
+
+TEST(AtomicFile, SpecialBitsAreNotKept) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.txt");
+    put_bytes(path, "old");
+    ASSERT_EQ(chmod(path.c_str(), 07751), 0);
+    write_file_atomically(path, "new");
+    EXPECT_EQ(static_cast<unsigned>(fs::status(path).permissions()), 0751u);
+}
+
+TEST(AtomicFile, LinksThatLeadNowhereAreRefused) {
+    const ScratchDirectory scratch;
+    const std::string dangling = scratch.file("dangling"), loop = scratch.file("loop");
+    fs::create_symlink("gone", dangling);
+    fs::create_symlink("loop", loop);
+    EXPECT_ERROR(write_file_atomically(dangling, "x"), ExitCode::file,
+                 dangling +
+                     ": cannot write: it is a symbolic link to a file that does not exist; remove the link or give "
+                     "another name");
+    EXPECT_ERROR(write_file_atomically(loop, "x"), ExitCode::file,
+                 loop + ": cannot write: Too many levels of symbolic links");
+    EXPECT_EQ(scratch.names(), (Names{"dangling", "loop"}));
+}
+
+TEST(AtomicFile, OtherNamesOfAFileKeepTheOldContents) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.txt"), other = scratch.file("b.txt");
+    put_bytes(path, "old");
+    fs::create_hard_link(path, other);
+    write_file_atomically(path, "new");
+    EXPECT_EQ(bytes_of(path), "new");
+    EXPECT_EQ(bytes_of(other), "old");
+}
+
+TEST(AtomicFile, WhatIsSwappedInMeanwhileIsNotFollowed) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.txt"), victim = scratch.file("victim");
+    put_bytes(path, "old");
+    put_bytes(victim, "kept");
+    fs::create_directory(scratch.file("d"));
+    AtomicFile file(path), inside(scratch.file("d/b.txt"));
+    fs::remove(path);
+    fs::create_symlink("victim", path);
+    fs::rename(scratch.file("d"), scratch.file("e"));
+    fs::create_symlink(".", scratch.file("d"));
+    file.write("new");
+    file.commit();
+    inside.write("inside");
+    inside.commit();
+    EXPECT_FALSE(fs::is_symlink(path));
+    EXPECT_EQ(bytes_of(path), "new");
+    EXPECT_EQ(bytes_of(victim), "kept");
+    EXPECT_EQ(bytes_of(scratch.file("e/b.txt")), "inside");
+    EXPECT_FALSE(fs::exists(scratch.file("b.txt")));
+}
+
+TEST(AtomicFile, WhatDeadProcessesLeftIsRemovedByTheNextOfThatName) {
+    const ScratchDirectory scratch;
+    const auto exists = [&](const char* name) { return fs::exists(scratch.file(name)); };
+    for (const char* name : {".a.exr.0.part", ".a.exr.1.part", ".b.exr.0.part"}) put_bytes(scratch.file(name), "half");
+    const int locked = open(scratch.file(".a.exr.0.part").c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(flock(locked, LOCK_EX), 0);
+    write_file_atomically(scratch.file("a.exr"), "whole");
+    EXPECT_TRUE(exists(".a.exr.0.part"));  // its writer lives
+    EXPECT_FALSE(exists(".a.exr.1.part"));
+    EXPECT_TRUE(exists(".b.exr.0.part"));
+    close(locked);
+    write_file_atomically(scratch.file("a.exr"), "whole");
+    EXPECT_FALSE(exists(".a.exr.0.part"));
+    EXPECT_EQ(bytes_of(scratch.file("a.exr")), "whole");
+    // What is no regular file is passed over.
+    fs::create_directory(scratch.file(".a.exr.0.part"));
+    write_file_atomically(scratch.file("a.exr"), "again");
+    EXPECT_EQ(bytes_of(scratch.file("a.exr")), "again");
 }
 
 TEST(AtomicFile, NewFilesObeyTheUmask) {

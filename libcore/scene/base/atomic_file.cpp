@@ -1,67 +1,122 @@
 #include "scene/base/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
-#include <random>
+#include <string>
 
 namespace cistula {
 namespace {
 
-std::string random_letters(int count) {
-    static constexpr char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
-    std::random_device source;
-    std::uniform_int_distribution<int> index(0, 35);
-    std::string text;
-    for (int i = 0; i < count; ++i) text += letters[index(source)];
-    return text;
-}
-
 /// Flushes a directory to the disk, without which a rename may not survive a power failure. Failure is ignored: some
 /// file systems refuse, and the file is complete all the same.
-void flush_directory(const std::filesystem::path& directory) {
-    const int descriptor = open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) return;
-    fsync(descriptor);
-    close(descriptor);
+void flush_directory(int directory) {
+    const int readable = openat(directory, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (readable < 0) return;
+    fsync(readable);
+    close(readable);
+}
+
+/// Removes a temporary that no living process has locked. False if there is one that is locked, or no regular file.
+bool remove_stale(int directory, const std::string& name) {
+    const int file = openat(directory, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return errno == ENOENT;
+    struct stat status;
+    const bool removed = fstat(file, &status) == 0 && S_ISREG(status.st_mode) && flock(file, LOCK_EX | LOCK_NB) == 0 &&
+                         unlinkat(directory, name.c_str(), 0) == 0;
+    close(file);
+    return removed;
+}
+
+/// Locks a temporary. False if another process took it for stale before that, and removes it. Where the file system has
+/// no locks, there are no such processes.
+bool lock(int temporary) {
+    if (flock(temporary, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
+    struct stat status;
+    return fstat(temporary, &status) == 0 && status.st_nlink > 0;
+}
+
+bool is_same(const struct stat& a, const struct stat& b) {
+    return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
-    namespace fs = std::filesystem;
-    struct stat status;
-    const bool replaces = stat(path.c_str(), &status) == 0;
-    if (replaces) {
-        if (S_ISDIR(status.st_mode)) throw file_error(path, "write", EISDIR);
-        if (!S_ISREG(status.st_mode))
-            throw file_error(path, "write", std::string("it is a device or a pipe; give the name of a regular file"));
-        std::error_code failure;
-        const fs::path resolved = fs::canonical(path, failure);
-        if (!failure) target_ = resolved.string();
-    }
-    const fs::path target(target_);
-    if (target.filename().empty()) throw file_error(path, "write", path.empty() ? ENOENT : EISDIR);
+AtomicFile::Descriptor::~Descriptor() {
+    if (number >= 0) close(number);
+}
 
-    // Leaves room for the random part if the name is as long as the file system allows.
-    const std::string name = target.filename().string().substr(0, 200);
-    int error_number = EEXIST;
-    for (int attempt = 0; attempt < 100 && descriptor_ < 0 && error_number == EEXIST; ++attempt) {
-        temporary_ = (target.parent_path() / ("." + name + "." + random_letters(6) + ".part")).string();
-        descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        error_number = errno;
+AtomicFile::AtomicFile(const std::string& path) : path_(path) {
+    find_target();
+    create_temporary();
+}
+
+/// Opens the directory of the file that is to be replaced or made.
+void AtomicFile::find_target() {
+    namespace fs = std::filesystem;
+    fs::path target(path_);
+    if (path_.empty()) throw file_error(path_, "write", ENOENT);
+    const Descriptor replaced{open(path_.c_str(), O_PATH | O_CLOEXEC)};
+    const int reason = errno;
+    struct stat status, link;
+    const bool is_link = lstat(path_.c_str(), &link) == 0 && S_ISLNK(link.st_mode);
+    if (replaced.number >= 0) {
+        if (fstat(replaced.number, &status) != 0) throw file_error(path_, "write", errno);
+        if (S_ISDIR(status.st_mode)) throw file_error(path_, "write", EISDIR);
+        if (!S_ISREG(status.st_mode))
+            throw file_error(path_, "write", std::string("it is a device or a pipe; give the name of a regular file"));
+        permissions_ = static_cast<int>(status.st_mode & 0777);
+        std::error_code failure;
+        if (is_link) target = fs::canonical(target, failure);
+        if (failure) throw file_error(path_, "write", failure.value());
+    } else if (is_link) {
+        throw reason == ENOENT ? file_error(path_, "write",
+                                            std::string("it is a symbolic link to a file that does not "
+                                                        "exist; remove the link or give another name"))
+                               : file_error(path_, "write", reason);
     }
-    if (descriptor_ < 0) throw file_error(path, "write", error_number);
-    if (replaces) (void)!fchmod(descriptor_, status.st_mode & 07777);
+    name_ = target.filename().string();
+    if (name_.empty()) throw file_error(path_, "write", EISDIR);
+    const fs::path directory = target.parent_path();
+    directory_.number = open(directory.empty() ? "." : directory.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+    if (directory_.number < 0) throw file_error(path_, "write", errno);
+    if (replaced.number >= 0 &&
+        (fstatat(directory_.number, name_.c_str(), &link, AT_SYMLINK_NOFOLLOW) != 0 || !is_same(link, status)))
+        throw file_error(path_, "write", std::string("it was replaced by another file meanwhile; run it again"));
+}
+
+void AtomicFile::create_temporary() {
+    // Leaves room for the number if the name is as long as the file system allows.
+    const std::string prefix = "." + name_.substr(0, 200) + ".";
+    constexpr int most_at_once = 100, flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    int error_number = EEXIST;
+    for (int i = 0; i < most_at_once && descriptor_ < 0 && error_number == EEXIST; ++i) {
+        temporary_ = prefix + std::to_string(i) + ".part";
+        descriptor_ = openat(directory_.number, temporary_.c_str(), flags, 0666);
+        error_number = errno;
+        if (descriptor_ < 0 && error_number == EEXIST && remove_stale(directory_.number, temporary_)) {
+            descriptor_ = openat(directory_.number, temporary_.c_str(), flags, 0666);
+            error_number = errno;
+        }
+        if (descriptor_ < 0 || lock(descriptor_)) continue;
+        close(descriptor_);
+        descriptor_ = -1;
+        error_number = EEXIST;
+    }
+    if (descriptor_ < 0) {
+        temporary_.clear();
+        throw file_error(path_, "write", error_number);
+    }
+    if (permissions_ >= 0) (void)!fchmod(descriptor_, static_cast<mode_t>(permissions_));
 }
 
 AtomicFile::~AtomicFile() {
+    if (!temporary_.empty()) unlinkat(directory_.number, temporary_.c_str(), 0);
     if (descriptor_ >= 0) close(descriptor_);
-    if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -75,12 +130,13 @@ void AtomicFile::write(std::string_view bytes) {
 
 void AtomicFile::commit() {
     if (fsync(descriptor_) != 0) throw file_error(path_, "write", errno);
+    if (renameat(directory_.number, temporary_.c_str(), directory_.number, name_.c_str()) != 0)
+        throw file_error(path_, "write", errno);
+    temporary_.clear();
     const int closed = close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throw file_error(path_, "write", errno);
-    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) throw file_error(path_, "write", errno);
-    temporary_.clear();
-    flush_directory(std::filesystem::path(target_).parent_path());
+    flush_directory(directory_.number);
 }
 
 void write_file_atomically(const std::string& path, std::string_view bytes) {

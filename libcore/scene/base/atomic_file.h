@@ -8,20 +8,26 @@
 
 namespace cistula {
 
-/// A file that replaces its target in one step. Write to temporary(), then commit(); without a commit the destructor
-/// removes what was written. The temporary is ".NAME.XXXXXX.part" beside the target, so that replacing is one rename.
-/// Symbolic links are followed: the file that they point to is replaced. Only regular files are replaced.
+/// A file that replaces its target in one step. Write to it, then commit(); without a commit the destructor removes
+/// what was written. The temporary is ".NAME.0.part" beside the target (1 and so on for others that write to it at the
+/// same time), so that replacing is one rename. It is locked while it is written: what a process that died left behind
+/// is removed by the next that writes to the target. A symbolic link is followed once, when the object is made: the
+/// file that it points to is replaced, in the directory where it was then. Links that lead nowhere and files that are
+/// not regular are refused. Of a file with several names (hard links) the others keep the old contents.
 class AtomicFile {
   public:
-    /// Creates the temporary, empty, with the permissions of the file that it will replace. Throws
-    /// Error(ExitCode::file) with the system's reason.
+    /// Creates the temporary, empty, with the permissions of the file that it will replace, but not its set-user-ID,
+    /// set-group-ID and sticky bits. Throws Error(ExitCode::file) with the system's reason.
     explicit AtomicFile(const std::string& path);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
     const std::string& path() const { return path_; }
+    /// The temporary's name in the target's directory.
     const std::string& temporary() const { return temporary_; }
+    /// The temporary, open for writing. It stays this object's.
+    int descriptor() const { return descriptor_; }
 
     /// Appends to the temporary. Throws Error(ExitCode::file).
     void write(std::string_view bytes);
@@ -30,8 +36,19 @@ class AtomicFile {
     void commit();
 
   private:
-    std::string path_;       // as the user wrote it, for messages
-    std::string target_;     // symbolic links resolved
+    /// A descriptor that is closed with its object.
+    struct Descriptor {
+        int number = -1;
+        ~Descriptor();
+    };
+
+    void find_target();
+    void create_temporary();
+
+    std::string path_;      // as the user wrote it, for messages
+    std::string name_;      // the target's, in directory_
+    int permissions_ = -1;  // of the file that is replaced; -1: none is
+    Descriptor directory_;
     std::string temporary_;  // empty once committed
     int descriptor_ = -1;
 };

@@ -11,6 +11,9 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -30,8 +33,8 @@ constexpr int most_threads_of_a_file = 4;
 /// A stream that reports write errors, so that a full disk is noticed: OpenEXR's destructor ignores them.
 class CheckedStream : public Imf::OStream {
   public:
-    explicit CheckedStream(const std::string& path)
-        : Imf::OStream(path.c_str()), file_(std::fopen(path.c_str(), "wb")) {
+    /// `descriptor` stays the caller's; `name` is for OpenEXR's messages.
+    CheckedStream(int descriptor, const std::string& name) : Imf::OStream(name.c_str()), file_(open(descriptor)) {
         if (!file_) error_number_ = errno;
     }
     ~CheckedStream() override { close(); }
@@ -56,6 +59,12 @@ class CheckedStream : public Imf::OStream {
     int error_number() const { return error_number_; }
 
   private:
+    static FILE* open(int descriptor) {
+        const int own = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+        FILE* const file = own < 0 ? nullptr : fdopen(own, "wb");
+        if (own >= 0 && !file) ::close(own);
+        return file;
+    }
     void keep(int error_number) {
         if (error_number_ == 0) error_number_ = error_number != 0 ? error_number : EIO;
     }
@@ -164,7 +173,7 @@ void set_exr_threads(int threads) {
 void write_exr(const std::string& path, const LayeredPicture& picture) {
     check(picture);
     AtomicFile target(path);
-    CheckedStream stream(target.temporary());
+    CheckedStream stream(target.descriptor(), path);
     try {
         write_pixels(stream, picture);
     } catch (const std::exception& failure) {
