@@ -1,9 +1,11 @@
 #include "apps/common/command_line.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -20,6 +22,12 @@ std::vector<std::string> long_names(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options())
         for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     return names;
+}
+
+/// Opens standard streams that are closed on /dev/null, the lowest numbers first: open() gives the lowest that is free.
+void open_standard_streams() {
+    for (int stream = 0; stream < 3; ++stream)
+        if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) (void)!open("/dev/null", O_RDWR);
 }
 
 [[noreturn]] void fail_unexpected(const CLI::App& app,
@@ -89,12 +97,18 @@ void print(const std::string& text) {
         throw Error(ExitCode::file, "standard output: cannot be written");
 }
 
+void note(const std::string& line) {
+    std::fputs((line + "\n").c_str(), stderr);
+}
+
 int run_program(const char* name, const char* memory_advice, const std::function<int()>& work) {
     const auto fail = [name](const std::string& message, ExitCode code) {
-        fmt::print(stderr, "{}: {}\n", name, one_line(message));
+        note(fmt::format("{}: {}", name, one_line(message)));
         return static_cast<int>(code);
     };
+    open_standard_streams();
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit then is a write error
+    std::signal(SIGPIPE, SIG_IGN);
     try {
         return work();
     } catch (const Error& error) {

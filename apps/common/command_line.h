@@ -60,8 +60,12 @@ bool is_same_file(const std::string& a, const std::string& b);
 /// Writes to standard output. Throws Error (file).
 void print(const std::string& text);
 
+/// Writes a line to standard error. A failure changes nothing: what is said there never decides about files.
+void note(const std::string& line);
+
 /// Runs a program's work and returns the exit code; exceptions become a line on standard error that begins with `name`.
-/// `memory_advice`: advice on using less memory, for when it runs out.
+/// `memory_advice`: advice on using less memory, for when it runs out. Standard streams that are closed are opened on
+/// /dev/null first, so that no file takes their numbers; writing to a closed pipe is an error of that write alone.
 int run_program(const char* name, const char* memory_advice, const std::function<int()>& work);
 
 }  // namespace cistula

@@ -1,4 +1,5 @@
 #include "apps/common/film_loop.h"
+#include "apps/common/command_line.h"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
@@ -42,7 +43,7 @@ bool is_finished(const FilmJob& job, const CameraFrame& camera) {
     const std::string path = job.output.for_frame(camera.frame);
     const std::string preview = job.preview.for_frame(camera.frame);
     std::error_code error;
-    if (!std::filesystem::exists(path, error) || !exr_is_complete(path)) return false;
+    if (!std::filesystem::is_regular_file(path, error) || !exr_is_complete(path)) return false;
     if (!preview.empty() && !std::filesystem::exists(preview, error)) return false;
     try {
         return is_same_image(read_exr(path), expected_picture(job, camera));
@@ -116,8 +117,8 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             cameras.push_back(camera);
     }
     if (!options.quiet && !stats.resumed.empty())
-        fmt::print(stderr, "render: {} of {} frames are complete and stay as they are\n", stats.resumed.size(),
-                   job.frames.size());
+        note(fmt::format("render: {} of {} frames are complete and stay as they are", stats.resumed.size(),
+                         job.frames.size()));
 
     std::set<std::string> notes;  // printed so far
     FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options), progress.stop, stats.frames);

@@ -12,11 +12,12 @@ namespace {
 std::atomic<std::atomic<bool>*> watched{nullptr};
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-constexpr int signals[] = {SIGINT, SIGTERM};
-struct sigaction previous[2];
+constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int signal_count = 3;
+struct sigaction previous[signal_count];
 
 void restore() {
-    for (int i = 0; i < 2; ++i) sigaction(signals[i], &previous[i], nullptr);
+    for (int i = 0; i < signal_count; ++i) sigaction(signals[i], &previous[i], nullptr);
 }
 
 void on_signal(int) {
@@ -37,7 +38,7 @@ InterruptGuard::InterruptGuard() {
     action.sa_handler = on_signal;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < signal_count; ++i) {
         sigaction(signals[i], nullptr, &previous[i]);
         // A signal ignored by the parent (nohup, a shell's background job) stays ignored.
         if (previous[i].sa_handler != SIG_IGN) sigaction(signals[i], &action, nullptr);

@@ -48,7 +48,7 @@ void on_threads(const RenderOptions& options, const Work& work) {
 
 void print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
     if (options.quiet) return;
-    for (const std::string& warning : warnings) fmt::print(stderr, "render: warning: {}\n", one_line(warning));
+    for (const std::string& warning : warnings) note(fmt::format("render: warning: {}", one_line(warning)));
 }
 
 /// Sets the precision of the frames, and says so where the scene decides it.
@@ -56,7 +56,7 @@ void choose_precision(RenderOptions& options, const SceneSource& source) {
     const PrecisionChoice choice = choose_precision(options.wanted_precision, smallest_part(source));
     options.precision = choice.precision;
     if (!choice.warning.empty()) print_warnings({choice.warning}, options);
-    if (!choice.note.empty() && !options.quiet) fmt::print(stderr, "render: {}\n", one_line(choice.note));
+    if (!choice.note.empty() && !options.quiet) note(fmt::format("render: {}", one_line(choice.note)));
 }
 
 template <class Real>
@@ -119,8 +119,8 @@ void print_summary(const RunStats& stats, const OutputName& image, double second
     if (stats.frames.empty()) return;
     const std::string what = stats.frames.size() == 1 ? stats.frames[0].file
                                                       : fmt::format("{}: {} frames", image.text(), stats.frames.size());
-    fmt::print(stderr, "render: {}: {:.2f} s, {} rays, {}\n", what, seconds, rays,
-               format_rate(render_seconds > 0 ? static_cast<double>(rays) / render_seconds : 0));
+    note(fmt::format("render: {}: {:.2f} s, {} rays, {}", what, seconds, rays,
+                     format_rate(render_seconds > 0 ? static_cast<double>(rays) / render_seconds : 0)));
 }
 
 /// Prints a warning if values of the written frames were clamped to half precision.
@@ -143,7 +143,7 @@ void judge_target(const RunStats& stats, const FrameSettings& settings, const Re
         std::all_of(stats.frames.begin(), stats.frames.end(), [](const auto& f) { return f.target.missed == 0; });
     const std::string text = describe_target(stats.frames, settings, options.precision);
     if (!reached) throw Error(ExitCode::target, text);
-    if (!options.quiet) fmt::print(stderr, "render: {}\n", text);
+    if (!options.quiet) note(fmt::format("render: {}", text));
 }
 
 void render_scene(RenderOptions options) {
@@ -182,9 +182,9 @@ void render_scene(RenderOptions options) {
             if (!options.stats.empty()) write_file_atomically(options.stats, stats_json(stats, settings, options));
         };
         if (options.verbose)
-            fmt::print(stderr, "render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}\n",
-                       stats.read_seconds, stats.compile_seconds, stats.tree_seconds, renderer->memory(),
-                       stats.scene_hash);
+            note(fmt::format("render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}",
+                             stats.read_seconds, stats.compile_seconds, stats.tree_seconds, renderer->memory(),
+                             stats.scene_hash));
         guard.watch(progress.stop);
         const FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
         double seconds = 0;
@@ -201,7 +201,7 @@ void render_scene(RenderOptions options) {
         warn_of_clamped(stats, outputs.image, options);
         write_stats();
         if (options.verbose && !stats.frames.empty())  // the renderer knows which effects it used
-            fmt::print(stderr, "render: effects: {}\n", fmt::join(names_of_effects(stats.effects), ", "));
+            note(fmt::format("render: effects: {}", fmt::join(names_of_effects(stats.effects), ", ")));
         if (!options.quiet) print_summary(stats, outputs.image, seconds);
         if (settings.adaptive() && !stats.frames.empty()) judge_target(stats, settings, options);
     });

@@ -41,6 +41,7 @@ class RunningProgram {
         if (child_ == 0) {
             signal(SIGINT, SIG_DFL);  // a test that runs in the background of a shell inherits SIG_IGN
             signal(SIGTERM, SIG_DFL);
+            signal(SIGHUP, SIG_DFL);
             redirect(in, O_RDONLY, STDIN_FILENO);
             redirect(out, O_WRONLY | O_CREAT, STDOUT_FILENO);
             redirect(error, O_WRONLY | O_CREAT, STDERR_FILENO);

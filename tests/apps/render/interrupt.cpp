@@ -12,6 +12,7 @@ namespace {
 void default_signals() {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
+    std::signal(SIGHUP, SIG_DFL);
 }
 
 /// Exit code 0 if `good`, else 1: what a child reports.
@@ -20,7 +21,7 @@ void default_signals() {
 }
 
 TEST(InterruptDeathTest, TheFirstSignalSetsTheFlag) {
-    for (const int number : {SIGINT, SIGTERM})
+    for (const int number : {SIGINT, SIGTERM, SIGHUP})
         EXPECT_EXIT(
             {
                 default_signals();
@@ -35,7 +36,7 @@ TEST(InterruptDeathTest, TheFirstSignalSetsTheFlag) {
 }
 
 TEST(InterruptDeathTest, TheSecondSignalKills) {
-    for (const int number : {SIGINT, SIGTERM})
+    for (const int number : {SIGINT, SIGTERM, SIGHUP})
         EXPECT_EXIT(
             {
                 default_signals();
