@@ -16,7 +16,7 @@ class RenderStreams : public RenderProgram {
 };
 
 TEST_F(RenderStreams, ClosedStreamsLeaveTheImageAsItIs) {
-    const Arguments arguments{"s.json", "-o", "a.exr", "--preview", "a.png", "--progress", "line"};
+    const Arguments arguments{"s.json", "-o", "a.exr", "--preview", "a.png", "--progress", "plain"};
     ASSERT_EQ(run(arguments).code, 0);
     const std::string image = bytes_of(file("a.exr")), preview = bytes_of(file("a.png"));
     for (int closed = 1; closed < 8; ++closed) {
@@ -33,7 +33,7 @@ TEST_F(RenderStreams, ClosedStreamsLeaveTheImageAsItIs) {
 }
 
 TEST_F(RenderStreams, AnErrorStreamThatCannotBeWrittenChangesNothing) {
-    const Arguments arguments{"s.json", "-v", "-o", "a.exr", "--progress", "line"};
+    const Arguments arguments{"s.json", "-v", "-o", "a.exr", "--progress", "plain"};
     ASSERT_EQ(run(arguments).code, 0);
     const std::string image = bytes_of(file("a.exr"));
     const auto full = [] { dup2(open("/dev/full", O_WRONLY), STDERR_FILENO); };
