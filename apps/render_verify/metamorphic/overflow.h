@@ -25,7 +25,7 @@ struct OverflowIsSaid {
         scene.materials[0].color = glm::dvec3(1);
         add_object(scene, solid_object(PlatonicSolid::cube));
         const SceneDescription plain = scene;
-        const double largest = stage.in_double() ? 0x1p900 : 0x1p100;  // what a bound may be
+        const double largest = stage.in_double() ? 0x1p127 : 0x1p100;  // what a bound may be
         for (const double value : {largest, 2 * largest, 0x1p1000, double(INFINITY), double(NAN)}) {
             ++tally.place;
             scene = plain;

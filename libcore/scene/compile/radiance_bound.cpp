@@ -79,13 +79,13 @@ RadianceScale radiance_scale(const SceneDescription& scene, const dvec3& bound, 
     }
     used *= bound_slack;
     const double largest = largest_component(used);
-    const double limit = single_precision ? 0x1p100 : 0x1p900;
+    const double limit = single_precision ? 0x1p100 : 0x1p127;  // images hold floats in either precision
     if (!(largest <= limit) || !is_finite(used))
         throw scene_error(
             scene, "",
             "the radiance bound is " + text(largest) + ", above 2^" +
-                (single_precision ? "100, what single precision can take; use --precision double or " : "900; ") +
-                "dimmer lights");
+                (single_precision ? "100, what single precision can take; use --precision double or dimmer lights"
+                                  : "127, what an image can hold; use dimmer lights"));
     if (largest > 0) {
         int exponent;
         const double mantissa = std::frexp(largest, &exponent);  // in [1/2, 1)

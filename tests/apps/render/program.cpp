@@ -508,6 +508,15 @@ TEST_F(RenderProgram, AMissedTargetIsCountedAndTheImageWritten) {
     EXPECT_FALSE(has_part_files());
 }
 
+TEST_F(RenderProgram, RadianceThatAnImageCannotHoldIsRefusedInEitherPrecision) {
+    put_bytes(file("bright.json"), R"({"film": {"width": 8, "height": 6}, "materials": {"m": {"specular": 1e20}},
+        "objects": [{"solid": "cube", "material": "m"}], "lights": [{"position": [0, 0, 9], "color": [1e30, 0, 0]}]})");
+    expect_refused({"bright.json", "-o", "a.exr", "--precision", "float"}, ExitCode::usage, "above 2^100, what single");
+    expect_refused({"bright.json", "-o", "a.exr", "--precision", "double"}, ExitCode::usage,
+                   "above 2^127, what an image can hold; use dimmer lights");
+    EXPECT_FALSE(exists("a.exr"));
+}
+
 TEST_F(RenderProgram, ATargetThatRoundingMissesAsksForDoublePrecision) {
     const std::string floor = std::string(CISTULA_SOURCE_DIR) + "/scenes/hard/far-floor.json";
     Arguments fine{floor, "-q", "-o", "a.exr", "--res", "60x34", "--target-error", "0.004"};
