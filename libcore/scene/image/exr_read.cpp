@@ -8,8 +8,11 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -86,6 +89,24 @@ void check_full_sampling(const Imf::InputFile& file) {
                                      " is subsampled; convert it to one value per pixel");
 }
 
+/// Throws for what a LayeredPicture does not hold: further parts, and several samples in a pixel.
+void check_single_and_flat(const std::string& path) {
+    const Imf::MultiPartInputFile file(path.c_str());
+    if (file.parts() != 1)
+        throw std::runtime_error("it has " + std::to_string(file.parts()) + " parts; give a file of one part");
+    const Imf::Header& header = file.header(0);
+    if (header.hasType() && Imf::isDeepData(header.type()))
+        throw std::runtime_error("it is deep, with several samples in a pixel; flatten it first");
+}
+
+/// Throws for whole numbers that floats do not tell apart.
+void check_whole_numbers(const LayeredPicture::Channel& channel) {
+    const auto is_large = [](float value) { return value >= 0x1p24f; };
+    if (std::any_of(channel.values.begin(), channel.values.end(), is_large))
+        throw std::runtime_error("channel " + channel.name +
+                                 " has whole numbers of 2^24 or more, which are not told apart here");
+}
+
 void read_attributes(const Imf::Header& header, LayeredPicture& picture) {
     for (auto entry = header.begin(); entry != header.end(); ++entry) {
         const std::string name = entry.name();
@@ -113,6 +134,7 @@ void read_attributes(const Imf::Header& header, LayeredPicture& picture) {
 }
 
 LayeredPicture read_layers(const std::string& path) {
+    check_single_and_flat(path);
     Imf::InputFile file(path.c_str());
     check_full_sampling(file);
     check_chunks(file);
@@ -135,6 +157,8 @@ LayeredPicture read_layers(const std::string& path) {
     }
     file.setFrameBuffer(buffer);
     file.readPixels(data.min.y, data.max.y);
+    for (const LayeredPicture::Channel& channel : picture.channels)
+        if (header.channels()[channel.name.c_str()].type == Imf::UINT) check_whole_numbers(channel);
     return picture;
 }
 
