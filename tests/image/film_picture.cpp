@@ -31,7 +31,7 @@ Film film_of(int samples, int exponent, const std::vector<PixelRecord>& pixels) 
 }
 
 PixelRecord some_pixel() {
-    return {{1, 2, 3}, 10, 11, 12, 13.5f, {0.5f, -0.5f, 0.25f}, 0, 0, {4, 5, 6}, {7, 8, 9}};
+    return {{1, 2, 3}, 10, 11, 12, 13.5f, {0.5f, -0.5f, 0.25f}, 0, 0, 0, 0, {4, 5, 6}, {7, 8, 9}};
 }
 
 const LayeredPicture::Channel& channel(const LayeredPicture& picture, const std::string& name) {
@@ -68,8 +68,9 @@ TEST(FilmPicture, ChannelsAndWindows) {
 
 TEST(FilmPicture, Values) {
     const int64_t one = int64_t(1) << 60;  // four samples
-    PixelRecord lit = {{4 * one, 2 * one, one}, 3, 77, 5, 2.5f, {0, 0.6f, -0.8f}, 4, 0, {one, 0, 0}, {one, 3 * one, 0}};
-    PixelRecord empty = {{0, 0, 0}, 0, 4, 0, infinity, {0, 0, 0}, 9, 0, {0, 0, 0}, {0, 0, 0}};
+    PixelRecord lit = {{4 * one, 2 * one, one}, 3, 77, 5, 2.5f, {0, 0.6f, -0.8f}, 4, 0, 0, 0, {one, 0, 0},
+                       {one, 3 * one, 0}};
+    PixelRecord empty = {{0, 0, 0}, 0, 4, 0, infinity, {0, 0, 0}, 9, 0, 0, 0, {0, 0, 0}, {0, 0, 0}};
     const Film film = film_of(4, 3, {lit, empty});
     const LayeredPicture picture = to_layers(film, everything);
     const auto expect = [&](const char* name, float first, float second) {
