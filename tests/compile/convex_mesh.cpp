@@ -260,7 +260,37 @@ TYPED_TEST(ConvexMesh, FlatnessIsThatOfThePrecision) {
     EXPECT_TRUE(this->by_planes(icosahedron)) << "triangles are flat";
 }
 
-/// Where the vertices allow no other place for them.
+/// Whether a plane of a solid is within `tolerance` of a point.
+bool near_a_plane(const std::vector<SolidPlane>& planes, const dvec3& p, double tolerance) {
+    for (const SolidPlane& plane : planes)
+        if (magnitude(dot(plane.normal, p) - plane.offset) <= tolerance) return true;
+    return false;
+}
+
+/// A frustum on its small end, on a floor that slopes by as little as still counts as contact there. Its large end,
+/// 32 times as large, does not follow.
+TYPED_TEST(ConvexMesh, TheSideOppositeAContactStaysWhereItIs) {
+    const double unit = this->unit, slope = 8 * unit / 0x1p-5;
+    SceneDescription scene;
+    TrianglesObject floor, frustum = prism(4, 0x1p-5, 1, 0.5);
+    floor.vertices = {{-1, -1, -0.5 - slope}, {1, -1, -0.5 + slope}, {1, 1, -0.5 + slope}, {-1, 1, -0.5 - slope}};
+    floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+    test::add_object(scene, floor, 0);
+    test::add_object(scene, frustum, 0);
+    scene.frame = FrameOfReference{dvec3(0), 0, {}};
+    const auto compiled = test::compile<TypeParam>(scene);
+    ASSERT_EQ(compiled->solids[1].kind, SolidKind::convex);
+    ASSERT_EQ(compiled->shared_planes.size(), 1u);
+    EXPECT_NE(compiled->shared_planes[0].normal.x, 0);
+    const auto planes = solid_planes(compiled->view(), compiled->solids[1]);
+    EXPECT_EQ(planes.size(), 6u);
+    for (size_t i = 4; i < 8; ++i) {
+        const dvec3 in_the_end = frustum.vertices[i] * dvec3(0.5, 0.5, 1);
+        EXPECT_TRUE(near_a_plane(planes, in_the_end, 4 * unit)) << i;
+    }
+}
+
+/// However their faces are cut.
 TYPED_TEST(ConvexMesh, PlanesOfAMeshMayTouchOthers) {
     SceneDescription scene;
     TrianglesObject floor;

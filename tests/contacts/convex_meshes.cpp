@@ -22,8 +22,9 @@ double share_apart(const Film& a, const Film& b) {
     const ColorPicture x = to_color(a), y = to_color(b);
     size_t apart = 0;
     for (size_t i = 0; i < x.texels.size(); ++i) {
-        const glm::vec3 off = glm::abs(x.texels[i] - y.texels[i]);
-        apart += off.x > 0.5f / 255 || off.y > 0.5f / 255 || off.z > 0.5f / 255;
+        float off = 0;
+        for (int c = 0; c < 3; ++c) off = std::max(off, std::abs(x.texels[i][c] - y.texels[i][c]));
+        apart += off > 0.5f / 255;
     }
     return double(apart) / double(x.texels.size());
 }
@@ -45,16 +46,19 @@ std::string ply(const std::vector<dvec3>& vertices, const std::vector<std::vecto
         fmt::format("ply\nformat ascii 1.0\nelement vertex {}\n", vertices.size()) +
         "property double x\nproperty double y\nproperty double z\n" +
         fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", faces.size());
-    for (const dvec3& p : vertices) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+    for (const dvec3& p : vertices) text += fmt::format("{:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
     for (const auto& face : faces) text += fmt::format("{} {}\n", face.size(), fmt::join(face, " "));
     return text;
 }
 
+/// A solid of radius sqrt(3), so that the numbers of a cube are exact.
 std::string ply_of(PlatonicSolid solid) {
     const PlatonicShape& shape = platonic_shape(solid);
+    std::vector<dvec3> vertices;
+    for (const dvec3& p : shape.vertices) vertices.push_back(p * std::sqrt(3.0));
     std::vector<std::vector<uint32_t>> faces;
     for (const auto& face : shape.faces) faces.push_back(face.vertices);
-    return ply(shape.vertices, faces);
+    return ply(vertices, faces);
 }
 
 std::string frustum() {
@@ -115,13 +119,14 @@ class ConvexMeshes : public testing::Test {
   protected:
     const ScratchDirectory scratch_;
 
-    MeshObject mesh(const std::string& text, const Place& place, bool keep_triangles = false) const {
+    MeshObject mesh(const std::string& text, const Place& place, double scale, bool keep_triangles = false) const {
         const std::string name = scratch_.file("body.ply");
         put_bytes(name, text);
         MeshObject object;
         object.file = name;
         object.center = place.center;
         object.rotation = place.rotation;
+        object.scale = scale;
         object.keep_triangles = keep_triangles;
         return object;
     }
@@ -151,7 +156,7 @@ TYPED_TEST(ConvexMeshes, LookLikeTheSolidsThatAreBuiltIn) {
                 solid.center = place.center;
                 solid.rotation = place.rotation;
                 const Film built_in = this->film(solid, material, true);
-                const Film film = this->film(this->mesh(ply_of(kind), place), material, true);
+                const Film film = this->film(this->mesh(ply_of(kind), place, 1 / std::sqrt(3.0)), material, true);
                 SCOPED_TRACE(fmt::format("{} {}, material {}", platonic_name(kind), place.name, material));
                 EXPECT_LE(share_apart(film, built_in), largest_share_apart);
                 EXPECT_LE(layers_apart(film, built_in), 4u);
@@ -162,8 +167,8 @@ TYPED_TEST(ConvexMeshes, LookLikeTheirTriangles) {
     for (const auto& [name, text] : {std::pair("frustum", frustum()), std::pair("wedge", wedge())})
         for (const Place& place : {Place{"raised", dvec3(0), {0, 0, 0.125}}, places[1], places[2]})
             for (int material = 0; material < 3; ++material) {
-                const Film triangles = this->film(this->mesh(text, place, true), material, false);
-                const Film film = this->film(this->mesh(text, place), material, true);
+                const Film triangles = this->film(this->mesh(text, place, 1, true), material, false);
+                const Film film = this->film(this->mesh(text, place, 1), material, true);
                 SCOPED_TRACE(fmt::format("{} {}, material {}", name, place.name, material));
                 EXPECT_LE(share_apart(film, triangles), largest_share_apart);
                 EXPECT_LE(layers_apart(film, triangles), 4u);

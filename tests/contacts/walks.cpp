@@ -197,6 +197,13 @@ class Contacts : public testing::Test {};
 using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(Contacts, Reals);
 
+template <class Real>
+size_t meshes_in(const SceneDescription& scene) {
+    size_t meshes = 0;
+    for (const Solid& solid : test::compile<Real>(scene)->solids) meshes += solid.kind == SolidKind::mesh;
+    return meshes;
+}
+
 /// Walks through all kinds of scenes, prints what was counted and returns the faults.
 template <class Real>
 size_t faults(BodyKind other) {
@@ -204,7 +211,11 @@ size_t faults(BodyKind other) {
     for (const Arrangement& arrangement : arrangements) {
         Random random(7);
         ContactCounts sum;
-        for (int turn = 0; turn < 40; ++turn) sum.add(walk<Real>(arranged(arrangement, random, other), random, 250));
+        for (int turn = 0; turn < 40; ++turn) {
+            const ContactScene scene = arranged(arrangement, random, other);
+            if (other != BodyKind::mesh) EXPECT_EQ(meshes_in<Real>(scene.scene), 0u);
+            sum.add(walk<Real>(scene, random, 250));
+        }
         std::printf(
             "%-6s %-38s lines %7zu shadows %7zu | media %zu passed %zu off %zu earlier %zu shadow %zu gaps %zu\n",
             RealTraits<Real>::name, arrangement.name, sum.lines, sum.shadows, sum.media, sum.passed, sum.false_sheet,

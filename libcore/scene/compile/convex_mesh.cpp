@@ -141,13 +141,23 @@ class Search {
         }
     }
 
+    /// Makes a slab of two faces that are parallel, with a normal whose largest component is positive.
     bool make_slab(const Facet& facet, const Facet& other, PlanePair& pair) const {
         if (1 + dot(facet.normal, other.normal) > opposite) return false;
-        const dvec3 normal = normalized(facet.area - other.area);
-        const Range high = range(normal, facet.corners), low = range(normal, other.corners);
+        const bool ahead = largest_is_positive(facet.normal);
+        const Facet &above = ahead ? facet : other, &below = ahead ? other : facet;
+        const dvec3 normal = normalized(above.area - below.area);
+        const Range high = range(normal, above.corners), low = range(normal, below.corners);
         if (!high.within(2 * flat * unit_) || !low.within(2 * flat * unit_)) return false;
         pair = {normal, low.middle(), high.middle(), false};
         return true;
+    }
+
+    static bool largest_is_positive(const dvec3& v) {
+        int largest = 0;
+        for (const int axis : {1, 2})
+            if (magnitude(v[axis]) > magnitude(v[largest])) largest = axis;
+        return v[largest] > 0;
     }
 
     /// Whether all vertices are inside all planes, and some well inside.
