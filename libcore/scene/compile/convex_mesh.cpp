@@ -24,7 +24,7 @@ constexpr double opposite = 0x1p-20;      // 1 + cosine: pairs of faces that may
 
 /// A flat face: triangles in one plane.
 struct Facet {
-    dvec3 area{0};  // twice the sum of area vectors
+    dvec3 area{0};  // twice the area vector
     dvec3 normal;   // outward
     double offset;
     uint32_t first;                 // the lowest number of its triangles
