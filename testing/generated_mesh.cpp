@@ -36,6 +36,7 @@ TrianglesObject bumpy_sphere(uint32_t triangles, double bump) {
     while (4 * uint64_t(rows) * (rows + 1) <= triangles) ++rows;
     const uint32_t columns = 2 * rows;
     TrianglesObject object;
+    object.keep_triangles = true;
     object.vertices.reserve(uint64_t(rows - 1) * columns + 2);
     object.triangles.reserve(2 * uint64_t(rows - 1) * columns);
     const auto add_vertex = [&](const dvec3& p) {
@@ -112,6 +113,7 @@ TrianglesObject triangulated_solid(const SolidObject& solid) {
     TrianglesObject object;
     object.vertices = world_vertices(solid);
     object.triangles = triangulated(platonic_shape(solid.solid));
+    object.keep_triangles = true;
     return object;
 }
 

@@ -7,7 +7,8 @@
 
 namespace cistula {
 
-/// A closed, smoothly uneven sphere of about `triangles` triangles around the origin; its radius is 1 to within `bump`.
+/// A closed, smoothly uneven sphere of about `triangles` triangles, which it keeps, around the origin; its radius is 1
+/// to within `bump`.
 TrianglesObject bumpy_sphere(uint32_t triangles, double bump = 0.1);
 
 /// A closed torus around the z axis with `around` and `across` segments, at least 3 each.
@@ -20,7 +21,7 @@ TrianglesObject star(double inner = 0.5, double outer = 1);
 /// the seed.
 TrianglesObject triangle_soup(uint32_t triangles, double size, uint64_t seed);
 
-/// A Platonic solid as triangles, in the position of the object.
+/// A Platonic solid as triangles, which it keeps, in the position of the object.
 TrianglesObject triangulated_solid(const SolidObject& solid);
 
 }  // namespace cistula

@@ -81,6 +81,7 @@ class Objects : Part {
             if (triangles->uvs.empty() && random_.chance(0.4))
                 for (const dvec3& p : triangles->vertices) triangles->uvs.emplace_back(p.x, p.y + 0.5 * p.z);
             textured = !triangles->uvs.empty();
+            if (scene_.objects.size() % 5 == 3) triangles->keep_triangles = false;  // convex ones are given by planes
         } else if (auto* solid = std::get_if<SolidObject>(&shape)) {
             if (edge_lights_left_ > 0 && random_.chance(0.15) && !heavy_) add_edge_lights(solid->edge_lights);
         }

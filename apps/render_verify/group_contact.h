@@ -5,14 +5,14 @@
 
 namespace cistula::verify::contact {
 
-using Cases =
-    CaseList<InvisibleOnFloor, InvisibleOnMeshFloor, InvisibleOnSolid, InvisibleSideBySide, InvisibleOverEdge,
-             InvisibleInCorner, InvisibleAlongEdge, InvisibleStack, InvisibleSolids, InvisibleMeshes,
-             InvisibleMeshesInCorner, OpticalContact, EightBlocks, Blocks27, BlocksInAnyOrder, EightMeshes,
-             DecalsOnFloor, DecalsOnMeshFloor, DecalsOnSolid, DecalsOnMesh, LabelOnGlass, ApartOnFloor,
-             ApartOnMeshFloor, ApartOnSolid, ApartSideBySide, ApartOverEdge, ApartInCorner, ApartAlongEdge, ApartStack,
-             ApartMeshes, TintedShadow, TintedShadowOnSolid, OpaqueShadow, OpaqueNeighbors, OpaqueInCorner,
-             OpaqueOverEdge, BrokenInvisible, BrokenInvisibleInCorner, BrokenBlocks, BrokenOptical, BrokenDecals,
-             BrokenDecalsOnSolid, BrokenTintedShadow, BrokenApart, BrokenApartStack>;
+using Cases = CaseList<InvisibleOnFloor, InvisibleOnMeshFloor, InvisibleOnSolid, InvisibleSideBySide, InvisibleOverEdge,
+                       InvisibleInCorner, InvisibleAlongEdge, InvisibleStack, InvisibleSolids, InvisibleConvexMeshes,
+                       InvisibleMeshes, InvisibleMeshesInCorner, OpticalContact, EightBlocks, Blocks27,
+                       BlocksInAnyOrder, ConvexMeshBlocks, EightMeshes, DecalsOnFloor, DecalsOnMeshFloor, DecalsOnSolid,
+                       DecalsOnMesh, LabelOnGlass, ApartOnFloor, ApartOnMeshFloor, ApartOnSolid, ApartSideBySide,
+                       ApartOverEdge, ApartInCorner, ApartAlongEdge, ApartStack, ApartConvexMeshes, ApartMeshes,
+                       TintedShadow, TintedShadowOnSolid, OpaqueShadow, OpaqueNeighbors, OpaqueInCorner, OpaqueOverEdge,
+                       BrokenInvisible, BrokenInvisibleInCorner, BrokenBlocks, BrokenOptical, BrokenDecals,
+                       BrokenDecalsOnSolid, BrokenTintedShadow, BrokenApart, BrokenApartStack>;
 
 }  // namespace cistula::verify::contact

@@ -16,8 +16,8 @@ inline constexpr PlatonicSolid platonic_solids[] = {PlatonicSolid::tetrahedron, 
                                                     PlatonicSolid::octahedron, PlatonicSolid::dodecahedron,
                                                     PlatonicSolid::icosahedron};
 
-/// The form of a solid: its planes or a closed mesh.
-enum class Shape { planes, triangles };
+/// The form of a solid: its planes, a mesh that keeps its triangles, or a mesh that is compiled into planes.
+enum class Shape { planes, triangles, convex_mesh };
 
 /// A description with one material, no objects, no lights.
 inline SceneDescription empty_scene() {
@@ -65,10 +65,10 @@ inline SolidObject solid_object(PlatonicSolid kind, const glm::dvec3& center = g
 }
 
 inline void add_solid(SceneDescription& scene, Shape shape, const SolidObject& solid, int material = 0) {
-    if (shape == Shape::planes)
-        add_object(scene, solid, material);
-    else
-        add_object(scene, triangulated_solid(solid), material);
+    if (shape == Shape::planes) return add_object(scene, solid, material);
+    TrianglesObject mesh = triangulated_solid(solid);
+    mesh.keep_triangles = shape == Shape::triangles;
+    add_object(scene, mesh, material);
 }
 
 /// The corners of a solid and the points at k/16 of its edges.

@@ -55,7 +55,7 @@ struct IdealBody {
     dvec3 sheet_normal() const { return normalized(cross(along, across)); }
 };
 
-enum class BodyKind { planes, mesh };
+enum class BodyKind { planes, convex_mesh, mesh };
 
 /// A scene under construction, in coordinates that `basis` turns and `origin` moves.
 class ContactScene {
@@ -78,10 +78,13 @@ class ContactScene {
             }
         bodies.push_back(body);
         const double radius = side / 2 * square_root(3.0);
-        if (kind == BodyKind::planes)
+        if (kind == BodyKind::planes) {
             add_solid(scene, PlatonicSolid::cube, middle, radius, own.degrees(), material);
-        else
-            add_object(scene, solid_mesh(PlatonicSolid::cube, middle, radius, own.degrees()), material);
+        } else {
+            TrianglesObject mesh = solid_mesh(PlatonicSolid::cube, middle, radius, own.degrees());
+            mesh.keep_triangles = kind == BodyKind::mesh;
+            add_object(scene, mesh, material);
+        }
     }
 
     /// The parallelogram corner, corner + along, corner + along + across, corner + across.

@@ -83,13 +83,14 @@ inline void add_solid(SceneDescription& scene, PlatonicSolid solid, const dvec3&
     add_object(scene, object, material);
 }
 
-/// A Platonic solid as a closed mesh.
+/// A Platonic solid as a closed mesh that keeps its triangles.
 inline TrianglesObject solid_mesh(PlatonicSolid solid, const dvec3& center = dvec3(0), double radius = 1,
                                   const dvec3& rotation = dvec3(0)) {
     const Rotation turned(rotation);
     TrianglesObject mesh;
     for (const dvec3& p : platonic_shape(solid).vertices) mesh.vertices.push_back(center + turned(radius * p));
     mesh.triangles = triangulated(platonic_shape(solid));
+    mesh.keep_triangles = true;
     return mesh;
 }
 

@@ -264,7 +264,10 @@ class Coverage {
             if (const auto* solid = std::get_if<SolidObject>(&shape)) bodies.push_back(body_of(*solid));
             if (compiled.solids[i].kind == SolidKind::sheet) continue;
             const auto* mesh = std::get_if<TrianglesObject>(&shape);
-            if (mesh && mesh->triangles.size() <= 40) bodies.push_back(body_of(*mesh));
+            if (!mesh || mesh->triangles.size() > 40) continue;
+            bodies.push_back(body_of(*mesh));
+            bodies.back().convex = compiled.solids[i].kind == SolidKind::convex;
+            note(bodies.back().convex, "mesh given by planes");
         }
         for (const Body& body : bodies)
             for (const LightDescription& light : scene.lights)
@@ -321,8 +324,8 @@ void check_coverage(const std::string& folder) {
              "no light of its own", "unlit", "intensity 0, but seen", "seen lights on edges",
              "falloff of lights on edges", "light on a plane", "light on a corner of planes", "light on a triangle",
              "light on an edge of triangles", "light in a solid", "shared face of both kinds", "no ambient light",
-             "black background", "camera on a path", "target on a path", "far camera", "pinned frame", "pinned bound",
-             "large units", "convex solids only"}},
+             "mesh given by planes", "black background", "camera on a path", "target on a path", "far camera",
+             "pinned frame", "pinned bound", "large units", "convex solids only"}},
         {4, {"faces in one place of planes", "faces in one place of both kinds", "lights on edges that do not light",
              "camera in several solids", "a tree over convex solids apart", "small units"}}};
     // clang-format on

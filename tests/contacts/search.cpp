@@ -4,40 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backend_embree/embree/embree_renderer.h"
-#include "scene/description/camera_path.h"
 #include "scene/film/film_picture.h"
-#include "testing/reference_renderers.h"
 #include "testing/support/contact_search.h"
+#include "testing/support/film_of_all.h"
 
 namespace cistula {
 namespace {
 
 using test::ContactSearch;
-
-Film rendered(Renderer& renderer, const SceneDescription& scene) {
-    FrameSettings settings;
-    settings.set_size(scene.film.width, scene.film.height);
-    settings.depth = scene.depth;
-    settings.cutoff = scene.cutoff;
-    Film film;
-    RenderProgress progress;
-    renderer.render(camera_at(scene.camera, 0), settings, film, progress);
-    EXPECT_EQ(film.flags, 0u);
-    return film;
-}
-
-/// The film of all of the host's intersectors.
-template <class Real>
-Film film_of_all(const SceneDescription& scene) {
-    const std::shared_ptr<CompiledScene<Real>> compiled = test::compile<Real>(scene, true);
-    const Film film = rendered(*make_host_renderer<Real>(compiled, HostIntersector::brute), scene);
-    const std::string hash = film_hash(film);
-    EXPECT_EQ(film_hash(rendered(*make_host_renderer<Real>(compiled, HostIntersector::bvh), scene)), hash) << "bvh";
-    EXPECT_EQ(film_hash(rendered(*make_embree_renderer<Real>(compiled, {.always_tree = true}), scene)), hash)
-        << "embree";
-    return film;
-}
+using test::film_of_all;
 
 struct Neighborhood {
     glm::vec3 low{INFINITY}, high{-INFINITY};

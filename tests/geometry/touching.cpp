@@ -16,6 +16,7 @@ const dvec3 turn(20, 35, 50);
 TrianglesObject box_mesh(double x0, double x1, bool other_diagonal) {
     const Rotation rotation(turn);
     TrianglesObject mesh;
+    mesh.keep_triangles = true;
     for (const double x : {x0, x1})
         for (const double y : {-0.5, 0.5})
             for (const double z : {-0.5, 0.5}) mesh.vertices.push_back(rotation(dvec3(x, y, z)));

@@ -85,6 +85,21 @@ TYPED_TEST(HardScenes, MediaOfMeshesLookLikeThoseOfPlanes) {
               this->largest_share_apart);
 }
 
+/// The scenes of which meshes keep triangles that planes could reproduce.
+TYPED_TEST(HardScenes, PlanesOfMeshesLookLikeTheirTriangles) {
+    for (const char* name : {"media-meshes", "slivers", "closed-box", "degenerate"}) {
+        SceneDescription scene = load(name);
+        const Film triangles = this->render(scene);
+        const size_t convex = compile_scene<TypeParam>(scene)->convex.size();
+        for (ObjectDescription& object : scene.objects) {
+            if (auto* list = std::get_if<TrianglesObject>(&object.shape)) list->keep_triangles = false;
+            if (auto* mesh = std::get_if<MeshObject>(&object.shape)) mesh->keep_triangles = false;
+        }
+        EXPECT_GT(compile_scene<TypeParam>(scene)->convex.size(), convex) << name;
+        EXPECT_LE(this->share_apart(triangles, this->render(scene)), this->largest_share_apart) << name;
+    }
+}
+
 TYPED_TEST(HardScenes, EightPartsOfAGlassLookLikeOne) {
     SceneDescription scene = load("media");
     const Film parts = this->render(scene);

@@ -211,7 +211,7 @@ TEST(MeshFile, GroupsBecomeSolidsOfTheirOwnUnlessAMaterialJoinsThem) {
     EXPECT_TRUE(own->effects & effect_fresnel);
     const auto joined = compile_scene<float>(scene_with(scratch.file("cube.obj"), 0));
     ASSERT_EQ(joined->solids.size(), 1u);
-    EXPECT_EQ(joined->solids[0].kind, SolidKind::mesh);
+    EXPECT_EQ(joined->solids[0].kind, SolidKind::convex);
     EXPECT_EQ(joined->solids[0].material, 0u);
     EXPECT_FALSE(joined->effects & effect_fresnel);
 }

@@ -132,13 +132,15 @@ TEST(SceneQuads, MustBePlanarAndConvexAtAnyScale) {
 }
 
 TEST(SceneTriangles, Arrive) {
-    const auto list = shape_of<TrianglesObject>(R"({"name": "n", "material": "tiles", "triangles": {
+    const auto list =
+        shape_of<TrianglesObject>(R"({"name": "n", "material": "tiles", "keep_triangles": true, "triangles": {
         "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "indices": [[0, 1, 2], [3, 2, 1]],
         "uvs": [[0, 0], [1, 0], [0, 1], [-2, 3.5]]}})");
     EXPECT_EQ(list.vertices.size(), 4u);
     EXPECT_EQ(list.vertices[3], glm::dvec3(0, 0, 1));
     EXPECT_EQ(list.triangles, (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {3, 2, 1}}));
     EXPECT_EQ(list.uvs[3], glm::dvec2(-2, 3.5));
+    EXPECT_TRUE(list.keep_triangles);
 }
 
 TEST(SceneTriangles, Errors) {
@@ -173,7 +175,8 @@ TEST(SceneTriangles, Errors) {
 TEST(SceneMeshes, EveryKeyArrives) {
     const ObjectDescription object =
         read(
-            R"({"name": "n", "mesh": "a.ply", "center": [1, 2, 3], "scale": 4, "rotate": [5, 6, 7], "material": "tiles"})")
+            R"({"name": "n", "mesh": "a.ply", "center": [1, 2, 3], "scale": 4, "rotate": [5, 6, 7],
+                "keep_triangles": true, "material": "tiles"})")
             .objects.at(0);
     const auto& mesh = std::get<MeshObject>(object.shape);
     EXPECT_EQ(object.material, 1);
@@ -181,6 +184,8 @@ TEST(SceneMeshes, EveryKeyArrives) {
     EXPECT_EQ(mesh.center, glm::dvec3(1, 2, 3));
     EXPECT_EQ(mesh.scale, 4);
     EXPECT_EQ(mesh.rotation, glm::dvec3(5, 6, 7));
+    EXPECT_TRUE(mesh.keep_triangles);
+    EXPECT_FALSE(shape_of<MeshObject>(R"({"mesh": "a.ply"})").keep_triangles);
     EXPECT_EQ(read(R"({"mesh": "a.ply"})").objects.at(0).material, -1);
     EXPECT_WRONG(R"({"mesh": "a.ply", "scale": -1})", "/scale: expected a number from 1e-30 to 1e30, found -1");
     EXPECT_WRONG(R"({"mesh": 1})", "/mesh: expected a string that is not empty, found 1");

@@ -64,6 +64,9 @@ struct ApartAlongEdge : Apart<Shape::planes, along_an_edge, at_a_vertex> {
 struct ApartStack : Apart<Shape::planes, stacked> {
     static constexpr const char* name = "contact/apart/stack";
 };
+struct ApartConvexMeshes : Apart<Shape::convex_mesh, on_floor, side_by_side, in_a_corner> {
+    static constexpr const char* name = "contact/apart/convex-meshes";
+};
 struct ApartMeshes : Apart<Shape::triangles, on_floor, on_tessellated_floor, over_the_edge, side_by_side> {
     static constexpr const char* name = "contact/apart/meshes";
 };

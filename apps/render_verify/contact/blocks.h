@@ -53,6 +53,9 @@ struct Blocks27 : Blocks<3, 1> {
 struct BlocksInAnyOrder : Blocks<2, 4> {
     static constexpr const char* name = "contact/blocks/in-any-order";
 };
+struct ConvexMeshBlocks : Blocks<3, 1, Shape::convex_mesh> {
+    static constexpr const char* name = "contact/blocks/convex-meshes";
+};
 struct EightMeshes : Blocks<2, 2, Shape::triangles> {
     static constexpr const char* name = "contact/blocks/meshes";
 };

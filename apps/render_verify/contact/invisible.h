@@ -74,6 +74,9 @@ struct InvisibleAlongEdge : Invisible<Shape::planes, along_an_edge, at_a_vertex>
 struct InvisibleStack : Invisible<Shape::planes, stacked> {
     static constexpr const char* name = "contact/invisible/stack";
 };
+struct InvisibleConvexMeshes : Invisible<Shape::convex_mesh, on_floor, in_a_corner, stacked> {
+    static constexpr const char* name = "contact/invisible/convex-meshes";
+};
 struct InvisibleMeshes : Invisible<Shape::triangles, on_floor, on_tessellated_floor, over_the_edge> {
     static constexpr const char* name = "contact/invisible/meshes";
 };

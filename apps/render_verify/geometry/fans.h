@@ -10,6 +10,7 @@ namespace cistula::verify::geometry {
 /// The lens as a mesh. Vertices: the upper hub, the lower hub, the rim.
 inline TrianglesObject lens(uint32_t spokes, const glm::dvec3& center, double height) {
     TrianglesObject mesh;
+    mesh.keep_triangles = true;
     mesh.vertices = {center + glm::dvec3(0, 0, height), center - glm::dvec3(0, 0, height)};
     for (uint32_t i = 0; i < spokes; ++i) {
         const double angle = 6.283185307179586 * i / spokes;

@@ -9,6 +9,7 @@ namespace cistula::verify::geometry {
 inline TrianglesObject grid_box(const std::vector<double>& cuts) {
     const uint32_t n = uint32_t(cuts.size());
     TrianglesObject mesh;
+    mesh.keep_triangles = true;
     for (int axis = 0; axis < 3; ++axis)
         for (const bool high : {false, true}) {
             // Vertices at one position count as one, so every face may have its own.
@@ -40,6 +41,7 @@ inline TrianglesObject grid_box(const std::vector<double>& cuts) {
 inline TrianglesObject needle(uint32_t sides, double radius, const glm::dvec3& rotation, const glm::dvec3& center) {
     const Rotation turned(rotation);
     TrianglesObject mesh;
+    mesh.keep_triangles = true;
     for (const double z : {-1.0, 1.0})
         for (uint32_t i = 0; i < sides; ++i) {
             const double angle = 6.283185307179586 * i / sides;

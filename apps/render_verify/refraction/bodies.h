@@ -41,6 +41,7 @@ enum class Form { cubes, wide_boxes, both };
 inline TrianglesObject box_mesh(const glm::dvec3& low, const glm::dvec3& high, const Rotation& rotation,
                                 bool other_way) {
     TrianglesObject mesh;
+    mesh.keep_triangles = true;
     for (const double x : {low.x, high.x})
         for (const double y : {low.y, high.y})
             for (const double z : {low.z, high.z}) mesh.vertices.push_back(rotation(glm::dvec3(x, y, z)));

@@ -56,6 +56,7 @@ std::vector<NormalizedLight> normalize_lights(const SceneSource& source, const S
                           light.radius * normalization.factor, light.falloff, light.place});
     for (size_t i = 0; i < convex.size(); ++i) {
         const SourceSolid& solid = source.solids[convex[i].solid];
+        if (!solid.platonic) continue;
         add_edge_lights(lights, *solid.platonic, solid.place, convex[i], static_cast<int>(i), normalization);
     }
     // I / r^2 in scene units is I 4^scale / r^2 with r in the frame.

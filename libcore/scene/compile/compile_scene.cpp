@@ -8,11 +8,13 @@
 #include "cistula/geometry/ray.h"
 #include "cistula/lights/light_tree.h"
 #include "scene/base/error.h"
+#include "scene/base/rounded_up.h"
 #include "scene/compile/clusters.h"
 #include "scene/compile/compile_lights.h"
 #include "scene/compile/compile_materials.h"
 #include "scene/compile/compile_solids.h"
 #include "scene/compile/compiled_scene.h"
+#include "scene/compile/convex_mesh.h"
 #include "scene/compile/edge_light_reach.h"
 #include "scene/compile/radiance_bound.h"
 #include "scene/compile/required_effects.h"
@@ -24,12 +26,6 @@ namespace cistula {
 namespace {
 
 using glm::dvec3;
-
-template <class Real>
-Real rounded_up(double x) {
-    const auto r = static_cast<Real>(x);
-    return r < x ? std::nextafter(r, RealTraits<Real>::infinity) : r;
-}
 
 /// Returns memory to the system that the allocator keeps after a tree build, before the largest arrays are filled.
 void return_free_memory() {
@@ -62,6 +58,7 @@ class Compiler {
         scene_.hulls.resize(source_.solids.size());
         boxes_.resize(source_.solids.size());
         closed_.assign(source_.solids.size(), true);
+        by_planes_.assign(source_.solids.size(), false);
         hash_.add(normalization_.center);
         hash_.add(static_cast<uint32_t>(normalization_.scale));
 
@@ -72,7 +69,9 @@ class Compiler {
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             scene_.solid_names.push_back(source_.solids[i].name);
             scene_.solids[i].material = source_.solids[i].material;
-            if (!source_.solids[i].platonic) compile_mesh(i);
+            if (source_.solids[i].platonic) continue;
+            hash_mesh(i);
+            compile_mesh(i);
         }
         contact_ = share_planes(scene_, convex_, boxes_, incidents_);
         add_slabs();
@@ -93,19 +92,33 @@ class Compiler {
                 convex_.push_back(convex_solid(*source_.solids[i].platonic, i, normalization_));
         merge_coplanar(convex_, normalization_.extent);
         for (const ConvexSolid& convex : convex_) {
-            Solid& solid = scene_.solids[convex.solid];
-            solid = {};
-            solid.kind = SolidKind::convex;
             for (const PlanePair& p : convex.planes) {
                 hash_.add(p.normal);
                 hash_.add(p.low);
                 hash_.add(p.high);
             }
-            bound_sphere(convex, solid);
             hash_.add(convex.solid);
+        }
+        add_convex_meshes();
+        for (const ConvexSolid& convex : convex_) {
+            Solid& solid = scene_.solids[convex.solid];
+            solid = {};
+            solid.kind = SolidKind::convex;
+            bound_sphere(convex, solid);
             scene_.convex.push_back(convex.solid);
             boxes_[convex.solid] = convex.box;
+            by_planes_[convex.solid] = true;
         }
+    }
+
+    /// Adds the meshes that planes reproduce in this precision. The hash has them as meshes.
+    void add_convex_meshes() {
+        const double unit = static_cast<double>(RealTraits<Real>::unit) * normalization_.extent;
+        for (uint32_t i = 0; i < source_.solids.size(); ++i)
+            if (std::optional<ConvexSolid> convex = convex_mesh(source_, i, normalization_, unit))
+                convex_.push_back(std::move(*convex));
+        std::sort(convex_.begin(), convex_.end(),
+                  [](const ConvexSolid& a, const ConvexSolid& b) { return a.solid < b.solid; });
     }
 
     void add_slabs() {
@@ -116,7 +129,7 @@ class Compiler {
             for (const PlanePair& p : convex.planes)
                 scene_.slabs.push_back({Vec3<Real>(p.normal), static_cast<Real>(p.low), static_cast<Real>(p.high)});
             scene_.slab_planes.insert(scene_.slab_planes.end(), convex.face_planes.begin(), convex.face_planes.end());
-            group_slabs(solid);
+            group_slabs(scene_.slabs, solid, scene_.slab_groups);
         }
     }
 
@@ -156,38 +169,11 @@ class Compiler {
         }
     }
 
-    void group_slabs(Solid& solid) {
-        solid.first_group = static_cast<uint32_t>(scene_.slab_groups.size());
-        for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
-            SlabGroup<Real> group{};
-            for (uint32_t i = 0; i < slab_lanes; ++i) {
-                const bool used = first + i < solid.slab_count;
-                const Slab<Real> slab = used ? scene_.slabs[solid.first_slab + first + i] : Slab<Real>{};
-                group.nx[i] = slab.normal.x, group.ny[i] = slab.normal.y, group.nz[i] = slab.normal.z;
-                group.low[i] = used ? slab.low : -RealTraits<Real>::infinity;
-                group.high[i] = used ? slab.high : RealTraits<Real>::infinity;
-            }
-            scene_.slab_groups.push_back(group);
-        }
-    }
-
-    static void bound_sphere(const ConvexSolid& convex, Solid& solid) {
-        dvec3 sum(0);
-        for (const dvec3& p : convex.vertices) sum += p;
-        solid.center = Vec3<float>(sum / double(convex.vertices.size()));
-        double square = 0;
-        for (const dvec3& p : convex.vertices) {
-            const dvec3 out = p - dvec3(solid.center);
-            square = max_or_second(square, dot(out, out));
-        }
-        solid.padded_square = rounded_up<float>(square) + sphere_padding;
-    }
-
     void compile_mesh(uint32_t number) {
         SourceSolid& from = source_.solids[number];
-        hash_mesh(number);
         MeshTopology topology = find_topology(from.mesh);
         warn(from, topology);
+        if (by_planes_[number]) return;
         const NormalizedMesh mesh(from.mesh, topology, normalization_, sizeof(Real) == sizeof(float));
         ApexHeights heights = apex_heights(mesh);
         topology.next_along_edge = {};
@@ -252,6 +238,7 @@ class Compiler {
         hash_.add(number);
         for (const dvec3& p : mesh.vertices) hash_.add(normalization_.point(p));
         hash_.add_bytes(mesh.triangles.data(), mesh.triangles.size_bytes());
+        if (source_.solids[number].keep_triangles) hash_.add(1u);
         if (source_.materials[source_.solids[number].material].texture < 0) return;
         for (const auto& uv : mesh.uvs) hash_.add(uv.x), hash_.add(uv.y);
     }
@@ -363,8 +350,8 @@ class Compiler {
     void explain() {
         std::vector<MaterialUse> uses;
         for (size_t i = 0; i < source_.solids.size(); ++i)
-            uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place, closed_[i],
-                            source_.solids[i].platonic != nullptr});
+            uses.push_back(
+                {&source_.materials[source_.solids[i].material], source_.solids[i].place, closed_[i], by_planes_[i]});
         scene_.effect_reasons =
             explain_effects(description_, uses, light_on_face(source_, lights_, incidents_), contact());
         scene_.effects = required_effects(scene_.effect_reasons);
@@ -392,8 +379,9 @@ class Compiler {
     std::vector<NormalizedLight> lights_;
     IncidentLists incidents_;
     FirstContact contact_;
-    std::vector<Box> boxes_;    // of each solid
-    std::vector<bool> closed_;  // each solid has an inside
+    std::vector<Box> boxes_;       // of each solid
+    std::vector<bool> closed_;     // each solid has an inside
+    std::vector<bool> by_planes_;  // each solid is given by planes
     uint32_t triangle_count_ = 0;
     RadianceScale scale_;
     SceneHash hash_;

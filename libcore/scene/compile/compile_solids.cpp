@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cistula/numerics/vec.h"
+#include "scene/base/rounded_up.h"
 #include "scene/description/rotation.h"
 
 namespace cistula {
@@ -81,8 +82,9 @@ std::vector<glm::dvec3> ConvexSolid::face_corners(uint32_t face) const {
     std::vector<glm::dvec3> corners;
     if (offset == -INFINITY) return corners;
     const glm::dvec3 size = box.high - box.low;
+    const double tolerance = max_or_second(on_face * largest_component(size), flatness);
     for (const glm::dvec3& p : vertices)
-        if (magnitude(dot(pair.normal, p) - offset) <= on_face * largest_component(size)) corners.push_back(p);
+        if (magnitude(dot(pair.normal, p) - offset) <= tolerance) corners.push_back(p);
     glm::dvec3 middle(0);
     for (const glm::dvec3& p : corners) middle += p / double(corners.size());
     const glm::dvec3 right = corners.empty() ? glm::dvec3(0) : corners[0] - middle;
@@ -121,5 +123,36 @@ void merge_coplanar(std::vector<ConvexSolid>& solids, double extent) {
         for (PlanePair& pair : solid.planes) pairs.push_back(&pair);
     for (const auto& direction : merge_normals(pairs)) merge_offsets(direction, coplanar * extent);
 }
+
+void bound_sphere(const ConvexSolid& convex, Solid& solid) {
+    glm::dvec3 sum(0);
+    for (const glm::dvec3& p : convex.vertices) sum += p;
+    solid.center = Vec3<float>(sum / double(convex.vertices.size()));
+    double square = 0;
+    for (const glm::dvec3& p : convex.vertices) {
+        const glm::dvec3 out = p - glm::dvec3(solid.center);
+        square = max_or_second(square, dot(out, out));
+    }
+    solid.padded_square = rounded_up<float>(square) + sphere_padding;
+}
+
+template <class Real>
+void group_slabs(const std::vector<Slab<Real>>& slabs, Solid& solid, std::vector<SlabGroup<Real>>& groups) {
+    solid.first_group = static_cast<uint32_t>(groups.size());
+    for (uint32_t first = 0; first < solid.slab_count; first += slab_lanes) {
+        SlabGroup<Real> group{};
+        for (uint32_t i = 0; i < slab_lanes; ++i) {
+            const bool used = first + i < solid.slab_count;
+            const Slab<Real> slab = used ? slabs[solid.first_slab + first + i] : Slab<Real>{};
+            group.nx[i] = slab.normal.x, group.ny[i] = slab.normal.y, group.nz[i] = slab.normal.z;
+            group.low[i] = used ? slab.low : -RealTraits<Real>::infinity;
+            group.high[i] = used ? slab.high : RealTraits<Real>::infinity;
+        }
+        groups.push_back(group);
+    }
+}
+
+template void group_slabs(const std::vector<Slab<float>>&, Solid&, std::vector<SlabGroup<float>>&);
+template void group_slabs(const std::vector<Slab<double>>&, Solid&, std::vector<SlabGroup<double>>&);
 
 }  // namespace cistula

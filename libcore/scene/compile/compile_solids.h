@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cistula/model/scene_view.h"
 #include "scene/base/box.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
@@ -25,6 +26,7 @@ struct ConvexSolid {
     std::vector<PlanePair> planes;
     std::vector<uint32_t> face_planes;  // the shared plane of each face 2 i + side, or none (shared_planes.h)
     Box box;
+    double flatness = 0;  // how far corners may lie from their faces beyond rounding
 
     /// The corners of a face in cyclic order; none for the missing side of a single plane.
     std::vector<glm::dvec3> face_corners(uint32_t face) const;
@@ -36,5 +38,12 @@ ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Scene
 /// Gives planes of different solids that coincide to within 1e-12 one record (n, h), so that touching faces have equal
 /// t: normals equal up to sign, offsets equal.
 void merge_coplanar(std::vector<ConvexSolid>& solids, double extent);
+
+/// Sets the sphere around a solid.
+void bound_sphere(const ConvexSolid& convex, Solid& solid);
+
+/// Appends the groups of a solid's slabs and sets the first one.
+template <class Real>
+void group_slabs(const std::vector<Slab<Real>>& slabs, Solid& solid, std::vector<SlabGroup<Real>>& groups);
 
 }  // namespace cistula

@@ -108,6 +108,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
         solid.name = parts.size() == 1 ? object.name : object.name + "/" + part.name;
         solid.place = object.place;
         solid.mesh = std::move(part.mesh);
+        solid.keep_triangles = mesh.keep_triangles;
         if (object.material >= 0) {
             solid.material = static_cast<uint32_t>(object.material);
         } else if (part.material) {
@@ -165,6 +166,7 @@ SceneSource gather_scene(const SceneDescription& description) {
             solid.mesh.vertices = triangles.vertices;
             solid.mesh.triangles = triangles.triangles;
             solid.mesh.uvs = triangles.uvs;
+            solid.keep_triangles = triangles.keep_triangles;
         }
         source.solids.push_back(std::move(solid));
     }

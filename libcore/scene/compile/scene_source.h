@@ -17,6 +17,7 @@ struct SourceSolid {
     uint32_t material = 0;                  // index into SceneSource::materials
     const SolidObject* platonic = nullptr;  // null: the solid is `mesh`
     MeshSource mesh;
+    bool keep_triangles = false;  // the mesh is not given by planes, even where it could be
 };
 
 struct SceneSource {

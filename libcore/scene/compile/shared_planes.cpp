@@ -148,36 +148,42 @@ class PlaneSharing {
         for (uint32_t plane = 0; plane < scene_.shared_planes.size(); ++plane) list_solids(plane);
     }
 
-    /// Gives a slab the normal and the offsets of the shared planes on its sides. If these have different normals, its
-    /// low side becomes a slab of its own, the last.
+    /// Gives a slab the normals and the offsets of the shared planes on its sides. If these have different normals, or
+    /// one side cannot follow the other, the low side becomes a slab of its own, the last.
     void bind_slab(ConvexSolid& solid, uint32_t slab, IncidentLists& incidents) {
         const uint32_t low = solid.face_planes[2 * slab], high = solid.face_planes[2 * slab + 1];
+        if (low == no_plane && high == no_plane) return;
         PlanePair& pair = solid.planes[slab];
-        if (low == no_plane || high == no_plane) {
-            if (low == no_plane && high == no_plane) return;
-            const bool shares_high = high != no_plane;
-            const dvec3 other = middle(solid.face_corners(2 * slab + (shares_high ? 0 : 1)));
-            take(pair, shares_high ? high : low, shares_high);
-            if (!shares_high) pair.high = dot(pair.normal, other);
-            if (shares_high && pair.low != -INFINITY) pair.low = dot(pair.normal, other);
-            return;
-        }
-        take(pair, high, true);
-        PlanePair other = pair;
-        take(other, low, false);
-        if (other.normal == pair.normal) {
-            pair.low = other.low;
-            return;
-        }
+        PlanePair of_low = pair, of_high = pair;
+        if (low != no_plane) take(of_low, low, false);
+        if (high != no_plane) take(of_high, high, true);
+        if (low == no_plane) follow(of_high.normal, solid.face_corners(2 * slab), of_low.normal, of_low.low);
+        if (high == no_plane) follow(of_low.normal, solid.face_corners(2 * slab + 1), of_high.normal, of_high.high);
+        pair.normal = of_high.normal;
+        pair.high = of_high.high;
+        pair.low = of_low.low;
+        if (of_low.normal == pair.normal) return;
         const auto moved = uint32_t(2 * solid.planes.size() + 1);
         solid.face_planes[2 * slab] = no_plane;
         solid.face_planes.push_back(no_plane);
         solid.face_planes.push_back(low);
         pair.low = -INFINITY;
-        solid.planes.push_back({-other.normal, -INFINITY, -other.low, false});
+        solid.planes.push_back({-of_low.normal, -INFINITY, -of_low.low, false});
         for (auto& faces : incidents)
             for (Incident& incident : faces)
                 if (incident.solid == solid.solid && incident.face == 2 * slab) incident.face = moved;
+    }
+
+    /// Gives a face the normal of the one opposite, through its middle, unless that moves a corner off: a small face
+    /// may tilt much more than a large one.
+    void follow(const dvec3& opposite, const std::vector<dvec3>& corners, dvec3& normal, double& offset) const {
+        if (!corners.empty()) {
+            const double through = dot(opposite, middle(corners));
+            for (const dvec3& p : corners)
+                if (magnitude(dot(opposite, p) - through) > coinciding * unit_) return;
+            offset = through;
+        }
+        normal = opposite;
     }
 
     void take(PlanePair& pair, uint32_t plane, bool high) const {

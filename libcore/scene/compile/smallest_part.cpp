@@ -4,6 +4,7 @@
 
 #include "scene/compile/compile_lights.h"
 #include "scene/compile/compile_solids.h"
+#include "scene/compile/convex_mesh.h"
 #include "scene/compile/mesh_size.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
@@ -49,7 +50,7 @@ class Search {
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             const SourceSolid& solid = source_.solids[i];
             if (!solid.platonic) {
-                add_mesh(solid);
+                add_mesh(i);
                 continue;
             }
             const double radius = solid.platonic->radius * normalization_.factor;
@@ -59,14 +60,22 @@ class Search {
         }
     }
 
-    void add_mesh(const SourceSolid& solid) {
+    void add_mesh(uint32_t number) {
+        const SourceSolid& solid = source_.solids[number];
         const MaterialDescription& material = source_.materials[solid.material];
         const MeshSize size = mesh_size(solid.mesh, normalization_, least_share(Precision::double_) * extent_);
         meshes_.push_back({&solid, size.box});
         if (size.triangles == 0) return;
         add(size.thickness, [&] { return name(solid) + (size.closed ? ": its thickness" : ": its half width"); });
-        if (material.reflection > 0 || material.transmission > 0)
-            add(size.least_height, [&] { return name(solid) + ": the least height of its triangles"; });
+        if (!(material.reflection > 0 || material.transmission > 0)) return;
+        if (!(size.least_height / extent_ < smallest_.share) || has_planes(number)) return;
+        add(size.least_height, [&] { return name(solid) + ": the least height of its triangles"; });
+    }
+
+    /// Whether a mesh is given by planes in single precision, so that rays leave no triangles.
+    bool has_planes(uint32_t number) const {
+        const double unit = RealTraits<float>::unit * extent_;
+        return convex_mesh(source_, number, normalization_, unit).has_value();
     }
 
     /// Adds a distance unless it is a contact.

@@ -56,10 +56,12 @@ struct SolidObject {
 };
 
 /// A mesh given in the scene file. Closed meshes become solids with an inside, others are sheets seen from both sides.
+/// Convex solids with flat faces are given by planes, unless they keep their triangles.
 struct TrianglesObject {
     std::vector<glm::dvec3> vertices;
     std::vector<std::array<uint32_t, 3>> triangles;
     std::vector<glm::dvec2> uvs;  // one per vertex, or none
+    bool keep_triangles = false;
 };
 
 struct MeshObject {
@@ -67,6 +69,7 @@ struct MeshObject {
     glm::dvec3 center{0};  // translation, applied last
     double scale = 1;
     glm::dvec3 rotation{0};
+    bool keep_triangles = false;
 };
 
 struct ObjectDescription {

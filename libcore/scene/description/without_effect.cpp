@@ -23,6 +23,12 @@ void take_from_light(Light& light, uint32_t effect) {
     if (effect == effect_visible_lights || effect == effect_light_falloff) light.falloff = false;
 }
 
+/// Makes a mesh triangles, if the shape is one.
+void keep_triangles(ObjectDescription& object) {
+    if (auto* mesh = std::get_if<MeshObject>(&object.shape)) mesh->keep_triangles = true;
+    if (auto* list = std::get_if<TrianglesObject>(&object.shape)) list->keep_triangles = true;
+}
+
 /// Makes the lights give no light, so that they are only visible.
 void put_out(EdgeLights& lights) {
     lights.glow = lights.glow.value_or(lights.color);
@@ -36,11 +42,13 @@ std::optional<SceneDescription> without_effect(const SceneDescription& scene, ui
     SceneDescription less = scene;
     for (MaterialDescription& material : less.materials) take_from(material, effect);
     for (LightDescription& light : less.lights) take_from_light(light, effect);
-    for (ObjectDescription& object : less.objects)
+    for (ObjectDescription& object : less.objects) {
+        if (effect == effect_solids) keep_triangles(object);
         if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
             take_from_light(solid->edge_lights, effect);
             if (effect == effect_lights_on_faces) put_out(solid->edge_lights);
         }
+    }
     std::erase_if(less.objects, [&](const ObjectDescription& object) {
         const bool convex = std::holds_alternative<SolidObject>(object.shape);
         return effect == (convex ? effect_solids : effect_triangles);

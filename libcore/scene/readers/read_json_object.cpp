@@ -107,6 +107,7 @@ void read_triangles(const JsonValue& value, const ObjectContext& context, Object
     JsonObject keys(value, triangles_keys);
     read_common(keys, context, object);
     TrianglesObject list = read_triangle_list(keys.at("triangles"));
+    keys.read("keep_triangles", list.keep_triangles);
     keys.finish();
     if (list.uvs.empty()) refuse_texture(keys, context, object, "the triangles have no 'uvs'");
     object.shape = std::move(list);
@@ -121,6 +122,7 @@ void read_mesh(const JsonValue& value, const ObjectContext& context, ObjectDescr
     keys.read("center", mesh.center);
     keys.read("scale", mesh.scale);
     keys.read("rotate", mesh.rotation);
+    keys.read("keep_triangles", mesh.keep_triangles);
     keys.finish();
     object.shape = mesh;
 }

@@ -131,7 +131,12 @@ constexpr Key edge_lights_list[] = {
 
 constexpr Key quad_list[] = {text("name"), other("quad", required), text("material", required)};
 
-constexpr Key triangles_list[] = {text("name"), other("triangles", required), text("material", required)};
+constexpr Key triangles_list[] = {
+    text("name"),
+    other("triangles", required),
+    boolean("keep_triangles", "false"),
+    text("material", required),
+};
 
 constexpr Key triangle_list_list[] = {other("vertices", required), other("indices", required), other("uvs")};
 
@@ -141,6 +146,7 @@ constexpr Key mesh_list[] = {
     point("center", anywhere, "[0, 0, 0]"),
     number("scale", size, "1"),
     point("rotate", angle, "[0, 0, 0]"),
+    boolean("keep_triangles", "false"),
     text("material"),
 };
 
