@@ -58,6 +58,7 @@ class Compiler {
         scene_.center = normalization_.center;
         scene_.scale = normalization_.scale;
         scene_.extent = rounded_up<Real>(normalization_.extent);
+        scene_.warnings = std::move(source_.warnings);
         scene_.solids.resize(source_.solids.size());
         scene_.hulls.resize(source_.solids.size());
         boxes_.resize(source_.solids.size());
