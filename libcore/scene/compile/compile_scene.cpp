@@ -267,8 +267,8 @@ class Compiler {
         const double index = source_.materials[solid.material].index;
         const dvec3 absorption = source_.materials[solid.material].absorption;
         if (!topology.closed && (index != 1 || largest_component(absorption) > 0))
-            scene_.warnings.push_back(place + "is not closed (" + std::to_string(topology.open_edges) +
-                                      " open edges): its index and absorption have no effect");
+            scene_.warnings.push_back(place + "is not closed (" + topology.why_not_closed() +
+                                      "): its index and absorption have no effect");
     }
 
     void compile_shading() {
