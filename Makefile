@@ -22,10 +22,10 @@ no_kernels = $(if $(findstring CISTULA_WITH_CUDA,$(CMAKE_ARGS))$(filter yes,$(CU
     echo -DCISTULA_WITH_CUDA=OFF))
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-quick test-asan test-report lint check-all bench gpu-check golden docs install cuda-toolkit clean
+.PHONY: help render build test test-quick test-asan test-report fuzz lint check-all bench gpu-check golden docs install cuda-toolkit clean
 
 help: ## this list
-	@echo 'make TARGET [PRESET=release|release-all|debug|asan|clang] [SETUP=no] [CMAKE_ARGS=...]'
+	@echo 'make TARGET [PRESET=release|release-all|debug|asan|fuzz|clang] [SETUP=no] [CMAKE_ARGS=...]'
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
 render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
@@ -54,6 +54,18 @@ test-quick: ## build and run the quick tests alone
 
 test-asan: ## the tests under the address and undefined-behaviour sanitizers
 	@$(MAKE) --no-print-directory test PRESET=asan
+
+# of `make fuzz`: the target, a source of tests/fuzz, and for how long
+TARGET ?= ply
+SECONDS ?= 60
+
+fuzz: ## search for inputs that break a reader: TARGET=ply|obj SECONDS=60; what it finds and learns into out/fuzz
+	$(call setup,packages.txt tests/lint-packages.txt)
+	$(call configure,fuzz)
+	@cmake --build build/fuzz --target fuzz_$(TARGET)
+	@mkdir -p out/fuzz/$(TARGET)
+	build/fuzz/tests/fuzz/fuzz_$(TARGET) -max_total_time=$(SECONDS) -timeout=5 -rss_limit_mb=2048 -max_len=8192 \
+	    -artifact_prefix=out/fuzz/$(TARGET)- out/fuzz/$(TARGET) tests/fuzz/corpus/$(TARGET)
 
 lint: ## check the format of all sources, and libcore/scene, apps/common and apps/render by clang-tidy
 	$(call setup,packages.txt tests/lint-packages.txt)

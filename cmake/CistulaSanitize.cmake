@@ -5,3 +5,6 @@ if(CISTULA_SANITIZE)
         "$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${CISTULA_SANITIZE};-fno-sanitize-recover=all>")
     add_link_options("-fsanitize=${CISTULA_SANITIZE}")
 endif()
+if(CISTULA_FUZZ)  # what the fuzzer learns from: which branches an input takes
+    add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=fuzzer-no-link>")
+endif()

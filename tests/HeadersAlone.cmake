@@ -21,7 +21,7 @@ cistula_headers_alone(core_headers_alone cpp ${core_headers})
 if(TARGET cistula_scene)
     cistula_headers_alone(scene_headers_alone cpp ${scene_headers})
     target_link_libraries(scene_headers_alone PRIVATE
-        cistula_scene embree TBB::tbb OpenEXR::OpenEXR assimp::assimp fmt::fmt nlohmann_json::nlohmann_json)
+        cistula_scene embree TBB::tbb OpenEXR::OpenEXR fmt::fmt nlohmann_json::nlohmann_json)
 endif()
 if(CISTULA_CUDA)
     cistula_headers_alone(core_headers_alone_cuda cu ${core_headers})

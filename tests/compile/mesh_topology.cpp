@@ -88,18 +88,22 @@ TEST(MeshTopology, BrokenMeshesAreSheets) {
     hole.triangles.pop_back();
     EXPECT_FALSE(find_topology(source_of(hole)).closed);
     EXPECT_EQ(find_topology(source_of(hole)).open_edges, 3u);
+    EXPECT_EQ(find_topology(source_of(hole)).why_not_closed(), "3 open edges");
     TrianglesObject turned = torus(1, 0.3, 12, 8);
     std::swap(turned.triangles[5][0], turned.triangles[5][1]);
     EXPECT_FALSE(find_topology(source_of(turned)).closed);
+    EXPECT_EQ(find_topology(source_of(turned)).why_not_closed(), "3 edges along which neighbors face opposite ways");
     TrianglesObject fin = platonic(1);  // a third triangle on an edge
     fin.vertices.push_back({3, 3, 3});
     fin.triangles.push_back({fin.triangles[0][0], fin.triangles[0][1], 8});
     EXPECT_FALSE(find_topology(source_of(fin)).closed);
+    EXPECT_EQ(find_topology(source_of(fin)).why_not_closed(), "2 open edges and 1 edge of more than two faces");
     TrianglesObject flat = square();  // both sides of a square, cut along different diagonals: without a volume
     flat.triangles.insert(flat.triangles.end(), {{0, 3, 1}, {1, 3, 2}});
     const MeshTopology topology = find_topology(source_of(flat));
     EXPECT_EQ(topology.open_edges, 0u);
     EXPECT_FALSE(topology.closed);
+    EXPECT_EQ(topology.why_not_closed(), "no volume");
 }
 
 TEST(MeshTopology, TwoSolidsInOneMeshMayTouchAtAVertex) {

@@ -39,6 +39,14 @@ MeshObject mesh_of(const std::string& file) {
     return object;
 }
 
+/// Reads a mesh that no warning is due for.
+std::vector<MeshPart> read_whole(const MeshObject& object, const std::string& place) {
+    std::vector<std::string> warnings;
+    std::vector<MeshPart> parts = read_mesh(object, place, warnings);
+    EXPECT_EQ(warnings, std::vector<std::string>());
+    return parts;
+}
+
 TEST(MeshFile, PlyTrianglesArePlaced) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("t.ply"), tetrahedron_ply);
@@ -46,7 +54,7 @@ TEST(MeshFile, PlyTrianglesArePlaced) {
     object.scale = 2;
     object.rotation = {0, 0, 90};
     object.center = {10, 20, 30};
-    const auto parts = read_mesh(object, "/objects/0");
+    const auto parts = read_whole(object, "/objects/0");
     ASSERT_EQ(parts.size(), 1u);
     EXPECT_FALSE(parts[0].material);
     EXPECT_EQ(parts[0].mesh.vertices.size(), 4u);
@@ -69,7 +77,7 @@ TEST(MeshFile, BinaryPlyToo) {
     bytes.push_back(3);
     bytes.append(reinterpret_cast<const char*>(indices), sizeof(indices));
     put_bytes(scratch.file("t.ply"), bytes);
-    const auto parts = read_mesh(mesh_of(scratch.file("t.ply")), "here");
+    const auto parts = read_whole(mesh_of(scratch.file("t.ply")), "here");
     ASSERT_EQ(parts.size(), 1u);
     ASSERT_EQ(parts[0].mesh.triangles.size(), 1u);
     EXPECT_EQ(parts[0].mesh.vertices[parts[0].mesh.triangles[0][1]], dvec3(1.5, 0, 0));
@@ -95,7 +103,7 @@ TEST(MeshFile, VerticesThatAreNearStayApart) {
     put_bytes(scratch.file("t.ply"), ply);
     put_bytes(scratch.file("t.obj"), obj);
     for (const char* name : {"t.ply", "t.obj"}) {
-        const auto parts = read_mesh(mesh_of(scratch.file(name)), "/objects/0");
+        const auto parts = read_whole(mesh_of(scratch.file(name)), "/objects/0");
         ASSERT_EQ(parts.size(), 1u);
         const MeshTopology topology = find_topology(parts[0].mesh);
         EXPECT_TRUE(topology.closed) << name;
@@ -107,7 +115,7 @@ TEST(MeshFile, ObjGroupsBringTheirMaterials) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("cube.obj"), cube_obj);
     put_bytes(scratch.file("cube.mtl"), cube_mtl);
-    const auto parts = read_mesh(mesh_of(scratch.file("cube.obj")), "here");
+    const auto parts = read_whole(mesh_of(scratch.file("cube.obj")), "here");
     ASSERT_EQ(parts.size(), 2u);
     for (const auto& part : parts) EXPECT_EQ(part.mesh.triangles.size(), 6u);
     const auto& red = parts[0].material->name == "red" ? *parts[0].material : *parts[1].material;
@@ -134,7 +142,7 @@ TEST(MeshFile, TrIsTransmission) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("cube.obj"), cube_obj);
     put_bytes(scratch.file("cube.mtl"), "newmtl red\nTr 0.25\nillum 1\nKs 1 1 1\nnewmtl glass\nKd 1 1 1\nillum 0\n");
-    for (const auto& part : read_mesh(mesh_of(scratch.file("cube.obj")), "here")) {
+    for (const auto& part : read_whole(mesh_of(scratch.file("cube.obj")), "here")) {
         const bool red = part.material->name == "red";
         EXPECT_EQ(part.material->transmission, red ? 0.25 : 0);
         EXPECT_EQ(part.material->specular, 0);
@@ -241,12 +249,19 @@ TEST(MeshFile, ErrorsNameThePlaceAndTheFile) {
     };
     refused("missing.ply", "", "there is no such file");
     refused("t.stl", "solid", "must be a .ply or an .obj file");
-    refused("broken.ply", "ply\nformat ascii 1.0\nnonsense\n", "line 3 of its header is not PLY");
-    refused("other.ply", "solid\n", "line 1 of its header is not PLY");
-    refused("short.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "no end_header");
-    refused("cut.ply", tetrahedron_ply.substr(0, tetrahedron_ply.find("end_header") + 15), "has no faces");
-    refused("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "");
-    refused("lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n", "");
+    refused("broken.ply", "ply\nformat ascii 1.0\nnonsense\n",
+            "broken.ply:3: 'nonsense' is not PLY; a header has format");
+    refused("other.ply", "solid\n", "other.ply:1: is not PLY");
+    refused("short.ply", "ply\nformat ascii 1.0\nelement vertex 3\n",
+            "short.ply:3: the file ends in its header, before an end_header line");
+    refused("cut.ply", tetrahedron_ply.substr(0, tetrahedron_ply.find("end_header") + 15),
+            "cut.ply:3: 4 of these take at least 6 bytes each");
+    refused("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "has no faces");
+    refused("lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n", "has no faces");
+    refused(
+        "points.ply",
+        tetrahedron_ply.substr(0, tetrahedron_ply.find("element face")) + "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n",
+        "has no faces");
     put_bytes(scratch.file("t.ply"), tetrahedron_ply);
     expect_error([&] { compile_scene<float>(scene_with(scratch.file("t.ply"), -1)); }, ExitCode::usage,
                  "/objects/0: the mesh brings no material of its own");

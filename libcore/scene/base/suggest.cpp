@@ -60,4 +60,9 @@ std::string one_line(std::string_view text) {
     return line;
 }
 
+std::string quoted(std::string_view word) {
+    constexpr size_t longest = 40;
+    return fmt::format("'{}{}'", one_line(word.substr(0, longest)), word.size() > longest ? "..." : "");
+}
+
 }  // namespace cistula

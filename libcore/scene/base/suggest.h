@@ -19,4 +19,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string_view
 /// The text as a single line, with control characters escaped; for names from files in messages.
 std::string one_line(std::string_view text);
 
+/// A word from a file in single quotes, for messages: on one line, cut after 40 bytes.
+std::string quoted(std::string_view word);
+
 }  // namespace cistula

@@ -54,6 +54,7 @@ class Compiler {
         scene_.center = normalization_.center;
         scene_.scale = normalization_.scale;
         scene_.extent = rounded_up<Real>(normalization_.extent);
+        scene_.warnings = std::move(source_.warnings);
         scene_.solids.resize(source_.solids.size());
         scene_.hulls.resize(source_.solids.size());
         boxes_.resize(source_.solids.size());
@@ -253,8 +254,8 @@ class Compiler {
         const double index = source_.materials[solid.material].index;
         const dvec3 absorption = source_.materials[solid.material].absorption;
         if (!topology.closed && (index != 1 || largest_component(absorption) > 0))
-            scene_.warnings.push_back(place + "is not closed (" + std::to_string(topology.open_edges) +
-                                      " open edges): its index and absorption have no effect");
+            scene_.warnings.push_back(place + "is not closed (" + topology.why_not_closed() +
+                                      "): its index and absorption have no effect");
     }
 
     void compile_shading() {

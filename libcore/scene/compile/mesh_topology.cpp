@@ -97,7 +97,7 @@ struct HalfEdge {
     uint32_t high_vertex, number;
 };
 
-/// Links the half-edges of every edge in a ring and counts the edges that are not two half-edges in opposite
+/// Links the half-edges of every edge in a ring and counts, by kind, the edges that are not two half-edges in opposite
 /// directions.
 void link_edges(const MeshSource& mesh, const std::vector<uint32_t>& welded, MeshTopology& topology) {
     const uint32_t count = topology.count;
@@ -117,9 +117,9 @@ void link_edges(const MeshSource& mesh, const std::vector<uint32_t>& welded, Mes
     }
 
     topology.next_along_edge.assign(3 * static_cast<size_t>(count), 0);
-    std::atomic<uint32_t> open{0};
+    std::atomic<uint32_t> open{0}, crowded{0}, turned{0};
     tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertices.size(), 4096), [&](const auto& range) {
-        uint32_t open_here = 0;
+        uint32_t open_here = 0, crowded_here = 0, turned_here = 0;
         for (size_t v = range.begin(); v != range.end(); ++v) {
             HalfEdge* const bucket_end = edges.data() + first[v + 1];
             HalfEdge* group = edges.data() + first[v];
@@ -131,14 +131,20 @@ void link_edges(const MeshSource& mesh, const std::vector<uint32_t>& welded, Mes
                 while (group_end != bucket_end && group_end->high_vertex == group->high_vertex) ++group_end;
                 for (HalfEdge* e = group; e != group_end; ++e)
                     topology.next_along_edge[e->number] = (e + 1 == group_end ? group : e + 1)->number;
-                const bool two = group_end - group == 2;
-                if (!two || (vertex(group[0].number) == v) == (vertex(group[1].number) == v)) ++open_here;
+                const auto triangles = group_end - group;
+                if (triangles == 1) ++open_here;
+                if (triangles > 2) ++crowded_here;
+                if (triangles == 2 && (vertex(group[0].number) == v) == (vertex(group[1].number) == v)) ++turned_here;
                 group = group_end;
             }
         }
         open += open_here;
+        crowded += crowded_here;
+        turned += turned_here;
     });
     topology.open_edges = open;
+    topology.crowded_edges = crowded;
+    topology.turned_edges = turned;
 }
 
 /// Six times the signed volume about the first vertex; 0 if its sign could be due to rounding.
@@ -170,20 +176,33 @@ std::string MeshTopology::left_out() const {
     return text;
 }
 
+std::string MeshTopology::why_not_closed() const {
+    std::string text;
+    const auto add = [&text](uint32_t number, const char* before, const char* after) {
+        if (number == 0) return;
+        if (!text.empty()) text += " and ";
+        text += std::to_string(number) + before + (number == 1 ? "edge" : "edges") + after;
+    };
+    add(open_edges, " open ", "");
+    add(crowded_edges, " ", " of more than two faces");
+    add(turned_edges, " ", " along which neighbors face opposite ways");
+    return text.empty() ? "no volume" : text;
+}
+
 MeshTopology find_topology(const MeshSource& mesh) {
     MeshTopology topology;
     const std::vector<uint32_t> welded = weld(mesh.vertices);
     const std::vector<uint8_t> doubled = doubled_triangles(mesh, welded);
     keep_triangles(mesh, welded, doubled, true, topology);
     link_edges(mesh, welded, topology);
-    if (topology.open_edges > 0 && topology.zero_area > 0) {
+    if (!topology.has_closed_edges() && topology.zero_area > 0) {
         // Zero-area triangles may close a mesh along edges that their neighbors subdivide.
         MeshTopology sealed;
         keep_triangles(mesh, welded, doubled, false, sealed);
         link_edges(mesh, welded, sealed);
-        if (sealed.open_edges == 0) topology = std::move(sealed);
+        if (sealed.has_closed_edges()) topology = std::move(sealed);
     }
-    if (topology.count > 0 && topology.open_edges == 0) {
+    if (topology.count > 0 && topology.has_closed_edges()) {
         const double volume = signed_volume(mesh, topology);
         topology.closed = volume != 0;
         topology.flipped = volume < 0;

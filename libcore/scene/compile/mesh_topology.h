@@ -25,12 +25,16 @@ struct MeshTopology {
     std::vector<uint32_t> next_along_edge;
 
     uint32_t repeated_vertex = 0, not_finite = 0, zero_area = 0;  // triangles left out
-    uint32_t doubled = 0;     // triangles left out: an earlier one has the same corners, in either winding
-    uint32_t open_edges = 0;  // edges that prevent it from being closed
+    uint32_t doubled = 0;  // triangles left out: an earlier one has the same corners, in either winding
+    // Edges that prevent it from being closed: of one triangle, of more than two, of two that run through them alike.
+    uint32_t open_edges = 0, crowded_edges = 0, turned_edges = 0;
 
+    bool has_closed_edges() const { return open_edges == 0 && crowded_edges == 0 && turned_edges == 0; }
     uint32_t source_triangle(uint32_t triangle) const { return all_kept ? triangle : kept[triangle]; }
     /// A summary: "left out 3 triangles with a repeated vertex and 1 of zero area"; empty if there are none.
     std::string left_out() const;
+    /// Why it is not closed: "3 open edges and 1 edge of more than two faces".
+    std::string why_not_closed() const;
 };
 
 /// The topology of a mesh. Triangles with a repeated vertex or a coordinate that is not finite are left out; of several

@@ -101,7 +101,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
     const SceneDescription& scene = *source.description;
     if (!is_finite(mesh.center) || !is_finite(mesh.rotation) || !is_finite(mesh.scale) || mesh.scale == 0)
         throw scene_error(scene, object.place, "the center and rotation must be finite, the scale finite and not 0");
-    std::vector<MeshPart> parts = read_mesh(mesh, scene.source + ": " + object.place);
+    std::vector<MeshPart> parts = read_mesh(mesh, scene.source + ": " + object.place, source.warnings);
     if (object.material >= 0 && parts.size() > 1) join_closed(parts);
     for (MeshPart& part : parts) {
         SourceSolid solid;

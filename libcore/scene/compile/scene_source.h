@@ -24,6 +24,7 @@ struct SceneSource {
     const SceneDescription* description = nullptr;
     std::vector<MaterialDescription> materials;  // those of the description, then those from mesh files
     std::vector<SourceSolid> solids;             // in file order
+    std::vector<std::string> warnings;           // of mesh files
 };
 
 /// Checks every number that affects the compiled scene, and reads the meshes. Throws Error with the place.

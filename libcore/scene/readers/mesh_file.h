@@ -1,4 +1,4 @@
-// PLY and OBJ files, read with Assimp; docs/meshes.md says which of their contents are used.
+// Mesh files as triangles; docs/meshes.md says which of their contents are used.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,7 @@
 
 #include "scene/description/description.h"
 #include "scene/description/mesh_source.h"
+#include "scene/readers/polygon_mesh.h"
 
 namespace cistula {
 
@@ -17,8 +18,12 @@ struct MeshPart {
     std::optional<MaterialDescription> material;  // OBJ with a material library
 };
 
-/// Reads a mesh file; its parts in file order, rotated, scaled and translated. `place` opens the messages. Throws
+/// The triangles of what a file says, in file order, rotated, scaled and translated; v counts from the top. Polygons
+/// that are there twice and parts without triangles are left out.
+std::vector<MeshPart> parts_of(std::vector<PolygonMesh> meshes, const MeshObject& object);
+
+/// Reads a mesh file; its parts in file order, at least one. `place` opens the messages; adds warnings. Throws
 /// Error(ExitCode::file).
-std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place);
+std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place, std::vector<std::string>& warnings);
 
 }  // namespace cistula

@@ -1,29 +1,23 @@
 #include "scene/readers/text_tokens.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "scene/base/decimal.h"
 #include "scene/base/error.h"
 #include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {
 
-std::string quoted(std::string_view word) {
-    constexpr size_t longest = 40;
-    return fmt::format("'{}{}'", word.substr(0, longest), word.size() > longest ? "..." : "");
-}
-
-std::optional<double> decimal(std::string_view word) {
-    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
-    return value + 0.0;  // -0 becomes 0
+/// A finite decimal number; -0 becomes 0.
+std::optional<double> finite_decimal(std::string_view word) {
+    const std::optional<double> value = decimal<double>(word);
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    return *value + 0.0;
 }
 
 }  // namespace
@@ -52,7 +46,7 @@ std::string_view TextTokens::word(const std::string& what) {
 double TextTokens::number(const std::string& what, const Range& range) {
     const std::string expected = fmt::format("{}, a number {}{}", what, range.above ? "" : "from ", range_text(range));
     const std::string_view found = word(expected);
-    const std::optional<double> value = decimal(found);
+    const std::optional<double> value = finite_decimal(found);
     if (!value || !range.contains(*value)) fail(line(), fmt::format("expected {}, found {}", expected, quoted(found)));
     return *value;
 }
@@ -60,7 +54,7 @@ double TextTokens::number(const std::string& what, const Range& range) {
 int TextTokens::whole(const std::string& what, const Range& range) {
     const std::string expected = fmt::format("{}, a whole number from {}", what, range_text(range));
     const std::string_view found = word(expected);
-    const std::optional<double> value = decimal(found);
+    const std::optional<double> value = finite_decimal(found);
     if (!value || !range.contains(*value) || *value != std::floor(*value))
         fail(line(), fmt::format("expected {}, found {}", expected, quoted(found)));
     return static_cast<int>(*value);

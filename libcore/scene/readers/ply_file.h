@@ -1,0 +1,15 @@
+// PLY files: text and binary, polygons and triangle strips. docs/meshes.md says which of their contents are used.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "scene/readers/polygon_mesh.h"
+
+namespace cistula {
+
+/// The mesh in a PLY file's bytes, with all of its vertices in file order. Throws Error(file): `label`, which names the
+/// file, then the line or the byte, what is wrong and what would be right.
+PolygonMesh read_ply(std::string_view bytes, const std::string& label);
+
+}  // namespace cistula

@@ -1,0 +1,28 @@
+// OBJ files and, behind a line "---", the library that they name, to their triangles and topology.
+#include <cstdint>
+
+#include "mesh_checks.h"
+#include "scene/readers/mesh_text.h"
+#include "scene/readers/obj_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    using namespace cistula;
+    const std::string input(reinterpret_cast<const char*>(data), size);
+    const std::string separator = "\n---\n";
+    const size_t end = std::min(input.find(separator), size);
+    ObjSurroundings around;
+    around.has = [](const std::string& name) { return name.ends_with(".mtl"); };
+    around.bytes = [&](const std::string&) {
+        return end == size ? std::string() : input.substr(end + separator.size());
+    };
+    around.label = [](const std::string&) { return std::string("a.mtl"); };
+    try {
+        std::vector<std::string> warnings;
+        fuzz::check_meshes(read_obj(utf8_of(input.substr(0, end)), "a.obj", around, warnings));
+        for (const std::string& warning : warnings)
+            for (const char c : warning) fuzz::require(static_cast<unsigned char>(c) >= 0x20);
+    } catch (const Error& error) {
+        fuzz::check_error(error);
+    }
+    return 0;
+}

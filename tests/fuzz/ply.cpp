@@ -1,0 +1,19 @@
+// PLY files, to their triangles and topology.
+#include <cstdint>
+
+#include "mesh_checks.h"
+#include "scene/readers/mesh_text.h"
+#include "scene/readers/ply_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    using namespace cistula;
+    try {
+        const std::string bytes = utf8_of(std::string(reinterpret_cast<const char*>(data), size));
+        std::vector<PolygonMesh> meshes;
+        meshes.push_back(read_ply(bytes, "a.ply"));
+        fuzz::check_meshes(std::move(meshes));
+    } catch (const Error& error) {
+        fuzz::check_error(error);
+    }
+    return 0;
+}

@@ -1,0 +1,227 @@
+#include "scene/readers/obj_file.h"
+
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "scene/compile/compiled_scene.h"
+#include "scene/readers/mesh_file.h"
+#include "testing/support/scene_samples.h"
+#include "testing/support/scratch_directory.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+using samples::expect_error;
+
+const std::string square = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\n";
+
+/// An OBJ among other files.
+struct ObjFolder {
+    std::map<std::string, std::string> files;
+    std::vector<std::string> warnings;
+
+    std::vector<PolygonMesh> read(const std::string& obj) {
+        ObjSurroundings around;
+        around.has = [this](const std::string& name) { return files.count(name) > 0; };
+        around.bytes = [this](const std::string& name) { return files.at(name); };
+        around.label = [](const std::string& name) { return name; };
+        around.default_library = "a.mtl";
+        warnings.clear();
+        return read_obj(obj, "a.obj", around, warnings);
+    }
+    /// The material of the first face, from this library.
+    MaterialDescription material(const std::string& mtl) {
+        files["m.mtl"] = mtl;
+        return read("mtllib m.mtl\n" + square + "usemtl a\nf 1 2 3\n").at(0).material.value();
+    }
+};
+
+std::vector<PolygonMesh> read_quietly(const std::string& obj) {
+    ObjFolder folder;
+    auto meshes = folder.read(obj);
+    EXPECT_EQ(folder.warnings, std::vector<std::string>()) << obj;
+    return meshes;
+}
+
+void expect_refused(const std::string& obj, const std::string& text) {
+    SCOPED_TRACE(obj);
+    expect_error([&] { ObjFolder().read(obj); }, ExitCode::file, text);
+}
+
+/// Positions of the corners of all faces.
+std::vector<dvec3> corners(const std::vector<PolygonMesh>& meshes) {
+    std::vector<dvec3> all;
+    for (const PolygonMesh& mesh : meshes)
+        for (const uint32_t corner : mesh.corners) all.push_back(mesh.vertices[corner]);
+    return all;
+}
+
+const std::vector<dvec3> whole_square = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+
+TEST(ObjFile, NumbersAreTheNearestDoubles) {
+    const auto meshes =
+        read_quietly("v .5 5. 1e3\nv +.25 -2.E-1 0.1\nv 9007199254740993 5e-324 1.7976931348623157e308\nf 1 2 3\n");
+    EXPECT_EQ(
+        corners(meshes),
+        (std::vector<dvec3>{{0.5, 5, 1000}, {0.25, -0.2, 0.1}, {9007199254740992.0, 5e-324, 1.7976931348623157e308}}));
+    EXPECT_TRUE(std::isnan(corners(read_quietly("v nan 0 0\nf 1 1 1\n"))[0].x));
+    expect_refused("v 1,5 0 0\n", "a.obj:1: expected a number, found '1,5'");
+    expect_refused(square + "v 1 0\n", "a.obj:5: v needs more numbers than 2");
+    expect_refused("v 1e400 0 0\n", "a.obj:1: expected a number, found '1e400'");
+}
+
+TEST(ObjFile, WeightsAndColorsOfVerticesAreNoPositions) {
+    EXPECT_EQ(corners(read_quietly("v 0 0 0 2\nv 2 0 0 0.5\nv 2 2 0 1 0 0\nv 0 2 0 1 1 0 0\nf 1 2 3 4\n")),
+              whole_square);
+    expect_refused("v 0 0 0 x\n", "a.obj:1: expected a number, found 'x'");
+}
+
+TEST(ObjFile, EncodingsLineEndsIndentationAndContinuation) {
+    const std::string text =
+        "# caf\xc3\xa9 \\\n" + square + "g \xf0\x9f\x94\xba\xc3\xa9\n  \tf 1 2 \\\n  3 4 # the square \\\n";
+    std::string little = "\xff\xfe", big = "\xfe\xff";
+    for (const char16_t c : std::u16string(u"# caf\u00e9 \\\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\ng \U0001f53a\u00e9\n  "
+                                           u"\tf 1 2 \\\n  3 4 # the square \\\n")) {
+        const char low = static_cast<char>(c & 0xff), high = static_cast<char>(c >> 8);
+        little += {low, high};
+        big += {high, low};
+    }
+    std::string returns = text, both;
+    for (char& c : returns) c = c == '\n' ? '\r' : c;
+    for (const char c : text) both += c == '\n' ? "\r\n" : std::string(1, c);
+    for (const std::string& bytes :
+         {text, "\xef\xbb\xbf" + text, little, big, little.substr(2), big.substr(2), returns, both}) {
+        // As read_mesh does.
+        const ScratchDirectory scratch;
+        put_bytes(scratch.file("t.obj"), bytes);
+        MeshObject object;
+        object.file = scratch.file("t.obj");
+        std::vector<std::string> warnings;
+        const auto parts = read_mesh(object, "here", warnings);
+        ASSERT_EQ(parts.size(), 1u);
+        EXPECT_EQ(parts[0].name, "\xf0\x9f\x94\xba\xc3\xa9");
+        EXPECT_EQ(parts[0].mesh.triangles.size(), 2u);
+        EXPECT_TRUE(warnings.empty());
+    }
+}
+
+TEST(ObjFile, IndicesCountForwardAndBackward) {
+    EXPECT_EQ(corners(read_quietly(square + "f -4 -3 -2 -1\nv 9 9 9\n")), whole_square);
+    EXPECT_EQ(corners(read_quietly("f 1 2 3 4\n" + square)), whole_square) << "faces may come first";
+    EXPECT_EQ(corners(read_quietly(square + "vn 0 0 1\nf 1//1 2//-1 3//1 4//1\n")), whole_square);
+    expect_refused(square + "f 1 2 5\n", "a.obj:5: a face names vertex 5, but there are 4");
+    expect_refused(square + "f 1 2 99999999999\n", "a.obj:5: a face names vertex 99999999999, but there are 4");
+    expect_refused(square + "f 1 2 4294967297\n", "a.obj:5: a face names vertex 4294967297, but there are 4");
+    expect_refused(square + "f 1 2 -5\n", "a.obj:5: a face names vertex -5, but only 4 came before");
+    expect_refused(square + "f 1 2 0\n",
+                   "a.obj:5: expected the number of a vertex, from 1 or from -1 backward, found '0'");
+    expect_refused(square + "f 1 2 3.0\n", "a.obj:5: expected the number of a vertex");
+    expect_refused(square + "f 1/1 2/1 3/1\n", "a.obj:5: a face names texture coordinate 1, but there are 0");
+    expect_refused(square + "f 1//x 2 3\n", "a.obj:5: expected the number of a normal, found 'x'");
+    expect_refused(square + "f 1 2\n", "a.obj:5: a face needs at least 3 corners, found 2");
+}
+
+TEST(ObjFile, TextureCoordinatesBelongToCorners) {
+    const auto meshes = read_quietly(square + "vt 0.5\nvt 1 0.25\nvt 0 1 0\nf 1/1 2/2/7 3/-1\nf 1 3 4\n");
+    EXPECT_EQ(meshes.at(0).uvs, (std::vector<dvec2>{{0.5, 0}, {1, 0.25}, {0, 1}, {0, 0}, {0, 0}, {0, 0}}));
+    EXPECT_TRUE(read_quietly(square + "vt 0 0\nf 1 2 3\n").at(0).uvs.empty());
+    expect_refused("vt nan 0\n", "a.obj:1: a texture coordinate is not finite");
+}
+
+TEST(ObjFile, ObjectsGroupsAndMaterialsBeginParts) {
+    ObjFolder folder;
+    folder.files["m.mtl"] = "newmtl red\nKd 1 0 0\nnewmtl deep blue\nKd 0 0 1\n";
+    const auto meshes = folder.read("mtllib m.mtl\n" + square +
+                                    "f 1 2 3\no box\ng left side\nusemtl red\nf 1 2 3\nf 1 3 4\ng left side\n" +
+                                    "usemtl deep blue\nf 1 2 4\ng top\nf 2 3 4\nusemtl red\nf 1 2 4\n");
+    std::vector<std::string> found;
+    for (const PolygonMesh& mesh : meshes)
+        found.push_back(mesh.name + ":" + (mesh.material ? mesh.material->name : "-") + ":" +
+                        std::to_string(mesh.ends.size()));
+    EXPECT_EQ(found, (std::vector<std::string>{":-:1", "left side:red:2", "left side:deep blue:1", "top:deep blue:1",
+                                               "red:red:1"}));
+    EXPECT_EQ(folder.warnings, std::vector<std::string>());
+}
+
+TEST(ObjFile, WhatHasNoMeaningHereIsListedOnce) {
+    ObjFolder folder;
+    folder.files["m.mtl"] =
+        "newmtl a\nKa 1 1 1\nKe 0 0 0\nTf 1 1 1\nPr 0.4\nPm 0\naniso 0\nPr 1\nKd spectral x.rfl\nd -halo 0.5\nmap_Kd "
+        "-s 2 2 2 -clamp on -new 7 w.png\n";
+    folder.files["w.png"];
+    const auto meshes = folder.read("mtllib m.mtl\ncstype bezier\nvp 1\np 1\nl 1 2\ns off\n" + square +
+                                    "usemtl a\nf 1 2 3\n\x01\x02 1\n");
+    EXPECT_EQ(folder.warnings,
+              (std::vector<std::string>{"a.obj: ignored what has no meaning here: 'cstype', '\\x01\\x02', 'Pr', 'Pm', "
+                                        "'aniso', 'Kd spectral', '-halo', 'map_Kd', '-s', '-clamp', '-new'"}));
+    EXPECT_EQ(meshes[0].material->transmission, 0.5);
+    std::string keys;
+    for (int i = 0; i < 1000; ++i) keys += "key" + std::to_string(i) + std::string(1000, 'x') + "\n";
+    folder.read(keys + square + "f 1 2 3\n");
+    ASSERT_EQ(folder.warnings.size(), 1u);
+    EXPECT_LT(folder.warnings[0].size(), 1500u);
+}
+
+TEST(ObjFile, MissingFilesAndMaterialsAreNamed) {
+    ObjFolder folder;
+    const std::string faces = square + "usemtl a\nf 1 2 3\n";
+    auto meshes = folder.read("mtllib x.mtl my own.mtl\n" + faces);
+    EXPECT_EQ(folder.warnings,
+              (std::vector<std::string>{"a.obj: there are no such material libraries: 'x.mtl', 'my', 'own.mtl'",
+                                        "a.obj: no library has these materials: 'a'"}));
+    EXPECT_EQ(meshes.at(0).material.value().color, dvec3(0.6));
+    folder.files["a.mtl"] = "newmtl a\nKd .5 .5 .5\n";
+    meshes = folder.read("mtllib x.mtl\n" + faces);
+    EXPECT_EQ(folder.warnings, (std::vector<std::string>{"a.obj: there are no such material libraries: 'x.mtl'"}));
+    EXPECT_EQ(meshes.at(0).material.value().color, dvec3(0.5)) << "from the library of the file's own name";
+    folder.files["my own.mtl"] =
+        "newmtl a\nmap_Kd no such.png\nmap_bump -bm 0.5 no such.png\nmap_d -o 1 2 here.png\nmap_aat on\n";
+    folder.files["here.png"];
+    folder.read("mtllib my own.mtl\n" + faces);
+    ASSERT_EQ(folder.warnings.size(), 2u);
+    EXPECT_EQ(folder.warnings[1], "a.obj: there are no files of these maps: 'no such.png'");
+    folder.files["sub/b.mtl"] = "newmtl a\nmap_Kd here.png\n";
+    folder.read("mtllib sub/b.mtl\n" + faces);
+    EXPECT_EQ(folder.warnings.back(), "a.obj: there are no files of these maps: 'here.png'")
+        << "maps lie beside the library";
+}
+
+TEST(ObjFile, MaterialsOfLibraries) {
+    ObjFolder folder;
+    for (const char* mtl : {"newmtl a\nd 0.25\nTr 0.25\n", "newmtl a\nTr 0.25\nd 0.25\n"})
+        EXPECT_EQ(folder.material(mtl).transmission, 0.75) << "d counts";
+    EXPECT_EQ(folder.material("\xef\xbb\xbf  newmtl a\n\tKd .3 \\\n .5 1e-1").color, dvec3(0.3, 0.5, 0.1));
+    EXPECT_EQ(folder.material("newmtl a\nKd 0.5\n").color, dvec3(0.5));
+    EXPECT_EQ(folder.material("newmtl a\nKd 1 0 0\nnewmtl b\nNs 5\nnewmtl a\nNs 7\n").color, dvec3(1, 0, 0));
+    EXPECT_EQ(folder.material("newmtl a\nNs 7\nKs 1 1 1\n").specular, 0) << "without illum there is no highlight";
+    const auto refused = [&](const std::string& mtl, const std::string& text) {
+        expect_error([&] { folder.material(mtl); }, ExitCode::file, text);
+    };
+    refused("map_Kd x.png\n", "m.mtl:1: 'map_Kd' before the first newmtl");
+    refused("# nothing\nKd 1 1 1\nnewmtl a\n", "m.mtl:2: 'Kd' before the first newmtl");
+    refused("newmtl\n", "m.mtl:1: expected \"newmtl\" and a name");
+    refused("newmtl a\nKd 1 1\n", "m.mtl:2: Kd needs a number of 0 or more");
+    refused("newmtl a\nKd 1 -1 1\n", "m.mtl:2: Kd: expected a number of 0 or more, found '-1'");
+    refused("newmtl a\nNs nan\n", "m.mtl:2: Ns: expected a number of 0 or more, found 'nan'");
+    refused("newmtl a\nd 1.5\n", "m.mtl:2: d: expected a number from 0 to 1, found '1.5'");
+    refused("newmtl a\nillum\n", "m.mtl:2: illum needs a number");
+}
+
+TEST(ObjFile, WarningsReachTheScene) {
+    const ScratchDirectory scratch;
+    put_bytes(scratch.file("a.obj"), "mtllib b.mtl\n" + square + "f 1 2 3 4\nfoo\n");
+    SceneDescription scene = samples::empty_scene();
+    MeshObject object;
+    object.file = scratch.file("a.obj");
+    samples::add_object(scene, object);
+    const std::string start = "test.json: /objects/0: mesh " + scratch.file("a.obj") + ": ";
+    EXPECT_EQ(compile_scene<float>(scene)->warnings,
+              (std::vector<std::string>{start + "ignored what has no meaning here: 'foo'",
+                                        start + "there are no such material libraries: 'b.mtl'"}));
+}
+
+}  // namespace
+}  // namespace cistula
