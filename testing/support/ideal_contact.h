@@ -10,7 +10,6 @@
 
 #include "scene/compile/compiled_scene.h"
 #include "testing/support/scene.h"
-#include "cistula/shading/contact.h"
 
 namespace cistula::test {
 
@@ -272,15 +271,12 @@ class CheckedIntersector {
         }
         const double halvings = -std::log2(double(largest_component(Vec3<Real>(arrives))));
         if (halvings < certain - 0.01 || halvings > possible + 0.01) ++counts_.shaded;
-        looking = true;
         if (target) look_at_target(shadow.ray);
-        looking = false;
         return arrives;
     }
 
     /// Draws points at which one line more is sent from each surface that shadow rays leave; none if empty.
     std::function<dvec3()> target;
-    mutable bool looking = false;
 
   private:
     struct Crossings {
