@@ -270,7 +270,7 @@ bool near_a_plane(const std::vector<SolidPlane>& planes, const dvec3& p, double 
 /// A frustum on its small end, on a floor that slopes by as little as still counts as contact there. Its large end,
 /// 32 times as large, does not follow.
 TYPED_TEST(ConvexMesh, TheSideOppositeAContactStaysWhereItIs) {
-    const double unit = this->unit, slope = 8 * unit / 0x1p-5;
+    const double u = this->unit, slope = 8 * u / 0x1p-5;
     SceneDescription scene;
     TrianglesObject floor, frustum = prism(4, 0x1p-5, 1, 0.5);
     floor.vertices = {{-1, -1, -0.5 - slope}, {1, -1, -0.5 + slope}, {1, 1, -0.5 + slope}, {-1, 1, -0.5 - slope}};
@@ -286,7 +286,7 @@ TYPED_TEST(ConvexMesh, TheSideOppositeAContactStaysWhereItIs) {
     EXPECT_EQ(planes.size(), 6u);
     for (size_t i = 4; i < 8; ++i) {
         const dvec3 in_the_end = frustum.vertices[i] * dvec3(0.5, 0.5, 1);
-        EXPECT_TRUE(near_a_plane(planes, in_the_end, 4 * unit)) << i;
+        EXPECT_TRUE(near_a_plane(planes, in_the_end, 4 * u)) << i;
     }
 }
 

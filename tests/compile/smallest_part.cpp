@@ -97,6 +97,28 @@ TEST(SmallestPart, AClosedMeshHasItsVolumeOverItsArea) {
     expect_part(scene, 1e-3 / (2 + 4e-3), "/objects/1: object 1: its thickness");
 }
 
+/// A box of glass with a vertex more on an edge, near its end, so that two of its triangles are thin.
+TEST(SmallestPart, TrianglesOfAMeshThatIsGivenByPlanesDoNotCount) {
+    SceneDescription scene = floor_scene();
+    TrianglesObject box = triangulated_solid(cube({0, 0, 4}, 0.5));
+    const auto [a, b, c] = box.triangles[0];
+    for (size_t i = 1; i < 12; ++i)
+        for (size_t k = 0; k < 3; ++k) {
+            const std::array<uint32_t, 3> t = box.triangles[i];
+            if (t[k] != b || t[(k + 1) % 3] != a) continue;  // not the triangle across the edge
+            box.triangles[i] = {b, 8, t[(k + 2) % 3]};
+            box.triangles.push_back({8, a, t[(k + 2) % 3]});
+        }
+    box.triangles[0] = {8, b, c};
+    box.triangles.push_back({a, 8, c});
+    ASSERT_EQ(box.triangles.size(), 14u);
+    box.vertices.push_back(box.vertices[a] + (box.vertices[b] - box.vertices[a]) * 1e-3);
+    add_object(scene, box, 2);
+    EXPECT_EQ(smallest_part(scene).what, "/objects/1: object 1: the least height of its triangles");
+    std::get<TrianglesObject>(scene.objects[1].shape).keep_triangles = false;
+    expect_part(scene, 1.0 / 6, "/objects/1: object 1: its thickness");
+}
+
 TEST(SmallestPart, ASheetHasHalfItsWidth) {
     SceneDescription scene = floor_scene();
     add_object(scene, square(0.5, 4));
