@@ -180,7 +180,9 @@ struct Apexes {
           first(apex_heights(mesh)),
           checked(first) {
         const Groups groups = group_triangles(mesh);
-        blocked = check_apexes(mesh, groups, group_tree(mesh, groups), checked);
+        const ApexFaults faults = check_apexes(mesh, groups, group_tree(mesh, groups), checked);
+        blocked = faults.crossed;
+        unchecked = faults.unchecked;
     }
     dvec3 apex(uint32_t t, int side) const {
         const auto c = mesh.triangle(t);
@@ -193,7 +195,7 @@ struct Apexes {
     MeshTopology topology;
     NormalizedMesh mesh;
     ApexHeights first, checked;
-    uint32_t blocked = 0;
+    uint32_t blocked = 0, unchecked = 0;
 };
 
 /// Turns of a closed mesh about a point (van Oosterom and Strackee 1983): 1 inside, 0 outside.

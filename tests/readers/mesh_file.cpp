@@ -163,7 +163,7 @@ double area(const std::vector<dvec3>& vertices, const std::vector<std::array<uin
 TEST(Polygon, ConvexOnesBecomeAFan) {
     const std::vector<dvec3> vertices = {{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {0, 2, 0}};
     std::vector<std::array<uint32_t, 3>> triangles;
-    append_polygon(vertices, {0, 1, 2, 3, 4}, triangles);
+    append_polygon(vertices, std::vector<uint32_t>{0, 1, 2, 3, 4}, triangles);
     const std::vector<std::array<uint32_t, 3>> fan = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
     EXPECT_EQ(triangles, fan);
 }
@@ -194,9 +194,9 @@ TEST(Polygon, EarsOfAnyPolygonFillItsArea) {
 TEST(Polygon, OthersEndToo) {
     const std::vector<dvec3> bow = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
     std::vector<std::array<uint32_t, 3>> triangles;
-    append_polygon(bow, {0, 1, 2, 3, 4}, triangles);
+    append_polygon(bow, std::vector<uint32_t>{0, 1, 2, 3, 4}, triangles);
     EXPECT_EQ(triangles.size(), 3u);
-    append_polygon(bow, {0, 1}, triangles);
+    append_polygon(bow, std::vector<uint32_t>{0, 1}, triangles);
     EXPECT_EQ(triangles.size(), 3u);
 }
 

@@ -226,10 +226,14 @@ class Compiler {
     void prepare(uint32_t number, const NormalizedMesh& mesh, const Groups& groups, ApexHeights& heights) {
         const Tree tree = group_tree(mesh, groups);
         const SourceSolid& from = source_.solids[number];
-        const uint32_t crossed = check_apexes(mesh, groups, tree, heights);
-        if (crossed > 0 && mesh.topology().closed)
-            scene_.warnings.push_back(from.place + ": " + from.name + ": the mesh passes through itself at " +
-                                      std::to_string(crossed) + " sides of triangles; rays may leak there");
+        const ApexFaults faults = check_apexes(mesh, groups, tree, heights);
+        const auto warn_of = [&](uint32_t sides, const char* what) {
+            if (sides > 0 && mesh.topology().closed)
+                scene_.warnings.push_back(from.place + ": " + from.name + ": the mesh " + what + std::to_string(sides) +
+                                          " sides of triangles; rays may leak there");
+        };
+        warn_of(faults.crossed, "passes through itself at ");
+        warn_of(faults.unchecked, "is too crowded to be checked at ");
         find_triangle_incidents<Real>(lights_, mesh, groups, tree, number, triangle_count_, normalization_.extent,
                                       incidents_);
     }

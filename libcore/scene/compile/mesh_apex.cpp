@@ -1,6 +1,6 @@
 #include "scene/compile/mesh_apex.h"
 
-#include <atomic>
+#include <cmath>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -9,23 +9,6 @@ namespace cistula {
 namespace {
 
 using glm::dvec3;
-
-/// min(1, tan(a / 2)), a the angle between a triangle and its neighbor at one edge, for both sides of the triangle.
-struct AngleFactors {
-    double inside = 1, outside = 1;
-};
-
-AngleFactors angle_factors(const dvec3& edge_start, const dvec3& edge, const dvec3& normal, const dvec3& opposite) {
-    // In the plane perpendicular to the edge: x points into the triangle, y along its normal.
-    const dvec3 inward = cross(normal, edge), to = opposite - edge_start;
-    const double normal_length = length(normal);
-    const double x = dot(to, inward) / (normal_length * length(edge)), y = dot(to, normal) / normal_length;
-    const double r = square_root(x * x + y * y);
-    if (!(r > 0)) return {};  // a neighbor of zero area has no direction
-    if (x > 0 && y == 0) return {0, 0};
-    const auto half_tangent = [&](double s) { return s <= 0 || x <= 0 ? 1 : s / (r + x); };
-    return {half_tangent(-y), half_tangent(y)};
-}
 
 struct Neighbor {
     uint32_t number;
@@ -58,21 +41,54 @@ bool crosses(const dvec3& from, double from_volume, const dvec3& to, const std::
     return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
+/// Place of another triangle relative to a tetrahedron's base.
+struct Placement {
+    int shared[3] = {-1, -1, -1};  // for each of its corners the corner of the base at the same position; -1: none
+    double lowest = INFINITY, highest = -INFINITY;  // of its corners over the base; shared ones are at 0
+};
+
 /// The tetrahedron between a triangle and its apex on one side. It shrinks with the apex' height.
 struct ApexView {
+    ApexView(const std::array<dvec3, 3>& base, const dvec3& unit_normal)
+        : corner(base), centroid((base[0] + base[1] + base[2]) / 3.0), up(unit_normal) {
+        for (int i = 0; i < 3; ++i) {
+            inward[i] = cross(up, corner[(i + 1) % 3] - corner[i]);
+            if (dot(inward[i], centroid - corner[i]) < 0) inward[i] = -inward[i];
+        }
+    }
+
     std::array<dvec3, 3> corner;
     dvec3 centroid, up;  // unit normal on that side
+    dvec3 inward[3];     // normals of the edges, in the base's plane
 
-    /// Whether another triangle intersects the tetrahedron other than through its base.
-    bool blocked_by(const std::array<dvec3, 3>& q, double height) const {
-        int shared[3] = {-1, -1, -1};  // for each corner of q the corner at the same position; -1: none
-        bool above = false;
+    Placement placement(const std::array<dvec3, 3>& q) const {
+        Placement place;
         for (int k = 0; k < 3; ++k) {
             for (int i = 0; i < 3; ++i)
-                if (q[k] == corner[i]) shared[k] = i;
-            above |= shared[k] < 0 && dot(up, q[k] - corner[0]) > 0;
+                if (q[k] == corner[i]) place.shared[k] = i;
+            const double over = place.shared[k] < 0 ? dot(up, q[k] - corner[0]) : 0;
+            place.lowest = min_or_second(over, place.lowest);
+            place.highest = max_or_second(over, place.highest);
         }
-        if (!above) return false;
+        return place;
+    }
+
+    /// Whether a triangle cannot intersect the tetrahedron, seen from its corners: none is above the base, all are well
+    /// above the apex, or all lie beyond one edge or on it.
+    bool is_clear(const std::array<dvec3, 3>& q, const Placement& place, double height) const {
+        if (!(place.highest > 0) || place.lowest >= 2 * height) return true;
+        for (int i = 0; i < 3; ++i) {
+            const auto beyond = [&](int k) {
+                return place.shared[k] == i || place.shared[k] == (i + 1) % 3 || dot(inward[i], q[k] - corner[i]) < 0;
+            };
+            if (beyond(0) && beyond(1) && beyond(2)) return true;
+        }
+        return false;
+    }
+
+    /// Whether another triangle intersects the tetrahedron other than through its base.
+    bool blocked_by(const std::array<dvec3, 3>& q, const Placement& place, double height) const {
+        const int* const shared = place.shared;
         const dvec3 apex = along(centroid, height, up);
         const double apex_volume = volume(apex, q[0], q[1], q[2]);
         for (int i = 0; i < 3; ++i)
@@ -103,111 +119,151 @@ struct ApexView {
     }
 };
 
-}  // namespace
+/// Cost of an exact test of a tetrahedron against a triangle, of which 1 is a look at its corners.
+constexpr uint32_t cost_of_test = 8;
 
-ApexHeights apex_heights(const NormalizedMesh& mesh) {
-    const MeshTopology& topology = mesh.topology();
-    ApexHeights heights;
-    for (auto& side : heights.side) side.resize(mesh.size());
-    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, mesh.size(), 1024), [&](const auto& range) {
-        for (uint32_t t = range.begin(); t != range.end(); ++t) {
-            const auto corner = mesh.triangle(t);
-            const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-            const double twice_area = length(normal);
-            double inside = 1, outside = 1, perimeter = 0;
-            for (uint32_t e = 0; e < 3; ++e) {
-                const dvec3 edge = corner[(e + 1) % 3] - corner[e];
-                perimeter += length(edge);
-                // Half-edges are numbered in the source's winding; if that is flipped, edge e is the source's edge 2 -
-                // e.
-                const uint32_t own = 3 * t + (topology.flipped ? 2 - e : e);
-                for (uint32_t h = topology.next_along_edge[own]; h != own; h = topology.next_along_edge[h]) {
-                    const auto other = mesh.corners(h / 3);
-                    const uint32_t other_edge = topology.flipped ? 2 - h % 3 : h % 3;
-                    const dvec3 opposite = mesh.vertex(other[(other_edge + 2) % 3]);
-                    const AngleFactors f = angle_factors(corner[e], edge, normal, opposite);
-                    inside = min_or_second(f.inside, inside);
-                    outside = min_or_second(f.outside, outside);
-                }
-            }
-            const double inradius = perimeter > 0 ? twice_area / perimeter : 0;
-            heights.side[0][t] = static_cast<float>(inradius / 8 * inside);
-            heights.side[1][t] = static_cast<float>(inradius / 8 * outside);
+/// What may be spent on a group of triangles.
+struct ApexLimits {
+    size_t around;         // triangles that are looked at
+    uint32_t cost_a_side;  // of tests, for each side of each triangle
+};
+
+/// Checks the apexes of groups, each for itself.
+class ApexCheck {
+  public:
+    ApexCheck(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights)
+        : mesh_(mesh), groups_(groups), tree_(tree), heights_(heights) {}
+
+    /// Lowers the heights of a group's triangles.
+    ApexFaults check(uint32_t group, const ApexLimits& limits) {
+        gather(group, limits.around);
+        ApexFaults faults;
+        for (uint32_t i = groups_.first[group]; i < groups_.first[group + 1]; ++i) {
+            const uint32_t t = groups_.order[i];
+            const auto corner = mesh_.triangle(t);
+            Box box = box_of(corner);
+            const double h = max_or_second(heights_.side[0][t], heights_.side[1][t]);
+            box.low -= dvec3{h};
+            box.high += dvec3{h};
+            near_.clear();
+            for (const Neighbor& other : around_)
+                if (other.number != t && !apart(box, other.box)) near_.push_back(&other);
+            check_triangle(t, corner, limits.cost_a_side, faults);
         }
-    });
-    return heights;
-}
+        return faults;
+    }
 
-uint32_t check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
-    std::atomic<uint32_t> blocked_for_good{0};
-    const auto check = [&](uint32_t t, const std::array<dvec3, 3>& corner, const std::vector<const Neighbor*>& near) {
+  private:
+    /// Finds the triangles around a group's: all of them, or the first so many.
+    void gather(uint32_t group, size_t most) {
+        Box reach;  // box of the apexes and corners of the whole group
+        float highest = 0;
+        for (uint32_t i = groups_.first[group]; i < groups_.first[group + 1]; ++i) {
+            const uint32_t t = groups_.order[i];
+            for (const dvec3& p : mesh_.triangle(t)) reach.add(p);
+            highest = max_or_second(highest, max_or_second(heights_.side[0][t], heights_.side[1][t]));
+        }
+        reach.low -= dvec3{highest};
+        reach.high += dvec3{highest};
+        around_.clear();
+        all_around_ = !any_in_box(tree_, reach, [&](uint32_t other) {
+            for (uint32_t i = groups_.first[other]; i < groups_.first[other + 1]; ++i) {
+                const auto corner = mesh_.triangle(groups_.order[i]);
+                const Box box = box_of(corner);
+                if (!apart(reach, box)) around_.push_back({groups_.order[i], corner, box});
+            }
+            return around_.size() > most;
+        });
+    }
+
+    void check_triangle(uint32_t t, const std::array<dvec3, 3>& corner, uint32_t most_cost, ApexFaults& faults) {
         const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
         const double size = length(normal);
         if (!(size > 0)) return;
         for (int side = 0; side < 2; ++side) {
-            const ApexView view{corner, (corner[0] + corner[1] + corner[2]) / 3.0,
-                                side ? normal / size : -normal / size};
-            float& height = heights.side[side][t];
+            const ApexView view(corner, side ? normal / size : -normal / size);
+            float& height = heights_.side[side][t];
             int halvings = 0;
-            bool through = false;
-            for (const Neighbor* other : near) {
-                float lower = height;
-                int more = 0;
-                const auto blocked = [&] {
-                    return lower > 0 && view.blocked_by(other->corner, static_cast<double>(lower));
-                };
-                bool free = !blocked();
-                for (; !free && halvings + more < most_halvings; free = !blocked()) {
-                    lower /= 2;
-                    ++more;
+            uint32_t cost = 0;
+            bool through = false, all = all_around_;
+            for (const Neighbor* other : near_) {
+                if (cost >= most_cost) {
+                    all = false;
+                    break;
                 }
+                ++cost;
+                const Placement place = view.placement(other->corner);
+                const auto blocked = [&](float at) {
+                    cost += cost_of_test;
+                    return view.blocked_by(other->corner, place, static_cast<double>(at));
+                };
+                if (!(height > 0) || view.is_clear(other->corner, place, static_cast<double>(height))) continue;
+                if (!blocked(height)) continue;
                 // A triangle that passes through the base blocks every apex; no height is better than the one that the
                 // other neighbors allow.
-                through |= !free;
-                if (!free) continue;
-                height = lower;
-                halvings += more;
-            }
-            blocked_for_good += through;
-        }
-    };
-
-    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, groups.size(), 64), [&](const auto& range) {
-        std::vector<Neighbor> around;
-        std::vector<const Neighbor*> near;
-        for (uint32_t g = range.begin(); g != range.end(); ++g) {
-            Box reach;  // box of the apexes and corners of the whole group
-            float highest = 0;
-            for (uint32_t i = groups.first[g]; i < groups.first[g + 1]; ++i) {
-                const uint32_t t = groups.order[i];
-                for (const dvec3& p : mesh.triangle(t)) reach.add(p);
-                highest = max_or_second(highest, max_or_second(heights.side[0][t], heights.side[1][t]));
-            }
-            reach.low -= dvec3{highest};
-            reach.high += dvec3{highest};
-            around.clear();
-            for_each_in_box(tree, reach, [&](uint32_t other) {
-                for (uint32_t i = groups.first[other]; i < groups.first[other + 1]; ++i) {
-                    const auto corner = mesh.triangle(groups.order[i]);
-                    const Box box = box_of(corner);
-                    if (!apart(reach, box)) around.push_back({groups.order[i], corner, box});
+                const float lowest = std::ldexp(height, halvings - most_halvings);
+                if (halvings == most_halvings || blocked(lowest)) {
+                    through = true;
+                    continue;
                 }
-            });
-            for (uint32_t i = groups.first[g]; i < groups.first[g + 1]; ++i) {
-                const uint32_t t = groups.order[i];
-                const auto corner = mesh.triangle(t);
-                Box box = box_of(corner);
-                const double h = max_or_second(heights.side[0][t], heights.side[1][t]);
-                box.low -= dvec3{h};
-                box.high += dvec3{h};
-                near.clear();
-                for (const Neighbor& other : around)
-                    if (other.number != t && !apart(box, other.box)) near.push_back(&other);
-                check(t, corner, near);
+                do {
+                    height /= 2;
+                    ++halvings;
+                } while (halvings < most_halvings && blocked(height));
             }
+            faults.crossed += through;
+            faults.unchecked += !through && !all;
         }
-    });
-    return blocked_for_good;
+    }
+
+    const NormalizedMesh& mesh_;
+    const Groups& groups_;
+    const Tree& tree_;
+    ApexHeights& heights_;
+    std::vector<Neighbor> around_;
+    bool all_around_ = true;  // they are all in around_
+    std::vector<const Neighbor*> near_;
+};
+
+}  // namespace
+
+ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
+    // First with limits that only tangles and fans of hundreds of triangles reach. Groups that reach them, if they are
+    // few, share what may be spent on all of them.
+    constexpr ApexLimits first_limits{512, 128};
+    constexpr size_t cost_of_the_rest = 48'000'000;
+    const ApexHeights initial = heights;
+    std::vector<ApexFaults> faults(groups.size());
+    const auto check = [&](const auto& range, const ApexLimits& limits, const auto& group_at) {
+        ApexCheck check(mesh, groups, tree, heights);
+        for (uint32_t i = range.begin(); i != range.end(); ++i) faults[group_at(i)] = check.check(group_at(i), limits);
+    };
+    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, groups.size(), 64),
+                      [&](const auto& range) { check(range, first_limits, [](uint32_t i) { return i; }); });
+
+    std::vector<uint32_t> rest;
+    size_t sides = 0;
+    for (uint32_t g = 0; g < groups.size(); ++g)
+        if (faults[g].unchecked > 0) {
+            rest.push_back(g);
+            sides += 2 * (groups.first[g + 1] - groups.first[g]);
+        }
+    const size_t share = rest.empty() ? 0 : cost_of_the_rest / sides;
+    if (share >= 8 * first_limits.cost_a_side) {
+        for (const uint32_t g : rest)
+            for (uint32_t i = groups.first[g]; i < groups.first[g + 1]; ++i)
+                for (int side = 0; side < 2; ++side)
+                    heights.side[side][groups.order[i]] = initial.side[side][groups.order[i]];
+        const ApexLimits limits{4 * share, static_cast<uint32_t>(share)};
+        tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(rest.size()), 1),
+                          [&](const auto& range) { check(range, limits, [&](uint32_t i) { return rest[i]; }); });
+    }
+    ApexFaults sum;
+    for (const ApexFaults& f : faults) {
+        sum.crossed += f.crossed;
+        sum.unchecked += f.unchecked;
+    }
+    return sum;
 }
 
 }  // namespace cistula

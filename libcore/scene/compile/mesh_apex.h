@@ -22,9 +22,16 @@ ApexHeights apex_heights(const NormalizedMesh& mesh);
 /// Greatest number of times an apex is halved; its lowest height is 2^-24 of the first.
 inline constexpr int most_halvings = 24;
 
+/// Numbers of triangle sides.
+struct ApexFaults {
+    uint32_t crossed = 0;  // another triangle passes through the triangle itself
+    uint32_t unchecked =
+        0;  // not crossed as far as was seen, but with too many triangles around to look at all of them
+};
+
 /// Halves heights until no other triangle of the mesh intersects the tetrahedra over a triangle: neither the edges to
 /// the apex nor the sides between them. A triangle that still intersects at the lowest height passes through the base
-/// itself and is ignored. Returns the number of triangle sides for which that happened.
-uint32_t check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights);
+/// itself and is ignored. The work is bounded, however tangled the mesh is (decision 0034).
+ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights);
 
 }  // namespace cistula

@@ -7,19 +7,30 @@
 namespace cistula {
 namespace {
 
+/// Start of the least rotation of a cyclic sequence, in linear time (Shiloach 1981): of two candidates the larger, and all that
+/// begin where they agree, are no candidates.
+size_t least_start(const std::vector<uint32_t>& corners) {
+    const size_t n = corners.size();
+    size_t a = 0, b = 1, same = 0;
+    while (a < n && b < n && same < n) {
+        const uint32_t at_a = corners[(a + same) % n], at_b = corners[(b + same) % n];
+        if (at_a == at_b) {
+            ++same;
+            continue;
+        }
+        (at_a > at_b ? a : b) += same + 1;
+        if (a == b) ++b;
+        same = 0;
+    }
+    return a < b ? a : b;
+}
+
 /// The least of all rotations of a cyclic sequence and of its reverse.
 std::vector<uint32_t> least_rotation(std::vector<uint32_t> corners) {
-    const uint32_t least = *std::min_element(corners.begin(), corners.end());
-    std::vector<uint32_t> best, rotated(corners.size());
-    for (int direction = 0; direction < 2; ++direction) {
-        for (auto first = corners.begin(); first != corners.end(); ++first) {
-            if (*first != least) continue;
-            std::rotate_copy(corners.begin(), first, corners.end(), rotated.begin());
-            if (best.empty() || rotated < best) best = rotated;
-        }
-        std::reverse(corners.begin(), corners.end());
-    }
-    return best;
+    std::vector<uint32_t> reversed(corners.rbegin(), corners.rend());
+    for (auto* c : {&corners, &reversed})
+        std::rotate(c->begin(), c->begin() + static_cast<ptrdiff_t>(least_start(*c)), c->end());
+    return corners < reversed ? corners : reversed;
 }
 
 }  // namespace

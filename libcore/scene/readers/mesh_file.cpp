@@ -51,7 +51,7 @@ MeshPart part_of(PolygonMesh&& from, const MeshObject& object) {
         if (doubled[i])
             ++mesh.doubled_polygons;
         else
-            append_polygon(mesh.owned_vertices, {polygons[i].begin(), polygons[i].end()}, mesh.owned_triangles);
+            append_polygon(mesh.owned_vertices, polygons[i], mesh.owned_triangles);
     }
     // Files have v = 0 at the bottom of the picture, Cistula at the top.
     mesh.owned_uvs = std::move(from.uvs);

@@ -29,10 +29,10 @@ struct Tree {
 /// quick; 1: the builder's best without splitting primitives. Reorders `primitives`.
 Tree build_tree(std::vector<RTCBuildPrimitive>& primitives, int quality);
 
-/// Calls visit(item) for the items of all leaves whose box overlaps `box`.
-template <class Visit>
-void for_each_in_box(const Tree& tree, const Box& box, const Visit& visit) {
-    if (tree.nodes.empty()) return;
+/// Whether found(item) holds for an item of a leaf whose box overlaps `box`; asks no further once it does.
+template <class Found>
+bool any_in_box(const Tree& tree, const Box& box, const Found& found) {
+    if (tree.nodes.empty()) return false;
     int32_t stack[max_tree_depth + 1] = {0};
     int size = 1;
     while (size > 0) {
@@ -46,10 +46,21 @@ void for_each_in_box(const Tree& tree, const Box& box, const Visit& visit) {
             if (child >= 0) {
                 stack[size++] = child;
             } else {
-                for (uint32_t i = 0; i < node.count[side]; ++i) visit(tree.items[static_cast<size_t>(~child) + i]);
+                for (uint32_t i = 0; i < node.count[side]; ++i)
+                    if (found(tree.items[static_cast<size_t>(~child) + i])) return true;
             }
         }
     }
+    return false;
+}
+
+/// Calls visit(item) for the items of all leaves whose box overlaps `box`.
+template <class Visit>
+void for_each_in_box(const Tree& tree, const Box& box, const Visit& visit) {
+    any_in_box(tree, box, [&visit](uint32_t item) {
+        visit(item);
+        return false;
+    });
 }
 
 }  // namespace cistula
