@@ -25,6 +25,10 @@ struct LocalLight {
 
 /// A stand-in for an intersector: all light arrives.
 struct Unshadowed {
+    template <class Real, class Media>
+    CISTULA_HD Hit<Real> closest(const Ray<Real, Media>&) const {
+        return Hit<Real>();
+    }
     template <class E, class Real, class Media>
     CISTULA_HD Vec3<Real> transmittance(const ShadowRay<Real, Media>&) const {
         return Vec3<Real>(Real(1));
