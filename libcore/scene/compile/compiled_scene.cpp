@@ -1,5 +1,7 @@
 #include "scene/compile/compiled_scene.h"
 
+#include <algorithm>
+
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
@@ -47,9 +49,10 @@ Box convex_box(const SceneView<Real>& scene, const Solid& solid) {
                     (planes[i].distance * cross(planes[j].normal, planes[k].normal) +
                      planes[j].distance * cross(planes[k].normal, planes[i].normal) + planes[k].distance * across) /
                     determinant;
-                bool inside = true;
-                for (const Plane& p : planes) inside &= dot(p.normal, corner) <= p.distance + corner_slack * extent;
-                if (inside) box.add(corner);
+                const auto has_corner = [&](const Plane& p) {
+                    return dot(p.normal, corner) <= p.distance + corner_slack * extent;
+                };
+                if (std::all_of(planes.begin(), planes.end(), has_corner)) box.add(corner);
             }
         }
     }
