@@ -199,8 +199,9 @@ TYPED_TEST_SUITE(Contacts, Reals);
 
 template <class Real>
 size_t meshes_in(const SceneDescription& scene) {
+    const auto compiled = test::compile<Real>(scene);
     size_t meshes = 0;
-    for (const Solid& solid : test::compile<Real>(scene)->solids) meshes += solid.kind == SolidKind::mesh;
+    for (const Solid& solid : compiled->solids) meshes += solid.kind == SolidKind::mesh;
     return meshes;
 }
 
