@@ -101,8 +101,8 @@ TYPED_TEST(Contacts, ConvexMeshesHaveNoFault) {
     for (const Arrangement& arrangement : arrangements) {
         Random random(7);
         const ContactScene scene = arranged(arrangement, random, BodyKind::convex_mesh);
-        for (const Solid& solid : test::compile<TypeParam>(scene.scene)->solids)
-            EXPECT_NE(solid.kind, SolidKind::mesh) << arrangement.name;
+        const auto compiled = test::compile<TypeParam>(scene.scene);
+        for (const Solid& solid : compiled->solids) EXPECT_NE(solid.kind, SolidKind::mesh) << arrangement.name;
     }
     EXPECT_EQ(faults<TypeParam>(BodyKind::convex_mesh), 0u);
 }
