@@ -2,8 +2,10 @@
 // the ideal bodies, not from what the tracer knows.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "scene/compile/compiled_scene.h"
@@ -33,18 +35,66 @@ struct Basis {
     }
 };
 
-/// An ideal body: the points with normal.p <= offset for all planes; or a parallelogram.
-struct IdealBody {
+/// A convex part of an ideal body: the points with normal.p <= offset for all planes.
+struct IdealPart {
     std::vector<dvec3> normals;
     std::vector<double> offsets;
-    bool sheet = false;
-    dvec3 corner{0}, along{0}, across{0};  // of a sheet
 
     /// How deep a point lies inside; negative outside.
     double depth(const dvec3& p) const {
         double least = 1e300;
         for (size_t i = 0; i < normals.size(); ++i) least = min_or_second(least, offsets[i] - dot(normals[i], p));
         return least;
+    }
+    /// The shares of a segment between which it lies inside the part grown by a length. False if it passes by.
+    bool chord(const dvec3& from, const dvec3& to, double grown, double& enter, double& leave) const {
+        enter = 0, leave = 1;
+        for (size_t i = 0; i < normals.size(); ++i) {
+            const double a = dot(normals[i], from) - offsets[i] - grown, b = dot(normals[i], to) - offsets[i] - grown;
+            if (a > 0 && b > 0) return false;
+            if (a > 0) enter = max_or_second(enter, a / (a - b));
+            if (b > 0) leave = min_or_second(leave, a / (a - b));
+        }
+        return enter < leave;
+    }
+    /// An axis-parallel box in a turned frame with its origin at `middle`.
+    static IdealPart box(const Basis& basis, const dvec3& middle, const dvec3& low, const dvec3& high) {
+        IdealPart part;
+        const dvec3 axes[] = {basis.x, basis.y, basis.z};
+        for (int k = 0; k < 3; ++k)
+            for (const double sign : {-1.0, 1.0}) {
+                part.normals.push_back(axes[k] * sign);
+                part.offsets.push_back(dot(axes[k] * sign, middle) + sign * (sign < 0 ? low[k] : high[k]));
+            }
+        return part;
+    }
+};
+
+/// An ideal body: the union of convex parts, which overlap wherever they meet; or a parallelogram.
+struct IdealBody {
+    std::vector<IdealPart> parts;
+    bool sheet = false;
+    dvec3 corner{0}, along{0}, across{0};  // of a sheet
+
+    /// How deep a point lies inside; negative outside.
+    double depth(const dvec3& p) const {
+        double deepest = -1e300;
+        for (const IdealPart& part : parts) deepest = max_or_second(deepest, part.depth(p));
+        return deepest;
+    }
+    /// How often a segment passes the surface of the body grown by a length.
+    int crossings(const dvec3& from, const dvec3& to, double grown) const {
+        std::vector<std::array<double, 2>> chords;
+        for (const IdealPart& part : parts)
+            if (std::array<double, 2> c; part.chord(from, to, grown, c[0], c[1])) chords.push_back(c);
+        std::sort(chords.begin(), chords.end());
+        int count = 0;
+        double inside_to = -1;
+        for (const auto& [enter, leave] : chords) {
+            if (enter > inside_to) count += (enter > 0) + (inside_to > 0);
+            inside_to = max_or_second(inside_to, leave);
+        }
+        return count + (inside_to > 0 && inside_to < 1);
     }
     /// How far inside the sheet's border a point of its plane lies.
     double inside_border(const dvec3& p) const {
@@ -54,6 +104,61 @@ struct IdealBody {
     }
     dvec3 sheet_normal() const { return normalized(cross(along, across)); }
 };
+
+/// An axis-parallel box.
+struct BlockShape {
+    dvec3 low, high;
+};
+
+/// The surface of a union of boxes as a closed mesh: the faces between inner and outer cells of the grid of all their
+/// sides.
+inline TrianglesObject blocks_mesh(const std::vector<BlockShape>& boxes) {
+    std::vector<double> sides[3];
+    for (int k = 0; k < 3; ++k) {
+        for (const BlockShape& box : boxes) sides[k].insert(sides[k].end(), {box.low[k], box.high[k]});
+        std::sort(sides[k].begin(), sides[k].end());
+        sides[k].erase(std::unique(sides[k].begin(), sides[k].end()), sides[k].end());
+    }
+    const auto inside = [&](std::array<int, 3> cell) {
+        dvec3 p(0);
+        for (size_t k = 0; k < 3; ++k) {
+            if (cell[k] < 0 || cell[k] + 1 >= int(sides[k].size())) return false;
+            p[int(k)] = (sides[k][size_t(cell[k])] + sides[k][size_t(cell[k] + 1)]) / 2;
+        }
+        return std::any_of(boxes.begin(), boxes.end(), [&](const BlockShape& box) {
+            return p.x > box.low.x && p.x < box.high.x && p.y > box.low.y && p.y < box.high.y && p.z > box.low.z &&
+                   p.z < box.high.z;
+        });
+    };
+    TrianglesObject mesh;
+    std::map<std::array<int, 3>, uint32_t> numbers;
+    const auto vertex = [&](const std::array<int, 3>& at) {
+        const auto [found, added] = numbers.emplace(at, uint32_t(mesh.vertices.size()));
+        if (added) mesh.vertices.emplace_back(sides[0][size_t(at[0])], sides[1][size_t(at[1])], sides[2][size_t(at[2])]);
+        return found->second;
+    };
+    std::array<int, 3> cell;
+    for (cell[0] = 0; cell[0] < int(sides[0].size()); ++cell[0])
+        for (cell[1] = 0; cell[1] < int(sides[1].size()); ++cell[1])
+            for (cell[2] = 0; cell[2] < int(sides[2].size()); ++cell[2])
+                for (size_t axis = 0; axis < 3; ++axis) {  // the face on the cell's low side
+                    std::array<int, 3> below = cell;
+                    --below[axis];
+                    if (inside(cell) == inside(below)) continue;
+                    const size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+                    std::array<int, 3> corner = cell;
+                    uint32_t q[4];
+                    for (int c = 0; c < 4; ++c) {
+                        corner[a] = cell[a] + (c == 1 || c == 2);
+                        corner[b] = cell[b] + (c >= 2);
+                        q[inside(cell) ? 3 - c : c] = vertex(corner);
+                    }
+                    const int turn = (cell[0] + cell[1] + cell[2]) & 1;
+                    mesh.triangles.push_back({q[turn], q[turn + 1], q[turn + 2]});
+                    mesh.triangles.push_back({q[turn], q[turn + 2], q[(turn + 3) % 4]});
+                }
+    return mesh;
+}
 
 enum class BodyKind { planes, mesh };
 
@@ -71,17 +176,26 @@ class ContactScene {
         const Basis own = basis_.turned(turn);
         const dvec3 middle = place({x, y, low + side / 2});
         IdealBody body;
-        for (const dvec3& n : {own.x, own.y, own.z})
-            for (const double sign : {-1.0, 1.0}) {
-                body.normals.push_back(n * sign);
-                body.offsets.push_back(dot(n * sign, middle) + side / 2);
-            }
+        body.parts.push_back(IdealPart::box(own, middle, dvec3(-side / 2), dvec3(side / 2)));
         bodies.push_back(body);
         const double radius = side / 2 * square_root(3.0);
         if (kind == BodyKind::planes)
             add_solid(scene, PlatonicSolid::cube, middle, radius, own.degrees(), material);
         else
             add_object(scene, solid_mesh(PlatonicSolid::cube, middle, radius, own.degrees()), material);
+    }
+
+    /// A closed mesh of boxes that overlap wherever they meet, about the vertical through (x, y) and turned about it;
+    /// their z is the scene's.
+    void blocks(double x, double y, double turn, const std::vector<BlockShape>& boxes, int material) {
+        const Basis own = basis_.turned(turn);
+        const dvec3 middle = place({x, y, 0});
+        IdealBody body;
+        for (const BlockShape& box : boxes) body.parts.push_back(IdealPart::box(own, middle, box.low, box.high));
+        bodies.push_back(body);
+        TrianglesObject mesh = blocks_mesh(boxes);
+        for (dvec3& p : mesh.vertices) p = middle + own(p);
+        add_object(scene, mesh, material);
     }
 
     /// The parallelogram corner, corner + along, corner + along + across, corner + across.
@@ -134,12 +248,15 @@ class CheckedIntersector {
 
     const Scene& scene;
 
-    template <class E = Effects<all_effects>>
+    /// A line's next crossing, checked.
+    template <class E>
     Hit<Real> closest(const Ray<Real, Media>& ray) const {
         const Hit<Real> hit = inner_.template closest<E>(ray);
         check(ray, hit);
         return hit;
     }
+    /// A crossing on which no line ends by itself: how a line goes on is decided by several.
+    Hit<Real> closest(const Ray<Real, Media>& ray) const { return inner_.closest(ray); }
 
     template <class E>
     Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow) const {
@@ -181,25 +298,18 @@ class CheckedIntersector {
             return {crossed == 1, crossed != 0};
         }
         const double begin = body.depth(from), end = body.depth(to);
-        const bool grown = chord(body, from, to, tolerance()), shrunk = chord(body, from, to, -tolerance());
         if (magnitude(begin) > tolerance() && (begin > 0) != listed) ++counts_.media;
-        if (listed && !grown) ++counts_.media;
-        if (magnitude(end) < tolerance()) return {0, 2};
-        if (listed) return end > 0 ? Crossings{0, 0} : Crossings{1, 1};
-        if (end > 0) return {1, 1};
-        return {shrunk ? 2 : 0, grown ? 2 : 0};
-    }
-    static bool chord(const IdealBody& body, const dvec3& from, const dvec3& to, double grown) {
-        double enter = 0, leave = 1;
-        for (size_t i = 0; i < body.normals.size(); ++i) {
-            const double a = dot(body.normals[i], from) - body.offsets[i] - grown,
-                         b = dot(body.normals[i], to) - body.offsets[i] - grown;
-            if (a > 0 && b > 0) return false;
-            if (a > 0) enter = max_or_second(enter, a / (a - b));
-            if (b > 0) leave = min_or_second(leave, a / (a - b));
+        if (magnitude(end) < tolerance()) return {0, 2 * int(body.parts.size())};
+        Crossings range{1 << 20, 0};
+        for (const double grown : {-tolerance(), 0.0, tolerance()}) {
+            const bool starts_inside = begin > -grown;
+            if (listed && !starts_inside) continue;
+            const int count = body.crossings(from, to, grown) + (starts_inside && !listed);
+            range = {std::min(range.certain, count), std::max(range.possible, count)};
         }
-        return enter < leave;
+        return range.certain <= range.possible ? range : Crossings{0, 0};
     }
+
     /// Whether a segment crosses a sheet: 1 surely, 0 surely not, -1 near its border or at an end.
     int crosses(const IdealBody& sheet, const dvec3& from, const dvec3& to) const {
         const dvec3 n = sheet.sheet_normal();
@@ -221,9 +331,10 @@ class CheckedIntersector {
         ray.direction = Vec3<Real>(normalized(way));
         const double slope = double(dot(Vec3<Real>(normal), ray.direction));
         if (magnitude(slope) < 0x1p-10 || !(slope * dot(normal, light) > 0)) return;
+        count_meshes(scene, *this, ray);
         for (int faces = 0; faces < 8; ++faces) {
-            const Hit<Real> hit = closest(ray);
-            if (!hit.found()) return;
+            const Hit<Real> hit = closest<Effects<all_effects>>(ray);
+            if (!hit.found() || hit.wrong_side_t <= hit.t) return;  // refused crossings are for NextSurface to count
             if (const int change = media_change(key_kind(hit.key)); change != 0)
                 ray.media.add(key_solid(hit.key), change);
             ray.after = {hit.t, hit.key};
@@ -256,9 +367,11 @@ class CheckedIntersector {
                 if (magnitude(dot(body.sheet_normal(), p - body.corner)) > 2 * tolerance()) continue;
                 if (body.inside_border(p) > -2 * tolerance()) add(body.sheet_normal());
                 edge |= magnitude(body.inside_border(p)) < 2 * tolerance();
-            } else if (body.depth(p) > -2 * tolerance()) {
-                for (size_t i = 0; i < body.normals.size(); ++i)
-                    if (magnitude(dot(body.normals[i], p) - body.offsets[i]) < 2 * tolerance()) add(body.normals[i]);
+            } else {
+                for (const IdealPart& part : body.parts)
+                    for (size_t i = 0; part.depth(p) > -2 * tolerance() && i < part.normals.size(); ++i)
+                        if (magnitude(dot(part.normals[i], p) - part.offsets[i]) < 2 * tolerance())
+                            add(part.normals[i]);
             }
         }
         return edge;

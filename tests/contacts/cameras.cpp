@@ -70,7 +70,7 @@ TYPED_TEST(CamerasAtContacts, RaysStartWhereTheyGo) {
                     Ray<Real> ray;
                     double start;
                     ASSERT_TRUE(primary_ray(view, frame, random.direction(), ray, start));
-                    const Hit<Real> hit = checked.closest(ray);
+                    const Hit<Real> hit = checked.template closest<Effects<all_effects>>(ray);
                     on_floor += place.at.z == 0 && hit.found() && key_solid(hit.key) == 0;
                 }
                 wrong += counts.media + counts.passed + counts.false_sheet;

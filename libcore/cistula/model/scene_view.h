@@ -26,6 +26,7 @@ struct alignas(16) SharedPlane {
     Real offset;                        // normal.x on the plane
     Real slack;                         // s u M, the unit of all distances from it that count as none
     uint32_t first_solid, solid_count;  // the convex solids with a face on it: plane_solids[first_solid + i]
+    uint32_t mesh_count;                // ... and the closed meshes, which follow them there
 };
 
 inline constexpr int slab_lanes = 8;
@@ -42,7 +43,7 @@ struct alignas(32) SlabGroup {
 
 /// A solid. Solids are numbered in file order, which is also the priority of their media: a later solid wins.
 struct alignas(16) Solid {
-    Vec3<float> center;        // convex: of a sphere around it,
+    Vec3<float> center;        // convex, mesh on a shared plane: of a sphere around it,
     float padded_square;       // ... and the square of its radius plus sphere_padding
     Vec3<float> plane_normal;  // flat sheet: unit normal of its plane,
     float plane_offset;        // ... and normal.x on it
@@ -60,7 +61,7 @@ struct alignas(16) Solid {
     uint32_t first_near, near_count;  // the shared planes that reach it: near_planes[first_near + i]
 };
 
-/// The bounding sphere of a convex solid.
+/// The bounding sphere of a convex solid, or of a mesh on a shared plane.
 template <class Real>
 struct alignas(16) BoundingSphere {
     Vec3<Real> center;

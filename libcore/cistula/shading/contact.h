@@ -46,13 +46,14 @@ class ContactStart {
           origin_(origin),
           media_(media) {}
 
-    CISTULA_INLINE void find() {
+    /// Whether meshes with faces near the start may be around it.
+    CISTULA_INLINE bool find() {
         media_.drop_negative();
         const uint32_t own = plane_of_face(scene_, key_solid(hit_.key), key_face(hit_.key));
-        Vec3<Real> met = origin_;
+        const Vec3<Real> met = along(parent_.origin, hit_.t, parent_.direction);
         if (own != no_plane) {
             const SharedPlane<Real>& plane = scene_.shared_planes[own];
-            met = along(parent_.origin, hit_.t, parent_.direction);
+            look_for_meshes(plane);
             if (!inside_mesh_) origin_ = along(met, start_lift<Real> * plane.slack, normal_);
             drop_beyond(own, own_side(plane));
         }
@@ -63,6 +64,7 @@ class ContactStart {
                 if (plane != own) near |= leave_plane(plane, met);
             }
         if (own != no_plane && near) add_containing(own);
+        return meshes_;
     }
 
   private:
@@ -76,10 +78,21 @@ class ContactStart {
         const Real near = near_start<Real> * plane.slack;
         const Real off = distance_from(plane, origin_);
         if (magnitude(off) > near && magnitude(distance_from(plane, met)) > near) return false;
+        look_for_meshes(plane);
         const int side = side_of(index, plane);
         drop_beyond(index, side);
         if (off * Real(side) < near) origin_ = along(origin_, near * Real(side) - off, plane.normal);
         return true;
+    }
+
+    /// Notes whether a mesh with a face on a plane may be around the start.
+    CISTULA_INLINE void look_for_meshes(const SharedPlane<Real>& plane) {
+        for (uint32_t i = 0; i < plane.mesh_count && !meshes_; ++i) {
+            const uint32_t mesh = scene_.plane_solids[plane.first_solid + plane.solid_count + i];
+            const BoundingSphere<Real> sphere = BoundingSphere<Real>::of(scene_.solids[mesh]);
+            const Vec3<Real> off = origin_ - sphere.center;
+            meshes_ = !(dot(off, off) > sphere.padded_square);
+        }
     }
 
     /// The side of a near plane on which the ray starts (line 11).
@@ -154,6 +167,7 @@ class ContactStart {
     const Vec3<Real> normal_;  // toward the ray's side
     Vec3<Real>& origin_;
     Media& media_;
+    bool meshes_ = false;
 };
 
 /// Whether rays from a surface event may start near a shared plane.
@@ -165,15 +179,44 @@ CISTULA_INLINE bool starts_at_contact(const Scene& scene, const SurfaceEvent<Rea
         return false;
 }
 
-/// Corrects the origin and the media of a ray from a surface event for which starts_at_contact() holds.
+/// Corrects the origin and the media of a ray from a surface event for which starts_at_contact() holds. True if the
+/// meshes in them depend on the ray's direction (count_meshes).
 template <class Real, class Media>
-CISTULA_NOINLINE void start_at_contact(const SceneView<Real>& scene, const Ray<Real, Media>& parent,
+CISTULA_NOINLINE bool start_at_contact(const SceneView<Real>& scene, const Ray<Real, Media>& parent,
                                        const SurfaceEvent<Real, Media>& event, const Vec3<Real>& normal, bool beyond,
                                        Vec3<Real>& origin, Media& media) {
-    ContactStart<Real, Media>(scene, parent, event, normal, beyond, origin, media).find();
+    return ContactStart<Real, Media>(scene, parent, event, normal, beyond, origin, media).find();
 }
 template <class Real, class Media>
-CISTULA_INLINE void start_at_contact(const ConstantScene<Real>&, const Ray<Real, Media>&,
-                                     const SurfaceEvent<Real, Media>&, const Vec3<Real>&, bool, Vec3<Real>&, Media&) {}
+CISTULA_INLINE bool start_at_contact(const ConstantScene<Real>&, const Ray<Real, Media>&,
+                                     const SurfaceEvent<Real, Media>&, const Vec3<Real>&, bool, Vec3<Real>&, Media&) {
+    return false;
+}
+
+/// Replaces the meshes in a ray's media by those that it leaves more often than it enters, ahead of its start
+/// (docs/rules.md, 11, line 13). Not inlined: only rays near meshes at contacts need it.
+template <class Real, class Intersector, class Media, class Scene>
+CISTULA_NOINLINE void count_meshes(const Scene& scene, const Intersector& intersector, Ray<Real, Media>& ray) {
+    Media ahead;
+    Ray<Real, Media> probe = ray;
+    probe.accept_both_sides();
+    for (;;) {
+        const Hit<Real> hit = intersector.closest(probe);
+        if (!hit.found()) break;
+        const uint32_t solid = key_solid(hit.key);
+        const int change = media_change(key_kind(hit.key));
+        if (change != 0 && !probe.media.add(solid, change)) return;
+        if (scene.solids[solid].kind == SolidKind::mesh && !ahead.add(solid, -change)) return;
+        probe.after = {hit.t, hit.key};
+    }
+    Media counted = ray.media;
+    ray.media.for_each([&](uint32_t solid, int count) {
+        if (scene.solids[solid].kind == SolidKind::mesh) counted.add(solid, -count);
+    });
+    ahead.for_each([&](uint32_t solid, int count) {
+        if (count > 0) counted.add(solid, count);
+    });
+    ray.media = counted;
+}
 
 }  // namespace cistula

@@ -73,10 +73,11 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
     Surface<Real> s = surface;
     const Media* around = &ray.media;
     [[maybe_unused]] Media corrected;
+    [[maybe_unused]] bool meshes = false;
     if constexpr (meets_contacts<E, Media>)
         if (starts_at_contact<E>(scene, event)) {
             corrected = ray.media;
-            start_at_contact(scene, ray, event, s.normal, false, s.viewer_side, corrected);
+            meshes = start_at_contact(scene, ray, event, s.normal, false, s.viewer_side, corrected);
             around = &corrected;
         }
     const Material<Real>& m = scene.materials[s.material];
@@ -102,6 +103,8 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                 ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, event.hit, *around), aim.distance,
                                               &light};
                 find_start_plane<E>(scene, shadow.ray);
+                if constexpr (meets_contacts<E, Media>)
+                    if (meshes) count_meshes(scene, intersector, shadow.ray);
                 ++rays.shadow;
                 arrives = intersector.template transmittance<E>(shadow);
                 observer.arrives(i, shadow, arrives);

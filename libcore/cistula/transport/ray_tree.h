@@ -142,8 +142,12 @@ class RayTree {
     CISTULA_INLINE void correct_start(Ray<Real, Media>& ray, const Ray<Real, Media>& parent,
                                       const SurfaceEvent<Real, Media>& event, const Surface<Real>& s,
                                       bool beyond) const {
-        if (starts_at_contact<E>(scene_, event))
-            start_at_contact(scene_, parent, event, s.normal, beyond, ray.origin, ray.media);
+        if constexpr (meets_contacts<E, Media>)
+            if (starts_at_contact<E>(scene_, event) &&
+                start_at_contact(scene_, parent, event, s.normal, beyond, ray.origin, ray.media)) {
+                find_start_plane<E>(scene_, ray);
+                count_meshes(scene_, intersector_, ray);
+            }
     }
 
     const Scene& scene_;

@@ -40,6 +40,7 @@ class PlaneSharing {
     PlaneSharing(CompiledScene<Real>& scene, std::vector<ConvexSolid>& convex, const std::vector<Box>& boxes)
         : scene_(scene),
           convex_(convex),
+          boxes_(boxes),
           unit_(double(RealTraits<Real>::unit) * double(scene.extent)),
           patches_(touching_patches(scene, convex, boxes, reach * unit_)) {}
 
@@ -125,7 +126,7 @@ class PlaneSharing {
             planes_[i] = uint32_t(scene_.shared_planes.size());
         }
         const double grown = farthest <= steady * unit_ ? 1 : 1 + farthest / (8 * unit_);
-        scene_.shared_planes.push_back({normal, offset, static_cast<Real>(grown * unit_), 0, 0});
+        scene_.shared_planes.push_back({normal, offset, static_cast<Real>(grown * unit_), 0, 0, 0});
     }
 
     void bind_triangles() {
@@ -145,7 +146,14 @@ class PlaneSharing {
             const size_t slabs = solid.planes.size();
             for (uint32_t slab = 0; slab < slabs; ++slab) bind_slab(solid, slab, incidents);
         }
-        for (uint32_t plane = 0; plane < scene_.shared_planes.size(); ++plane) list_solids(plane);
+        std::vector<std::vector<uint32_t>> meshes(scene_.shared_planes.size());
+        for (size_t i = 0; i < patches_.size(); ++i) {
+            if (planes_[i] == no_plane || scene_.solids[patches_[i].solid].kind != SolidKind::mesh) continue;
+            std::vector<uint32_t>& listed = meshes[planes_[i]];
+            if (listed.empty() || listed.back() != patches_[i].solid) listed.push_back(patches_[i].solid);
+            bound_mesh(patches_[i].solid);
+        }
+        for (uint32_t plane = 0; plane < scene_.shared_planes.size(); ++plane) list_solids(plane, meshes[plane]);
     }
 
     /// Gives a slab the normal and the offsets of the shared planes on its sides. If these have different normals, its
@@ -188,13 +196,23 @@ class PlaneSharing {
         (high ? pair.high : pair.low) = same ? double(shared.offset) : -double(shared.offset);
     }
 
-    void list_solids(uint32_t plane) {
+    /// Bounds a mesh by the sphere around its box.
+    void bound_mesh(uint32_t number) {
+        Solid& solid = scene_.solids[number];
+        const dvec3 half = (boxes_[number].high - boxes_[number].low) / 2.0;
+        solid.center = Vec3<float>(boxes_[number].low + half);
+        solid.padded_square = float(dot(half, half)) + sphere_padding;
+    }
+
+    void list_solids(uint32_t plane, const std::vector<uint32_t>& meshes) {
         SharedPlane<Real>& shared = scene_.shared_planes[plane];
         shared.first_solid = uint32_t(scene_.plane_solids.size());
         for (const ConvexSolid& solid : convex_)
             if (std::find(solid.face_planes.begin(), solid.face_planes.end(), plane) != solid.face_planes.end())
                 scene_.plane_solids.push_back(solid.solid);
         shared.solid_count = uint32_t(scene_.plane_solids.size()) - shared.first_solid;
+        shared.mesh_count = uint32_t(meshes.size());
+        scene_.plane_solids.insert(scene_.plane_solids.end(), meshes.begin(), meshes.end());
     }
 
     /// Lists the shared planes of each solid and of what comes near it.
@@ -223,6 +241,7 @@ class PlaneSharing {
 
     CompiledScene<Real>& scene_;
     std::vector<ConvexSolid>& convex_;
+    const std::vector<Box>& boxes_;
     const double unit_;  // u M
     const std::vector<Patch> patches_;
     std::vector<Pair> pairs_;
