@@ -89,7 +89,7 @@ class BranchReader {
             for (; next < after; ++next) {  // refused crossings, as in NextSurface::count_wrong_side
                 const Hit<Real>& over = looks[next].hit;
                 if (!Crossing<Real>{over.t, over.key}.before(event.taken[0].t, event.taken[0].key)) break;
-                if (!lies_at_start(scene_, ray, over)) absorption.cross(scene_, over.key, over.t);
+                absorption.cross(scene_, over.key, over.t);
             }
             at = after;
         }
@@ -199,7 +199,7 @@ class BranchReader {
         out.lights.resize(scene_.lights.size);
         size_t next = 0;
         bool agrees = true;
-        const ReplayedShadows<Real> replayed{shadows, next, agrees};
+        const ReplayedShadows<Real, Intersector> replayed{shadows, next, agrees, intersector_};
         const Local local{*this, replay, s, next};
         DiscardedSums sums;
         PixelRays rays;

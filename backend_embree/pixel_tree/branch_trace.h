@@ -60,12 +60,14 @@ struct ReplayedIntersector {
 
 /// An intersector that replays the recorded shadow rays in their order; `agrees` becomes false if other ones are
 /// queried.
-template <class Real>
+template <class Real, class Intersector>
 struct ReplayedShadows {
     const std::vector<typename BranchTrace<Real>::Shadow>& shadows;
     size_t& next;
     bool& agrees;
+    const Intersector& intersector;
 
+    Hit<Real> closest(const Ray<Real>& ray) const { return intersector.closest(ray); }
     template <class E>
     Vec3<Real> transmittance(const ShadowRay<Real>& shadow) const {
         if (next == shadows.size() || shadows[next].shadow.light != shadow.light) {

@@ -24,6 +24,11 @@ inline double any_turn(Random& random) {
     return random.below(4) == 0 ? 0 : random.between(0, 6.28);
 }
 
+/// Two boxes in the shape of an L of the sides 0.8, 0.4 thick.
+inline std::vector<BlockShape> ell(double low) {
+    return {{{-0.4, -0.2, low}, {0.4, 0.2, low + 0.4}}, {{-0.4, -0.2, low}, {0, 0.2, low + 0.8}}};
+}
+
 inline constexpr int glass = 0, clear = 1, paper = 2;
 
 /// A point on a body, most often at an edge, a corner or the contact plane, moved by anything from nothing to its size.

@@ -134,7 +134,8 @@ inline TrianglesObject blocks_mesh(const std::vector<BlockShape>& boxes) {
     std::map<std::array<int, 3>, uint32_t> numbers;
     const auto vertex = [&](const std::array<int, 3>& at) {
         const auto [found, added] = numbers.emplace(at, uint32_t(mesh.vertices.size()));
-        if (added) mesh.vertices.emplace_back(sides[0][size_t(at[0])], sides[1][size_t(at[1])], sides[2][size_t(at[2])]);
+        if (added)
+            mesh.vertices.emplace_back(sides[0][size_t(at[0])], sides[1][size_t(at[1])], sides[2][size_t(at[2])]);
         return found->second;
     };
     std::array<int, 3> cell;

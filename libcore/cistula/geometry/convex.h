@@ -54,21 +54,6 @@ CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<R
     if (best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, false);
 }
 
-/// Whether a ray that is within all planes of a touching solid, but not inside it by its media, goes toward a face on
-/// which it starts, to within rounding; at a slant it would otherwise stay long in that film. Not inlined, so its
-/// arguments are by value.
-template <class Real, class Scene>
-CISTULA_NOINLINE bool ends_at_start(const Scene& scene, uint32_t index, Vec3<Real> origin, Vec3<Real> direction) {
-    const Solid& solid = scene.solids[index];
-    for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
-        const Real nd = dot(slab.normal, direction), no = dot(slab.normal, origin);
-        const Real depth = nd > Real(0) ? slab.high - no : no - slab.low;
-        if (nd != Real(0) && depth <= incidence<Real> * scene.extent) return true;
-    }
-    return false;
-}
-
 /// Whether a ray from outside meets the solid. An interval that ends at the ray's origin, to within the rounding of a
 /// point on a shared face, is behind it.
 template <class Interval, class Real>
@@ -84,9 +69,6 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Soli
     if (!is_met(interval, scene.extent)) return;
     const Real t = max_or_second(interval.enter, Real(0));
     if (!(t <= best.t && t < RealTraits<Real>::infinity) || t < ray.after.t) return;
-    if constexpr (Media::contacts)
-        if (solid.may_touch && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
-            return;
     const uint64_t key =
         make_key(CrossingKind::enter, index, convex_here::face_of(scene, solid, ray.origin, ray.direction, interval));
     if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);

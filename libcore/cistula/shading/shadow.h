@@ -132,9 +132,6 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid
     const Material<Real>& material = scene.materials[solid.material];
     if (side == LightSide::none) {
         if (!is_met(interval, scene.extent) || !(enter < shadow.distance)) return;
-        if constexpr (Media::contacts)
-            if (solid.may_touch && interval.enter < Real(0) && ends_at_start(scene, index, ray.origin, ray.direction))
-                return;
         leave = max_or_second(interval.leave, Real(0));
         if (leave < shadow.distance) sum.cross(material);
     }
@@ -176,17 +173,6 @@ CISTULA_HOST_NOINLINE void shadow_convex(const Scene& scene, uint32_t index, con
         shadow_entry<Real, E>(scene, index, scene.solids[index], shadow, sum);
 }
 
-/// Whether a crossing of a touching mesh lies behind the shadow ray: at its origin on another solid, and on the side on
-/// which the ray is not.
-template <class Real, class Media, class Scene>
-CISTULA_INLINE bool behind_shadow(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
-                                  const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray) {
-    if (!scene.solids[index].may_touch || !(c.t <= Real(1024) * incidence<Real> * scene.extent)) return false;
-    if (c.enters() != ray.media.contains(index)) return false;
-    const CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
-    return lies_at_start(scene, ray, Hit<Real>{c.t, make_key(kind, index, triangle), c.u(), c.v(), slot, c.enters()});
-}
-
 /// Whether a light lies on a face of a solid.
 template <class Real, class Scene>
 CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32_t solid, uint32_t face) {
@@ -200,7 +186,7 @@ CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32
 
 /// Adds an accepted crossing of a triangle if it lies before the light.
 template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle, uint32_t slot,
+CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle,
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow,
                                     ShadowSum<E>& sum) {
     const Real t = crossing_time(scene, triangle, c.t, shadow.ray);
@@ -208,8 +194,6 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
     if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
     if constexpr (E::has(effect_lights_on_faces))
         if (lies_on(scene, *shadow.light, index, triangle)) return;
-    if constexpr (Media::meshes)
-        if (behind_shadow(scene, index, triangle, slot, c, shadow.ray)) return;
     const Solid& solid = scene.solids[index];
     const Material<Real>& material = scene.materials[solid.material];
     sum.cross(material);
@@ -224,8 +208,7 @@ CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const S
                                      const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
-        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane,
-                                 c, shadow, sum);
+        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], c, shadow, sum);
     });
 }
 
@@ -243,7 +226,7 @@ CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const Shado
     const Facet<Real>& facet = scene.facets[index];
     TriangleCrossing<Real> c;
     if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
-        shadow_crossing<Real, E>(scene, facet.solid, facet.triangle, facet.slot, c, shadow, sum);
+        shadow_crossing<Real, E>(scene, facet.solid, facet.triangle, c, shadow, sum);
 }
 
 /// Adds the absorption of meshes that contain the ray's origin.

@@ -63,13 +63,6 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
     }
 }
 
-/// Whether a crossing of a mesh lies at the origin of a ray that starts on another solid's face, to within rounding.
-template <class Real, class Media, class Scene>
-CISTULA_INLINE bool lies_at_start(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
-    if (ray.from_solid == no_solid || ray.from_solid == key_solid(hit.key)) return false;
-    return hit.t * magnitude(dot(normal_at(scene, hit), ray.direction)) <= incidence<Real> * scene.extent;
-}
-
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];

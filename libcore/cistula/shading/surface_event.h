@@ -86,10 +86,14 @@ template <class E, class Real, class Intersector, class Media, class Scene>
 CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                   const Hit<Real>& hit, SurfaceEvent<Real, Media>& event) {
     event.begin(ray, hit);
-    if constexpr (meets_contacts<E, Media>)
-        if (key_kind(hit.key) != CrossingKind::sheet &&
-            plane_of_face(scene, key_solid(hit.key), key_face(hit.key)) != no_plane)
+    if constexpr (meets_contacts<E, Media>) {
+        if (scene.shared_planes.empty() || key_kind(hit.key) == CrossingKind::sheet) return;
+        const uint32_t solid = key_solid(hit.key);
+        if (plane_of_face(scene, solid, key_face(hit.key)) != no_plane)
             gather_shared(scene, intersector, ray, event);
+        else
+            event.changes = ray.media.contains(solid) != event.beyond.contains(solid);
+    }
 }
 
 }  // namespace cistula

@@ -80,11 +80,8 @@ class NextSurface {
         for (;;) {
             const Hit<Real> next = intersector_.closest(probe);
             if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
-            // A refused crossing at the ray's origin belongs to a mesh behind the ray.
-            if (!lies_at_start(scene_, ray, next)) {
-                if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) sums_.flag(flag_media_overflow);
-                absorption.cross(scene_, next.key, next.t);
-            }
+            if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) sums_.flag(flag_media_overflow);
+            absorption.cross(scene_, next.key, next.t);
             probe.after = {next.t, next.key};
         }
     }
