@@ -51,7 +51,16 @@ class ContactSearch {
   private:
     int any() { return int(random_.below(6)); }
     int opaque() { return 3 + int(random_.below(3)); }
-    BodyKind kind() { return meshes_ && random_.below(2) != 0 ? BodyKind::mesh : BodyKind::planes; }
+
+    /// A box of planes; in scenes with meshes also one of triangles, or one that lacks a quarter.
+    void body(double x, double y, double low, double side, double turn) {
+        const uint32_t kind = meshes_ ? random_.below(3) : 0;
+        const int material = any();
+        if (kind == 2)
+            made_.blocks(x, y, turn, three_quarters(side, low), material);
+        else
+            made_.cube(x, y, low, side, turn, material, kind == 1 ? BodyKind::mesh : BodyKind::planes);
+    }
 
     void decal(double height) {
         made_.quad({random_.between(-0.8, 0), random_.between(-0.8, 0), height},
@@ -63,8 +72,7 @@ class ContactSearch {
         const uint32_t x = 1 + random_.below(3), y = 1 + random_.below(3), z = 1 + random_.below(2);
         for (uint32_t i = 0; i < x * y * z; ++i) {
             if (random_.below(5) == 0 && i != 0) continue;
-            made_.cube((i % x - 0.5 * (x - 1)) * side, (i / x % y - 0.5 * (y - 1)) * side, i / x / y * side, side, 0,
-                       any(), kind());
+            body((i % x - 0.5 * (x - 1)) * side, (i / x % y - 0.5 * (y - 1)) * side, i / x / y * side, side, 0);
         }
         if (random_.below(2) != 0) decal(z * side);
     }
@@ -72,8 +80,8 @@ class ContactSearch {
     void stack(double side) {
         double low = 0;
         for (uint32_t i = 0; i < 2 + random_.below(3); ++i) {
-            made_.cube(random_.between(-0.1, 0.1), random_.between(-0.1, 0.1), low, side, random_.between(0, 6.28),
-                       any(), kind());
+            const double x = random_.between(-0.1, 0.1), y = random_.between(-0.1, 0.1);
+            body(x, y, low, side, random_.between(0, 6.28));
             low += side;
             side *= random_.below(2) != 0 ? 1 : 0.7;
         }

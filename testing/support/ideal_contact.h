@@ -110,6 +110,12 @@ struct BlockShape {
     dvec3 low, high;
 };
 
+/// Three of the four columns of a cube of the side `side`, on z = `low`.
+inline std::vector<BlockShape> three_quarters(double side, double low) {
+    const double h = side / 2;
+    return {{{-h, -h, low}, {h, 0, low + side}}, {{-h, -h, low}, {0, h, low + side}}};
+}
+
 /// The surface of a union of boxes as a closed mesh: the faces between inner and outer cells of the grid of all their
 /// sides.
 inline TrianglesObject blocks_mesh(const std::vector<BlockShape>& boxes) {

@@ -48,13 +48,13 @@ TYPED_TEST_SUITE(EdgeContacts, Reals);
 TYPED_TEST(EdgeContacts, OfSolidsHaveFewFaults) {
     const ContactCounts all = walk_all<TypeParam>(of_cubes, false);
     EXPECT_GT(all.lines, 400000u);
-    EXPECT_LE(all.faults(), 20u);
+    EXPECT_LE(all.faults(), 30u);
 }
 
 TYPED_TEST(EdgeContacts, OfMeshesHaveFewFaults) {
     const ContactCounts all = walk_all<TypeParam>(of_meshes, true);
     EXPECT_GT(all.lines, 400000u);
-    EXPECT_LE(all.faults(), 400u);
+    EXPECT_LE(all.faults(), 300u);
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ TYPED_TEST(Contacts, SolidsAndSheetsHaveNoFault) {
 
 /// Two of three cubes are meshes.
 TYPED_TEST(Contacts, MeshesHaveFewFaults) {
-    EXPECT_LE(faults<TypeParam>(true), 9000u);
+    EXPECT_LE(faults<TypeParam>(true), 30u);
 }
 
 }  // namespace

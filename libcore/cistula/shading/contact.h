@@ -116,7 +116,8 @@ class ContactStart {
         return ahead == (slope > Real(0)) ? -1 : 1;
     }
 
-    /// The side on which all corners of the triangle that was hit lie, or 0.
+    /// The side on which all corners of the triangle that was hit lie; if it lies in the plane itself, as a triangle
+    /// beside one that shares the plane does, the ray's side of it; else 0.
     CISTULA_INLINE int side_of_triangle(const SharedPlane<Real>& plane) const {
         Vec3<Real> corner[3];
         triangle_corners(scene_, hit_.slot, corner);
@@ -126,7 +127,8 @@ class ContactStart {
             above |= off > near_start<Real> * plane.slack;
             below |= off < -near_start<Real> * plane.slack;
         }
-        return above == below ? 0 : above ? 1 : -1;
+        if (above != below) return above ? 1 : -1;
+        return !above && magnitude(dot(normal_, plane.normal)) > Real(0.5) ? own_side(plane) : 0;
     }
 
     /// Removes the solids that end at a plane, for a start on the other side of it (line 8).

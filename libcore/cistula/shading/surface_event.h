@@ -92,7 +92,7 @@ CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& interse
         if (plane_of_face(scene, solid, key_face(hit.key)) != no_plane)
             gather_shared(scene, intersector, ray, event);
         else
-            event.changes = ray.media.contains(solid) != event.beyond.contains(solid);
+            event.changes = ray.media.contains(solid) || event.beyond.contains(solid);
     }
 }
 
