@@ -1,5 +1,6 @@
 // Rays that start where bodies share a plane: on which side of every plane near the start, and inside which solids
-// (docs/rules.md, 11, lines 8 to 13). What the parent ray knows decides; the rounded place of the start never does.
+// (docs/rules.md, 11, lines 8 to 15). What the parent ray knows decides, not the rounded place of the start; of meshes,
+// what lies ahead of it.
 #pragma once
 
 #include "cistula/geometry/shared_plane.h"
@@ -196,7 +197,7 @@ CISTULA_INLINE bool start_at_contact(const ConstantScene<Real>&, const Ray<Real,
 }
 
 /// Replaces the meshes in a ray's media by those that it leaves more often than it enters, ahead of its start
-/// (docs/rules.md, 11, line 13). Not inlined: only rays near meshes at contacts need it.
+/// (docs/rules.md, 11, line 15). Not inlined: only rays near meshes at contacts need it.
 template <class Real, class Intersector, class Media, class Scene>
 CISTULA_NOINLINE void count_meshes(const Scene& scene, const Intersector& intersector, Ray<Real, Media>& ray) {
     Media ahead;

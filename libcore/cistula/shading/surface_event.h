@@ -91,7 +91,7 @@ CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& interse
         const uint32_t solid = key_solid(hit.key);
         if (plane_of_face(scene, solid, key_face(hit.key)) != no_plane)
             gather_shared(scene, intersector, ray, event);
-        else
+        else  // neither: one of the two crossings of a grazed edge, in the wrong order
             event.changes = ray.media.contains(solid) || event.beyond.contains(solid);
     }
 }
