@@ -1,5 +1,6 @@
 #include "scene/compile/mesh_apex.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <tbb/blocked_range.h>
@@ -166,13 +167,15 @@ class ApexCheck {
         reach.low -= dvec3{highest};
         reach.high += dvec3{highest};
         around_.clear();
+        size_t looked_at = 0;
         all_around_ = !any_in_box(tree_, reach, [&](uint32_t other) {
             for (uint32_t i = groups_.first[other]; i < groups_.first[other + 1]; ++i) {
                 const auto corner = mesh_.triangle(groups_.order[i]);
                 const Box box = box_of(corner);
                 if (!apart(reach, box)) around_.push_back({groups_.order[i], corner, box});
             }
-            return around_.size() > most;
+            looked_at += groups_.first[other + 1] - groups_.first[other];
+            return looked_at > most;
         });
     }
 
@@ -230,8 +233,8 @@ class ApexCheck {
 ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
     // First with limits that only tangles and fans of hundreds of triangles reach. Groups that reach them, if they are
     // few, share what may be spent on all of them.
-    constexpr ApexLimits first_limits{512, 128};
-    constexpr size_t cost_of_the_rest = 48'000'000;
+    constexpr ApexLimits first_limits{512, 64};
+    const size_t cost_of_the_rest = 480 * std::max<size_t>(mesh.size(), 100'000);
     const ApexHeights initial = heights;
     std::vector<ApexFaults> faults(groups.size());
     const auto check = [&](const auto& range, const ApexLimits& limits, const auto& group_at) {
