@@ -7,8 +7,8 @@
 namespace cistula {
 namespace {
 
-/// Start of the least rotation of a cyclic sequence, in linear time (Shiloach 1981): of two candidates the larger, and all that
-/// begin where they agree, are no candidates.
+/// Start of the least rotation of a cyclic sequence, in linear time (Shiloach 1981): of two candidates the larger, and
+/// all that begin where they agree, are no candidates.
 size_t least_start(const std::vector<uint32_t>& corners) {
     const size_t n = corners.size();
     size_t a = 0, b = 1, same = 0;
