@@ -45,22 +45,16 @@ bool crosses(const dvec3& from, double from_volume, const dvec3& to, const std::
 /// Place of another triangle relative to a tetrahedron's base.
 struct Placement {
     int shared[3] = {-1, -1, -1};  // for each of its corners the corner of the base at the same position; -1: none
-    double lowest = INFINITY, highest = -INFINITY;  // of its corners over the base; shared ones are at 0
+    double highest = -INFINITY;    // of its corners over the base; shared ones are at 0
 };
 
 /// The tetrahedron between a triangle and its apex on one side. It shrinks with the apex' height.
 struct ApexView {
     ApexView(const std::array<dvec3, 3>& base, const dvec3& unit_normal)
-        : corner(base), centroid((base[0] + base[1] + base[2]) / 3.0), up(unit_normal) {
-        for (int i = 0; i < 3; ++i) {
-            inward[i] = cross(up, corner[(i + 1) % 3] - corner[i]);
-            if (dot(inward[i], centroid - corner[i]) < 0) inward[i] = -inward[i];
-        }
-    }
+        : corner(base), centroid((base[0] + base[1] + base[2]) / 3.0), up(unit_normal) {}
 
     std::array<dvec3, 3> corner;
     dvec3 centroid, up;  // unit normal on that side
-    dvec3 inward[3];     // normals of the edges, in the base's plane
 
     Placement placement(const std::array<dvec3, 3>& q) const {
         Placement place;
@@ -68,23 +62,9 @@ struct ApexView {
             for (int i = 0; i < 3; ++i)
                 if (q[k] == corner[i]) place.shared[k] = i;
             const double over = place.shared[k] < 0 ? dot(up, q[k] - corner[0]) : 0;
-            place.lowest = min_or_second(over, place.lowest);
             place.highest = max_or_second(over, place.highest);
         }
         return place;
-    }
-
-    /// Whether a triangle cannot intersect the tetrahedron, seen from its corners: none is above the base, all are well
-    /// above the apex, or all lie beyond one edge or on it.
-    bool is_clear(const std::array<dvec3, 3>& q, const Placement& place, double height) const {
-        if (!(place.highest > 0) || place.lowest >= 2 * height) return true;
-        for (int i = 0; i < 3; ++i) {
-            const auto beyond = [&](int k) {
-                return place.shared[k] == i || place.shared[k] == (i + 1) % 3 || dot(inward[i], q[k] - corner[i]) < 0;
-            };
-            if (beyond(0) && beyond(1) && beyond(2)) return true;
-        }
-        return false;
     }
 
     /// Whether another triangle intersects the tetrahedron other than through its base.
@@ -200,19 +180,22 @@ class ApexCheck {
                     cost += cost_of_test;
                     return view.blocked_by(other->corner, place, static_cast<double>(at));
                 };
-                if (!(height > 0) || view.is_clear(other->corner, place, static_cast<double>(height))) continue;
+                if (!(height > 0) || !(place.highest > 0)) continue;
                 if (!blocked(height)) continue;
                 // A triangle that passes through the base blocks every apex; no height is better than the one that the
                 // other neighbors allow.
-                const float lowest = std::ldexp(height, halvings - most_halvings);
-                if (halvings == most_halvings || blocked(lowest)) {
-                    through = true;
-                    continue;
+                float lower = height;
+                int more = 0;
+                bool free = false;
+                while (!free && halvings + more < most_halvings) {
+                    lower /= 2;
+                    ++more;
+                    free = !blocked(lower);
                 }
-                do {
-                    height /= 2;
-                    ++halvings;
-                } while (halvings < most_halvings && blocked(height));
+                through |= !free;
+                if (!free) continue;
+                height = lower;
+                halvings += more;
             }
             faults.crossed += through;
             faults.unchecked += !through && !all;
