@@ -216,8 +216,10 @@ class ApexCheck {
 ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
     // First with limits that only tangles and fans of hundreds of triangles reach. Groups that reach them, if they are
     // few, share what may be spent on all of them.
-    constexpr ApexLimits first_limits{512, 64};
     const size_t cost_of_the_rest = 480 * std::max<size_t>(mesh.size(), 100'000);
+    const size_t fair_share = cost_of_the_rest / (2 * std::max<size_t>(mesh.size(), 1));  // if all groups needed more
+    const ApexLimits first_limits{std::max<size_t>(512, fair_share),
+                                  static_cast<uint32_t>(fair_share > 512 ? fair_share : 64)};
     const ApexHeights initial = heights;
     std::vector<ApexFaults> faults(groups.size());
     const auto check = [&](const auto& range, const ApexLimits& limits, const auto& group_at) {
