@@ -223,8 +223,9 @@ ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const 
     const ApexHeights initial = heights;
     std::vector<ApexFaults> faults(groups.size());
     const auto check = [&](const auto& range, const ApexLimits& limits, const auto& group_at) {
-        ApexCheck check(mesh, groups, tree, heights);
-        for (uint32_t i = range.begin(); i != range.end(); ++i) faults[group_at(i)] = check.check(group_at(i), limits);
+        ApexCheck checker(mesh, groups, tree, heights);
+        for (uint32_t i = range.begin(); i != range.end(); ++i)
+            faults[group_at(i)] = checker.check(group_at(i), limits);
     };
     tbb::parallel_for(tbb::blocked_range<uint32_t>(0, groups.size(), 64),
                       [&](const auto& range) { check(range, first_limits, [](uint32_t i) { return i; }); });
