@@ -218,8 +218,8 @@ ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const 
     // few, share what may be spent on all of them.
     const size_t cost_of_the_rest = 480 * std::max<size_t>(mesh.size(), 100'000);
     const size_t fair_share = cost_of_the_rest / (2 * std::max<size_t>(mesh.size(), 1));  // if all groups needed more
-    const ApexLimits first_limits{std::max<size_t>(512, fair_share),
-                                  static_cast<uint32_t>(fair_share > 512 ? fair_share : 64)};
+    const ApexLimits first_limits{std::max<size_t>(2048, fair_share),
+                                  static_cast<uint32_t>(fair_share > 1024 ? fair_share : 1024)};
     const ApexHeights initial = heights;
     std::vector<ApexFaults> faults(groups.size());
     const auto check = [&](const auto& range, const ApexLimits& limits, const auto& group_at) {
@@ -238,7 +238,7 @@ ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const 
             sides += 2 * (groups.first[g + 1] - groups.first[g]);
         }
     const size_t share = rest.empty() ? 0 : cost_of_the_rest / sides;
-    if (share >= 8 * first_limits.cost_a_side) {
+    if (share >= 2 * first_limits.cost_a_side) {
         for (const uint32_t g : rest)
             for (uint32_t i = groups.first[g]; i < groups.first[g + 1]; ++i)
                 for (int side = 0; side < 2; ++side)
