@@ -336,6 +336,46 @@ TEST(MeshApex, SoupsEndWithinTheBoundedNumberOfHalvings) {
             EXPECT_GE(soup.checked.side[side][t], std::ldexp(soup.first.side[side][t], -most_halvings));
 }
 
+TEST(MeshApex, CrowdedEdgesTakeTheNearestOnEachSide) {
+    // Pages of a book at uneven angles: by all pairs up to 16 pages, by their order beyond.
+    for (const int pages : {15, 40}) {
+        TrianglesObject book;
+        book.vertices = {{0, 0, 0}, {0, 0, 2}};
+        std::vector<double> angles;
+        for (int i = 0; i < pages; ++i) {
+            angles.push_back(i * i * 6.0 / (pages * pages));
+            const auto last = static_cast<uint32_t>(book.vertices.size());
+            book.vertices.push_back({std::cos(angles.back()), std::sin(angles.back()), 1});
+            if (i % 2)
+                book.triangles.push_back({1, 0, last});
+            else
+                book.triangles.push_back({0, 1, last});
+        }
+        const Apexes apexes(book);
+        EXPECT_EQ(apexes.topology.crowded_edges, 1u);
+        const double inradius = 2 / (2 + 2 * std::sqrt(2.0));
+        for (int i = 0; i < pages; ++i) {
+            const double after = (i + 1 < pages ? angles[i + 1] : angles[0] + 2 * M_PI) - angles[i];
+            const double before = angles[i] - (i > 0 ? angles[i - 1] : angles[pages - 1] - 2 * M_PI);
+            const auto height = [&](double angle) { return inradius / 8 * std::min(1.0, std::tan(angle / 2)); };
+            EXPECT_NEAR(apexes.first.side[i % 2 ? 0 : 1][i], height(after), 1e-8) << i;
+            EXPECT_NEAR(apexes.first.side[i % 2 ? 1 : 0][i], height(before), 1e-8) << i;
+        }
+    }
+}
+
+TEST(MeshApex, FansOfHundredsAreCheckedWhole) {
+    const Apexes fan(torus(1, 1, 400, 3));
+    EXPECT_EQ(fan.unchecked, 0u);
+}
+
+TEST(MeshApex, WhatIsTooTangledIsCounted) {
+    const Apexes soup(triangle_soup(100000, 1.5, 11));
+    EXPECT_GT(soup.blocked, 0u);
+    EXPECT_GT(soup.unchecked, 0u);
+    EXPECT_LE(soup.blocked + soup.unchecked, 200000u);
+}
+
 TEST(MeshApex, DoNotDependOnTheRun) {
     const TrianglesObject object = bumpy_sphere(20000, 0.3);
     const Apexes a(object), b(object);

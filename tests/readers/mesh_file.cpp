@@ -1,5 +1,8 @@
 #include "scene/readers/mesh_file.h"
 
+#include <numeric>
+#include <set>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -198,6 +201,52 @@ TEST(Polygon, OthersEndToo) {
     EXPECT_EQ(triangles.size(), 3u);
     append_polygon(bow, std::vector<uint32_t>{0, 1}, triangles);
     EXPECT_EQ(triangles.size(), 3u);
+}
+
+/// Outlines of about `count` corners: a circle, a star of needles, a comb, and a line that crosses itself everywhere.
+std::vector<std::vector<dvec3>> large_outlines(uint32_t count) {
+    std::vector<std::vector<dvec3>> outlines(4);
+    outlines[2] = {{0, 0, 0}, {count + 1.0, 0, 0}};
+    uint64_t random = 1;
+    const auto draw = [&random] {
+        return double((random = random * 6364136223846793005 + 1442695040888963407) >> 11) * 0x1p-53;
+    };
+    for (uint32_t i = 0; i < count; ++i) {
+        const double angle = 2 * M_PI * i / count, radius = 0.2 + draw();
+        const dvec3 direction{std::cos(angle), std::sin(angle), 0};
+        outlines[0].push_back(direction);
+        outlines[1].push_back(radius * direction);
+        outlines[2].push_back({count - i + 0.5, i % 2 ? 1.0 : 1000.0, 0});
+        outlines[3].push_back({draw(), draw(), 0});
+    }
+    return outlines;
+}
+
+TEST(Polygon, LargeOnesKeepTheirArea) {
+    for (const uint32_t count : {65u, 1000u, 20000u}) {
+        const auto outlines = large_outlines(count);
+        for (size_t shape = 0; shape < outlines.size(); ++shape) {
+            std::vector<uint32_t> corners(outlines[shape].size());
+            std::iota(corners.begin(), corners.end(), 0);
+            std::vector<std::array<uint32_t, 3>> triangles;
+            append_polygon(outlines[shape], corners, triangles);
+            ASSERT_EQ(triangles.size(), corners.size() - 2);
+            // Each edge of the outline is one of a triangle, and all others are of two: what was closed stays closed.
+            std::set<std::pair<uint32_t, uint32_t>> edges;
+            for (const auto& t : triangles)
+                for (int k = 0; k < 3; ++k)
+                    if (!edges.erase({t[(k + 1) % 3], t[k]})) edges.insert({t[k], t[(k + 1) % 3]});
+            EXPECT_EQ(edges.size(), corners.size());
+            if (shape == 3) continue;
+            double shoelace = 0;
+            for (size_t i = 0; i < corners.size(); ++i) {
+                const dvec3 &a = outlines[shape][i], &b = outlines[shape][(i + 1) % corners.size()];
+                shoelace += (a.x * b.y - a.y * b.x) / 2;
+            }
+            // n triangles, each with a rounding of a few ulps of the box.
+            EXPECT_NEAR(area(outlines[shape], triangles), shoelace, 1e-12 * count * shoelace);
+        }
+    }
 }
 
 SceneDescription scene_with(const std::string& file, int material) {

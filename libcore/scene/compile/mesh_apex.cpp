@@ -1,5 +1,6 @@
 #include "scene/compile/mesh_apex.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <tbb/blocked_range.h>
@@ -44,22 +45,16 @@ bool crosses(const dvec3& from, double from_volume, const dvec3& to, const std::
 /// Place of another triangle relative to a tetrahedron's base.
 struct Placement {
     int shared[3] = {-1, -1, -1};  // for each of its corners the corner of the base at the same position; -1: none
-    double lowest = INFINITY, highest = -INFINITY;  // of its corners over the base; shared ones are at 0
+    double highest = -INFINITY;    // of its corners over the base; shared ones are at 0
 };
 
 /// The tetrahedron between a triangle and its apex on one side. It shrinks with the apex' height.
 struct ApexView {
     ApexView(const std::array<dvec3, 3>& base, const dvec3& unit_normal)
-        : corner(base), centroid((base[0] + base[1] + base[2]) / 3.0), up(unit_normal) {
-        for (int i = 0; i < 3; ++i) {
-            inward[i] = cross(up, corner[(i + 1) % 3] - corner[i]);
-            if (dot(inward[i], centroid - corner[i]) < 0) inward[i] = -inward[i];
-        }
-    }
+        : corner(base), centroid((base[0] + base[1] + base[2]) / 3.0), up(unit_normal) {}
 
     std::array<dvec3, 3> corner;
     dvec3 centroid, up;  // unit normal on that side
-    dvec3 inward[3];     // normals of the edges, in the base's plane
 
     Placement placement(const std::array<dvec3, 3>& q) const {
         Placement place;
@@ -67,23 +62,9 @@ struct ApexView {
             for (int i = 0; i < 3; ++i)
                 if (q[k] == corner[i]) place.shared[k] = i;
             const double over = place.shared[k] < 0 ? dot(up, q[k] - corner[0]) : 0;
-            place.lowest = min_or_second(over, place.lowest);
             place.highest = max_or_second(over, place.highest);
         }
         return place;
-    }
-
-    /// Whether a triangle cannot intersect the tetrahedron, seen from its corners: none is above the base, all are well
-    /// above the apex, or all lie beyond one edge or on it.
-    bool is_clear(const std::array<dvec3, 3>& q, const Placement& place, double height) const {
-        if (!(place.highest > 0) || place.lowest >= 2 * height) return true;
-        for (int i = 0; i < 3; ++i) {
-            const auto beyond = [&](int k) {
-                return place.shared[k] == i || place.shared[k] == (i + 1) % 3 || dot(inward[i], q[k] - corner[i]) < 0;
-            };
-            if (beyond(0) && beyond(1) && beyond(2)) return true;
-        }
-        return false;
     }
 
     /// Whether another triangle intersects the tetrahedron other than through its base.
@@ -166,13 +147,15 @@ class ApexCheck {
         reach.low -= dvec3{highest};
         reach.high += dvec3{highest};
         around_.clear();
+        size_t looked_at = 0;
         all_around_ = !any_in_box(tree_, reach, [&](uint32_t other) {
             for (uint32_t i = groups_.first[other]; i < groups_.first[other + 1]; ++i) {
                 const auto corner = mesh_.triangle(groups_.order[i]);
                 const Box box = box_of(corner);
                 if (!apart(reach, box)) around_.push_back({groups_.order[i], corner, box});
             }
-            return around_.size() > most;
+            looked_at += groups_.first[other + 1] - groups_.first[other];
+            return looked_at > most;
         });
     }
 
@@ -197,19 +180,22 @@ class ApexCheck {
                     cost += cost_of_test;
                     return view.blocked_by(other->corner, place, static_cast<double>(at));
                 };
-                if (!(height > 0) || view.is_clear(other->corner, place, static_cast<double>(height))) continue;
+                if (!(height > 0) || !(place.highest > 0)) continue;
                 if (!blocked(height)) continue;
                 // A triangle that passes through the base blocks every apex; no height is better than the one that the
                 // other neighbors allow.
-                const float lowest = std::ldexp(height, halvings - most_halvings);
-                if (halvings == most_halvings || blocked(lowest)) {
-                    through = true;
-                    continue;
+                float lower = height;
+                int more = 0;
+                bool free = false;
+                while (!free && halvings + more < most_halvings) {
+                    lower /= 2;
+                    ++more;
+                    free = !blocked(lower);
                 }
-                do {
-                    height /= 2;
-                    ++halvings;
-                } while (halvings < most_halvings && blocked(height));
+                through |= !free;
+                if (!free) continue;
+                height = lower;
+                halvings += more;
             }
             faults.crossed += through;
             faults.unchecked += !through && !all;
@@ -230,13 +216,16 @@ class ApexCheck {
 ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
     // First with limits that only tangles and fans of hundreds of triangles reach. Groups that reach them, if they are
     // few, share what may be spent on all of them.
-    constexpr ApexLimits first_limits{512, 128};
-    constexpr size_t cost_of_the_rest = 48'000'000;
+    const size_t cost_of_the_rest = 480 * std::max<size_t>(mesh.size(), 100'000);
+    const size_t fair_share = cost_of_the_rest / (2 * std::max<size_t>(mesh.size(), 1));  // if all groups needed more
+    const ApexLimits first_limits{std::max<size_t>(2048, fair_share),
+                                  static_cast<uint32_t>(fair_share > 1024 ? fair_share : 1024)};
     const ApexHeights initial = heights;
     std::vector<ApexFaults> faults(groups.size());
     const auto check = [&](const auto& range, const ApexLimits& limits, const auto& group_at) {
-        ApexCheck check(mesh, groups, tree, heights);
-        for (uint32_t i = range.begin(); i != range.end(); ++i) faults[group_at(i)] = check.check(group_at(i), limits);
+        ApexCheck checker(mesh, groups, tree, heights);
+        for (uint32_t i = range.begin(); i != range.end(); ++i)
+            faults[group_at(i)] = checker.check(group_at(i), limits);
     };
     tbb::parallel_for(tbb::blocked_range<uint32_t>(0, groups.size(), 64),
                       [&](const auto& range) { check(range, first_limits, [](uint32_t i) { return i; }); });
@@ -249,7 +238,7 @@ ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const 
             sides += 2 * (groups.first[g + 1] - groups.first[g]);
         }
     const size_t share = rest.empty() ? 0 : cost_of_the_rest / sides;
-    if (share >= 8 * first_limits.cost_a_side) {
+    if (share >= 2 * first_limits.cost_a_side) {
         for (const uint32_t g : rest)
             for (uint32_t i = groups.first[g]; i < groups.first[g + 1]; ++i)
                 for (int side = 0; side < 2; ++side)
