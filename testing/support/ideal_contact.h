@@ -188,9 +188,14 @@ class ContactScene {
         const double radius = side / 2 * square_root(3.0);
         if (kind == BodyKind::planes) {
             add_solid(scene, PlatonicSolid::cube, middle, radius, own.degrees(), material);
-        } else {
+        } else if (kind == BodyKind::mesh) {
             TrianglesObject mesh = solid_mesh(PlatonicSolid::cube, middle, radius, own.degrees());
-            mesh.keep_triangles = kind == BodyKind::mesh;
+            mesh.keep_triangles = true;
+            add_object(scene, mesh, material);
+        } else {
+            // From the basis itself: in double, angles near the poles lose more than what still counts as a contact.
+            TrianglesObject mesh = blocks_mesh({{dvec3(-side / 2), dvec3(side / 2)}});
+            for (dvec3& p : mesh.vertices) p = middle + own(p);
             add_object(scene, mesh, material);
         }
     }
