@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 #include <csignal>
+#include <iterator>
 
 #include "scene/base/error.h"
 
@@ -13,11 +14,11 @@ std::atomic<std::atomic<bool>*> watched{nullptr};
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
-constexpr int signal_count = 3;
+constexpr size_t signal_count = std::size(signals);
 struct sigaction previous[signal_count];
 
 void restore() {
-    for (int i = 0; i < signal_count; ++i) sigaction(signals[i], &previous[i], nullptr);
+    for (size_t i = 0; i < signal_count; ++i) sigaction(signals[i], &previous[i], nullptr);
 }
 
 void on_signal(int) {
@@ -38,7 +39,7 @@ InterruptGuard::InterruptGuard() {
     action.sa_handler = on_signal;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
-    for (int i = 0; i < signal_count; ++i) {
+    for (size_t i = 0; i < signal_count; ++i) {
         sigaction(signals[i], nullptr, &previous[i]);
         // A signal ignored by the parent (nohup, a shell's background job) stays ignored.
         if (previous[i].sa_handler != SIG_IGN) sigaction(signals[i], &action, nullptr);
