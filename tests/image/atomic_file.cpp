@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <memory>
+
 #include "testing/support/expect_error.h"
 #include "testing/support/file_size_limit.h"
 #include "testing/support/scratch_directory.h"
@@ -96,6 +98,35 @@ TEST(AtomicFile, LinksThatLeadNowhereAreRefused) {
     EXPECT_ERROR(write_file_atomically(loop, "x"), ExitCode::file,
                  loop + ": cannot write: Too many levels of symbolic links");
     EXPECT_EQ(scratch.names(), (Names{"dangling", "loop"}));
+}
+
+TEST(AtomicFile, NamesMayBeAsLongAsTheFileSystemAllows) {
+    const ScratchDirectory scratch;
+    const std::string longest(255, 'n'), too_long(256, 'n');
+    write_file_atomically(scratch.file(longest), "one");
+    const AtomicFile other(scratch.file(longest));  // while another is written
+    write_file_atomically(scratch.file(longest), "two");
+    EXPECT_EQ(bytes_of(scratch.file(longest)), "two");
+    EXPECT_ERROR(AtomicFile(scratch.file(too_long)), ExitCode::file,
+                 scratch.file(too_long) + ": cannot write: File name too long; give a shorter name");
+}
+
+TEST(AtomicFile, AnEndWithoutDestructorsLeavesNoTemporary) {
+    const ScratchDirectory scratch;
+    put_bytes(scratch.file("a"), "old");
+    EXPECT_EXIT(
+        {
+            write_file_atomically(scratch.file("whole"), "whole");
+            AtomicFile one(scratch.file("a")), two(scratch.file("b")), done(scratch.file("c"));
+            const auto three = std::make_unique<AtomicFile>(scratch.file("d"));
+            done.commit();
+            two.write("half");
+            AtomicFile::abandon_all();
+            _exit(3);
+        },
+        testing::ExitedWithCode(3), "");
+    EXPECT_EQ(scratch.names(), (Names{"a", "c", "whole"}));
+    EXPECT_EQ(bytes_of(scratch.file("a")), "old");
 }
 
 TEST(AtomicFile, OtherNamesOfAFileKeepTheOldContents) {

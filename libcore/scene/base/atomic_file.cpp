@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <mutex>
 #include <string>
 
 namespace cistula {
@@ -39,6 +40,11 @@ bool lock(int temporary) {
     struct stat status;
     return fstat(temporary, &status) == 0 && status.st_nlink > 0;
 }
+
+/// The objects that have a temporary. Nothing is allocated with the lock held: abandon_all() takes it when memory ran
+/// out, on the thread that wanted some.
+std::mutex list_lock;
+AtomicFile* list = nullptr;
 
 bool is_same(const struct stat& a, const struct stat& b) {
     return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
@@ -73,11 +79,12 @@ void AtomicFile::find_target() {
         std::error_code failure;
         if (is_link) target = fs::canonical(target, failure);
         if (failure) throw file_error(path_, "write", failure.value());
+    } else if (reason != ENOENT) {
+        throw file_error(path_, "write", reason);
     } else if (is_link) {
-        throw reason == ENOENT ? file_error(path_, "write",
-                                            std::string("it is a symbolic link to a file that does not "
-                                                        "exist; remove the link or give another name"))
-                               : file_error(path_, "write", reason);
+        throw file_error(path_, "write",
+                         std::string("it is a symbolic link to a file that does not exist; remove the link or give "
+                                     "another name"));
     }
     name_ = target.filename().string();
     if (name_.empty()) throw file_error(path_, "write", EISDIR);
@@ -90,33 +97,55 @@ void AtomicFile::find_target() {
 }
 
 void AtomicFile::create_temporary() {
-    // Leaves room for the number if the name is as long as the file system allows.
-    const std::string prefix = "." + name_.substr(0, 200) + ".";
-    constexpr int most_at_once = 100, flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-    int error_number = EEXIST;
-    for (int i = 0; i < most_at_once && descriptor_ < 0 && error_number == EEXIST; ++i) {
+    // Leaves room for the rest if the name is as long as the file system allows.
+    constexpr int most_at_once = 100;
+    constexpr long rest = 9;  // of ".NAME.99.part"
+    const long longest = fpathconf(directory_.number, _PC_NAME_MAX);
+    const std::string prefix =
+        "." + name_.substr(0, static_cast<size_t>(longest > 2 * rest ? longest - rest : 200)) + ".";
+    int failure = EEXIST;
+    for (int i = 0; i < most_at_once && failure == EEXIST; ++i) {
         temporary_ = prefix + std::to_string(i) + ".part";
-        descriptor_ = openat(directory_.number, temporary_.c_str(), flags, 0666);
-        error_number = errno;
-        if (descriptor_ < 0 && error_number == EEXIST && remove_stale(directory_.number, temporary_)) {
-            descriptor_ = openat(directory_.number, temporary_.c_str(), flags, 0666);
-            error_number = errno;
-        }
-        if (descriptor_ < 0 || lock(descriptor_)) continue;
-        close(descriptor_);
-        descriptor_ = -1;
-        error_number = EEXIST;
+        failure = open_temporary();
+        if (failure == EEXIST && remove_stale(directory_.number, temporary_)) failure = open_temporary();
+        if (failure != 0 || lock(descriptor_)) continue;
+        close_temporary(false);
+        failure = EEXIST;
     }
-    if (descriptor_ < 0) {
-        temporary_.clear();
-        throw file_error(path_, "write", error_number);
-    }
+    if (failure != 0) throw file_error(path_, "write", failure);
     if (permissions_ >= 0) (void)!fchmod(descriptor_, static_cast<mode_t>(permissions_));
 }
 
-AtomicFile::~AtomicFile() {
-    if (!temporary_.empty()) unlinkat(directory_.number, temporary_.c_str(), 0);
+/// Creates the temporary and puts the object on the list. Returns the error's number, or 0.
+int AtomicFile::open_temporary() {
+    const std::lock_guard guard(list_lock);
+    descriptor_ =
+        openat(directory_.number, temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) return errno;
+    next_ = list;
+    list = this;
+    return 0;
+}
+
+/// Takes the object off the list, and closes its temporary if that is open.
+void AtomicFile::close_temporary(bool remove) noexcept {
+    const std::lock_guard guard(list_lock);
+    AtomicFile** at = &list;
+    while (*at && *at != this) at = &(*at)->next_;
+    if (*at) *at = next_;
+    if (remove) unlinkat(directory_.number, temporary_.c_str(), 0);
     if (descriptor_ >= 0) close(descriptor_);
+    descriptor_ = -1;
+}
+
+AtomicFile::~AtomicFile() {
+    close_temporary(!temporary_.empty());
+}
+
+void AtomicFile::abandon_all() noexcept {
+    list_lock.lock();
+    for (const AtomicFile* file = list; file; file = file->next_)
+        unlinkat(file->directory_.number, file->temporary_.c_str(), 0);
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -129,10 +158,17 @@ void AtomicFile::write(std::string_view bytes) {
 }
 
 void AtomicFile::commit() {
-    if (fsync(descriptor_) != 0) throw file_error(path_, "write", errno);
-    if (renameat(directory_.number, temporary_.c_str(), directory_.number, name_.c_str()) != 0)
-        throw file_error(path_, "write", errno);
-    temporary_.clear();
+    // EINVAL: the file system has nothing to flush.
+    if (fsync(descriptor_) != 0 && errno != EINVAL) throw file_error(path_, "write", errno);
+    int failure = 0;
+    {
+        const std::lock_guard guard(list_lock);
+        if (renameat(directory_.number, temporary_.c_str(), directory_.number, name_.c_str()) != 0)
+            failure = errno;
+        else
+            temporary_.clear();
+    }
+    if (failure != 0) throw file_error(path_, "write", failure);
     const int closed = close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throw file_error(path_, "write", errno);

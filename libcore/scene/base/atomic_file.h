@@ -35,6 +35,10 @@ class AtomicFile {
     /// Flushes the bytes to the disk and renames the temporary to the target. Throws Error(ExitCode::file).
     void commit();
 
+    /// Removes the temporaries of all objects of the process, for an end without destructors. After that no file is
+    /// created or committed: whoever tries waits for the end. Allocates nothing.
+    static void abandon_all() noexcept;
+
   private:
     /// A descriptor that is closed with its object.
     struct Descriptor {
@@ -44,6 +48,8 @@ class AtomicFile {
 
     void find_target();
     void create_temporary();
+    int open_temporary();
+    void close_temporary(bool remove) noexcept;
 
     std::string path_;      // as the user wrote it, for messages
     std::string name_;      // the target's, in directory_
@@ -51,6 +57,7 @@ class AtomicFile {
     Descriptor directory_;
     std::string temporary_;  // empty once committed
     int descriptor_ = -1;
+    AtomicFile* next_ = nullptr;  // of those with a temporary
 };
 
 /// Replaces the file by these bytes, or leaves it unchanged and throws Error(ExitCode::file).
