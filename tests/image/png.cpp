@@ -33,6 +33,22 @@ TEST(Png, HoldsTheNearestCodes) {
     EXPECT_EQ(png, encode_png(picture));
 }
 
+/// Nothing of the machine, the time, or what a version of libpng adds.
+TEST(Png, HasNoChunksButThoseOfThePicture) {
+    const auto chunks = [](const std::string& png) {
+        std::string names;
+        for (size_t at = 8; at + 8 <= png.size();) {
+            size_t size = 0;
+            for (size_t i = at; i < at + 4; ++i) size = 256 * size + static_cast<unsigned char>(png[i]);
+            names += png.substr(at + 4, 4) + " ";
+            at += size + 12;
+        }
+        return names;
+    };
+    EXPECT_EQ(chunks(encode_png({2, 1, {{0, 0.5f, 1}, {1, 1, 1}}})), "IHDR sRGB IDAT IEND ");
+    EXPECT_EQ(chunks(encode_indexed_png(1, 1, {0}, {1, 2, 3})), "IHDR sRGB PLTE IDAT IEND ");
+}
+
 TEST(Png, HoldsEveryCode) {
     ColorPicture picture{256, 1, {}};
     std::vector<uint8_t> codes;

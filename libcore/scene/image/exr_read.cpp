@@ -13,6 +13,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -23,16 +24,19 @@
 namespace cistula {
 namespace {
 
-/// Runs `read`; the library's exceptions become an Error that names the file.
+/// Runs `read`; the library's exceptions become an Error that names the file, or std::bad_alloc.
 template <class Read>
 auto with_file_errors(const std::string& path, Read read) {
+    errno = 0;
     try {
         return read();
     } catch (const Error&) {
+        if (errno == ENOMEM) throw std::bad_alloc();  // the library takes what it could not read for missing
         throw;
     } catch (const std::bad_alloc&) {
-        throw file_error(path, "read", std::string("not enough memory for a picture of its size"));
+        throw;
     } catch (const std::exception& failure) {
+        if (errno == ENOMEM) throw std::bad_alloc();
         throw file_error(path, "read", std::string(failure.what()));
     }
 }
@@ -204,12 +208,14 @@ LayeredPicture read_exr(const std::string& path) {
 
 bool exr_is_complete(const std::string& path) {
     limit_sizes();
+    errno = 0;
     try {
         Imf::InputFile file(path.c_str());
         check_chunks(file);
         if (file.header().hasTileDescription()) read_layers(path);
         return true;
     } catch (const std::exception&) {
+        if (errno == ENOMEM) throw std::bad_alloc();
         return false;
     }
 }

@@ -164,6 +164,13 @@ void write_pixels(Imf::OStream& stream, const LayeredPicture& picture) {
     file.writePixels(picture.height);
 }
 
+/// Whether the file is not complete: OpenEXR 3.1 leaves out, without a word, blocks of lines for whose compression it
+/// got no memory. False where the system does not let us read what we wrote.
+bool lacks_chunks(int descriptor) {
+    const std::string name = "/proc/self/fd/" + std::to_string(descriptor);
+    return access(name.c_str(), R_OK) == 0 && !exr_is_complete(name);
+}
+
 }  // namespace
 
 void set_exr_threads(int threads) {
@@ -174,13 +181,22 @@ void write_exr(const std::string& path, const LayeredPicture& picture) {
     check(picture);
     AtomicFile target(path);
     CheckedStream stream(target.descriptor(), path);
+    errno = 0;
     try {
         write_pixels(stream, picture);
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& failure) {
+        if (errno == ENOMEM) throw std::bad_alloc();
         if (stream.error_number() == 0) throw file_error(path, "write", std::string(failure.what()));
     }
+    const bool lacked_memory = errno == ENOMEM;
     stream.close();
     if (stream.error_number() != 0) throw file_error(path, "write", stream.error_number());
+    if (lacks_chunks(target.descriptor())) {
+        if (lacked_memory) throw std::bad_alloc();
+        throw file_error(path, "write", std::string("OpenEXR left out a part of it; is there enough memory?"));
+    }
     target.commit();
 }
 

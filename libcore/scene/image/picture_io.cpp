@@ -1,6 +1,5 @@
 #include "scene/image/picture_io.h"
 
-#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -52,8 +51,6 @@ void write_preview(const std::string& path, const ColorPicture& linear) {
     std::string bytes;
     try {
         bytes = encode_png(linear);
-    } catch (const std::bad_alloc&) {
-        throw file_error(path, "write", std::string("not enough memory for a picture of its size"));
     } catch (const std::runtime_error& error) {
         throw file_error(path, "write", std::string(error.what()));
     }

@@ -2,6 +2,8 @@
 
 #include <png.h>
 
+#include <cerrno>
+#include <new>
 #include <stdexcept>
 
 #include "scene/image/srgb_codes.h"
@@ -21,8 +23,11 @@ std::string encode(uint32_t width, uint32_t height, uint32_t format, const std::
     const void* map = colors.empty() ? nullptr : colors.data();
     std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
     png_alloc_size_t size = bytes.size();
-    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, map))
+    errno = 0;
+    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, map)) {
+        if (errno == ENOMEM) throw std::bad_alloc();
         throw std::runtime_error(std::string("libpng: ") + image.message);
+    }
     bytes.resize(size);
     return bytes;
 }
