@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <new>
 
 #include "scene/base/error.h"
@@ -82,14 +81,6 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
             option->results().front().empty())
             fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", option->get_name()));
     return true;
-}
-
-bool is_same_file(const std::string& a, const std::string& b) {
-    std::error_code error;
-    const auto real = [&](const std::string& path) {
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
-    };
-    return real(a) == real(b) || std::filesystem::equivalent(a, b, error);
 }
 
 void print(const std::string& text) {

@@ -54,9 +54,6 @@ void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, 
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
                         const std::function<std::string(const std::string&)>& extra_positional);
 
-/// Whether two paths name the same file, which may not exist yet.
-bool is_same_file(const std::string& a, const std::string& b);
-
 /// Writes to standard output. Throws Error (file).
 void print(const std::string& text);
 

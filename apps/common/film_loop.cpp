@@ -15,6 +15,7 @@
 #include "apps/common/film_progress.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/timing.h"
+#include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
 #include "scene/image/exr.h"
 
@@ -50,6 +51,12 @@ bool is_finished(const FilmJob& job, const CameraFrame& camera) {
     } catch (const Error&) {
         return false;  // not an EXR of this frame: rendered again
     }
+}
+
+/// Throws Error if a frame cannot be written.
+void probe_outputs(const FilmJob& job, int frame) {
+    const AtomicFile image(job.output.for_frame(frame));
+    if (!job.preview.text().empty()) const AtomicFile preview(job.preview.for_frame(frame));
 }
 
 [[noreturn]] void fail_interrupted(const FilmJob& job, const std::vector<FrameStats>& written) {
@@ -120,6 +127,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
         note(fmt::format("render: {} of {} frames are complete and stay as they are", stats.resumed.size(),
                          job.frames.size()));
 
+    if (!cameras.empty()) probe_outputs(job, cameras.front().frame);
     std::set<std::string> notes;  // printed so far
     FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options), progress.stop, stats.frames);
     {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <numeric>
 
 #include "scene/base/error.h"
@@ -108,25 +107,11 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
     return frames;
 }
 
-void require_different_files(const std::string& scene, const OutputName& image, const OutputName& preview,
-                             const std::string& stats, const std::vector<int>& frames, const char* option) {
-    std::map<std::string, const char*> users;
-    const auto use = [&](const std::string& path, const char* what) {
-        if (path.empty()) return;
-        std::error_code error;
-        // Made absolute first: weakly_canonical leaves a relative path unchanged if its first part does not exist.
-        const fs::path absolute = fs::absolute(path, error);
-        const fs::path real = fs::weakly_canonical(absolute, error);
-        const auto [user, is_new] = users.emplace((error ? absolute.lexically_normal() : real).string(), what);
-        if (!is_new && std::string_view(user->second) != what)
-            throw Error(ExitCode::usage, fmt::format("{}: would be both {} and {}; give each a file of its own", path,
-                                                     user->second, what));
-    };
-    if (scene != "-") use(scene, "the scene");
-    use(stats, option);
+void require_different_files(RunFiles others, const OutputName& image, const OutputName& preview,
+                             const std::vector<int>& frames) {
     for (const int frame : frames) {
-        use(image.for_frame(frame), "an image");
-        use(preview.for_frame(frame), "a preview");
+        others.writes(image.for_frame(frame), "an image");
+        others.writes(preview.for_frame(frame), "a preview");
     }
 }
 

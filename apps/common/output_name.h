@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/common/run_files.h"
 #include "scene/description/description.h"
 
 namespace cistula {
@@ -51,9 +52,8 @@ void make_directories(const OutputName& name, const std::vector<int>& frames);
 /// Creates the directory of a single file if it is missing. Throws Error (file) if that fails.
 void make_directory_of(const std::string& path);
 
-/// Throws Error (usage) if any two of these are the same file, symbolic links followed: the scene, the stats, the
-/// images and previews of all frames. `stats` may be empty, `scene` "-"; `option` is the option that names the stats.
-void require_different_files(const std::string& scene, const OutputName& image, const OutputName& preview,
-                             const std::string& stats, const std::vector<int>& frames, const char* option = "--stats");
+/// Throws Error (usage) if two files are one: `others`, the images and previews of these frames.
+void require_different_files(RunFiles others, const OutputName& image, const OutputName& preview,
+                             const std::vector<int>& frames);
 
 }  // namespace cistula

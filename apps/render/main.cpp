@@ -14,6 +14,7 @@
 #include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
 #include "apps/common/precision_choice.h"
+#include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
@@ -73,7 +74,7 @@ std::unique_ptr<Renderer> prepare(SceneSource source, const RenderOptions& optio
     return renderer;
 }
 
-/// The output file names, checked against one another, with their directories created.
+/// The names of the images and previews, and their frames.
 struct Outputs {
     OutputName image, preview;
     std::vector<int> frames;
@@ -102,11 +103,20 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
             throw Error(ExitCode::usage, fmt::format("--preview {}: holds one frame of {}; put #### into the name",
                                                      options.preview, outputs.frames.size()));
     }
-    require_different_files(options.scene, outputs.image, outputs.preview, options.stats, outputs.frames);
+    return outputs;
+}
+
+/// Checks the files to be written against all others, and makes their directories.
+void prepare_files(const RenderOptions& options, const SceneSource& source, const Outputs& outputs) {
+    RunFiles others;
+    others.reads_scene(options.scene, source.files);
+    others.writes(options.stats, "--stats");
+    require_different_files(std::move(others), outputs.image, outputs.preview, outputs.frames);
     make_directories(outputs.image, outputs.frames);
     if (!options.preview.empty()) make_directories(outputs.preview, outputs.frames);
-    if (!options.stats.empty()) make_directory_of(options.stats);
-    return outputs;
+    if (options.stats.empty()) return;
+    make_directory_of(options.stats);
+    const AtomicFile probe(options.stats);
 }
 
 void print_summary(const RunStats& stats, const OutputName& image, double seconds) {
@@ -158,8 +168,6 @@ void render_scene(RenderOptions options) {
 
     const FrameSettings settings = frame_settings(options, scene);
     const Outputs outputs = plan_outputs(options, scene);
-    if (const std::string turns = camera_turns(scene.camera, outputs.frames); !turns.empty())
-        print_warnings({turns}, options);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
 
@@ -167,10 +175,11 @@ void render_scene(RenderOptions options) {
     stats.threads = threads_of(options);
     on_threads(options, [&] {
         SceneSource source;
-        stats.compile_seconds = seconds_of([&] {
-            source = gather_scene(scene);
-            choose_precision(options, source);
-        });
+        stats.compile_seconds = seconds_of([&] { source = gather_scene(scene); });
+        prepare_files(options, source, outputs);
+        if (const std::string turns = camera_turns(scene.camera, outputs.frames); !turns.empty())
+            print_warnings({turns}, options);
+        stats.compile_seconds += seconds_of([&] { choose_precision(options, source); });
         const std::unique_ptr<Renderer> renderer =
             options.precision == Precision::double_
                 ? prepare<double>(std::move(source), options, devices.options, stats)
@@ -256,13 +265,15 @@ void report_pixel(RenderOptions options) {
     const SceneDescription scene = read_scene(options.scene);
     const FrameSettings settings = frame_settings(options, scene);
     const CameraFrame camera = camera_at(scene.camera, options.frames.empty() ? 0 : options.frames.front());
-    if (!options.json.empty() && options.json != "-") {
-        require_different_files(options.scene, OutputName(), OutputName(), options.json, {}, "--json");
-        make_directory_of(options.json);
-    }
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<size_t>(threads_of(options)));
     SceneSource source = gather_scene(scene);
+    if (!options.json.empty() && options.json != "-") {
+        RunFiles files;
+        files.reads_scene(options.scene, source.files);
+        files.writes(options.json, "--json");
+        make_directory_of(options.json);
+    }
     choose_precision(options, source);
     if (options.precision == Precision::double_)
         report_pixel<double>(options, scene, std::move(source), settings, camera);

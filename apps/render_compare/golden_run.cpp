@@ -8,10 +8,12 @@
 #include "apps/common/build_info.h"
 #include "apps/common/command_line.h"
 #include "apps/common/golden.h"
+#include "apps/common/run_files.h"
 #include "report.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/file_bytes.h"
 #include "scene/base/suggest.h"
+#include "scene/compile/scene_source.h"
 #include "scene/image/exr.h"
 #include "scene/readers/read_scene.h"
 
@@ -53,6 +55,20 @@ std::string expected_hash(const fs::path& file, const char* precision) {
     } catch (const nlohmann::json::exception& error) {
         throw file_error(file.string(), "read", fmt::format("a record of make_golden is expected; {}", error.what()));
     }
+}
+
+/// Throws Error (usage) if the file to be written is one of those that are read.
+void require_other_file(const std::string& json, const fs::path& folder, const fs::path& scenes,
+                        const std::vector<std::string>& names) {
+    if (json.empty()) return;
+    RunFiles files;
+    for (const std::string& name : names) {
+        for (const char* file : {"golden.json", "float.exr", "double.exr"})
+            files.reads((folder / name / file).string(), "a golden image");
+        const std::string scene = (scenes / (name + ".json")).string();
+        files.reads_scene(scene, gather_scene(read_scene(scene)).files);
+    }
+    files.writes(json, "--json");
 }
 
 template <class Real>
@@ -132,6 +148,7 @@ bool run_golden(const CompareOptions& options) {
     const std::vector<std::string> names = golden_names(options.golden);
     // Canonical, because "." and "golden/.." have a parent too.
     const fs::path folder = fs::canonical(options.golden), scenes = folder.parent_path() / "scenes";
+    require_other_file(options.json, folder, scenes, names);
     size_t name_width = 12;
     for (const std::string& name : names) name_width = std::max(name_width, name.size());
     say(fmt::format("{}: backend {}{}\n{:<{}} {:<9} {:<8} {}\n", options.golden, backend_name(options.backend),

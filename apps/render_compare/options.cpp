@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
+#include "apps/common/run_files.h"
 #include "scene/base/file_bytes.h"
 
 namespace cistula {
@@ -52,21 +53,6 @@ void refuse(bool given, const char* option, const char* why) {
     if (given) fail_usage(fmt::format("{}: {}", option, why));
 }
 
-/// Throws if an output file is also an input or another output.
-void require_different_files(const CompareOptions& options) {
-    const std::pair<const char*, const std::string*> read[] = {{"the first image", &options.a},
-                                                               {"the second image", &options.b}};
-    const std::pair<const char*, const std::string*> written[] = {{"--diff", &options.diff}, {"--json", &options.json}};
-    const auto check = [](const auto& one, const auto& other) {
-        if (!one.second->empty() && !other.second->empty() && is_same_file(*one.second, *other.second))
-            fail_usage(fmt::format("{}: would be both {} and {}; give each a file of its own", *one.second, other.first,
-                                   one.first));
-    };
-    for (const auto& output : written)
-        for (const auto& input : read) check(output, input);
-    check(written[1], written[0]);
-}
-
 void check_golden(const Texts& texts, CompareOptions& options) {
     constexpr const char* bits = "golden images are equal in every bit or not; leave it out";
     refuse(!texts.fail.empty(), "--fail", bits);
@@ -106,6 +92,11 @@ void check_images(const Texts& texts, CompareOptions& options) {
     options.a = texts.a;
     options.b = texts.b;
     options.diff = texts.diff;
+    RunFiles files;
+    files.reads(options.a, "the first image");
+    files.reads(options.b, "the second image");
+    files.writes(options.diff, "--diff");
+    files.writes(options.json, "--json");
     if (!options.diff.empty() && lower_extension(options.diff) != ".exr")
         fail_usage(fmt::format("--diff {}: differences are written as an EXR; name it *.exr", options.diff));
 }
@@ -133,7 +124,6 @@ CompareOptions parse_compare_options(int argc, const char* const* argv) {
     } else {
         check_images(texts, options);
     }
-    require_different_files(options);
     return options;
 }
 

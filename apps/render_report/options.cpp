@@ -84,23 +84,6 @@ double limit_option(const std::string& text) {
     return *value;
 }
 
-/// Throws if an output file is also an input or another output.
-void require_different_files(const ReportOptions& options) {
-    std::vector<std::string> read = options.scenes;
-    read.insert(read.end(), options.from.begin(), options.from.end());
-    read.insert(read.end(), {options.verify, options.seed_baseline});
-    const auto require = [](const std::string& written, const std::string& other, const char* what) {
-        if (!written.empty() && !other.empty() && is_same_file(written, other))
-            fail_usage(
-                fmt::format("{}: would be written and is {}; give it a file of its own", one_line(written), what));
-    };
-    for (const std::string& file : read) {
-        require(options.output, file, "read too");
-        require(options.json, file, "read too");
-    }
-    require(options.output, options.json, "--json too");
-}
-
 }  // namespace
 
 ReportOptions parse_report_options(int argc, const char* const* argv) {
@@ -150,7 +133,6 @@ ReportOptions parse_report_options(int argc, const char* const* argv) {
     if (!texts.limit.empty()) options.limit = limit_option(texts.limit);
     refuse(texts.no_cache && !texts.cache.empty(), "--no-cache", "and --cache are opposites; leave one out");
     if (!texts.no_cache) options.cache = texts.cache.empty() ? default_cache() : texts.cache;
-    require_different_files(options);
     return options;
 }
 

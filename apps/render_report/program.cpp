@@ -8,6 +8,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
 #include "html_page.h"
 #include "measure.h"
@@ -16,6 +17,8 @@
 #include "scene/base/error.h"
 #include "scene/base/file_bytes.h"
 #include "scene/base/suggest.h"
+#include "scene/compile/scene_source.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula::report {
 namespace {
@@ -100,7 +103,19 @@ std::string page_of(const std::vector<Record>& records, const ReportOptions& opt
     }
 }
 
+/// Throws Error (usage) if a file to be written is read too, or both are one.
+void require_different_files(const ReportOptions& options) {
+    RunFiles files;
+    for (const std::string& file : options.from) files.reads(file, "--from");
+    files.reads(options.verify, "--verify");
+    files.reads(options.seed_baseline, "--seed-baseline");
+    for (const std::string& scene : options.scenes) files.reads_scene(scene, gather_scene(read_scene(scene)).files);
+    files.writes(options.json, "--json");
+    files.writes(options.output, "--output");
+}
+
 int run(const ReportOptions& options) {
+    require_different_files(options);
     // Checked before a long run rather than after it.
     for (const std::string& file : {options.output, options.json})
         if (!file.empty()) AtomicFile probe(file);

@@ -5,9 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include <filesystem>
-
 #include "apps/common/command_line.h"
+#include "apps/common/run_files.h"
 #include "scene/base/suggest.h"
 
 namespace cistula::verify {
@@ -98,11 +97,9 @@ VerifyOptions parse_verify_options(int argc, const char* const* argv, const std:
     options.cases = chosen_cases(texts.cases, cases);
     options.json = texts.json;
     options.html = texts.html;
-    std::error_code error;
-    if (!options.json.empty() && !options.html.empty() &&
-        std::filesystem::absolute(options.json, error).lexically_normal() ==
-            std::filesystem::absolute(options.html, error).lexically_normal())
-        fail_usage(fmt::format("{}: would be both --json and --html; give each a file of its own", options.html));
+    RunFiles files;
+    files.writes(options.json, "--json");
+    files.writes(options.html, "--html");
     if (texts.list) options.action = VerifyAction::list;
     return options;
 }

@@ -101,7 +101,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
     const SceneDescription& scene = *source.description;
     if (!is_finite(mesh.center) || !is_finite(mesh.rotation) || !is_finite(mesh.scale) || mesh.scale == 0)
         throw scene_error(scene, object.place, "the center and rotation must be finite, the scale finite and not 0");
-    std::vector<MeshPart> parts = read_mesh(mesh, scene.source + ": " + object.place, source.warnings);
+    std::vector<MeshPart> parts = read_mesh(mesh, scene.source + ": " + object.place, source.warnings, &source.files);
     if (object.material >= 0 && parts.size() > 1) join_closed(parts);
     for (MeshPart& part : parts) {
         SourceSolid solid;
@@ -135,6 +135,8 @@ SceneSource gather_scene(const SceneDescription& description) {
     SceneSource source;
     source.description = &description;
     source.materials = description.materials;
+    for (const TextureDescription& texture : description.textures)
+        if (!texture.file.empty()) source.files.push_back(texture.file);
     for (size_t i = 0; i < description.materials.size(); ++i)
         check_material(description, description.materials[i], "/materials/" + std::to_string(i));
     if (!finite_and_not_negative(description.ambient) || !finite_and_not_negative(description.background))

@@ -25,6 +25,7 @@ struct SceneSource {
     std::vector<MaterialDescription> materials;  // those of the description, then those from mesh files
     std::vector<SourceSolid> solids;             // in file order
     std::vector<std::string> warnings;           // of mesh files
+    std::vector<std::string> files;  // that the description and its meshes name; maps of meshes may be missing
 };
 
 /// Checks every number that affects the compiled scene, and reads the meshes. Throws Error with the place.

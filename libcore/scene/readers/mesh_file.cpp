@@ -16,15 +16,16 @@ namespace {
 
 using glm::dvec3;
 
-/// What lies beside an OBJ, and how it is named in messages.
-ObjSurroundings surroundings_of(const std::string& file, const std::string& place) {
+/// What lies beside an OBJ, and how it is named in messages. Adds the files that it names to `files`.
+ObjSurroundings surroundings_of(const std::string& file, const std::string& place, std::vector<std::string>* files) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     const auto path_of = [folder](std::string name) {
         std::replace(name.begin(), name.end(), '\\', '/');
         return (folder / name).string();
     };
     ObjSurroundings around;
-    around.has = [path_of](const std::string& name) {
+    around.has = [path_of, files](const std::string& name) {
+        if (files) files->push_back(path_of(name));
         std::error_code error;
         return std::filesystem::is_regular_file(path_of(name), error);
     };
@@ -88,8 +89,9 @@ std::vector<MeshPart> parts_of(std::vector<PolygonMesh> meshes, const MeshObject
     return parts;
 }
 
-std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place,
-                                std::vector<std::string>& warnings) {
+std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place, std::vector<std::string>& warnings,
+                                std::vector<std::string>* files) {
+    if (files) files->push_back(object.file);
     const std::string kind = lower_extension(object.file);
     const std::string label = place + ": mesh " + object.file;
     if (kind != ".ply" && kind != ".obj") throw Error(ExitCode::file, label + ": must be a .ply or an .obj file");
@@ -101,7 +103,7 @@ std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& pla
     {
         const std::string bytes = utf8_of(read_file(object.file));
         if (kind == ".obj")
-            meshes = read_obj(bytes, label, surroundings_of(object.file, place), warnings);
+            meshes = read_obj(bytes, label, surroundings_of(object.file, place, files), warnings);
         else
             meshes.push_back(read_ply(bytes, label));
     }

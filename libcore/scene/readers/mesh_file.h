@@ -22,8 +22,9 @@ struct MeshPart {
 /// that are there twice and parts without triangles are left out.
 std::vector<MeshPart> parts_of(std::vector<PolygonMesh> meshes, const MeshObject& object);
 
-/// Reads a mesh file; its parts in file order, at least one. `place` opens the messages; adds warnings. Throws
-/// Error(ExitCode::file).
-std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place, std::vector<std::string>& warnings);
+/// Reads a mesh file; its parts in file order, at least one. `place` opens the messages; adds warnings, and to `files`
+/// the mesh and the files that it names, material libraries and their maps. Throws Error(ExitCode::file).
+std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place, std::vector<std::string>& warnings,
+                                std::vector<std::string>* files = nullptr);
 
 }  // namespace cistula
