@@ -2,15 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <new>
+#include <exception>
 
 #include "scene/base/error.h"
+#include "scene/base/file_bytes.h"
+#include "scene/base/out_of_memory.h"
 #include "scene/base/suggest.h"
 
 namespace cistula {
@@ -24,9 +27,11 @@ std::vector<std::string> long_names(const CLI::App& app) {
 }
 
 /// Opens standard streams that are closed on /dev/null, the lowest numbers first: open() gives the lowest that is free.
+/// Writing to a closed standard output stays an error.
 void open_standard_streams() {
     for (int stream = 0; stream < 3; ++stream)
-        if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) (void)!open("/dev/null", O_RDWR);
+        if (fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+            (void)!open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
 }
 
 [[noreturn]] void fail_unexpected(const CLI::App& app,
@@ -85,7 +90,7 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
 
 void print(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-        throw Error(ExitCode::file, "standard output: cannot be written");
+        throw file_error("standard output", "write", errno);
 }
 
 void note(const std::string& line) {
@@ -93,21 +98,23 @@ void note(const std::string& line) {
 }
 
 int run_program(const char* name, const char* memory_advice, const std::function<int()>& work) {
-    const auto fail = [name](const std::string& message, ExitCode code) {
-        note(fmt::format("{}: {}", name, one_line(message)));
+    const auto fail = [name](const std::exception& error, ExitCode code) {
+        end_if_out_of_memory(error);
+        claim_end();
+        note(fmt::format("{}: {}", name, one_line(error.what())));
         return static_cast<int>(code);
     };
+    set_out_of_memory_line(name, memory_advice);
+    reserve_stack();
     open_standard_streams();
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit then is a write error
     std::signal(SIGPIPE, SIG_IGN);
     try {
         return work();
     } catch (const Error& error) {
-        return fail(error.what(), error.code());
-    } catch (const std::bad_alloc&) {
-        return fail(fmt::format("out of memory; {}", memory_advice), ExitCode::failed);
+        return fail(error, error.code());
     } catch (const std::exception& error) {
-        return fail(error.what(), ExitCode::failed);
+        return fail(error, ExitCode::failed);
     }
 }
 

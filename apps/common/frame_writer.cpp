@@ -101,7 +101,8 @@ void FrameWriter::work() {
         std::exception_ptr failure;
         try {
             write(task);
-        } catch (...) {
+        } catch (const std::exception& error) {
+            end_if_out_of_memory(error);
             failure = std::current_exception();
             stop_ = true;
         }

@@ -23,6 +23,7 @@
 #include "pixel_report.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
+#include "scene/base/out_of_memory.h"
 #include "scene/base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/required_effects.h"
@@ -156,6 +157,21 @@ void judge_target(const RunStats& stats, const FrameSettings& settings, const Re
     if (!options.quiet) note(fmt::format("render: {}", text));
 }
 
+/// Sets what is said when memory runs out.
+void advise_on_memory(const RenderOptions& options, const FrameSettings& settings) {
+    const PixelRect& crop = settings.crop;
+    const uint64_t pixels = static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height);
+    const uint64_t mebibytes = pixels * sizeof(PixelRecord) >> 20;
+    const bool is_small = mebibytes < 64;
+    set_out_of_memory_line(
+        "render", is_small ? fmt::format("the scene and {} threads take most of it; allow more (ulimit -v), or give "
+                                         "fewer --threads",
+                                         threads_of(options))
+                           : fmt::format("a frame of {}x{} takes {} MiB of it while it is rendered; a smaller --res or "
+                                         "--crop needs less",
+                                         crop.width, crop.height, mebibytes));
+}
+
 void render_scene(RenderOptions options) {
     const bool explain = options.action == Action::explain;
     const ChosenDevices devices = explain ? ChosenDevices() : choose_devices(options.backend, options.devices);
@@ -167,6 +183,7 @@ void render_scene(RenderOptions options) {
     if (explain) return print(explain_table(scene.source, explain_effects(scene)));
 
     const FrameSettings settings = frame_settings(options, scene);
+    advise_on_memory(options, settings);
     const Outputs outputs = plan_outputs(options, scene);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;

@@ -54,6 +54,16 @@ TEST_F(RenderStreams, OutputThatIsTheResultIsAnErrorWhereItCannotBeWritten) {
     const auto full = [] { dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO); };
     EXPECT_EQ(run_with({"s.json", "--explain"}, full).code, static_cast<int>(ExitCode::file));
     EXPECT_EQ(run_with({"--version"}, full).code, static_cast<int>(ExitCode::file));
+    for (const int closed : {1, 3, 6}) {  // bits of streams
+        const ProgramResult result = run_with({"--version"}, [closed] {
+            for (int stream = 0; stream < 3; ++stream)
+                if ((closed >> stream & 1) != 0) close(stream);
+        });
+        EXPECT_EQ(result.code, closed == 1 ? 0 : static_cast<int>(ExitCode::file)) << closed;
+        if (closed == 3) {
+            EXPECT_EQ(result.error, "render: standard output: cannot write: Bad file descriptor\n");
+        }
+    }
 }
 
 TEST_F(RenderStreams, APipeInTheOutputsPlaceIsRefusedAtOnce) {
