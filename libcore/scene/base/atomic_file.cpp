@@ -101,8 +101,8 @@ void AtomicFile::create_temporary() {
     constexpr int most_at_once = 100;
     constexpr long rest = 9;  // of ".NAME.99.part"
     const long longest = fpathconf(directory_.number, _PC_NAME_MAX);
-    const std::string prefix =
-        "." + name_.substr(0, static_cast<size_t>(longest > 2 * rest ? longest - rest : 200)) + ".";
+    const auto most = static_cast<size_t>(longest > 2 * rest ? longest - rest : 200);
+    const std::string prefix = std::string(1, '.').append(name_, 0, most).append(1, '.');
     int failure = EEXIST;
     for (int i = 0; i < most_at_once && failure == EEXIST; ++i) {
         temporary_ = prefix + std::to_string(i) + ".part";
