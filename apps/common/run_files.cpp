@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -29,8 +30,22 @@ RunFiles::Place RunFiles::place_of(const std::string& path) {
     return place;
 }
 
+RunFiles::RunFiles() {
+    add_stream(STDOUT_FILENO, "standard output");
+    add_stream(STDERR_FILENO, "standard error");
+}
+
+void RunFiles::add_stream(int descriptor, const std::string& what) {
+    struct stat status;
+    if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode))
+        uses_.emplace(Place{status.st_dev, status.st_ino, ""}, Use{what, what});
+}
+
 void RunFiles::reads(const std::string& path, const std::string& what) {
-    if (!path.empty() && path != "-") uses_.emplace(place_of(path), Use{path, what});
+    if (path == "-")
+        add_stream(STDIN_FILENO, what);
+    else if (!path.empty())
+        uses_.emplace(place_of(path), Use{path, what});
 }
 
 void RunFiles::reads_scene(const std::string& path, const std::vector<std::string>& files) {

@@ -15,7 +15,11 @@ namespace cistula {
 /// file that does not exist yet is told apart by its folder and its name.
 class RunFiles {
   public:
-    /// Adds a file that is read. `what` names it in messages: "the scene". No file: "-", "".
+    /// Begins with the files that standard output and standard error are redirected to.
+    RunFiles();
+
+    /// Adds a file that is read. `what` names it in messages: "the scene". "-": the file that standard input comes
+    /// from. No file: "".
     void reads(const std::string& path, const std::string& what);
 
     /// Adds a scene and the files that it names (SceneSource::files).
@@ -38,6 +42,7 @@ class RunFiles {
     };
 
     Place place_of(const std::string& path);
+    void add_stream(int descriptor, const std::string& what);
 
     std::map<Place, Use> uses_;
     std::optional<std::string> folder_;  // of the last file that did not exist; others are in the same one

@@ -1,6 +1,7 @@
 // Files that are read and written: which names are one file, by whatever path, and what is refused.
 #include "apps/common/run_files.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "scene/image/exr.h"
@@ -113,6 +114,30 @@ TEST_F(SceneFiles, AreNeverWritten) {
     for (size_t i = 0; i < before.size(); ++i) EXPECT_EQ(bytes_of(file(names[i])), before[i]) << names[i];
     for (const char* name : {"o.exr", "o.0.exr", "texture.0.exr"}) EXPECT_FALSE(exists(name)) << name;
     expect_done({"names.json", "-q", "-o", "texture.#.exr", "-f", "0,2", "--stats", "s.stats"});
+}
+
+TEST_F(SceneFiles, RedirectedStreamsAreFilesToo) {
+    const auto redirect = [&](int stream, const char* name, int flags) {
+        dup2(open(file(name).c_str(), flags | O_CREAT, 0600), stream);
+    };
+    put_bytes(file("in.exr"), scene_text);
+    const ProgramResult in = RunningProgram(program_, {"-", "-q", "-o", "in.exr"}, file(""), "", [&] {
+                                 redirect(STDIN_FILENO, "in.exr", O_RDONLY);
+                             }).wait();
+    EXPECT_EQ(in.code, 2);
+    EXPECT_EQ(in.error, "render: in.exr: would be both the scene and an image; give each a file of its own\n");
+    EXPECT_EQ(bytes_of(file("in.exr")), scene_text);
+    const ProgramResult out =
+        RunningProgram(program_, {"s.json", "-q", "--pixel", "1,1", "--json", "p.json"}, file(""), "", [&] {
+            redirect(STDOUT_FILENO, "p.json", O_WRONLY);
+        }).wait();
+    EXPECT_EQ(out.code, 2);
+    EXPECT_EQ(out.error, "render: p.json: would be both standard output and --json; give each a file of its own\n");
+    RunningProgram(program_, {"s.json", "-o", "o.exr", "--stats", "log"}, file(""), "", [&] {
+        redirect(STDERR_FILENO, "log", O_WRONLY);
+    }).wait();
+    EXPECT_EQ(bytes_of(file("log")),
+              "render: log: would be both standard error and --stats; give each a file of its own\n");
 }
 
 TEST_F(SceneFiles, FramesAreFilesOfTheirOwn) {
