@@ -7,6 +7,7 @@
 #include "apps/common/output_name.h"
 #include "apps/common/timing.h"
 #include "scene/base/error.h"
+#include "scene/base/out_of_memory.h"
 #include "scene/image/exr.h"
 #include "scene/image/picture_io.h"
 #include "scene/image/raw_picture.h"

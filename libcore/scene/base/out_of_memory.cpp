@@ -14,6 +14,7 @@
 #include <cstring>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "scene/base/atomic_file.h"
@@ -123,7 +124,9 @@ void end_if_out_of_memory(const std::exception& error) noexcept {
     if (has_code(error, std::errc::resource_unavailable_try_again) || says(error, "Resource temporarily unavailable"))
         end_out_of_memory(true);
     if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error) ||
-        has_code(error, std::errc::not_enough_memory) || says(error, "Cannot allocate memory"))
+        has_code(error, std::errc::not_enough_memory) || says(error, "Cannot allocate memory") ||
+        // The loader's, for a module; where something else is the reason, it follows.
+        std::string_view(error.what()).ends_with("failed to map segment from shared object"))
         end_out_of_memory();
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/base/error.h"
+#include "scene/trees/embree_errors.h"
 
 namespace cistula {
 namespace {
@@ -13,16 +14,9 @@ constexpr uint32_t group_size = cluster_lanes;
 
 void* run_builder(RTCBuildArguments& arguments, RTCDevice device) {
     void* root = rtcBuildBVH(&arguments);
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE || root == nullptr)
-        throw Error(ExitCode::failed, "the tree could not be built: Embree's error " + std::to_string(error));
+    check_embree(device, "building a tree");
+    if (!root) throw Error(ExitCode::device, "Embree: building a tree failed");
     return root;
-}
-
-DevicePointer new_device() {
-    DevicePointer device(rtcNewDevice(nullptr));
-    if (!device)
-        throw Error(ExitCode::failed, "Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
-    return device;
 }
 
 float rounded_down(double x) {
@@ -147,7 +141,7 @@ Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives) {
     Groups groups;
     if (primitives.empty()) return groups;
     GroupLeaves leaves{primitives.data(), std::vector<uint64_t>(primitives.size()), {}};
-    const DevicePointer device = new_device();
+    const DevicePointer device = make_embree_device("");
     const BvhPointer bvh(rtcNewBVH(device.get()));
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.maxDepth = max_tree_depth;
@@ -191,7 +185,7 @@ Tree build_tree(std::vector<RTCBuildPrimitive>& primitives, int quality) {
         all.upper_y = std::max(all.upper_y, p.upper_y);
         all.upper_z = std::max(all.upper_z, p.upper_z);
     }
-    const DevicePointer device = new_device();
+    const DevicePointer device = make_embree_device("");
     const BvhPointer bvh(rtcNewBVH(device.get()));
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.buildQuality = quality > 0 ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW;
