@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <memory>
+#include <algorithm>
 
 #include "testing/support/expect_error.h"
 #include "testing/support/file_size_limit.h"
@@ -114,18 +114,19 @@ TEST(AtomicFile, NamesMayBeAsLongAsTheFileSystemAllows) {
 TEST(AtomicFile, AnEndWithoutDestructorsLeavesNoTemporary) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("a"), "old");
-    EXPECT_EXIT(
-        {
-            write_file_atomically(scratch.file("whole"), "whole");
-            AtomicFile one(scratch.file("a")), two(scratch.file("b")), done(scratch.file("c"));
-            const auto three = std::make_unique<AtomicFile>(scratch.file("d"));
-            done.commit();
-            two.write("half");
-            AtomicFile::abandon_all();
-            _exit(3);
-        },
-        testing::ExitedWithCode(3), "");
-    EXPECT_EQ(scratch.names(), (Names{"a", "c", "whole"}));
+    const auto write_and_end = [&] {
+        write_file_atomically(scratch.file("whole"), "whole");
+        const AtomicFile one(scratch.file("a"));
+        AtomicFile two(scratch.file("b")), done(scratch.file("c"));
+        done.commit();
+        two.write("half");
+        AtomicFile::abandon_all();
+        _exit(3);
+    };
+    EXPECT_EXIT(write_and_end(), testing::ExitedWithCode(3), "");
+    Names left = scratch.names();
+    std::sort(left.begin(), left.end());
+    EXPECT_EQ(left, (Names{"a", "c", "whole"}));
     EXPECT_EQ(bytes_of(scratch.file("a")), "old");
 }
 
