@@ -15,11 +15,8 @@ NAME  := $(basename $(notdir $(SCENE)))
 setup = $(if $(filter no,$(SETUP)),@true,@cmake/install-packages $(1))
 configure = @cmake/configure $(1) $(2) $(CMAKE_ARGS)
 
-# `make render` compiles kernels only where there is a GPU, with CUDA=yes, or in a folder that was configured for them before.
+# of `make render`, which cmake/configure reads: yes compiles kernels where there is no GPU, too
 CUDA   ?=
-no_kernels = $(if $(findstring CISTULA_WITH_CUDA,$(CMAKE_ARGS))$(filter yes,$(CUDA)),,$(shell \
-    nvidia-smi -L >/dev/null 2>&1 || { [ -e $(BUILD)/.configured ] && ! grep -q WITH_CUDA=OFF $(BUILD)/.configured; } || \
-    echo -DCISTULA_WITH_CUDA=OFF))
 
 .DEFAULT_GOAL := help
 .PHONY: help render build test test-quick test-asan test-report fuzz lint check-all bench gpu-check golden docs install cuda-toolkit clean
@@ -29,8 +26,8 @@ help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
 render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
-	$(call setup,packages.txt)
-	$(call configure,$(PRESET),$(no_kernels))
+	$(call setup,packages.txt:renderer)
+	$(call configure,--renderer $(PRESET))
 	@cmake --build $(BUILD) --target render
 	@mkdir -p out
 	$(BUILD)/bin/render $(SCENE) --backend embree -o out/$(NAME).exr --preview out/$(NAME).png

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "povray_scene.h"
 #include "program.h"
@@ -63,10 +64,10 @@ void time_cistula(benchmark::State& state) {
     }
 }
 
-const LayeredPicture::Channel& channel(const LayeredPicture& picture, const std::string& name) {
+const LayeredPicture::Channel& channel(const LayeredPicture& picture, std::string_view name) {
     for (const LayeredPicture::Channel& c : picture.channels)
         if (c.name == name) return c;
-    throw Error(ExitCode::failed, "a picture has no channel " + name);
+    throw Error(ExitCode::failed, "a picture has no channel " + std::string(name));
 }
 
 /// Per pixel the largest difference of its channels; POV-Ray writes half floats, which at 1 are 0.0005 apart.

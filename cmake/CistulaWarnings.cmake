@@ -4,7 +4,6 @@ option(CISTULA_WARNINGS_AS_ERRORS "Stop at the first warning" OFF)
 add_library(cistula_warnings INTERFACE)
 target_compile_options(cistula_warnings INTERFACE
     "$<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wshadow;-Wnon-virtual-dtor;-Wno-missing-field-initializers>"
-    $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-unknown-pragmas>  # it does not know `#pragma GCC ivdep`
     "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra>")
 if(CISTULA_WARNINGS_AS_ERRORS)
     target_compile_options(cistula_warnings INTERFACE

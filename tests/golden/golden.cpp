@@ -36,7 +36,7 @@ class Golden : public ::testing::TestWithParam<std::string> {
   private:
     void expect_golden(const char* name, const Film& film) const {
         EXPECT_EQ(film.flags, 0u);
-        EXPECT_EQ(film_hash(film), record()[name]["hash"]) << "the integer sums differ";
+        EXPECT_EQ(film_hash(film), record()[name]["hash"].get<std::string>()) << "the integer sums differ";
         const LayeredPicture expected = read_exr(folder() + "/" + name + ".exr");
         const golden::Difference d = golden::compare(expected, to_layers(film, golden::channels()), false);
         EXPECT_EQ(d.differing, 0u) << "worst: " << d.channel << " at " << d.x << ", " << d.y << " by " << d.worst;

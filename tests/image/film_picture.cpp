@@ -10,6 +10,7 @@
 #include <random>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "cistula/numerics/fixed_sum.h"
 
@@ -34,10 +35,10 @@ PixelRecord some_pixel() {
     return {{1, 2, 3}, 10, 11, 12, 13.5f, {0.5f, -0.5f, 0.25f}, 0, 0, 0, 0, {4, 5, 6}, {7, 8, 9}};
 }
 
-const LayeredPicture::Channel& channel(const LayeredPicture& picture, const std::string& name) {
+const LayeredPicture::Channel& channel(const LayeredPicture& picture, std::string_view name) {
     for (const auto& each : picture.channels)
         if (each.name == name) return each;
-    throw std::runtime_error("no channel " + name);
+    throw std::runtime_error("no channel " + std::string(name));
 }
 
 constexpr OutputChannels everything{false, true, true, true, true, true, true};

@@ -23,7 +23,7 @@ struct Exit {
 template <class Real>
 CISTULA_INLINE void cross_slabs(const SlabGroup<Real>& group, const Vec3<Real>& origin, const Vec3<Real>& direction,
                                 Real (&enter)[slab_lanes], Real (&leave)[slab_lanes]) {
-#pragma GCC ivdep
+    CISTULA_LANES
     for (int i = 0; i < slab_lanes; ++i)
         cross_slab(Vec3<Real>(group.nx[i], group.ny[i], group.nz[i]), group.low[i], group.high[i], origin, direction,
                    enter[i], leave[i]);

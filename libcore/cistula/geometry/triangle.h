@@ -145,7 +145,7 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
     }
     alignas(32) int32_t within[cluster_lanes];
     const Real ox = ray.ox, oy = ray.oy, oz = ray.oz, sx = ray.sx, sy = ray.sy;
-#pragma GCC ivdep
+    CISTULA_LANES
     for (int lane = 0; lane < cluster_lanes; ++lane) {
         const Real az = pz[0][lane] - oz, bz = pz[1][lane] - oz, cz = pz[2][lane] - oz;
         const Real ax = sheared(px[0][lane] - ox, sx, az), ay = sheared(py[0][lane] - oy, sy, az);
@@ -239,8 +239,10 @@ template <class Real>
 CISTULA_INLINE bool crosses_outside_sheet(const SheetPlane<Real>& plane, const Vec3<Real>& origin,
                                           const Vec3<Real>& direction, Real off, Real slant) {
     const Vec3<Real> at = along(origin, -off * reciprocal(slant), direction) - plane.center;
-    return (magnitude(slant) > least_slant<Real>)&((magnitude(at.x) > plane.half.x) | (magnitude(at.y) > plane.half.y) |
-                                                   (magnitude(at.z) > plane.half.z));
+    const bool steep = magnitude(slant) > least_slant<Real>;
+    const bool beside_x = magnitude(at.x) > plane.half.x, beside_y = magnitude(at.y) > plane.half.y,
+               beside_z = magnitude(at.z) > plane.half.z;
+    return steep & (beside_x | beside_y | beside_z);
 }
 
 /// Whether a ray surely misses a flat sheet up to `limit`. `from`: the solid that it leaves.

@@ -46,7 +46,7 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
     for (int g = 0; g < count; ++g) {
         alignas(32) float enter[slab_lanes], leave[slab_lanes];
         const SlabGroup<Real>& group = groups[g];
-#pragma GCC ivdep
+        CISTULA_LANES
         for (int i = 0; i < slab_lanes; ++i) {
             const Vec3<float> normal(float(group.nx[i]), float(group.ny[i]), float(group.nz[i]));
             const float nd = dot(normal, direction), no = dot(normal, origin);

@@ -36,10 +36,20 @@
 #define CISTULA_HOST_NOINLINE CISTULA_HD inline
 #endif
 
-// Put before a short loop that the compiler should vectorize instead of unrolling.
-#if defined(__GNUC__) && !defined(__CUDACC__)
+// CISTULA_LANES: put before a loop that the compiler may vectorize, since no iteration touches what another does. It
+// adds up nothing: Clang would reorder the sum. CISTULA_VECTORS: put before a short loop to vectorize instead of
+// unrolling.
+#if defined(__CUDACC__)
+#define CISTULA_LANES
+#define CISTULA_VECTORS
+#elif defined(__clang__)
+#define CISTULA_LANES _Pragma("clang loop vectorize(assume_safety)")
+#define CISTULA_VECTORS _Pragma("clang loop unroll(disable)")
+#elif defined(__GNUC__)
+#define CISTULA_LANES _Pragma("GCC ivdep")
 #define CISTULA_VECTORS _Pragma("GCC unroll 1")
 #else
+#define CISTULA_LANES
 #define CISTULA_VECTORS
 #endif
 

@@ -5,9 +5,10 @@
 namespace cistula {
 
 ColorPicture oiio_read(const std::string& path) {
-    throw Error(
-        ExitCode::file,
-        path + ": this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF); EXR and .data are read by every build");
+    throw Error(ExitCode::file,
+                path +
+                    ": this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF), which reads formats other than EXR "
+                    "and .data; `make build` installs it (Debian: libopenimageio-dev) and builds with it");
 }
 
 }  // namespace cistula

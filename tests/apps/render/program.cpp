@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "apps/common/backends.h"
 #include "apps/common/target.h"
@@ -34,10 +35,10 @@ frame%d.out
 3 1
 )";
 
-const std::vector<float>& channel(const LayeredPicture& picture, const std::string& name) {
+const std::vector<float>& channel(const LayeredPicture& picture, std::string_view name) {
     for (const LayeredPicture::Channel& one : picture.channels)
         if (one.name == name) return one.values;
-    throw std::runtime_error("no channel " + name);
+    throw std::runtime_error("no channel " + std::string(name));
 }
 
 TEST_F(RenderProgram, PrintsWhatItIsAskedFor) {

@@ -16,7 +16,9 @@ TEST(WithoutOpenImageIO, OtherFormatsAreAClearError) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("x.png");
     const std::string message =
-        path + ": this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF); EXR and .data are read by every build";
+        path +
+        ": this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF), which reads formats other than EXR and .data; "
+        "`make build` installs it (Debian: libopenimageio-dev) and builds with it";
     put_bytes(path, "anything");
     EXPECT_ERROR(read_texture(path), ExitCode::file, message);
     EXPECT_EQ(bytes_of(path), "anything");
