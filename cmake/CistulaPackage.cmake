@@ -2,10 +2,12 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The Cistula authors <cistula@example.org>")  # Debian asks for an address; this one reaches nobody
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Exact ray tracer of semi-mirrors and glass")
-set(CPACK_PACKAGE_DESCRIPTION "Cistula renders semi-mirror, semi-transparent solids and meshes, lit by points, to OpenEXR:
-the same image, bit for bit, from any machine and any number of threads.
+set(CPACK_PACKAGE_DESCRIPTION "Cistula renders semi-mirror, semi-transparent solids and meshes, lit by
+points, to OpenEXR: the same image, bit for bit, from any machine and any
+number of threads.
 .
-The package holds the programs, example scenes, documents, and libraries for CMake's find_package.")
+The package holds the programs, example scenes, documents, and libraries for
+CMake's find_package.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
