@@ -19,7 +19,7 @@ configure = @cmake/configure $(1) $(2) $(CMAKE_ARGS)
 CUDA   ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-quick test-asan test-report fuzz lint check-all bench gpu-check golden docs install cuda-toolkit clean
+.PHONY: help render build test test-quick test-asan test-report fuzz lint check-all bench gpu-check golden docs install uninstall package cuda-toolkit clean
 
 help: ## this list
 	@echo 'make TARGET [PRESET=release|release-all|debug|asan|fuzz|clang] [SETUP=no] [CMAKE_ARGS=...]'
@@ -111,11 +111,25 @@ docs: ## the reference of libcore/cistula and of the Renderer interface, into ou
 	@mkdir -p out
 	doxygen docs/Doxyfile
 
-install: ## install programs, libraries, headers and the CMake package under PREFIX (/usr/local)
-	$(call setup,packages.txt)
+# $(build_installed): what `make install` and `make package` copy; CMake looks again for help2man, which may be new
+define build_installed
+	$(call setup,packages.txt cmake/packaging-packages.txt)
 	$(call configure,$(PRESET))
+	@cmake -B $(BUILD) >/dev/null
 	@cmake --build $(BUILD) --target installed
-	cmake --install $(BUILD) --prefix $(PREFIX)
+endef
+
+install: ## install programs, manuals, libraries, headers, scenes, documents and the CMake package under PREFIX (/usr/local)
+	$(build_installed)
+	cmake --install $(BUILD) --prefix $(abspath $(PREFIX))
+	@install -D -m 644 $(BUILD)/install_manifest.txt $(DESTDIR)$(abspath $(PREFIX))/share/cistula/installed-files.txt
+
+uninstall: ## remove what `make install` put under PREFIX (/usr/local)
+	@DESTDIR=$(DESTDIR) cmake/uninstall $(abspath $(PREFIX))
+
+package: ## make a Debian package for the release of Debian that this is, into out/package
+	$(build_installed)
+	cpack --config $(BUILD)/CPackConfig.cmake -B out/package
 
 cuda-toolkit: ## put nvcc from PyPI into .cuda/, for machines without a CUDA toolkit
 	@cmake/install-cuda-toolkit

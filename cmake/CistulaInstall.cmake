@@ -1,9 +1,55 @@
-# make install: programs, libraries, headers, and a CMake package for find_package(cistula) with the targets
-# cistula::cistula | scene | embree | cuda.
+# make install: programs with manuals and completion, libraries, headers, scenes, documents, and a CMake package for
+# find_package(cistula) with the targets cistula::cistula | scene | embree | cuda.
 include(CMakePackageConfigHelpers)
 
-install(DIRECTORY libcore/cistula libcore/scene DESTINATION "${CISTULA_INSTALL_HEADERS}" FILES_MATCHING PATTERN "*.h")
-install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+# Headers: the shading library, whole; of the scene library those that cistula.h lists, which are public, and those that they
+# include, which are internal. tests/package compiles each alone, as another project sees it.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS libcore/cistula.h)
+file(STRINGS libcore/cistula.h _headers REGEX "^#include \"")
+list(TRANSFORM _headers REPLACE "^#include \"([^\"]+)\".*" "\\1")
+list(APPEND _headers cistula.h scene/compile/effect_reason.h scene/compile/hull.h scene/description/mesh_source.h)
+foreach(_header IN LISTS _headers)
+    cmake_path(GET _header PARENT_PATH _folder)
+    install(FILES "libcore/${_header}" DESTINATION "${CISTULA_INSTALL_HEADERS}/${_folder}")
+endforeach()
+install(DIRECTORY libcore/cistula DESTINATION "${CISTULA_INSTALL_HEADERS}" FILES_MATCHING PATTERN "*.h")
+
+# Scenes beside the schema that they name. Documents lie as in the source tree, so that their links hold.
+install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/cistula" PATTERN "*.py" EXCLUDE)
+install(FILES docs/scene.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/cistula/docs")
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)  # where Debian looks for it
+install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}"
+    PATTERN Doxyfile EXCLUDE PATTERN packages.txt EXCLUDE PATTERN pictures/render EXCLUDE)
+
+# Completion asks the program for its options. Debian's zsh reads vendor-completions of /usr, others site-functions.
+set(_shells "${PROJECT_SOURCE_DIR}/cmake/completion")
+install(FILES "${_shells}/_cistula" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions")
+install(FILES "${_shells}/_cistula" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions")
+
+# Manuals are what the programs say of themselves.
+find_program(CISTULA_HELP2MAN help2man)
+mark_as_advanced(CISTULA_HELP2MAN)
+if(NOT CISTULA_HELP2MAN)
+    message(STATUS "No help2man, so no manuals are made (Debian: apt-get install help2man)")
+endif()
+get_property(_programs DIRECTORY apps PROPERTY BUILDSYSTEM_TARGETS)
+foreach(_program IN LISTS _programs)
+    get_target_property(_type ${_program} TYPE)
+    if(NOT _type STREQUAL "EXECUTABLE")
+        continue()
+    endif()
+    install(FILES "${_shells}/cistula.bash" RENAME "${_program}" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+    if(CISTULA_HELP2MAN)
+        set(_manual "${PROJECT_BINARY_DIR}/man/${_program}.1")
+        add_custom_command(OUTPUT "${_manual}"
+            COMMAND "${PROJECT_SOURCE_DIR}/cmake/make-manual" "${CISTULA_HELP2MAN}" $<TARGET_FILE:${_program}> "${_manual}"
+            DEPENDS ${_program} cmake/make-manual VERBATIM)
+        add_custom_target(${_program}-manual ALL DEPENDS "${_manual}")
+        add_dependencies(installed ${_program}-manual)
+        install(FILES "${_manual}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+    endif()
+endforeach()
 
 install(TARGETS cistula_contract cistula EXPORT cistulaCore)
 install(EXPORT cistulaCore NAMESPACE cistula:: DESTINATION "${CISTULA_INSTALL_CMAKE}")
@@ -29,9 +75,11 @@ set(CISTULA_OIIO_MODULE "")
 if(TARGET cistula_oiio)
     set(CISTULA_OIIO_MODULE "${CMAKE_SHARED_MODULE_PREFIX}cistula_oiio${CMAKE_SHARED_MODULE_SUFFIX}")
 endif()
-configure_package_config_file(cmake/cistulaConfig.cmake.in "${PROJECT_BINARY_DIR}/cistulaConfig.cmake"
+# In lower case with a dash, find_package finds the files by any spelling of the name: cistula, Cistula.
+configure_package_config_file(cmake/cistula-config.cmake.in "${PROJECT_BINARY_DIR}/cistula-config.cmake"
     INSTALL_DESTINATION "${CISTULA_INSTALL_CMAKE}" PATH_VARS CISTULA_INSTALL_MODULES NO_SET_AND_CHECK_MACRO)
 # Before version 1.0, minor versions may be incompatible.
-write_basic_package_version_file("${PROJECT_BINARY_DIR}/cistulaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
-install(FILES "${PROJECT_BINARY_DIR}/cistulaConfig.cmake" "${PROJECT_BINARY_DIR}/cistulaConfigVersion.cmake"
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/cistula-config-version.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/cistula-config.cmake" "${PROJECT_BINARY_DIR}/cistula-config-version.cmake"
     DESTINATION "${CISTULA_INSTALL_CMAKE}")
+include(cmake/CistulaPackage.cmake)

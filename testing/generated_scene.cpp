@@ -6,6 +6,7 @@
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
+#include "scene/film/frame_settings.h"
 #include "testing/generated_parts.h"
 
 namespace cistula {
@@ -203,12 +204,7 @@ SceneDescription generated_scene(uint64_t seed, const std::string& files) {
 }
 
 FrameSettings generated_settings(const SceneDescription& scene) {
-    FrameSettings settings;
-    settings.set_size(scene.film.width, scene.film.height);
-    settings.supersample = scene.film.supersample;
-    settings.depth = scene.depth;
-    settings.cutoff = scene.cutoff;
-    return settings;
+    return frame_settings(scene);
 }
 
 }  // namespace cistula

@@ -16,6 +16,7 @@ endfunction()
 
 file(GLOB_RECURSE core_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/cistula/*.h")
 file(GLOB_RECURSE scene_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/scene/*.h")
+list(APPEND scene_headers cistula.h)
 
 cistula_headers_alone(core_headers_alone cpp ${core_headers})
 if(TARGET cistula_scene)

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What documents and comments say of the source tree: what they name exists, pages stay short, doc comments name their subject.
+# What documents and comments say of the source tree: what they name exists, what they quote is so, pages stay short, doc comments name
+# their subject.
 # usage: check_docs.sh ROOT | --self-test
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/tree_check.sh"
@@ -32,6 +33,14 @@ links() {
                 if (target !~ /^(https?|mailto):/) print FILENAME ":" FNR ":" target
             }
         }' "$@"
+}
+
+# FILE:LINE:TARGET of the blocks that quote a whole file: a link to it ends the text before them, "[file](path):".
+quotes() {
+    awk 'FNR == 1 { code = 0; target = "" }
+        /^```/ { code = !code; if (code && target != "") print FILENAME ":" FNR ":" target; target = ""; next }
+        code || /^[ \t]*$/ { next }
+        { target = match($0, /\]\([^)]+\):$/) ? substr($0, RSTART + 2, RLENGTH - 4) : "" }' "$@"
 }
 
 # FILE:LINE:PATH of what looks like a file or a folder of this tree: in pages outside fenced code, in C++ and CUDA after //, in scripts after #.
@@ -85,6 +94,13 @@ check() {
             echo "$file:$line: $path has no heading for #$anchor"
         fi
     done < <(links "${pages[@]}")
+
+    # What is quoted is the file.
+    while IFS=: read -r file line target; do
+        path=$(dirname "$file")/$target
+        [ ! -f "$path" ] || awk -v line="$line" 'NR > line { if (/^```/) exit; print }' "$file" | cmp -s - "$path" ||
+            echo "$file:$line: differs from $target, which it quotes"
+    done < <(quotes "${pages[@]}")
 
     # What is named exists: from the root, or as the end of some file's or folder's path.
     { named_paths "${pages[@]}" "${sources[@]}" "${scripts[@]}" || true; } | { grep -vE "$records" || true; } |
@@ -145,7 +161,8 @@ check() {
 good_tree() {
     mkdir -p "$1"/{libcore/cistula/geometry,docs/decisions,tests}
     printf '# Rules\n\n## 1 One thing\n\n## 2 Another thing: more\n' >"$1/docs/rules.md"
-    printf '# T\n\n[rules](docs/rules.md#1-one-thing), [self](#t), [out](https://example.org/none.md), `geometry/hit.h`, `hit.h`, rules 2 of 1\n\n```\n[no](link.md) libcore/none.h\n```\n' >"$1/README.md"
+    printf '# T\n\n[rules](docs/rules.md#1-one-thing), [self](#t), [out](https://example.org/none.md), `geometry/hit.h`, `hit.h`, rules 2 of 1\n\n```\n[no](link.md) libcore/none.h\n```\n\n[quote](tests/quoted.md):\n\n```\nOne.\n\nTwo.\n```\n' >"$1/README.md"
+    printf 'One.\n\nTwo.\n' >"$1/tests/quoted.md"
     printf '// A hit (docs/rules.md, 1), as in geometry/hit.h and libcore/cistula/geometry/hit.h.\n\n/// The nearest hit.\n/// Of all.\nint f();  // "docs/rules.md"\n' >"$1/libcore/cistula/geometry/hit.h"
     printf '# Records\n\nTold by `gone.h` of libcore/gone.h.\n' >"$1/docs/decisions/README.md"
 }
@@ -161,6 +178,7 @@ all_rules() {
     breaks README.md '[gone](#none)'
     breaks docs/page.md '[gone](rules.md#none)'
     breaks docs/decisions/README.md '[gone](0001-gone.md)'
+    breaks docs/page.md "$(printf '[file](rules.md):\n\n```\n# Rules\n```')"
     breaks docs/page.md 'See `geometry/gone.h`.'
     breaks docs/page.md 'See `gone.cpp`.'
     breaks docs/page.md 'See libcore/cistula/gone.'

@@ -2,83 +2,14 @@
 
 #include <array>
 
-#include "scene/base/fnv128.h"
-
 namespace cistula {
 namespace {
-
-using Row = double[4];
 
 constexpr const char* proven_truncation = "cistula:provenTruncation";
 constexpr const char* checked_pixels = "cistula:checkedPixels";
 constexpr const char* off_pixels = "cistula:offPixels";
 
-std::vector<float> to_floats(const Row (&rows)[4]) {
-    std::vector<float> values;
-    for (const Row& row : rows)
-        for (const double value : row) values.push_back(static_cast<float>(value));
-    return values;
-}
-
-/// Hash of the camera in double; it also covers what the float matrices round away.
-std::string camera_hash(const Camera& camera) {
-    Fnv128 hash;
-    for (const Vec3<double>* v : {&camera.position, &camera.forward, &camera.right, &camera.up})
-        for (const double value : {v->x, v->y, v->z}) hash.add(value);
-    hash.add(camera.tan_half_width);
-    return hash.hex();
-}
-
 }  // namespace
-
-std::vector<float> world_to_camera(const Camera& camera) {
-    const Vec3<double>&r = camera.right, &u = camera.up, &f = camera.forward;
-    const Row rows[4] = {
-        {r.x, u.x, -f.x, 0},
-        {r.y, u.y, -f.y, 0},
-        {r.z, u.z, -f.z, 0},
-        {-dot(camera.position, r), -dot(camera.position, u), dot(camera.position, f), 1},
-    };
-    return to_floats(rows);
-}
-
-std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
-    const Vec3<double> x = camera.right / camera.tan_half_width;
-    const Vec3<double> y = camera.up / (camera.tan_half_width * height / width);
-    const Vec3<double>& f = camera.forward;
-    const double depth = -dot(camera.position, f);
-    const Row rows[4] = {
-        {x.x, y.x, f.x, f.x},
-        {x.y, y.y, f.y, f.y},
-        {x.z, y.z, f.z, f.z},
-        {-dot(camera.position, x), -dot(camera.position, y), depth - 1, depth},
-    };
-    return to_floats(rows);
-}
-
-Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
-                             const CameraFrame& camera, Intersection intersection) {
-    Attributes attributes = {
-        {"chromaticities", std::vector<float>{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
-        {"cistula:cameraHash", camera_hash(camera.camera)},
-        {"cistula:cutoff", settings.truncation()},
-        {"cistula:depth", settings.depth},
-        {"cistula:frame", camera.frame},
-        {"cistula:precision", std::string(precision == Precision::double_ ? "double" : "float")},
-        {"cistula:sceneHash", scene_hash},
-        {"cistula:supersample", settings.grid()},
-        {"cistula:time", camera.time},
-        {"cistula:version", std::string(CISTULA_VERSION)},
-        {"worldToCamera", world_to_camera(camera.camera)},
-        {"worldToNDC", world_to_ndc(camera.camera, settings.full_width, settings.full_height)},
-    };
-    if (settings.adaptive()) {
-        attributes["cistula:maxSamples"] = settings.max_samples;
-        attributes["cistula:targetError"] = settings.target_error;
-    }
-    if (intersection == Intersection::native) attributes["cistula:intersector"] = std::string("native");
-    return attributes;
-}
 
 void add_target_attributes(const TargetReport& report, Attributes& attributes) {
     attributes[proven_truncation] = report.worst_truncation;

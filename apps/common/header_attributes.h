@@ -1,36 +1,14 @@
-// Attributes of an EXR header: everything that the pixels depend on and nothing else, so that equal images give equal
-// files on any machine.
+// Headers of EXR files, beyond what they say of every frame: results of a target error, and whether a file is of a
+// frame.
 #pragma once
 
-#include <map>
-#include <string>
-#include <variant>
-#include <vector>
-
 #include "apps/common/target.h"
-#include "scene/description/camera_path.h"
-#include "scene/film/renderer.h"
-#include "scene/image/picture.h"
+#include "scene/film/frame_header.h"
 
 namespace cistula {
 
-using Attributes = decltype(LayeredPicture::attributes);
-
-/// The attributes: scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera,
-/// worldToNDC, chromaticities (Rec. 709, D65), and the intersector if it is not the exact one. docs/programs.md
-/// documents each.
-Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
-                             const CameraFrame& camera, Intersection intersection = Intersection::exact);
-
 /// Adds what is proven and estimated of the image: provenTruncation, checkedPixels and offPixels.
 void add_target_attributes(const TargetReport& report, Attributes& attributes);
-
-/// Matrix from world to camera space (x right, y up, looking along -z): 16 numbers for row vectors, p' = p M.
-std::vector<float> world_to_camera(const Camera& camera);
-
-/// Matrix from world to normalized device coordinates, for row vectors. After division by w, the distance along the
-/// view axis: x is -1 to 1 from left to right, y -1 to 1 from bottom to top of the full frame, z = 1 - 1 / distance.
-std::vector<float> world_to_ndc(const Camera& camera, int width, int height);
 
 /// Whether `picture` is the image that the attributes, windows and channels of `expected` describe. The values of
 /// `expected` are ignored, and so is what add_target_attributes() added to the picture.

@@ -13,6 +13,7 @@
 #include "cistula/transport/ray_tree.h"
 #include "exclusions.h"
 #include "scene/base/suggest.h"
+#include "scene/film/frame_settings.h"
 
 namespace cistula {
 namespace {
@@ -210,18 +211,17 @@ OutputChannels parse_layers(std::string_view text) {
 }
 
 FrameSettings frame_settings(const RenderOptions& options, const SceneDescription& scene) {
-    FrameSettings settings;
-    settings.full_width = options.resolution ? options.resolution->width : scene.film.width;
-    settings.full_height = options.resolution ? options.resolution->height : scene.film.height;
-    settings.supersample = options.supersample.value_or(scene.film.supersample);
-    settings.depth = options.depth.value_or(scene.depth);
-    settings.cutoff = options.cutoff.value_or(scene.cutoff);
+    FrameSettings settings = frame_settings(scene);
+    if (options.resolution) settings.set_size(options.resolution->width, options.resolution->height);
+    settings.supersample = options.supersample.value_or(settings.supersample);
+    settings.depth = options.depth.value_or(settings.depth);
+    settings.cutoff = options.cutoff.value_or(settings.cutoff);
     settings.target_error = options.target_error.value_or(0);
     settings.max_samples = options.max_samples.value_or(settings.max_samples);
     settings.effects = options.all_effects ? all_effects : 0;
     // With a target error the depth is unlimited by default: the budget of truncation ends the ray trees.
     if (settings.adaptive()) settings.depth = options.depth.value_or(largest_depth);
-    settings.crop = options.crop.value_or(PixelRect{0, 0, settings.full_width, settings.full_height});
+    settings.crop = options.crop.value_or(settings.crop);
     const PixelRect& crop = settings.crop;
     if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)
         fail_usage(fmt::format("--crop {}x{}+{}+{}: leaves the frame, which is {}x{}", crop.width, crop.height, crop.x,

@@ -21,6 +21,7 @@
 #include "apps/common/step_progress.h"
 #include "apps/render/explain.h"
 #include "cistula/transport/ray_tree.h"
+#include "scene/film/frame_settings.h"
 #include "testing/support/expect_error.h"
 
 namespace cistula {
@@ -358,6 +359,7 @@ TEST(RenderOptions, OptionsOverrideTheScene) {
     EXPECT_EQ(own.supersample, 2);
     EXPECT_EQ(own.depth, 7);
     EXPECT_EQ(own.cutoff, 0.25);
+    EXPECT_EQ(own, frame_settings(scene));
     const FrameSettings given = frame_settings(
         parse({"s", "--res", "20x10", "--crop", "5x10+15+0", "--supersample", "1", "--depth", "1", "--cutoff", "0"}),
         scene);

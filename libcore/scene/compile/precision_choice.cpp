@@ -1,4 +1,4 @@
-#include "apps/common/precision_choice.h"
+#include "scene/compile/precision_choice.h"
 
 #include <fmt/format.h>
 
