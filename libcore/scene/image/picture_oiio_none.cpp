@@ -1,13 +1,14 @@
 #include "scene/image/picture_oiio.h"
 
-#include "scene/base/error.h"
-
 namespace cistula {
 
-ColorPicture oiio_read(const std::string& path) {
-    throw Error(
-        ExitCode::file,
-        path + ": this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF); EXR and .data are read by every build");
+std::string load_oiio() {
+    return "this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF); EXR and .data are read by every build";
+}
+
+bool oiio_read(const std::string&, const OiioHost& host) {
+    host.failed(host.self, load_oiio().c_str());
+    return false;
 }
 
 }  // namespace cistula
