@@ -178,7 +178,7 @@ TEST(TextureLimits, Texts) {
     EXPECT_EQ(texture_size_problem(5, -1, no_texture_limit, no_texture_limit),
               "its size is 5x-1; width and height of a texture are 1 to 65536");
     EXPECT_EQ(gigabytes(6'318'999'999), "6.319 GB");
-    EXPECT_EQ(seconds_for(60, 1'000'000'000), 80);
+    EXPECT_EQ(seconds_for(20, 1'000'000'000), 40);
     EXPECT_GT(default_texture_bytes(), 1'000'000u);
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scene/base/file_bytes.h"
-#include "scene/image/picture_end.h"
+#include "scene/image/picture_damage.h"
 #include "scene/image/picture_oiio_module.h"
 #include "scene/image/texture_limits.h"
 
@@ -89,8 +89,8 @@ bool read_opened(OIIO::ImageInput& input, const char* path, const OiioHost& host
                               "; a texture has 8 or 16 bits, half or float");
     const int channels = spec.nchannels < 3 ? 1 : 3;
     if (!host.begin(host.self, spec.width, spec.height, static_cast<uint32_t>(channels), type)) return false;
-    const std::string missing = missing_end(input.format_name(), path);
-    return missing.empty() ? read_rows(input, host, channels, format) : fail(host, missing);
+    const std::string damage = picture_damage(input.format_name(), path);
+    return damage.empty() ? read_rows(input, host, channels, format) : fail(host, damage);
 }
 
 /// Sets the library's own limits, in case a format asks them before the size is seen here; versions differ in which of

@@ -1,8 +1,9 @@
-// cistula-read-picture: reads pictures for another process, which starts it (reader_process.h), so that a picture that
-// makes a library crash or take memory or time without end harms nothing else.
+// cistula-read-picture: reads pictures for another process, which starts it (reader_process.h), each by a fork of its
+// own, so that a picture that makes a library crash or take memory or time without end harms nothing else.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -51,6 +52,10 @@ void send_part(ReplyKind kind, const void* from, size_t size) {
     send(from, size);
 }
 
+void fail(const std::string& reason) {
+    send_part(ReplyKind::failed, reason.data(), std::min<size_t>(reason.size(), largest_reply_part));
+}
+
 /// Limits a resource from now on; a lower limit of the other process stays.
 template <class Resource>
 void limit(Resource resource, uint64_t most) {
@@ -67,17 +72,10 @@ uint64_t address_space() {
     return pages * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// Processor time in seconds that this process has taken, rounded up.
-uint64_t seconds_taken() {
-    rusage usage = {};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<uint64_t>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) + 2;
-}
-
 /// One answer.
 class Answer {
   public:
-    explicit Answer(const ReadRequest& request) : request_(request), start_(seconds_taken()) { allow_seconds_for(0); }
+    explicit Answer(const ReadRequest& request) : request_(request) { allow_seconds_for(0); }
 
     /// Why a picture of this size is refused; empty if it is not, and then it may take the time for its size.
     std::string size_problem(int64_t width, int64_t height) const {
@@ -109,17 +107,12 @@ class Answer {
         }
     }
 
-    void fail(const std::string& reason) const {
-        send_part(ReplyKind::failed, reason.data(), std::min<size_t>(reason.size(), largest_reply_part));
-    }
-
   private:
     void allow_seconds_for(uint64_t bytes) const {
-        limit(RLIMIT_CPU, start_ + static_cast<uint64_t>(seconds_for(static_cast<int>(request_.seconds), bytes)));
+        limit(RLIMIT_CPU, static_cast<uint64_t>(seconds_for(static_cast<int>(request_.seconds), bytes)));
     }
 
     const ReadRequest& request_;
-    uint64_t start_;
     size_t texel_ = 0;
 };
 
@@ -131,7 +124,7 @@ OiioHost host_of(Answer& answer, uint64_t left) {
             [](void* self, const void* from, size_t texels) noexcept {
                 static_cast<const Answer*>(self)->samples(from, texels);
             },
-            [](void* self, const char* reason) noexcept { static_cast<const Answer*>(self)->fail(reason); }};
+            [](void*, const char* reason) noexcept { fail(reason); }};
 }
 
 void answer_exr(const std::string& path, Answer& answer) {
@@ -142,27 +135,59 @@ void answer_exr(const std::string& path, Answer& answer) {
     } catch (const std::exception& error) {
         const std::string_view message = error.what();
         const std::string before = path + ": cannot read: ";  // which the other process says, too
-        return answer.fail(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
+        return fail(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
     }
     if (answer.begin(picture.width, picture.height, 3, OiioSamples::float32))
         answer.samples(picture.texels.data(), picture.texels.size());
 }
 
+/// Answers within the limits, and ends this process.
+[[noreturn]] void answer_and_end(const std::string& path, const ReadRequest& request) {
+    constexpr uint64_t beside_texels = 1 << 30;
+    limit(RLIMIT_AS, address_space() + beside_texels + 2 * request.left);
+    Answer answer(request);
+    if (request.is_exr)
+        answer_exr(path, answer);
+    else
+        oiio_read(path, host_of(answer, request.left));
+    _exit(0);
+}
+
+/// Ends this process if the one that started it has ended, or ends.
+void end_with(pid_t parent) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(0);
+}
+
+/// Ends as a child process has ended, unless that was well.
+void end_like(int status) {
+    if (WIFSIGNALED(status)) {
+        limit(RLIMIT_CORE, 0);
+        std::signal(WTERMSIG(status), SIG_DFL);
+        raise(WTERMSIG(status));
+    }
+    if (status != 0) _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 1);
+}
+
+/// Answers one request by a process of its own, so that what a picture breaks there harms no other picture. Libraries
+/// are loaded before, once.
 void answer_one() {
     ReadRequest request;
     receive(&request, sizeof request);
     std::string path(request.path_size, '\0');
     receive(path.data(), path.size());
-    Answer answer(request);
     const std::string missing = request.is_exr ? "" : load_oiio();
-    if (!missing.empty()) return answer.fail(missing);
-    constexpr uint64_t beside_texels = 1 << 30;
-    limit(RLIMIT_AS, address_space() + beside_texels + 2 * request.left);
-    if (request.is_exr)
-        answer_exr(path, answer);
-    else
-        oiio_read(path, host_of(answer, request.left));
-    limit(RLIMIT_AS, RLIM_INFINITY);
+    if (!missing.empty()) return fail(missing);
+    const pid_t self = getpid(), child = fork();
+    if (child == 0) {
+        end_with(self);
+        answer_and_end(path, request);
+    }
+    if (child < 0) return fail("no process can be started to decode it");
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    end_like(status);
 }
 
 }  // namespace

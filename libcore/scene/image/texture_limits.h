@@ -18,7 +18,7 @@ uint64_t default_texture_bytes();
 /// What reading textures may take.
 struct TextureLimits {
     uint64_t bytes = default_texture_bytes();  // of the texels of all textures together
-    int seconds = 60;                          // of processor time for one texture, and 20 more for each GB of texels
+    int seconds = 20;                          // of processor time for one texture, and 20 more for each GB of texels
 };
 
 /// The processor time in seconds that a texture with so many bytes of texels may take.

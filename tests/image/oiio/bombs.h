@@ -81,11 +81,11 @@ inline std::string jpeg(uint32_t width, uint32_t height) {
            std::string("\x01\x01\0\0\x3f\0", 6) + std::string(8, '\0');
 }
 
-/// RGB of 24 bits, or blocks of a four-letter code.
-inline std::string dds(uint32_t width, uint32_t height, const std::string& code = "") {
+/// RGB of 24 bits, the green ones in this mask, or blocks of a four-letter code.
+inline std::string dds(uint32_t width, uint32_t height, const std::string& code = "", uint32_t green = 0xff00) {
     const std::string format = little(32, 4) + little(code.empty() ? 0x40 : 4, 4) +
                                (code.empty() ? std::string(4, '\0') : code) + little(code.empty() ? 24 : 0, 4) +
-                               little(0xff0000, 4) + little(0xff00, 4) + little(0xff, 4) + little(0, 4);
+                               little(0xff0000, 4) + little(green, 4) + little(0xff, 4) + little(0, 4);
     return "DDS " + little(124, 4) + little(0x1007, 4) + little(height, 4) + little(width, 4) + std::string(56, '\0') +
            format + little(0x1000, 4) + std::string(16, '\0');
 }
