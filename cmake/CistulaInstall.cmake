@@ -71,6 +71,7 @@ if(TARGET cistula_cuda)
     install(FILES backend_cuda/host/cuda_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_cuda/host")
 endif()
 
+set(CISTULA_READ_PICTURE "cistula-read-picture${CMAKE_EXECUTABLE_SUFFIX}")
 set(CISTULA_OIIO_MODULE "")
 if(TARGET cistula_oiio)
     set(CISTULA_OIIO_MODULE "${CMAKE_SHARED_MODULE_PREFIX}cistula_oiio${CMAKE_SHARED_MODULE_SUFFIX}")

@@ -29,7 +29,6 @@
 #include "scene/compile/required_effects.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/camera_turns.h"
-#include "scene/readers/read_scene.h"
 #include "scene/readers/read_text_input.h"
 
 namespace cistula {
@@ -179,7 +178,7 @@ void render_scene(RenderOptions options) {
     stats.devices = devices.names;
     stats.driver = devices.driver;
     SceneDescription scene;
-    stats.read_seconds = seconds_of([&] { scene = read_scene(options.scene); });
+    stats.read_seconds = seconds_of([&] { scene = read_scene(options); });
     if (explain) return print(explain_table(scene.source, explain_effects(scene)));
 
     const FrameSettings settings = frame_settings(options, scene);
@@ -242,7 +241,7 @@ std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const Rende
 
 void measure_scene(RenderOptions options) {
     const ChosenDevices devices = choose_devices(options.backend, options.devices);
-    const SceneDescription scene = read_scene(options.scene);
+    const SceneDescription scene = read_scene(options);
     const FrameSettings settings = frame_settings(options, scene);
     const std::vector<EffectReason> reasons = explain_effects(scene);
     StepProgress progress(options.quiet ? ProgressStyle::none : options.progress);  // must outlive the guard
@@ -279,7 +278,7 @@ void report_pixel(const RenderOptions& options, const SceneDescription& scene, S
 }
 
 void report_pixel(RenderOptions options) {
-    const SceneDescription scene = read_scene(options.scene);
+    const SceneDescription scene = read_scene(options);
     const FrameSettings settings = frame_settings(options, scene);
     const CameraFrame camera = camera_at(scene.camera, options.frames.empty() ? 0 : options.frames.front());
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,

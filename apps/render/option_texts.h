@@ -8,7 +8,7 @@ namespace cistula {
 /// The options' texts as CLI11 stores them; empty for options not given that have no default.
 struct OptionTexts {
     std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, cutoff, target_error,
-        max_samples, threads, layers, device, pixel, json, explain;
+        max_samples, threads, layers, device, pixel, json, explain, max_texture_gb;
     std::string backend = "embree", precision = "auto", intersector = "exact", effects = "auto", bits = "float",
                 progress = "auto";
     bool resume = false, strict = false, quiet = false, verbose = false, version = false, print_template = false,

@@ -14,6 +14,7 @@
 #include "exclusions.h"
 #include "scene/base/suggest.h"
 #include "scene/film/frame_settings.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula {
 namespace {
@@ -48,6 +49,9 @@ void declare(CLI::App& app, OptionTexts& texts) {
                    "auto (float, or double where parts are too small for it), float or double")
         ->type_name("NAME");
     app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
+    app.add_option("--max-texture-gb", texts.max_texture_gb,
+                   "memory for all textures, in GB of 10^9 bytes; a quarter of the machine's")
+        ->type_name("N");
     app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
     app.add_flag("--strict", texts.strict, "with --bits half: a value over 65504 is an error, and not clamped");
     app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
@@ -122,6 +126,13 @@ RenderOptions checked(const OptionTexts& texts) {
         if (!options.target_error || !std::isfinite(*options.target_error) || !(*options.target_error > 0))
             fail_usage(fmt::format("--target-error {}: must be a number above 0, in the scene's units of radiance",
                                    one_line(texts.target_error)));
+    }
+    if (!texts.max_texture_gb.empty()) {
+        const std::optional<double> gigabytes = whole_number<double>(texts.max_texture_gb);
+        if (!gigabytes || !(*gigabytes > 0) || !(*gigabytes <= 1e6))
+            fail_usage(fmt::format("--max-texture-gb {}: must be a number above 0, to 1000000",
+                                   one_line(texts.max_texture_gb)));
+        options.texture_bytes = static_cast<uint64_t>(*gigabytes * 1e9);
     }
     if (!texts.max_samples.empty())
         options.max_samples =
@@ -208,6 +219,12 @@ OutputChannels parse_layers(std::string_view text) {
         begin = comma + 1;
     }
     return layers;
+}
+
+SceneDescription read_scene(const RenderOptions& options) {
+    SceneDescription scene = read_scene(options.scene);
+    scene.texture_bytes = options.texture_bytes;
+    return scene;
 }
 
 FrameSettings frame_settings(const RenderOptions& options, const SceneDescription& scene) {

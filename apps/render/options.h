@@ -1,6 +1,7 @@
 // The command line of `render`, parsed and checked as far as possible without the scene.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,9 +34,10 @@ struct RenderOptions : FilmOptions {
     std::string json;  // for Action::pixel: a file, "-" or empty
     std::optional<int> supersample, depth;
     std::optional<double> cutoff, target_error;
-    std::optional<int> max_samples;  // for a target error
-    bool all_effects = false;        // --effects all
-    int threads = 0;                 // 0: one per core
+    std::optional<int> max_samples;         // for a target error
+    bool all_effects = false;               // --effects all
+    int threads = 0;                        // 0: one per core
+    std::optional<uint64_t> texture_bytes;  // --max-texture-gb
 };
 
 inline constexpr int largest_supersample = 64;  // k
@@ -52,6 +54,9 @@ PixelPlace parse_pixel(std::string_view text);
 /// Parses a list of layers, any of "error,id,samples,cost,Z,N". Throws Error (usage) with the nearest name for an
 /// unknown one.
 OutputChannels parse_layers(std::string_view text);
+
+/// Reads the scene, and adds what options say about reading it. Throws Error.
+SceneDescription read_scene(const RenderOptions& options);
 
 /// The settings of every frame: the scene's film, depth and cutoff unless options override them. Throws Error (usage)
 /// if the crop is not inside the frame.

@@ -81,11 +81,11 @@ TEST(RawPicture, Errors) {
                   "it has " + std::to_string(length) + " bytes, which is too few; a .data file of 2x1 texels has 16");
     EXPECT_EQ(message(two_by_one + "x"), "it has 17 bytes, which is too many; a .data file of 2x1 texels has 16");
     EXPECT_EQ(message(bytes_from({254, 255, 255, 255, 1, 0, 0, 0})),
-              "its size is -2x1; width and height of a .data file are 1 to 65536");
+              "its size is -2x1; width and height of a texture are 1 to 65536");
     EXPECT_EQ(message(bytes_from({0, 0, 0, 0, 1, 0, 0, 0})),
-              "its size is 0x1; width and height of a .data file are 1 to 65536");
+              "its size is 0x1; width and height of a texture are 1 to 65536");
     EXPECT_EQ(message(bytes_from({255, 255, 255, 127, 255, 255, 255, 127})),
-              "its size is 2147483647x2147483647; width and height of a .data file are 1 to 65536");
+              "its size is 2147483647x2147483647; width and height of a texture are 1 to 65536");
     EXPECT_EQ(message(bytes_from({0, 0, 1, 0, 0, 0, 1, 0})),
               "it has 8 bytes, which is too few; a .data file of 65536x65536 texels has 17179869192");
     EXPECT_ERROR(read_raw_picture(scratch.file("no.data")), ExitCode::file,

@@ -89,6 +89,15 @@ Error file_error(const std::string& path, const std::string& verb, const std::st
     return Error(ExitCode::file, path + ": cannot " + verb + ": " + line);
 }
 
+uint64_t regular_file_size(const std::string& path) {
+    struct stat status;
+    if (stat(path.c_str(), &status) != 0) throw file_error(path, "read", errno);
+    if (S_ISDIR(status.st_mode)) throw file_error(path, "read", EISDIR);
+    if (!S_ISREG(status.st_mode))
+        throw file_error(path, "read", std::string("it is a pipe, a socket or a device; give a file"));
+    return static_cast<uint64_t>(status.st_size);
+}
+
 void check_readable(const std::string& path) {
     open_for_reading(path);
 }

@@ -18,6 +18,10 @@ Error file_error(const std::string& path, const std::string& verb, int error_num
 /// An error with a library's reason, line breaks removed: "PATH: cannot read: REASON".
 Error file_error(const std::string& path, const std::string& verb, const std::string& reason);
 
+/// The size in bytes of a file; throws Error(ExitCode::file) if there is none, or it is a directory, a pipe or a
+/// device. It is not opened, which waits for a writer where it is a pipe.
+uint64_t regular_file_size(const std::string& path);
+
 /// Throws Error(ExitCode::file) unless `path` can be opened and is not a directory.
 void check_readable(const std::string& path);
 

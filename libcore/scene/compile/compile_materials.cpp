@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cistula/numerics/transmittance.h"
-#include "scene/image/picture_io.h"
+#include "scene/image/texture_reader.h"
 
 namespace cistula {
 namespace {
@@ -30,33 +30,53 @@ ColorPicture checker_picture(const TextureDescription& texture) {
     return picture;
 }
 
-void append_texture(TextureSet& set, const TextureDescription& description, const SceneDescription& scene,
-                    size_t number) {
-    const std::string place = "/textures/" + std::to_string(number);
-    const bool checker = description.file.empty();
-    const ColorPicture picture = checker ? checker_picture(description) : read_texture(description.file);
-    if (picture.width == 0 || picture.height == 0) throw scene_error(scene, place, "the picture is empty");
-    if (!is_finite(description.repeat.x) || !is_finite(description.repeat.y))
-        throw scene_error(scene, place, "the repeat must be finite");
-    dvec3 largest{0};
-    for (const glm::vec3& texel : picture.texels) {
-        for (int c = 0; c < 3; ++c) {
-            if (!is_finite(texel[c]) || texel[c] < 0)
-                throw scene_error(scene, place, "a texel is negative or not finite");
-            largest[c] = max_or_second(largest[c], static_cast<double>(texel[c]));
-        }
+/// The picture of a texture's file; warns of texels that were clamped.
+ColorPicture read_file_texture(TextureReader& reader, const TextureDescription& texture, const SceneDescription& scene,
+                               const std::string& place, std::vector<std::string>& warnings) {
+    ClampedTexels clamped;
+    ColorPicture picture;
+    try {
+        picture = reader.read(texture.file, texture.strict ? nullptr : &clamped);
+    } catch (const Error& error) {
+        throw Error(error.code(), scene_error(scene, place, error.what()).what());
     }
+    if (clamped.count() > 0)
+        warnings.push_back(scene_error(scene, place, texture.file + ": " + clamped.warning()).what());
+    return picture;
+}
+
+/// Adds a texture, but for its place among all texels; the picture's texels are known to be radiances.
+void append_texture(TextureSet& set, const TextureDescription& description, const ColorPicture& picture) {
+    dvec3 largest{0};
+    for (const glm::vec3& texel : picture.texels)
+        for (int c = 0; c < 3; ++c) largest[c] = max_or_second(largest[c], static_cast<double>(texel[c]));
     Texture texture;
     texture.width = picture.width;
     texture.height = picture.height;
-    texture.first_texel = static_cast<uint32_t>(set.texels.size());
-    texture.filter = checker || !description.bilinear ? TextureFilter::nearest : TextureFilter::bilinear;
+    texture.filter =
+        description.bilinear && !description.file.empty() ? TextureFilter::bilinear : TextureFilter::nearest;
     texture.repeat[0] = description.repeat.x;
     texture.repeat[1] = description.repeat.y;
-    set.number[number] = static_cast<int>(set.textures.size());
     set.textures.push_back(texture);
     set.largest.push_back(largest);
-    set.texels.insert(set.texels.end(), picture.texels.begin(), picture.texels.end());
+}
+
+/// Joins the texels of all pictures, in their order, and frees each one that is copied.
+void join_texels(std::vector<ColorPicture>& pictures, TextureSet& set) {
+    size_t count = 0;
+    for (size_t i = 0; i < pictures.size(); ++i) {
+        set.textures[i].first_texel = static_cast<uint32_t>(count);
+        count += pictures[i].texels.size();
+    }
+    if (pictures.size() == 1) {
+        set.texels = std::move(pictures[0].texels);
+        return;
+    }
+    set.texels.reserve(count);
+    for (ColorPicture& picture : pictures) {
+        set.texels.insert(set.texels.end(), picture.texels.begin(), picture.texels.end());
+        picture = {};
+    }
 }
 
 }  // namespace
@@ -70,11 +90,29 @@ TextureSet read_textures(const SceneSource& source) {
     const SceneDescription& scene = *source.description;
     TextureSet set;
     set.number.assign(scene.textures.size(), -1);
+    TextureLimits limits;
+    limits.bytes = scene.texture_bytes.value_or(limits.bytes);
+    TextureReader reader(limits);
+    std::vector<ColorPicture> pictures;
     for (const SourceSolid& solid : source.solids) {
-        const int texture = source.materials[solid.material].texture;
-        if (texture < 0 || set.number[static_cast<size_t>(texture)] >= 0) continue;
-        append_texture(set, scene.textures[static_cast<size_t>(texture)], scene, static_cast<size_t>(texture));
+        const int number = source.materials[solid.material].texture;
+        if (number < 0 || set.number[static_cast<size_t>(number)] >= 0) continue;
+        const TextureDescription& texture = scene.textures[static_cast<size_t>(number)];
+        const std::string place = texture.place.empty() ? "/textures/" + std::to_string(number) : texture.place;
+        if (!is_finite(texture.repeat.x) || !is_finite(texture.repeat.y))
+            throw scene_error(scene, place, "the repeat must be finite");
+        if (texture.file.empty()) {
+            for (const dvec3& color : texture.checker)
+                if (!is_finite(glm::vec3(color)) || color.x < 0 || color.y < 0 || color.z < 0)
+                    throw scene_error(scene, place, "a color is negative or not finite");
+            pictures.push_back(checker_picture(texture));
+        } else {
+            pictures.push_back(read_file_texture(reader, texture, scene, place, set.warnings));
+        }
+        set.number[static_cast<size_t>(number)] = static_cast<int>(set.textures.size());
+        append_texture(set, texture, pictures.back());
     }
+    join_texels(pictures, set);
     return set;
 }
 

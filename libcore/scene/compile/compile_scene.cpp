@@ -264,6 +264,7 @@ class Compiler {
 
     void compile_shading() {
         TextureSet textures = read_textures(source_);
+        scene_.warnings.insert(scene_.warnings.end(), textures.warnings.begin(), textures.warnings.end());
         scale_ = radiance_scale(description_, radiance_bound(source_, textures, lights_, boxes_),
                                 sizeof(Real) == sizeof(float));
         scene_.radiance_exponent = scale_.exponent;

@@ -49,7 +49,9 @@ struct CompiledScene {
     size_t memory() const;  // bytes of all arrays
 };
 
-/// Reads the meshes and textures that the description names and compiles. Throws Error with the place.
+/// Reads the meshes and textures that the description names and compiles. Textures other than .data are read by a child
+/// process, the program cistula-read-picture, which must be found (scene/image/reader_path.h). Throws Error with the
+/// place.
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description);
 

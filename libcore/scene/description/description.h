@@ -35,6 +35,8 @@ struct TextureDescription {
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
     bool bilinear = true;  // ignored by a checkerboard, which is always nearest
     glm::dvec2 repeat{1};  // factor on uv; a checkerboard's period is 1 in uv: two cells
+    bool strict = false;   // texels of the file that are negative or not finite are an error, and not clamped
+    std::string place;     // "/textures/tiles", "line 3"
 };
 
 enum class PlatonicSolid { tetrahedron, cube, octahedron, dodecahedron, icosahedron };
@@ -128,7 +130,8 @@ struct SceneDescription {
     std::vector<ObjectDescription> objects;  // in file order, which is the priority order of their media
     std::vector<LightDescription> lights;
     std::optional<FrameOfReference> frame;
-    bool from_text_input = false;  // read from the text input
+    bool from_text_input = false;           // read from the text input
+    std::optional<uint64_t> texture_bytes;  // that all texels may take; none: default_texture_bytes()
 };
 
 }  // namespace cistula

@@ -1,6 +1,8 @@
 // OpenEXR files: written with layers and atomically; read for comparisons, for --resume and as textures.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 
 #include "scene/image/picture.h"
@@ -27,7 +29,11 @@ LayeredPicture read_exr(const std::string& path);
 /// file.
 bool exr_is_complete(const std::string& path);
 
-/// Reads R, G, B, or Y alone, of the data window; half, float or uint. Throws Error(ExitCode::file).
-ColorPicture read_exr_texture(const std::string& path);
+/// Why a picture of a width and a height is refused; empty if it is not.
+using SizeProblem = std::function<std::string(int64_t width, int64_t height)>;
+
+/// Reads R, G, B, or Y alone, of the data window; half, float or uint. Memory for them is taken after `size_problem`
+/// has seen their size. Throws Error(ExitCode::file).
+ColorPicture read_exr_texture(const std::string& path, const SizeProblem& size_problem = {});
 
 }  // namespace cistula

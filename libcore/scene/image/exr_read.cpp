@@ -166,8 +166,14 @@ LayeredPicture read_layers(const std::string& path) {
     return picture;
 }
 
-ColorPicture read_colors(const std::string& path) {
+ColorPicture read_colors(const std::string& path, const SizeProblem& size_problem) {
     Imf::InputFile file(path.c_str());
+    const Imath::Box2i data = file.header().dataWindow();
+    const auto side = [](int low, int high) { return static_cast<int64_t>(high) - low + 1; };
+    if (size_problem) {
+        const std::string problem = size_problem(side(data.min.x, data.max.x), side(data.min.y, data.max.y));
+        if (!problem.empty()) throw std::runtime_error(problem);
+    }
     const Imf::ChannelList& channels = file.header().channels();
     const bool gray = !channels.findChannel("R") && !channels.findChannel("G") && !channels.findChannel("B");
     std::string present;
@@ -181,7 +187,6 @@ ColorPicture read_colors(const std::string& path) {
     check_full_sampling(file);
     check_chunks(file);
 
-    const Imath::Box2i data = file.header().dataWindow();
     ColorPicture picture;
     picture.width = static_cast<uint32_t>(data.max.x - data.min.x + 1);
     picture.height = static_cast<uint32_t>(data.max.y - data.min.y + 1);
@@ -220,10 +225,10 @@ bool exr_is_complete(const std::string& path) {
     }
 }
 
-ColorPicture read_exr_texture(const std::string& path) {
+ColorPicture read_exr_texture(const std::string& path, const SizeProblem& size_problem) {
     limit_sizes();
     check_readable(path);
-    return with_file_errors(path, [&] { return read_colors(path); });
+    return with_file_errors(path, [&] { return read_colors(path, size_problem); });
 }
 
 }  // namespace cistula

@@ -7,9 +7,9 @@
 
 namespace cistula {
 
-/// Reads a texture as linear RGB. OpenEXR (by extension or by content) and raw pictures, .data and .out, are read by
-/// every build, other formats through OpenImageIO. Integer samples are decoded from sRGB, floating-point ones are
-/// linear. Every texel is finite and not negative. Throws Error(ExitCode::file).
+/// Reads one texture by a TextureReader (texture_reader.h), within the default limits; every texel must be finite and
+/// not negative. Other pictures than .data and .out need the program cistula-read-picture, and those that are not
+/// OpenEXR the module libcistula_oiio.so beside it. Throws Error(ExitCode::file).
 ColorPicture read_texture(const std::string& path);
 
 /// Writes an 8-bit sRGB PNG atomically, clamped to [0, 1]. Throws Error(ExitCode::file).

@@ -1,18 +1,23 @@
 // The module that uses OpenImageIO; nothing else links that library.
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+#include <climits>
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "scene/base/file_bytes.h"
+#include "scene/image/picture_damage.h"
 #include "scene/image/picture_oiio_module.h"
+#include "scene/image/texture_limits.h"
 
 namespace cistula {
 namespace {
 
 bool fail(const OiioHost& host, const std::string& reason) {
-    host.failed(host.self, reason.c_str());
+    host.failed(host.self, reason.empty() ? "OpenImageIO gives no reason; the file is damaged" : reason.c_str());
     return false;
 }
 
@@ -22,7 +27,7 @@ bool guarded(const OiioHost& host, Work work) noexcept {
     try {
         return work();
     } catch (const std::bad_alloc&) {
-        host.failed(host.self, "not enough memory for a picture of its size");
+        host.failed(host.self, "decoding it takes more memory than is allowed");
     } catch (const std::exception& error) {
         host.failed(host.self, error.what());
     } catch (...) {
@@ -31,53 +36,88 @@ bool guarded(const OiioHost& host, Work work) noexcept {
     return false;
 }
 
-bool read_opened(OIIO::ImageInput& input, const OiioHost& host) {
-    const OIIO::ImageSpec& spec = input.spec();
-    if (spec.width < 1 || spec.height < 1 || spec.width > largest_picture_side || spec.height > largest_picture_side)
-        return fail(host, "its size is " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
-                              "; width and height of a texture are 1 to " + std::to_string(largest_picture_side));
-    if (spec.depth > 1 || spec.deep || spec.nchannels < 1)
-        return fail(host, "it is no flat picture; a texture has one color per pixel");
-    OiioSamples type = OiioSamples::float32;
-    OIIO::TypeDesc format = OIIO::TypeDesc::FLOAT;
+/// The type of samples that the host gets for those of a file; false if they are of another kind.
+bool sample_type(const OIIO::ImageSpec& spec, OiioSamples& type, OIIO::TypeDesc& format) {
     switch (spec.format.basetype) {
         case OIIO::TypeDesc::UINT8:
             type = OiioSamples::uint8;
             format = OIIO::TypeDesc::UINT8;
-            break;
+            return true;
         case OIIO::TypeDesc::UINT16:
             type = OiioSamples::uint16;
             format = OIIO::TypeDesc::UINT16;
-            break;
+            return true;
         case OIIO::TypeDesc::HALF:
         case OIIO::TypeDesc::FLOAT:
         case OIIO::TypeDesc::DOUBLE:
-            break;
+            type = OiioSamples::float32;
+            format = OIIO::TypeDesc::FLOAT;
+            return true;
         default:
-            return fail(host, std::string("its samples are of type ") + spec.format.c_str() +
-                                  "; a texture has 8 or 16 bits, half or float");
+            return false;
     }
+}
+
+/// Reads some rows at a time, so that the whole picture is never in memory here, but for formats that have it there.
+bool read_rows(OIIO::ImageInput& input, const OiioHost& host, int channels, OIIO::TypeDesc format) {
+    const OIIO::ImageSpec spec = input.spec();
+    const size_t texel = static_cast<size_t>(channels) * format.size(), row = texel * static_cast<size_t>(spec.width);
+    constexpr size_t piece = 16 << 20;
+    const int step = spec.tile_width > 0 ? spec.tile_height : static_cast<int>(std::clamp<size_t>(piece / row, 1, 256));
+    if (step < 1) return fail(host, "its tiles have no height");
+    std::vector<char> samples(row * static_cast<size_t>(std::min(step, spec.height)));
+    for (int y = 0; y < spec.height; y += std::min(step, spec.height - y)) {
+        const int first = spec.y + y, end = first + std::min(step, spec.height - y);
+        const bool done = spec.tile_width > 0
+                              ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, first, end, spec.z, spec.z + 1, 0,
+                                                 channels, format, samples.data())
+                              : input.read_scanlines(0, 0, first, end, spec.z, 0, channels, format, samples.data());
+        if (!done || input.has_error()) return fail(host, input.geterror());  // some formats fail after true
+        host.samples(host.self, samples.data(), static_cast<size_t>(end - first) * static_cast<size_t>(spec.width));
+    }
+    return true;
+}
+
+bool read_opened(OIIO::ImageInput& input, const char* path, const OiioHost& host) {
+    const OIIO::ImageSpec& spec = input.spec();
+    if (spec.depth > 1 || spec.deep || spec.nchannels < 1)
+        return fail(host, "it is no flat picture; a texture has one color per pixel");
+    OiioSamples type;
+    OIIO::TypeDesc format;
+    if (!sample_type(spec, type, format))
+        return fail(host, std::string("its samples are of type ") + spec.format.c_str() +
+                              "; a texture has 8 or 16 bits, half or float");
     const int channels = spec.nchannels < 3 ? 1 : 3;
-    void* const samples = host.room(host.self, static_cast<uint32_t>(spec.width), static_cast<uint32_t>(spec.height),
-                                    static_cast<uint32_t>(channels), type);
-    if (!samples) return false;
-    return input.read_image(0, 0, 0, channels, format, samples) || fail(host, input.geterror());
+    if (!host.begin(host.self, spec.width, spec.height, static_cast<uint32_t>(channels), type)) return false;
+    const std::string damage = picture_damage(input.format_name(), path);
+    return damage.empty() ? read_rows(input, host, channels, format) : fail(host, damage);
+}
+
+/// Sets the library's own limits, in case a format asks them before the size is seen here; versions differ in which of
+/// them they know.
+void limit_library(uint64_t left) {
+    constexpr uint64_t most_stored_bytes = 32;  // of a texel: four doubles
+    const uint64_t megabytes = left / texel_bytes * most_stored_bytes / (1 << 20) + 1;
+    OIIO::attribute("limits:imagesize_MB", static_cast<int>(std::min<uint64_t>(megabytes, INT_MAX)));
+    OIIO::attribute("limits:resolution", static_cast<int>(largest_picture_side));
+    OIIO::attribute("threads", 1);
 }
 
 bool read(const char* path, const OiioHost* host) noexcept {
     return guarded(*host, [&] {
+        limit_library(host->left);
         // Colors as stored: premultiplied colors would be darker, and wrong if multiplied before decoding from sRGB.
         OIIO::ImageSpec settings;
         settings["oiio:UnassociatedAlpha"] = 1;
         const auto input = OIIO::ImageInput::open(path, &settings);
-        return input ? read_opened(*input, *host) : fail(*host, OIIO::geterror());
+        return input ? read_opened(*input, path, *host) : fail(*host, OIIO::geterror());
     });
 }
 
 }  // namespace
 }  // namespace cistula
 
-extern "C" __attribute__((visibility("default"))) const cistula::OiioModule* cistula_oiio_module_2() {
+extern "C" __attribute__((visibility("default"))) const cistula::OiioModule* cistula_oiio_module_3() {
     static constexpr cistula::OiioModule module = {cistula::read};
     return &module;
 }

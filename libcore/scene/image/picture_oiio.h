@@ -1,14 +1,18 @@
-// Image formats read by OpenImageIO. A build without it (CISTULA_WITH_OIIO=OFF) replaces only this.
+// Image formats read by OpenImageIO, in the program that reads pictures. A build without it (CISTULA_WITH_OIIO=OFF)
+// replaces only this.
 #pragma once
 
 #include <string>
 
-#include "scene/image/picture.h"
+#include "scene/image/picture_oiio_module.h"
 
 namespace cistula {
 
-/// Reads a picture as linear RGB: 8- and 16-bit samples are decoded from sRGB; half, float and double are taken as
-/// linear; one or two channels are gray; alpha is ignored. Throws Error(ExitCode::file).
-ColorPicture oiio_read(const std::string& path);
+/// Loads what reading with OpenImageIO needs, which stays loaded; empty if that succeeds, or the reason.
+std::string load_oiio();
+
+/// Reads a picture after load_oiio: 8- and 16-bit samples are sRGB codes, float ones linear; half and double become
+/// float. True on success.
+bool oiio_read(const std::string& path, const OiioHost& host);
 
 }  // namespace cistula

@@ -1,19 +1,13 @@
-#include "scene/image/picture_oiio_load.h"
-
+// Loads the module for OpenImageIO, which lies beside the program.
 #include <dlfcn.h>
 
 #include <cfenv>
 #include <filesystem>
-#include <vector>
 
-#include "scene/base/file_bytes.h"
+#include "scene/image/picture_oiio.h"
 
 namespace cistula {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* module_file = CISTULA_OIIO_MODULE;
 
 /// Saves and restores the floating-point control register: libraries built with fast-math flush subnormal numbers to
 /// zero once they are loaded.
@@ -28,46 +22,29 @@ class KeptFloatingPoint {
     std::fenv_t state_;
 };
 
-const OiioModule* open_module(const std::string& name, std::string& reason) {
-    const KeptFloatingPoint kept;
-    void* const library = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
-    void* const entry = library ? dlsym(library, oiio_module_entry) : nullptr;
-    if (entry) return reinterpret_cast<OiioModuleEntry>(entry)();
-    const char* const text = dlerror();
-    reason = text ? text : "no reason given";
-    if (library) dlclose(library);  // belongs to another version of Cistula
-    return nullptr;
-}
-
-/// Directories relative to the program that may hold the module, nearest first.
-std::vector<fs::path> directories_of_program() {
-    std::error_code failure;
-    const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-    if (failure) return {};
-    const fs::path directory = program.parent_path(), prefix = directory.parent_path();
-    return {directory, prefix / "lib" / "cistula", prefix / "lib"};
-}
-
-const OiioModule* find_module(const std::string& path) {
-    std::string reason, places = "the library path";
-    if (const OiioModule* module = open_module(module_file, reason)) return module;
-    for (const fs::path& directory : directories_of_program()) {
-        const fs::path file = directory / module_file;
-        places += ", " + directory.string();
-        std::error_code failure;
-        if (!fs::exists(file, failure)) continue;  // an existing file's reason is more helpful
-        if (const OiioModule* module = open_module(file.string(), reason)) return module;
-    }
-    throw file_error(path, "read",
-                     std::string("formats other than EXR and .data need the module ") + module_file +
-                         ", which cannot be loaded from " + places + ": " + reason);
-}
+const OiioModule* module = nullptr;
 
 }  // namespace
 
-const OiioModule& load_oiio_module(const std::string& path) {
-    static const OiioModule& module = *find_module(path);  // after an exception the next call tries again
-    return module;
+std::string load_oiio() {
+    if (module) return "";
+    std::error_code failure;
+    const std::filesystem::path directory = std::filesystem::read_symlink("/proc/self/exe", failure).parent_path();
+    const KeptFloatingPoint kept;
+    void* const library = dlopen((directory / CISTULA_OIIO_MODULE).c_str(), RTLD_LAZY | RTLD_LOCAL);
+    void* const entry = library ? dlsym(library, oiio_module_entry) : nullptr;
+    if (entry) {
+        module = reinterpret_cast<OiioModuleEntry>(entry)();
+        return "";
+    }
+    const char* const text = dlerror();
+    return std::string("formats other than EXR and .data need the module " CISTULA_OIIO_MODULE
+                       ", which cannot be loaded from ") +
+           directory.string() + ": " + (text ? text : "no reason given");
+}
+
+bool oiio_read(const std::string& path, const OiioHost& host) {
+    return module->read(path.c_str(), &host);
 }
 
 }  // namespace cistula

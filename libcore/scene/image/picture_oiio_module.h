@@ -1,5 +1,5 @@
-// Interface between the library and its module for OpenImageIO, which is loaded when the first texture needs it. Plain
-// C types, so that each side frees what it allocated and no exception crosses.
+// Interface between the program that reads pictures and its module for OpenImageIO, which it loads when a picture needs
+// it. Plain C types, so that each side frees what it allocated and no exception crosses.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,12 @@ enum class OiioSamples : uint32_t { uint8 = 1, uint16 = 2, float32 = 4 };
 /// Callbacks of the calling side. Every function gets `self`; reasons are copied before it returns.
 struct OiioHost {
     void* self;
-    /// Memory for width * height * channels samples, row-major from the top left. Null: the host refuses and knows the
-    /// reason; the module returns.
-    void* (*room)(void* self, uint32_t width, uint32_t height, uint32_t channels, OiioSamples type) noexcept;
+    /// Bytes that the texels of the picture may take, 12 each.
+    uint64_t left;
+    /// Announces a picture. False: the host refuses and knows the reason; the module returns.
+    bool (*begin)(void* self, int64_t width, int64_t height, uint32_t channels, OiioSamples type) noexcept;
+    /// Takes the next `texels` texels of width * height, row-major from the top left.
+    void (*samples)(void* self, const void* from, size_t texels) noexcept;
     /// Reports why the call fails, without the file's name.
     void (*failed)(void* self, const char* reason) noexcept;
 };
@@ -30,6 +33,6 @@ struct OiioModule {
 
 /// The one function that the module exports. Its number changes whenever this header does.
 using OiioModuleEntry = const OiioModule* (*)();
-inline constexpr const char* oiio_module_entry = "cistula_oiio_module_2";
+inline constexpr const char* oiio_module_entry = "cistula_oiio_module_3";
 
 }  // namespace cistula

@@ -4,7 +4,9 @@
 #include <stdexcept>
 
 #include "scene/base/atomic_file.h"
+#include "scene/base/file_bytes.h"
 #include "scene/image/srgb_codes.h"
+#include "scene/image/texture_limits.h"
 
 namespace cistula {
 namespace {
@@ -23,25 +25,30 @@ void append_little_endian(std::string& bytes, uint32_t value) {
 
 }  // namespace
 
-ColorPicture read_raw_picture(const std::string& path) {
-    const std::string bytes = read_file(path);
-    if (bytes.size() < header_size)
+ColorPicture read_raw_picture(const std::string& path, uint64_t left, uint64_t limit) {
+    const std::string header = read_file_start(path, header_size);
+    if (header.size() < header_size)
         throw file_error(path, "read",
-                         "it has " + std::to_string(bytes.size()) +
+                         "it has " + std::to_string(header.size()) +
                              " bytes; a .data file begins with 8, its width and height as two 32-bit integers");
-    const int64_t width = static_cast<int32_t>(little_endian(bytes, 0));
-    const int64_t height = static_cast<int32_t>(little_endian(bytes, 4));
-    const std::string size = std::to_string(width) + "x" + std::to_string(height);
-    if (width < 1 || height < 1 || width > largest_picture_side || height > largest_picture_side)
-        throw file_error(path, "read",
-                         "its size is " + size + "; width and height of a .data file are 1 to " +
-                             std::to_string(largest_picture_side));
+    const int64_t width = static_cast<int32_t>(little_endian(header, 0));
+    const int64_t height = static_cast<int32_t>(little_endian(header, 4));
+    const auto check = [&](const std::string& problem) {
+        if (!problem.empty()) throw file_error(path, "read", problem);
+    };
+    check(texture_size_problem(width, height, no_texture_limit, no_texture_limit));
     const uint64_t expected = header_size + 4 * static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-    if (bytes.size() != expected)
+    const auto check_size = [&](uint64_t size) {
+        if (size == expected) return;
         throw file_error(path, "read",
-                         "it has " + std::to_string(bytes.size()) + " bytes, which is too " +
-                             (bytes.size() < expected ? "few" : "many") + "; a .data file of " + size + " texels has " +
-                             std::to_string(expected));
+                         "it has " + std::to_string(size) + " bytes, which is too " +
+                             (size < expected ? "few" : "many") + "; a .data file of " + std::to_string(width) + "x" +
+                             std::to_string(height) + " texels has " + std::to_string(expected));
+    };
+    check_size(regular_file_size(path));
+    check(texture_size_problem(width, height, left, limit));
+    const std::string bytes = read_file_start(path, expected);
+    check_size(bytes.size());
 
     ColorPicture picture;
     picture.width = static_cast<uint32_t>(width);

@@ -73,12 +73,13 @@ CameraDescription read_camera(const JsonValue& value) {
 
 TextureDescription read_texture(const JsonValue& value, const std::string& base_dir) {
     TextureDescription texture;
+    texture.place = value.place();
     const bool is_object = value.json().is_object();
     const bool has_file = is_object && value.json().contains("file");
     const bool has_checker = is_object && value.json().contains("checker");
     if (has_file && has_checker) value.fail("expected one of 'file' and 'checker', found both");
     if (is_object && !has_file && !has_checker) {
-        const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat"};
+        const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat", "strict"};
         for (const auto& member : value.json().items())
             if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
                 value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
@@ -90,6 +91,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
         texture.file = file_beside_scene(texture.file, base_dir);
         if (const int filter = keys.read_choice("filter"); filter >= 0) texture.bilinear = filter == 1;
         keys.read("repeat", texture.repeat);
+        keys.read("strict", texture.strict);
         keys.finish();
         return texture;
     }

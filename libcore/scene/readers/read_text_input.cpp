@@ -162,6 +162,7 @@ SceneDescription read_text_input(const std::string& text, const std::string& lab
     TextureDescription texture;
     texture.name = "floor";
     texture.file = file_beside_scene(std::string(tokens.word("the floor's texture file")), base_dir);
+    texture.place = fmt::format("line {}", tokens.line());
     scene.textures.push_back(texture);
     scene.film.output = tokens.word("the output pattern with %d");
     if (!is_pattern(scene.film.output))

@@ -94,6 +94,7 @@ constexpr Key texture_file_list[] = {
     text("file", required),
     choice("filter", filter_choices, "\"bilinear\""),
     pair("repeat", repeats, "[1, 1]"),
+    boolean("strict", "false"),
 };
 
 constexpr Key texture_checker_list[] = {

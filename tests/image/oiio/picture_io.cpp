@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "scene/image/exr.h"
-#include "scene/image/picture_oiio.h"
 #include "scene/image/raw_picture.h"
 #include "scene/image/srgb_codes.h"
 #include "testing/support/expect_error.h"
@@ -134,25 +133,23 @@ TEST(Textures, Errors) {
 
 TEST(Textures, TexelsAreFiniteAndNotNegative) {
     const ScratchDirectory scratch;
-    const std::string path = scratch.file("a.exr");
-    LayeredPicture layers;
-    layers.width = layers.display_width = 2;
-    layers.height = layers.display_height = 2;
-    for (const char* name : {"R", "G", "B"}) layers.channels.push_back({name, false, {0, -0.0f, 1, 2}});
-    write_exr(path, layers);
-    EXPECT_EQ(read_texture(path).texels.size(), 4u);
-    layers.channels[1].values[3] = -0.5f;
-    write_exr(path, layers);
-    EXPECT_ERROR(read_texture(path), ExitCode::file,
-                 path + ": texel (1, 1) has G = -0.500000; texels are finite and not negative");
-    layers.channels[2].values[2] = std::numeric_limits<float>::infinity();
-    write_exr(path, layers);
-    EXPECT_ERROR(read_texture(path), ExitCode::file,
-                 path + ": texel (0, 1) has B = inf; texels are finite and not negative");
-    layers.channels[0].values[1] = std::numeric_limits<float>::quiet_NaN();
-    write_exr(path, layers);
-    EXPECT_ERROR(read_texture(path), ExitCode::file,
-                 path + ": texel (1, 0) has R = nan; texels are finite and not negative");
+    const std::string path = scratch.file("a.tif");
+    const auto write = [&](float value) {
+        write_image<float>(path, 2, 3, OIIO::TypeDesc::FLOAT, {0, 1, 2, 3, value, 5});
+    };
+    write(-0.0f);
+    EXPECT_EQ(read_texture(path).texels.size(), 2u);
+    const auto expect_refused = [&](const std::string& value) {
+        EXPECT_ERROR(
+            read_texture(path), ExitCode::file,
+            path + ": texel (1, 0) has G = " + value + ", and so 1 of 6 values; texels are finite and not negative");
+    };
+    write(-0.5f);
+    expect_refused("-0.5");
+    write(std::numeric_limits<float>::infinity());
+    expect_refused("inf");
+    write(std::numeric_limits<float>::quiet_NaN());
+    expect_refused("nan");
 }
 
 TEST(Preview, ExactBytesAndOneFile) {

@@ -1,0 +1,208 @@
+// cistula-read-picture: reads pictures for another process, which starts it (reader_process.h), each by a fork of its
+// own, so that a picture that makes a library crash or take memory or time without end harms nothing else.
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "scene/base/file_bytes.h"
+#include "scene/image/exr.h"
+#include "scene/image/picture_oiio.h"
+#include "scene/image/reader_wire.h"
+#include "scene/image/texture_limits.h"
+
+namespace cistula {
+namespace {
+
+/// Fills `size` bytes at `to` with what the other process says; ends this one if that has ended.
+void receive(void* to, size_t size) {
+    for (auto* bytes = static_cast<char*>(to); size > 0;) {
+        const ssize_t got = read(reader_socket, bytes, size);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) _exit(0);
+        bytes += got;
+        size -= static_cast<size_t>(got);
+    }
+}
+
+void send(const void* from, size_t size) {
+    for (const auto* bytes = static_cast<const char*>(from); size > 0;) {
+        const ssize_t sent = ::send(reader_socket, bytes, size, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent <= 0) _exit(0);
+        bytes += sent;
+        size -= static_cast<size_t>(sent);
+    }
+}
+
+void send_part(ReplyKind kind, const void* from, size_t size) {
+    const ReplyHead head = {kind, static_cast<uint32_t>(size)};
+    send(&head, sizeof head);
+    send(from, size);
+}
+
+void fail(const std::string& reason) {
+    send_part(ReplyKind::failed, reason.data(), std::min<size_t>(reason.size(), largest_reply_part));
+}
+
+/// Limits a resource from now on; a lower limit of the other process stays.
+template <class Resource>
+void limit(Resource resource, uint64_t most) {
+    rlimit limits = {};
+    if (getrlimit(resource, &limits) != 0) return;
+    limits.rlim_cur = std::min<rlim_t>(limits.rlim_max, most);
+    setrlimit(resource, &limits);
+}
+
+/// Bytes of address space in use.
+uint64_t address_space() {
+    uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// One answer.
+class Answer {
+  public:
+    explicit Answer(const ReadRequest& request) : request_(request) { allow_seconds_for(0); }
+
+    /// Why a picture of this size is refused; empty if it is not, and then it may take the time for its size.
+    std::string size_problem(int64_t width, int64_t height) const {
+        std::string problem = texture_size_problem(width, height, request_.left, request_.limit);
+        if (problem.empty())
+            allow_seconds_for(texel_bytes * static_cast<uint64_t>(width) * static_cast<uint64_t>(height));
+        return problem;
+    }
+
+    bool begin(int64_t width, int64_t height, uint32_t channels, OiioSamples type) {
+        if (const std::string problem = size_problem(width, height); !problem.empty()) {
+            fail(problem);
+            return false;
+        }
+        const ReplySize size = {static_cast<uint32_t>(width), static_cast<uint32_t>(height), channels,
+                                static_cast<uint32_t>(type)};
+        texel_ = channels * size.sample_bytes;
+        send_part(ReplyKind::size, &size, sizeof size);
+        return true;
+    }
+
+    void samples(const void* from, size_t texels) const {
+        const size_t most = largest_reply_part / texel_;
+        for (const auto* bytes = static_cast<const char*>(from); texels > 0;) {
+            const size_t count = std::min(texels, most);
+            send_part(ReplyKind::samples, bytes, count * texel_);
+            bytes += count * texel_;
+            texels -= count;
+        }
+    }
+
+  private:
+    void allow_seconds_for(uint64_t bytes) const {
+        limit(RLIMIT_CPU, static_cast<uint64_t>(seconds_for(static_cast<int>(request_.seconds), bytes)));
+    }
+
+    const ReadRequest& request_;
+    size_t texel_ = 0;
+};
+
+OiioHost host_of(Answer& answer, uint64_t left) {
+    return {&answer, left,
+            [](void* self, int64_t width, int64_t height, uint32_t channels, OiioSamples type) noexcept {
+                return static_cast<Answer*>(self)->begin(width, height, channels, type);
+            },
+            [](void* self, const void* from, size_t texels) noexcept {
+                static_cast<const Answer*>(self)->samples(from, texels);
+            },
+            [](void*, const char* reason) noexcept { fail(reason); }};
+}
+
+void answer_exr(const std::string& path, Answer& answer) {
+    ColorPicture picture;
+    try {
+        picture =
+            read_exr_texture(path, [&](int64_t width, int64_t height) { return answer.size_problem(width, height); });
+    } catch (const std::exception& error) {
+        const std::string_view message = error.what();
+        const std::string before = path + ": cannot read: ";  // which the other process says, too
+        return fail(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
+    }
+    if (answer.begin(picture.width, picture.height, 3, OiioSamples::float32))
+        answer.samples(picture.texels.data(), picture.texels.size());
+}
+
+/// Answers within the limits, and ends this process.
+[[noreturn]] void answer_and_end(const std::string& path, const ReadRequest& request) {
+    constexpr uint64_t beside_texels = 1 << 30;
+    limit(RLIMIT_AS, address_space() + beside_texels + 2 * request.left);
+    Answer answer(request);
+    if (request.is_exr)
+        answer_exr(path, answer);
+    else
+        oiio_read(path, host_of(answer, request.left));
+    _exit(0);
+}
+
+/// Ends this process if the one that started it has ended, or ends.
+void end_with(pid_t parent) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(0);
+}
+
+/// Ends as a child process has ended, unless that was well.
+void end_like(int status) {
+    if (WIFSIGNALED(status)) {
+        limit(RLIMIT_CORE, 0);
+        std::signal(WTERMSIG(status), SIG_DFL);
+        raise(WTERMSIG(status));
+    }
+    if (status != 0) _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 1);
+}
+
+/// Answers one request by a process of its own, so that what a picture breaks there harms no other picture. Libraries
+/// are loaded before, once.
+void answer_one() {
+    ReadRequest request;
+    receive(&request, sizeof request);
+    std::string path(request.path_size, '\0');
+    receive(path.data(), path.size());
+    const std::string missing = request.is_exr ? "" : load_oiio();
+    if (!missing.empty()) return fail(missing);
+    const pid_t self = getpid(), child = fork();
+    if (child == 0) {
+        end_with(self);
+        answer_and_end(path, request);
+    }
+    if (child < 0) return fail("no process can be started to decode it");
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    end_like(status);
+}
+
+}  // namespace
+}  // namespace cistula
+
+int main(int count, char** arguments) {
+    using namespace cistula;
+    if (count != 2 || std::string_view(arguments[1]) != reader_protocol) {
+        std::fputs("cistula-read-picture: is started by programs that read textures, and does nothing by itself\n",
+                   stderr);
+        return reader_wrong_protocol;
+    }
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+    prctl(PR_SET_DUMPABLE, 0);  // no core file of a crash that is expected
+    limit(RLIMIT_FSIZE, 0);
+    for (;;) answer_one();
+}

@@ -1,0 +1,39 @@
+// A child process that runs the program that reads pictures.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace cistula {
+
+/// The running program; it ends with the object, and with the thread that made the object. It has its streams on
+/// /dev/null and of this process's files only its end of a socket.
+class ReaderProcess {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    /// Starts it. Throws std::runtime_error.
+    ReaderProcess();
+    ~ReaderProcess();
+    ReaderProcess(const ReaderProcess&) = delete;
+    ReaderProcess& operator=(const ReaderProcess&) = delete;
+
+    /// Says `size` bytes. Throws ReaderBroken with how the program ended, where it has ended.
+    void send(const void* from, size_t size);
+
+    /// Receives exactly `size` bytes. Throws ReaderBroken if the program ends before, or the time is over.
+    void receive(void* to, size_t size, Clock::time_point end);
+
+  private:
+    /// Throws ReaderBroken with what became of the program, which has closed its socket.
+    [[noreturn]] void fail_ended();
+
+    std::string program_;
+    int socket_ = -1;
+    pid_t child_ = -1;
+};
+
+}  // namespace cistula

@@ -1,0 +1,44 @@
+// What a process and the program that reads pictures for it, cistula-read-picture, say to each other, over a stream
+// socket, in the machine's own byte order.
+#pragma once
+
+#include <cstdint>
+
+namespace cistula {
+
+/// The program's only argument; it changes whenever this header does.
+inline constexpr const char* reader_protocol = "cistula-pictures-1 " CISTULA_VERSION;
+
+inline constexpr int reader_socket = 3;           // the program's descriptor of its end
+inline constexpr int reader_wrong_protocol = 64;  // the program's exit code for another argument
+
+/// Asks for one picture; the bytes of its path follow.
+struct ReadRequest {
+    uint64_t left, limit;  // bytes that its texels may take; of the limit for all textures
+    uint32_t is_exr;       // 1: OpenEXR; 0: what OpenImageIO finds
+    uint32_t seconds;      // of TextureLimits
+    uint32_t path_size;
+    uint32_t reserved;
+};
+
+/// The answer is `size` and then `samples` until there are all, or at any time `failed`.
+enum class ReplyKind : uint32_t {
+    size = 1,  // a ReplySize
+    samples,   // whole texels, row-major from the top left
+    failed,    // the reason, without the file's name
+};
+
+/// Begins each part of an answer.
+struct ReplyHead {
+    ReplyKind kind;
+    uint32_t bytes;  // of what follows, at most largest_reply_part
+};
+inline constexpr uint32_t largest_reply_part = 1 << 20;
+
+struct ReplySize {
+    uint32_t width, height;
+    uint32_t channels;      // 1 or 3
+    uint32_t sample_bytes;  // 1 or 2: sRGB codes; 4: linear floats
+};
+
+}  // namespace cistula
