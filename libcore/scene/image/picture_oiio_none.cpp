@@ -11,6 +11,5 @@ bool oiio_read(const std::string&, const OiioHost& host) {
     host.failed(host.self, load_oiio().c_str());
     return false;
 }
-}
 
 }  // namespace cistula
