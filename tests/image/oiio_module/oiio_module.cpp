@@ -1,4 +1,5 @@
 // OpenImageIO is a module: loaded when the first texture needs it, found where it lies, and missed with a clear error.
+#include <algorithm>
 #include <sstream>
 
 #include "scene/image/picture_io.h"
