@@ -2,6 +2,7 @@
 // rounding differs; hard scenes end, whatever rays slip through there; images of one are never taken for the other's.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 

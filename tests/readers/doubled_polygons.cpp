@@ -1,6 +1,8 @@
 // Polygons of a mesh file that are there several times are read once, before they are cut into triangles.
 #include "scene/readers/doubled_polygons.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "scene/compile/compiled_scene.h"

@@ -1,6 +1,7 @@
 // Bright and dim scenes: radiances are scaled by a power of two to their bound, and exceeding it is reported.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "apps/render_verify/metamorphic/films.h"

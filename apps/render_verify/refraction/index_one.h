@@ -1,6 +1,7 @@
 // A clear solid of the surrounding index changes no bit of the image.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 
 #include "apps/render_verify/case.h"

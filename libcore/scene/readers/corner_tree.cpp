@@ -1,5 +1,6 @@
 #include "scene/readers/corner_tree.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include <glm/common.hpp>

@@ -1,6 +1,7 @@
 // render-report's page: texts, drawings, records; the program from end to end on a small scene.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "apps/render_report/html.h"
