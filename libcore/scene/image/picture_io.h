@@ -7,9 +7,10 @@
 
 namespace cistula {
 
-/// Reads one texture by a TextureReader (texture_reader.h), within the default limits; every texel must be finite and
-/// not negative. Other pictures than .data and .out need the program cistula-read-picture, and those that are not
-/// OpenEXR the module libcistula_oiio.so beside it. Throws Error(ExitCode::file).
+/// Reads one texture by a TextureReader (texture_reader.h) of its own, within the default limits; every texel must be
+/// finite and not negative. Other pictures than .data and .out need the program cistula-read-picture, and those that
+/// are not OpenEXR the module libcistula_oiio.so beside it. Starting it takes a while, so one TextureReader for several
+/// is better. Throws Error(ExitCode::file).
 ColorPicture read_texture(const std::string& path);
 
 /// Writes an 8-bit sRGB PNG atomically, clamped to [0, 1]. Throws Error(ExitCode::file).
