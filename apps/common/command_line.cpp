@@ -35,7 +35,7 @@ void open_standard_streams() {
     for (const std::string& extra : app.remaining()) {
         if (extra.size() < 2 || extra[0] != '-') fail_usage(extra_positional(extra));
         const std::vector<std::string> names = long_names(app);
-        fail_usage(fmt::format("{}: no such option; {}; --help lists them", one_line(extra),
+        fail_usage(fmt::format("{}: no such option; {}; --help lists them", extra,
                                suggestion(extra.substr(0, extra.find('=')), {names.begin(), names.end()}, "options")));
     }
     fail_usage("the command line cannot be read; --help shows its form");
@@ -55,8 +55,8 @@ int integer_option(const char* option, const std::string& text, int low, int hig
 }
 
 void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names) {
-    fail_usage(fmt::format("{} {}: must be {}; {}", option, one_line(text), fmt::join(names, " or "),
-                           suggestion(text, names, "names")));
+    fail_usage(
+        fmt::format("{} {}: must be {}; {}", option, text, fmt::join(names, " or "), suggestion(text, names, "names")));
 }
 
 void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
@@ -98,12 +98,12 @@ void print(const std::string& text) {
 }
 
 void note(const std::string& line) {
-    std::fputs((line + "\n").c_str(), stderr);
+    std::fputs((message_line(line) + "\n").c_str(), stderr);
 }
 
 int run_program(const char* name, const char* memory_advice, const std::function<int()>& work) {
     const auto fail = [name](const std::string& message, ExitCode code) {
-        note(fmt::format("{}: {}", name, one_line(message)));
+        note(fmt::format("{}: {}", name, message));
         return static_cast<int>(code);
     };
     open_standard_streams();
