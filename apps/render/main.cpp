@@ -3,9 +3,8 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "apps/common/backends.h"
 #include "apps/common/command_line.h"
@@ -22,7 +21,6 @@
 #include "pixel_report.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
-#include "scene/base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/required_effects.h"
 #include "scene/compile/scene_source.h"
@@ -48,7 +46,7 @@ void on_threads(const RenderOptions& options, const Work& work) {
 
 void print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
     if (options.quiet) return;
-    for (const std::string& warning : warnings) note(fmt::format("render: warning: {}", one_line(warning)));
+    for (const std::string& warning : warnings) note(fmt::format("render: warning: {}", warning));
 }
 
 /// Sets the precision of the frames, and says so where the scene decides it.
@@ -56,7 +54,7 @@ void choose_precision(RenderOptions& options, const SceneSource& source) {
     const PrecisionChoice choice = choose_precision(options.wanted_precision, smallest_part(source));
     options.precision = choice.precision;
     if (!choice.warning.empty()) print_warnings({choice.warning}, options);
-    if (!choice.note.empty() && !options.quiet) note(fmt::format("render: {}", one_line(choice.note)));
+    if (!choice.note.empty() && !options.quiet) note(fmt::format("render: {}", choice.note));
 }
 
 template <class Real>
@@ -76,8 +74,18 @@ std::unique_ptr<Renderer> prepare(SceneSource source, const RenderOptions& optio
 /// The output file names, checked against one another, with their directories created.
 struct Outputs {
     OutputName image, preview;
-    std::vector<int> frames;
+    FrameList frames;
 };
+
+/// Checks the names of these frames against all others, creates their directories, and finds their cameras. Returns
+/// where the picture turns at once.
+std::string look_ahead(const Outputs& outputs, const RenderOptions& options, const SceneDescription& scene,
+                       const std::vector<int>& frames) {
+    require_different_files(options.scene, outputs.image, outputs.preview, options.stats, frames);
+    make_directories(outputs.image, frames);
+    if (!options.preview.empty()) make_directories(outputs.preview, frames);
+    return camera_turns(scene.camera, frames);
+}
 
 Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene) {
     Outputs outputs;
@@ -102,47 +110,36 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
             throw Error(ExitCode::usage, fmt::format("--preview {}: holds one frame of {}; put #### into the name",
                                                      options.preview, outputs.frames.size()));
     }
-    require_different_files(options.scene, outputs.image, outputs.preview, options.stats, outputs.frames);
-    make_directories(outputs.image, outputs.frames);
-    if (!options.preview.empty()) make_directories(outputs.preview, outputs.frames);
+    for (const std::string& other : {options.scene, options.stats})
+        require_different_files(options.scene, outputs.image, outputs.preview, options.stats,
+                                frames_named_in(other, outputs.frames));
+    const std::string turns = look_ahead(outputs, options, scene, outputs.frames.part(0, stretch_length));
     if (!options.stats.empty()) make_directory_of(options.stats);
+    if (!turns.empty()) print_warnings({turns}, options);
     return outputs;
 }
 
-void print_summary(const RunStats& stats, const OutputName& image, double seconds) {
-    uint64_t rays = 0;
-    double render_seconds = 0;
-    for (const FrameStats& frame : stats.frames) {
-        rays += frame.rays.total();
-        render_seconds += frame.render_seconds;
-    }
-    if (stats.frames.empty()) return;
-    const std::string what = stats.frames.size() == 1 ? stats.frames[0].file
-                                                      : fmt::format("{}: {} frames", image.text(), stats.frames.size());
-    note(fmt::format("render: {}: {:.2f} s, {} rays, {}", what, seconds, rays,
-                     format_rate(render_seconds > 0 ? static_cast<double>(rays) / render_seconds : 0)));
+void print_summary(const FilmTotals& totals, const OutputName& image, double seconds) {
+    if (totals.frames == 0) return;
+    const std::string what =
+        totals.frames == 1 ? totals.first_file : fmt::format("{}: {} frames", image.text(), totals.frames);
+    const double rate = totals.render_seconds > 0 ? static_cast<double>(totals.rays) / totals.render_seconds : 0;
+    note(fmt::format("render: {}: {:.2f} s, {} rays, {}", what, seconds, totals.rays, format_rate(rate)));
 }
 
 /// Prints a warning if values of the written frames were clamped to half precision.
-void warn_of_clamped(const RunStats& stats, const OutputName& image, const RenderOptions& options) {
-    uint64_t values = 0, frames = 0;
-    for (const FrameStats& frame : stats.frames) {
-        values += frame.clamped;
-        frames += frame.clamped != 0;
-    }
-    if (values == 0) return;
-    const std::string where = stats.frames.size() == 1
-                                  ? stats.frames[0].file
-                                  : fmt::format("{}: in {} of {} frames", image.text(), frames, stats.frames.size());
-    print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(values))}, options);
+void warn_of_clamped(const FilmTotals& totals, const OutputName& image, const RenderOptions& options) {
+    if (totals.clamped == 0) return;
+    const std::string where =
+        totals.frames == 1 ? totals.first_file
+                           : fmt::format("{}: in {} of {} frames", image.text(), totals.clamped_frames, totals.frames);
+    print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(totals.clamped))}, options);
 }
 
 /// Prints the target report. Throws Error (target) if pixels missed the target.
-void judge_target(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
-    const bool reached =
-        std::all_of(stats.frames.begin(), stats.frames.end(), [](const auto& f) { return f.target.missed == 0; });
-    const std::string text = describe_target(stats.frames, settings, options.precision);
-    if (!reached) throw Error(ExitCode::target, text);
+void judge_target(const FilmTotals& totals, const FrameSettings& settings, const RenderOptions& options) {
+    const std::string text = describe_target(totals.target, totals.pixels, settings, options.precision);
+    if (totals.target.missed != 0) throw Error(ExitCode::target, text);
     if (!options.quiet) note(fmt::format("render: {}", text));
 }
 
@@ -158,8 +155,6 @@ void render_scene(RenderOptions options) {
 
     const FrameSettings settings = frame_settings(options, scene);
     const Outputs outputs = plan_outputs(options, scene);
-    if (const std::string turns = camera_turns(scene.camera, outputs.frames); !turns.empty())
-        print_warnings({turns}, options);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
 
@@ -175,35 +170,44 @@ void render_scene(RenderOptions options) {
             options.precision == Precision::double_
                 ? prepare<double>(std::move(source), options, devices.options, stats)
                 : prepare<float>(std::move(source), options, devices.options, stats);
+        guard.watch(progress.stop);
+        std::optional<StatsFile> file;
+        if (!options.stats.empty()) {
+            file.emplace(options.stats, settings, !stats.devices.empty());
+            file->add_phase("read", stats.read_seconds);
+            file->add_phase("compile", stats.compile_seconds);
+            file->add_phase("tree", stats.tree_seconds);
+        }
         const auto write_stats = [&] {
             stats.intersector = renderer->intersector();
             stats.effects = renderer->effects();
             stats.scene_bytes = renderer->memory();
-            if (!options.stats.empty()) write_file_atomically(options.stats, stats_json(stats, settings, options));
+            if (file) file->finish(stats, options);
         };
         if (options.verbose)
             note(fmt::format("render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}",
                              stats.read_seconds, stats.compile_seconds, stats.tree_seconds, renderer->memory(),
                              stats.scene_hash));
-        guard.watch(progress.stop);
-        const FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
+        FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
+        if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
+        job.look_ahead = [&](const std::vector<int>& frames) { return look_ahead(outputs, options, scene, frames); };
         double seconds = 0;
         try {
             seconds = seconds_of([&] { render_film(job, *renderer, progress, stats); });
         } catch (const Error&) {
-            warn_of_clamped(stats, outputs.image, options);
+            warn_of_clamped(stats.totals, outputs.image, options);
             try {
                 write_stats();        // of the finished frames
             } catch (const Error&) {  // the original error is the one to report
             }
             throw;
         }
-        warn_of_clamped(stats, outputs.image, options);
+        warn_of_clamped(stats.totals, outputs.image, options);
         write_stats();
-        if (options.verbose && !stats.frames.empty())  // the renderer knows which effects it used
+        if (options.verbose && stats.totals.frames > 0)  // the renderer knows which effects it used
             note(fmt::format("render: effects: {}", fmt::join(names_of_effects(stats.effects), ", ")));
-        if (!options.quiet) print_summary(stats, outputs.image, seconds);
-        if (settings.adaptive() && !stats.frames.empty()) judge_target(stats, settings, options);
+        if (!options.quiet) print_summary(stats.totals, outputs.image, seconds);
+        if (settings.adaptive() && stats.totals.frames > 0) judge_target(stats.totals, settings, options);
     });
 }
 
