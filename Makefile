@@ -59,7 +59,7 @@ test-asan: ## the tests under the address and undefined-behaviour sanitizers
 TARGET ?= ply
 SECONDS ?= 60
 
-fuzz: ## search for inputs that break a reader: TARGET=ply|obj SECONDS=60; what it finds and learns into out/fuzz
+fuzz: ## search for inputs that break a reader: TARGET=ply SECONDS=60 (the targets: tests/fuzz/*.cpp); what it finds and learns into out/fuzz
 	$(call setup,packages.txt tests/lint-packages.txt)
 	$(call configure,fuzz)
 	@cmake --build build/fuzz --target fuzz_$(TARGET)
