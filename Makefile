@@ -55,17 +55,13 @@ test-quick: ## build and run the quick tests alone
 test-asan: ## the tests under the address and undefined-behaviour sanitizers
 	@$(MAKE) --no-print-directory test PRESET=asan
 
-# of `make fuzz`: the target, a source of tests/fuzz, and for how long
-TARGET ?= ply
+# of `make fuzz`: a target, a source of tests/fuzz (all, if none is named), and for how long each searches
+TARGET ?=
 SECONDS ?= 60
 
-fuzz: ## search for inputs that break a reader: TARGET=ply SECONDS=60 (the targets: tests/fuzz/*.cpp); what it finds and learns into out/fuzz
+fuzz: ## search for inputs that break a reader: TARGET=ply SECONDS=60 (the targets: tests/fuzz/*.cpp; all by default); what it finds and learns into build/fuzz/found
 	$(call setup,packages.txt tests/lint-packages.txt)
-	$(call configure,fuzz)
-	@cmake --build build/fuzz --target fuzz_$(TARGET)
-	@mkdir -p out/fuzz/$(TARGET)
-	build/fuzz/tests/fuzz/fuzz_$(TARGET) -max_total_time=$(SECONDS) -timeout=5 -rss_limit_mb=2048 -max_len=8192 \
-	    -artifact_prefix=out/fuzz/$(TARGET)- out/fuzz/$(TARGET) tests/fuzz/corpus/$(TARGET)
+	tests/fuzz/search $(SECONDS) build/fuzz $(TARGET)
 
 lint: ## check the format of all sources, and libcore/scene, apps/common and apps/render by clang-tidy
 	$(call setup,packages.txt tests/lint-packages.txt)

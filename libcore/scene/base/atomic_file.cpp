@@ -91,7 +91,7 @@ void AtomicFile::find_target() {
 
 void AtomicFile::create_temporary() {
     // Leaves room for the number if the name is as long as the file system allows.
-    const std::string prefix = "." + name_.substr(0, 200) + ".";
+    const std::string prefix = std::string(1, '.').append(name_, 0, 200).append(1, '.');
     constexpr int most_at_once = 100, flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
     int error_number = EEXIST;
     for (int i = 0; i < most_at_once && descriptor_ < 0 && error_number == EEXIST; ++i) {
