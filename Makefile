@@ -56,7 +56,7 @@ test-asan: ## the tests under the address and undefined-behaviour sanitizers
 TARGET ?=
 SECONDS ?= 60
 
-fuzz: ## search for inputs that break a reader: TARGET=ply|obj|... SECONDS=60; what it finds and learns into build/fuzz/found
+fuzz: ## search for inputs that break a reader: TARGET=ply SECONDS=60 (the targets: tests/fuzz/*.cpp; all by default); what it finds and learns into build/fuzz/found
 	$(call setup,packages.txt tests/lint-packages.txt)
 	tests/fuzz/search $(SECONDS) build/fuzz $(TARGET)
 

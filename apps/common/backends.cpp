@@ -59,7 +59,7 @@ DeviceChoice parse_devices(const std::string& text, Backend backend) {
     if (text.empty()) return {};
     if (backend != Backend::cuda)
         fail_usage(fmt::format("--device {}: chooses GPUs, and --backend is {}; add --backend cuda or leave it out",
-                               one_line(text), backend_name(backend)));
+                               text, backend_name(backend)));
     if (text == "all") return {true, {}};
     DeviceChoice choice{false, {}};
     for (size_t begin = 0; begin <= text.size();) {
@@ -69,7 +69,7 @@ DeviceChoice parse_devices(const std::string& text, Backend backend) {
             fail_usage(
                 fmt::format("--device {}: must be numbers of GPUs, as in 0 or 0,2, or all; render "
                             "--list-devices shows them",
-                            one_line(text)));
+                            text));
         if (std::find(choice.indices.begin(), choice.indices.end(), *index) != choice.indices.end())
             fail_usage(fmt::format("--device {}: names GPU {} twice; once is enough", text, *index));
         choice.indices.push_back(*index);

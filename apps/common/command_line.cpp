@@ -39,7 +39,7 @@ void open_standard_streams() {
     for (const std::string& extra : app.remaining()) {
         if (extra.size() < 2 || extra[0] != '-') fail_usage(extra_positional(extra));
         const std::vector<std::string> names = long_names(app);
-        fail_usage(fmt::format("{}: no such option; {}; --help lists them", one_line(extra),
+        fail_usage(fmt::format("{}: no such option; {}; --help lists them", extra,
                                suggestion(extra.substr(0, extra.find('=')), {names.begin(), names.end()}, "options")));
     }
     fail_usage("the command line cannot be read; --help shows its form");
@@ -59,8 +59,8 @@ int integer_option(const char* option, const std::string& text, int low, int hig
 }
 
 void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names) {
-    fail_usage(fmt::format("{} {}: must be {}; {}", option, one_line(text), fmt::join(names, " or "),
-                           suggestion(text, names, "names")));
+    fail_usage(
+        fmt::format("{} {}: must be {}; {}", option, text, fmt::join(names, " or "), suggestion(text, names, "names")));
 }
 
 void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
@@ -94,14 +94,14 @@ void print(const std::string& text) {
 }
 
 void note(const std::string& line) {
-    std::fputs((line + "\n").c_str(), stderr);
+    std::fputs((message_line(line) + "\n").c_str(), stderr);
 }
 
 int run_program(const char* name, const char* memory_advice, const std::function<int()>& work) {
     const auto fail = [name](const std::exception& error, ExitCode code) {
         end_if_out_of_memory(error);
         claim_end();
-        note(fmt::format("{}: {}", name, one_line(error.what())));
+        note(fmt::format("{}: {}", name, error.what()));
         return static_cast<int>(code);
     };
     set_out_of_memory_line(name, memory_advice);

@@ -7,8 +7,10 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "apps/common/describe_flags.h"
@@ -59,18 +61,53 @@ void probe_outputs(const FilmJob& job, int frame) {
     if (!job.preview.text().empty()) const AtomicFile preview(job.preview.for_frame(frame));
 }
 
-[[noreturn]] void fail_interrupted(const FilmJob& job, const std::vector<FrameStats>& written) {
-    std::vector<int> left;
-    for (const int frame : job.frames) {
-        bool done = false;
-        for (const FrameStats& one : written) done = done || one.frame == frame;
-        if (!done) left.push_back(frame);
+/// Finished frames that are looked at for the one to announce to the renderer, before it renders the one before.
+constexpr size_t most_looked_at = 4;
+
+/// The frames of a job that are still to be rendered, found as they are asked for.
+class FramesToRender {
+  public:
+    FramesToRender(const FilmJob& job, const std::atomic<bool>& stop, FrameList& resumed, FilmProgress& report)
+        : job_(job), stop_(stop), resumed_(resumed), report_(report) {}
+
+    /// The next one, if it is among the `most` frames that follow.
+    std::optional<CameraFrame> next(size_t most = most_frames) {
+        for (; index_ < job_.frames.size() && most > 0 && !stop_; ++index_, --most) {
+            if (index_ > 0 && index_ % stretch_length == 0) look_ahead();
+            const CameraFrame camera = camera_at(job_.scene.camera, job_.frames[index_]);
+            if (!job_.options.resume || !is_finished(job_, camera)) {
+                ++index_;
+                return camera;
+            }
+            resumed_.push_back(camera.frame);
+        }
+        return std::nullopt;
     }
+
+    /// How many frames of the job are to be rendered, as far as is known.
+    size_t count() const { return job_.frames.size() - resumed_.size(); }
+
+  private:
+    void look_ahead() {
+        if (!job_.look_ahead) return;
+        const std::string warning = job_.look_ahead(job_.frames.part(index_ - 1, stretch_length + 1));
+        if (!warning.empty() && !job_.options.quiet) report_.say("render: warning: " + warning);
+    }
+
+    const FilmJob& job_;
+    const std::atomic<bool>& stop_;
+    FrameList& resumed_;
+    FilmProgress& report_;
+    size_t index_ = 0;
+};
+
+/// `rendered`: index of the first frame that was not.
+[[noreturn]] void fail_interrupted(const FilmJob& job, size_t done, size_t rendered) {
     const bool raw = file_kind(job.output.text()) == FileKind::raw;
     throw Error(ExitCode::interrupted,
-                fmt::format("interrupted; {} of {} frames written; the same command with {} goes on from here",
-                            job.frames.size() - left.size(), job.frames.size(),
-                            raw ? "--frames " + format_frames(left) : std::string("--resume")));
+                fmt::format("interrupted; {} of {} frames written; the same command with {} goes on from here", done,
+                            job.frames.size(),
+                            raw ? "--frames " + format_frames(job.frames, rendered) : std::string("--resume")));
 }
 
 /// Allocates the film in large pages where the system has them; page faults on small ones would take longer than a GPU
@@ -115,37 +152,36 @@ WriterLimits writer_limits(const FilmOptions& options) {
 
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
     const FilmOptions& options = job.options;
-    std::vector<CameraFrame> cameras;
-    for (const int frame : job.frames) {
-        CameraFrame camera = camera_at(job.scene.camera, frame);
-        if (options.resume && is_finished(job, camera))
-            stats.resumed.push_back(frame);
-        else
-            cameras.push_back(camera);
-    }
-    if (!options.quiet && !stats.resumed.empty())
-        note(fmt::format("render: {} of {} frames are complete and stay as they are", stats.resumed.size(),
-                         job.frames.size()));
-
-    if (!cameras.empty()) probe_outputs(job, cameras.front().frame);
     std::set<std::string> notes;  // printed so far
-    FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options), progress.stop, stats.frames);
+    FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options), progress.stop,
+                       [&](const FrameStats& frame) {
+                           stats.totals.add(frame);
+                           if (job.written) job.written(frame);
+                       });
+    size_t rendered = 0;
     {
-        FilmProgress report(options.quiet ? ProgressStyle::none : options.progress, cameras.size(), progress);
-        for (size_t i = 0; i < cameras.size() && !progress.stop; ++i) {
-            const int frame = cameras[i].frame;
+        FilmProgress report(options.quiet ? ProgressStyle::none : options.progress, progress);
+        FramesToRender frames(job, progress.stop, stats.resumed, report);
+        std::optional<CameraFrame> next;
+        while (true) {
+            if (!next) next = frames.next();
+            if (!next || progress.stop) break;
+            const CameraFrame camera = *next;
+            if (rendered == 0) probe_outputs(job, camera.frame);
+            if (rendered == 0) probe_outputs(job, camera.frame);
+            next = frames.next(most_looked_at);
             progress.pixels_done = 0;
             progress.rays = 0;
             const PixelRect& crop = job.settings.crop;
             const uint64_t pixels = static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height);
-            report.begin_frame(frame, i, pixels);
+            report.begin_frame(camera.frame, rendered, frames.count(), pixels);
             FinishedFrame finished;
             finished.film = writer.take_spare();
             reserve(finished.film, pixels);
-            if (i + 1 < cameras.size()) renderer.expect(cameras[i + 1], job.settings);
+            if (next) renderer.expect(*next, job.settings);
             bool whole = false;
             const double seconds =
-                seconds_of([&] { whole = renderer.render(cameras[i], job.settings, finished.film, progress); });
+                seconds_of([&] { whole = renderer.render(camera, job.settings, finished.film, progress); });
             for (const std::string& note : renderer.notes())
                 if (!options.quiet && notes.insert(note).second) report.say("render: " + note);
             if (!whole) break;
@@ -154,25 +190,30 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
                 writer.finish();
                 throw Error(ExitCode::failed,
                             fmt::format("{}: frame {} cannot be trusted and is not written: {}", job.scene.source,
-                                        frame, describe_flags(finished.film.flags)));
+                                        camera.frame, describe_flags(finished.film.flags)));
             }
-            finished.path = job.output.for_frame(frame);
-            finished.preview = job.preview.for_frame(frame);
+            finished.path = job.output.for_frame(camera.frame);
+            finished.preview = job.preview.for_frame(camera.frame);
             finished.attributes =
-                header_attributes(job.scene_hash, job.settings, options.precision, cameras[i], options.intersection);
-            finished.stats = stats_of(finished.film, frame, finished.path, seconds, renderer.times());
+                header_attributes(job.scene_hash, job.settings, options.precision, camera, options.intersection);
+            finished.stats = stats_of(finished.film, camera.frame, finished.path, seconds, renderer.times());
             finished.settings = job.settings;
             finished.strict = options.strict;
             if (options.verbose)
-                report.say(fmt::format("render: frame {}: {:.3f} s, {} rays, {}", frame, seconds,
+                report.say(fmt::format("render: frame {}: {:.3f} s, {} rays, {}", camera.frame, seconds,
                                        finished.film.rays.total(),
                                        format_rate(static_cast<double>(finished.film.rays.total()) / seconds)));
             writer.put(std::move(finished));
+            ++rendered;
         }
     }
     writer.finish();
-    if (stats.frames.size() == cameras.size()) return;  // an interruption after the last frame has no effect
-    fail_interrupted(job, stats.frames);
+    if (!options.quiet && !stats.resumed.empty())
+        note(fmt::format("render: {} of {} frames are complete and stay as they are", stats.resumed.size(),
+                         job.frames.size()));
+    const size_t done = stats.resumed.size() + stats.totals.frames;
+    if (done == job.frames.size()) return;  // an interruption after the last frame has no effect
+    fail_interrupted(job, done, rendered);
 }
 
 }  // namespace cistula

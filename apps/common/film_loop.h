@@ -1,10 +1,12 @@
 // The frame loop of a film: frames are rendered one after the other, and each is written while the next ones render.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "apps/common/film_options.h"
+#include "apps/common/frame_list.h"
 #include "apps/common/frame_writer.h"
 #include "apps/common/output_name.h"
 #include "apps/common/stats.h"
@@ -21,12 +23,21 @@ struct FilmJob {
     const FrameSettings& settings;
     const OutputName& output;
     const OutputName& preview;  // empty text: none
-    const std::vector<int>& frames;
+    const FrameList& frames;
+    /// Called for each frame whose files are whole, in the film's order, on any thread, one at a time.
+    FrameSink written = {};
+    /// Called with the frames that are next, and the one before them, in stretches of the length below. Returns a
+    /// warning or nothing, and throws for what keeps them from being rendered or written. The first stretch is the
+    /// caller's.
+    std::function<std::string(const std::vector<int>&)> look_ahead = {};
 };
 
-/// Renders and writes all frames, and fills stats.frames. Throws Error: `failed` if a frame's flags make it unreliable
-/// (its file is not written), `file` if a file cannot be written, `interrupted` if progress.stop was set from outside
-/// (frames finished by then are complete).
+/// Number of frames whose cameras and file names are looked at together before the first of them is rendered.
+inline constexpr size_t stretch_length = 1000;
+
+/// Renders and writes all frames, and adds to stats.totals and stats.resumed. It takes no memory that grows with their
+/// number. Throws Error: `failed` if a frame's flags make it unreliable (its file is not written), `file` if a file
+/// cannot be written, `interrupted` if progress.stop was set from outside (frames finished by then are complete).
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats);
 
 /// Limits for frames being written while others render.

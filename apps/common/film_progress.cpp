@@ -52,13 +52,14 @@ std::string progress_line(const ProgressState& state) {
                        std::floor(state.fraction * 100), format_rate(state.rays_per_second), left_text(state));
 }
 
-FilmProgress::FilmProgress(ProgressStyle style, size_t frames, const RenderProgress& progress)
-    : count_(frames), progress_(progress), line_(style, [this](int columns) { return text(columns); }) {}
+FilmProgress::FilmProgress(ProgressStyle style, const RenderProgress& progress)
+    : progress_(progress), line_(style, [this](int columns) { return text(columns); }) {}
 
-void FilmProgress::begin_frame(int frame, size_t index, uint64_t pixels) {
+void FilmProgress::begin_frame(int frame, size_t index, size_t count, uint64_t pixels) {
     line_.update([&] {
         frame_ = frame;
         index_ = index;
+        count_ = count;
         pixels_ = pixels;
         frame_start_ = Clock::now();
         in_frame_ = true;

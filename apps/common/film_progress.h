@@ -32,9 +32,10 @@ std::string progress_line(const ProgressState& state);
 /// Shows a film's progress from a RenderProgress: a bar on a terminal, a line now and then elsewhere.
 class FilmProgress {
   public:
-    FilmProgress(ProgressStyle style, size_t frames, const RenderProgress& progress);
+    FilmProgress(ProgressStyle style, const RenderProgress& progress);
 
-    void begin_frame(int frame, size_t index, uint64_t pixels);
+    /// Begins frame number `frame`, which is at `index` of the `count` frames to render.
+    void begin_frame(int frame, size_t index, size_t count, uint64_t pixels);
     void end_frame();
 
     /// Prints a line on standard error and redraws the bar below it.
@@ -46,12 +47,11 @@ class FilmProgress {
     ProgressState state() const;
     std::string text(int columns) const;
 
-    const size_t count_;
     const RenderProgress& progress_;
     const Clock::time_point start_ = Clock::now();
     bool in_frame_ = false;
     int frame_ = 0;
-    size_t index_ = 0;
+    size_t index_ = 0, count_ = 1;
     uint64_t pixels_ = 1;
     Clock::time_point frame_start_ = start_;
     StatusLine line_;  // declared last: it uses the members above

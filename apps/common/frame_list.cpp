@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cstdint>
+#include <iterator>
 #include <optional>
-#include <unordered_set>
 
 #include "scene/base/error.h"
 
@@ -12,7 +14,8 @@ namespace cistula {
 namespace {
 
 [[noreturn]] void fail(std::string_view text, const std::string& what) {
-    throw Error(ExitCode::usage, fmt::format("--frames {}: {}", text, what));
+    constexpr size_t longest = 200;
+    throw Error(ExitCode::usage, fmt::format("--frames {}: {}", first_characters(text, longest), what));
 }
 
 /// Removes a number from the front of `rest` and returns it; nothing if there are no digits or too many.
@@ -33,7 +36,7 @@ Range parse_range(std::string_view text, std::string_view item) {
     const auto malformed = [&]() {
         fail(text, fmt::format("\"{}\" is no frame (0 to {}), no range A-B and no range with a step A-BxS; "
                                "a list looks like 0-299x5,7",
-                               item, largest_frame));
+                               first_characters(item, 40), largest_frame));
     };
     std::string_view rest = item;
     const std::optional<int> first = take_number(rest);
@@ -58,30 +61,80 @@ Range parse_range(std::string_view text, std::string_view item) {
 
 }  // namespace
 
-std::vector<int> parse_frames(std::string_view text) {
+FrameList::FrameList(std::initializer_list<int> frames) {
+    for (const int frame : frames) push_back(frame);
+}
+
+FrameList::FrameList(const std::vector<int>& frames) {
+    for (const int frame : frames) push_back(frame);
+}
+
+void FrameList::push_back(int frame) {
+    Run* const last = runs_.empty() ? nullptr : &runs_.back();
+    if (last && last->count == 1 && frame > last->first) last->step = frame - last->first;
+    if (last && last->step > 0 && frame == last->first + static_cast<int64_t>(last->count) * last->step)
+        ++last->count;
+    else
+        runs_.push_back({size_, frame, 0, 1});
+    ++size_;
+}
+
+int FrameList::operator[](size_t index) const {
+    const auto is_later = [](size_t i, const Run& run) { return i < run.start; };
+    const Run& run = *std::prev(std::upper_bound(runs_.begin(), runs_.end(), index, is_later));
+    return run.first + static_cast<int>(index - run.start) * run.step;
+}
+
+bool FrameList::contains(int frame) const {
+    return std::any_of(runs_.begin(), runs_.end(), [frame](const Run& run) {
+        const int64_t steps = run.step == 0 ? 0 : (int64_t{frame} - run.first) / run.step;
+        return steps >= 0 && steps < static_cast<int64_t>(run.count) && run.first + steps * run.step == frame;
+    });
+}
+
+std::vector<int> FrameList::part(size_t begin, size_t count) const {
     std::vector<int> frames;
-    std::unordered_set<int> seen;
-    size_t begin = 0;
+    for (size_t i = begin; i < size_ && frames.size() < count; ++i) frames.push_back((*this)[i]);
+    return frames;
+}
+
+FrameList first_frames(int count) {
+    FrameList frames;
+    frames.size_ = static_cast<size_t>(count);
+    frames.runs_.push_back({0, 0, count > 1 ? 1 : 0, frames.size_});
+    return frames;
+}
+
+FrameList parse_frames(std::string_view text) {
+    FrameList frames;
+    std::vector<bool> seen(largest_frame + 1);
+    size_t written = 0, begin = 0;
     while (true) {
         const size_t comma = text.find(',', begin);
         const Range range = parse_range(text, text.substr(begin, comma == text.npos ? text.npos : comma - begin));
         for (int64_t frame = range.first; frame <= range.last; frame += range.step) {
-            if (!seen.insert(static_cast<int>(frame)).second) continue;
-            frames.push_back(static_cast<int>(frame));
-            if (frames.size() > most_frames) fail(text, fmt::format("more than {} frames", most_frames));
+            if (++written > most_frames) fail(text, fmt::format("more than {} frames", most_frames));
+            const auto index = static_cast<size_t>(frame);
+            if (!seen[index]) frames.push_back(static_cast<int>(frame));
+            seen[index] = true;
         }
         if (comma == text.npos) return frames;
         begin = comma + 1;
     }
 }
 
-std::string format_frames(const std::vector<int>& frames) {
+std::string format_frames(const FrameList& frames, size_t begin) {
     std::string text;
-    for (size_t i = 0; i < frames.size();) {
+    for (size_t i = begin; i < frames.size();) {
+        const int first = frames[i];
+        const int step = i + 1 < frames.size() ? frames[i + 1] - first : 0;
         size_t end = i + 1;
-        while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
+        while (step > 0 && end < frames.size() && frames[end] == frames[end - 1] + step) ++end;
+        if (end - i == 2 && step > 1) --end;  // two frames apart, not a range
         if (!text.empty()) text += ',';
-        text += end - i > 1 ? fmt::format("{}-{}", frames[i], frames[end - 1]) : fmt::format("{}", frames[i]);
+        text += fmt::format("{}", first);
+        if (end - i > 1) text += fmt::format("-{}", frames[end - 1]);
+        if (end - i > 1 && step > 1) text += fmt::format("x{}", step);
         i = end;
     }
     return text;

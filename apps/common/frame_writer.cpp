@@ -33,8 +33,8 @@ std::string over_largest_half(uint64_t values) {
 }
 
 FrameWriter::FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits,
-                         std::atomic<bool>& stop, std::vector<FrameStats>& written)
-    : channels_(channels), measure_(measure), limits_(limits), stop_(stop), written_(written) {
+                         std::atomic<bool>& stop, FrameSink written)
+    : channels_(channels), measure_(measure), limits_(limits), stop_(stop), written_(std::move(written)) {
     set_exr_threads(limits.exr_threads);
 }
 
@@ -86,8 +86,23 @@ void FrameWriter::finish() {
 
 void FrameWriter::wait_for_all(std::unique_lock<std::mutex>& lock) {
     changed_.wait(lock, [this] { return in_work_ == 0; });
-    for (auto& [index, stats] : done_) written_.push_back(std::move(stats));
-    done_.clear();
+    while (!done_.empty()) {
+        next_passed_ = done_.begin()->first;  // the frames before it failed
+        pass_on();
+    }
+}
+
+/// Passes on the frames whose predecessors have been passed on.
+void FrameWriter::pass_on() {
+    try {
+        for (auto first = done_.begin(); first != done_.end() && first->first == next_passed_;
+             first = done_.erase(first), ++next_passed_)
+            written_(first->second);
+    } catch (...) {
+        if (!failure_) failure_ = std::current_exception();
+        stop_ = true;
+        done_.clear();
+    }
 }
 
 void FrameWriter::work() {
@@ -113,6 +128,7 @@ void FrameWriter::work() {
             done_.emplace(task.index, std::move(task.frame.stats));
         else if (!failure_)
             failure_ = failure;
+        pass_on();
         bytes_ -= task.bytes;
         films_ -= task.has_film;
         --in_work_;

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <queue>
@@ -40,14 +41,17 @@ struct WriterLimits {
 /// What is said of values that half precision does not hold.
 std::string over_largest_half(uint64_t values);
 
+/// Receives a frame whose files are whole.
+using FrameSink = std::function<void(const FrameStats&)>;
+
 /// Writes frames concurrently; each is processed by one thread from its film to its files.
 class FrameWriter {
   public:
-    /// `stop` is set as soon as a write fails. `written` receives the frames in the order of put(); it may be read
-    /// after finish() or the destructor. Error totals and hash are computed if `measure` is set. Sets OpenEXR's
-    /// threads, so no EXR file may be read or written elsewhere meanwhile.
+    /// `stop` is set as soon as a write fails. `written` receives the frames in the order of put(), one at a time, on
+    /// any thread; what it throws is a failed write. Error totals and hash are computed if `measure` is set. Sets
+    /// OpenEXR's threads, so no EXR file may be read or written elsewhere during the call.
     FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits, std::atomic<bool>& stop,
-                std::vector<FrameStats>& written);
+                FrameSink written);
     ~FrameWriter();
 
     /// Adds a frame; blocks until there is room. Frames that exceed the limit of bytes on their own are processed two
@@ -72,18 +76,20 @@ class FrameWriter {
     void work();
     void write(Task& task);
     void give_film_back(Task& task, size_t bytes_of_layers);
+    void pass_on();  // requires mutex_
     void wait_for_all(std::unique_lock<std::mutex>& lock);
 
     const OutputChannels channels_;
     const bool measure_;
     const WriterLimits limits_;
     std::atomic<bool>& stop_;
-    std::vector<FrameStats>& written_;
+    const FrameSink written_;
 
     std::mutex mutex_;
     std::condition_variable changed_;
     std::queue<Task> waiting_;           // tasks that no thread has taken yet
-    std::map<size_t, FrameStats> done_;  // not yet in written_
+    std::map<size_t, FrameStats> done_;  // not yet passed on, since a frame before them is not done
+    size_t next_passed_ = 0;
     std::vector<Film> spares_;
     std::exception_ptr failure_;         // the first write error
     size_t next_index_ = 0, bytes_ = 0;  // bytes_: of all frames in work

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
+#include <set>
 
 #include "scene/base/error.h"
 #include "scene/base/file_bytes.h"
@@ -92,7 +92,7 @@ std::string default_output(const SceneDescription& scene, size_t frames_given) {
     return name + (frames_given > 1 ? ".####.exr" : ".exr");
 }
 
-std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames) {
+FrameList frames_to_render(const OutputName& output, const FrameList& given, int film_frames) {
     if (!output.has_pattern() && given.size() > 1) {
         fs::path better = output.text();
         better.replace_extension(".####" + better.extension().string());
@@ -102,9 +102,21 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
                                 output.text(), given.size(), better.string()));
     }
     if (!given.empty()) return given;
-    std::vector<int> frames(output.has_pattern() ? static_cast<size_t>(std::max(film_frames, 1)) : 1);
-    std::iota(frames.begin(), frames.end(), 0);
-    return frames;
+    return first_frames(output.has_pattern() ? std::max(film_frames, 1) : 1);
+}
+
+std::vector<int> frames_named_in(const std::string& path, const FrameList& frames) {
+    const auto is_digit = [&](size_t i) { return i < path.size() && path[i] >= '0' && path[i] <= '9'; };
+    std::set<int> named;
+    for (size_t begin = 0; begin < path.size(); ++begin) {
+        int number = 0;
+        for (size_t i = begin; is_digit(i); ++i) {
+            number = number * 10 + (path[i] - '0');
+            if (number > largest_frame) break;
+            if (frames.contains(number)) named.insert(number);
+        }
+    }
+    return {named.begin(), named.end()};
 }
 
 void require_different_files(RunFiles others, const OutputName& image, const OutputName& preview,

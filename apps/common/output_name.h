@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/common/frame_list.h"
 #include "apps/common/run_files.h"
 #include "scene/description/description.h"
 
@@ -43,7 +44,11 @@ std::string default_output(const SceneDescription& scene, size_t frames_given);
 
 /// The frames to render: those given; by default the whole film for a pattern, the first frame for a plain name. Throws
 /// Error (usage) if several frames are given for a plain name.
-std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames);
+FrameList frames_to_render(const OutputName& output, const FrameList& given, int film_frames);
+
+/// The frames of a list whose numbers stand in a path, in whole or as a part of a longer number: those for which a
+/// pattern may give that path.
+std::vector<int> frames_named_in(const std::string& path, const FrameList& frames);
 
 /// Creates missing directories for these frames. Throws Error (file) if that fails or the first name is a directory, so
 /// that the error is found before rendering.

@@ -77,6 +77,10 @@ Json frame_entry(const FrameStats& frame, const FrameSettings& settings, bool ha
     return entry;
 }
 
+std::string text_of(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) {
@@ -95,8 +99,37 @@ LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) 
     return totals;
 }
 
-std::string stats_json(const RunStats& stats, const FrameSettings& settings, const FilmOptions& options) {
-    const PixelRect& crop = settings.crop;
+void FilmTotals::add(const FrameStats& frame) {
+    if (frames == 0) first_file = frame.file;
+    ++frames;
+    pixels += static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
+    rays += frame.rays.total();
+    render_seconds += frame.render_seconds;
+    clamped += frame.clamped;
+    clamped_frames += frame.clamped != 0;
+    target.add(frame.target);
+}
+
+StatsFile::StatsFile(const std::string& path, const FrameSettings& settings, bool has_device)
+    : file_(path), settings_(settings), has_device_(has_device) {
+    file_.write("{\n  \"benchmarks\": [");
+}
+
+void StatsFile::add_phase(const std::string& name, double seconds) {
+    add_entry(text_of(phase(name, seconds)));
+}
+
+void StatsFile::add(const FrameStats& frame) {
+    add_entry(text_of(frame_entry(frame, settings_, has_device_)));
+}
+
+void StatsFile::add_entry(const std::string& json) {
+    file_.write((is_empty_ ? "\n" : ",\n") + json);
+    is_empty_ = false;
+}
+
+void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
+    const PixelRect& crop = settings_.crop;
     Json context = run_context("render");
     context.update({
         {"scene", stats.scene},
@@ -105,34 +138,28 @@ std::string stats_json(const RunStats& stats, const FrameSettings& settings, con
         {"intersector", stats.intersector},
         {"precision", options.precision == Precision::double_ ? "double" : "float"},
         {"threads", stats.threads},
-        {"resolution", {settings.full_width, settings.full_height}},
+        {"resolution", {settings_.full_width, settings_.full_height}},
         {"crop", {crop.x, crop.y, crop.width, crop.height}},
-        {"supersample", settings.grid()},
-        {"depth", settings.depth},
-        {"cutoff", settings.truncation()},
+        {"supersample", settings_.grid()},
+        {"depth", settings_.depth},
+        {"cutoff", settings_.truncation()},
         {"effects_required", names_of_effects(stats.required_effects)},
         {"effects", names_of_effects(stats.effects)},
         {"effects_mask", stats.effects},
         {"scene_bytes", stats.scene_bytes},
         {"peak_rss_bytes", peak_memory()},
-        {"frames_resumed", stats.resumed},
+        {"frames_resumed", stats.resumed.part(0, stats.resumed.size())},
     });
-    if (settings.adaptive()) {
-        context["target_error"] = settings.target_error;
-        context["max_samples"] = settings.max_samples;
+    if (settings_.adaptive()) {
+        context["target_error"] = settings_.target_error;
+        context["max_samples"] = settings_.max_samples;
     }
-    const bool has_device = !stats.devices.empty();
-    if (has_device) {
+    if (has_device_) {
         context["devices"] = stats.devices;
         context["driver"] = stats.driver;
     }
-    Json benchmarks = Json::array();
-    benchmarks.push_back(phase("read", stats.read_seconds));
-    benchmarks.push_back(phase("compile", stats.compile_seconds));
-    benchmarks.push_back(phase("tree", stats.tree_seconds));
-    for (const FrameStats& frame : stats.frames) benchmarks.push_back(frame_entry(frame, settings, has_device));
-    const Json all = {{"context", context}, {"benchmarks", benchmarks}};
-    return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    file_.write(fmt::format("\n  ],\n  \"context\": {}\n}}\n", text_of(context)));
+    file_.commit();
 }
 
 }  // namespace cistula

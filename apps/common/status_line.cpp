@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "scene/base/shown_text.h"
+
 namespace cistula {
 namespace {
 
@@ -52,7 +54,7 @@ StatusLine::~StatusLine() {
 }
 
 void StatusLine::say(const std::string& line) {
-    aside([&] { std::fprintf(stderr, "%s\n", line.c_str()); });
+    aside([&] { std::fprintf(stderr, "%s\n", message_line(line).c_str()); });
 }
 
 void StatusLine::milestone(const std::string& line) {
@@ -69,7 +71,9 @@ void StatusLine::show() {
     const bool drawn = output_ == Output::drawn;
     const auto silence = std::chrono::seconds(output_ == Output::lines ? 10 : 30);
     if (!drawn && Clock::now() - last_line_ < silence) return;
-    const std::string line = text_(drawn ? std::max(terminal_columns() - 1, 1) : 0);
+    const int columns = std::max(terminal_columns() - 1, 1);
+    const std::string text = text_(drawn ? columns : 0);
+    const std::string line = drawn ? first_characters(text, static_cast<size_t>(columns)) : message_line(text);
     if (line.empty()) return;
     if (drawn) {
         std::fprintf(stderr, "\r%s\033[K", line.c_str());

@@ -23,9 +23,9 @@ std::string format_duration(double seconds);
 /// A status line, kept up to date by its own thread.
 class StatusLine {
   public:
-    /// `text` returns the line without a line end: of at most `columns` columns on a terminal, of any length if
-    /// `columns` is 0. An empty line is not shown. The data that `text` reads must outlive this object and be changed
-    /// in update() only.
+    /// `text` returns the line without a line end: on a terminal its first `columns` characters are shown; `columns` is
+    /// 0 where there is room for all. An empty line is not shown. The data that `text` reads must outlive this object
+    /// and be changed in update() only.
     StatusLine(ProgressStyle style, std::function<std::string(int columns)> text);
     ~StatusLine();
 

@@ -8,7 +8,7 @@
 namespace cistula {
 
 StepProgress::StepProgress(ProgressStyle style)
-    : quiet_(style == ProgressStyle::none), line_(style, [this](int columns) { return text(columns); }) {}
+    : quiet_(style == ProgressStyle::none), line_(style, [this](int) { return text(); }) {}
 
 void StepProgress::begin(const std::string& step, double parts) {
     line_.update([&] {
@@ -41,7 +41,7 @@ void StepProgress::say(const std::string& line) {
     if (!quiet_) line_.say(line);
 }
 
-std::string StepProgress::text(int columns) const {
+std::string StepProgress::text() const {
     if (step_.empty()) return "";
     const double within =
         pixels_ > 0 ? std::min(1.0, static_cast<double>(render.pixels_done) / static_cast<double>(pixels_)) : 0;
@@ -49,8 +49,7 @@ std::string StepProgress::text(int columns) const {
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
     const std::string left = fraction > 0 ? format_duration(elapsed * (1 - fraction) / fraction) : "?";
     const std::string name = part_.empty() ? step_ : step_ + ": " + part_;
-    const std::string line = fmt::format("{}: {:.0f} %, ETA {}", name, std::floor(100 * fraction), left);
-    return columns > 0 ? line.substr(0, static_cast<size_t>(columns)) : line;
+    return fmt::format("{}: {:.0f} %, ETA {}", name, std::floor(100 * fraction), left);
 }
 
 }  // namespace cistula

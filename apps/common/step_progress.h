@@ -38,7 +38,7 @@ class StepProgress {
   private:
     using Clock = std::chrono::steady_clock;
 
-    std::string text(int columns) const;
+    std::string text() const;
 
     const bool quiet_;
     std::string step_, part_;

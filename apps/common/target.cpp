@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "apps/common/stats.h"
 #include "cistula/adaptive/path_hash.h"
 #include "cistula/model/lattice_settings.h"
 
@@ -83,13 +83,8 @@ TargetReport target_report(const Film& film, const FrameSettings& settings) {
     return report;
 }
 
-std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings, Precision precision) {
-    TargetReport all;
-    uint64_t pixels = 0;
-    for (const FrameStats& frame : frames) {
-        all.add(frame.target);
-        pixels += static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
-    }
+std::string describe_target(const TargetReport& all, uint64_t pixels, const FrameSettings& settings,
+                            Precision precision) {
     const std::string known = fmt::format(
         "truncation is proven to {} its quarter, taking {:.3g} from a pixel at most; {}; {:.3g} samples a pixel",
         all.proven() ? "reach" : "miss", all.worst_truncation, describe_sampling(all),

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "scene/film/film.h"
 #include "scene/film/renderer.h"
@@ -35,9 +34,9 @@ double rate_at_most(uint64_t off, uint64_t checked);
 /// The report on the film of a frame with a target error.
 TargetReport target_report(const Film& film, const FrameSettings& settings);
 
-struct FrameStats;
-
-/// One line for all frames: what is proven, what is estimated, and what would help where the target was missed.
-std::string describe_target(const std::vector<FrameStats>& frames, const FrameSettings& settings, Precision precision);
+/// One line for all frames, of so many pixels: what is proven, what is estimated, and what would help where the target
+/// was missed.
+std::string describe_target(const TargetReport& all, uint64_t pixels, const FrameSettings& settings,
+                            Precision precision);
 
 }  // namespace cistula

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "apps/common/command_line.h"
-#include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {
@@ -57,8 +56,7 @@ void refuse_exclusions(const OptionTexts& texts) {
     };
     for (const auto& [option, text, other, other_given, why] : exclusions)
         if (!text.empty() && other_given)
-            fail_usage(
-                fmt::format("{} {}: {} has no place here: {}; leave it out", option, one_line(text), other, why));
+            fail_usage(fmt::format("{} {}: {} has no place here: {}; leave it out", option, text, other, why));
 
     const Need needs[] = {
         {"--json", texts.json, !texts.pixel.empty(),
@@ -67,7 +65,7 @@ void refuse_exclusions(const OptionTexts& texts) {
          "is for --target-error E; a grid's are --supersample's"},
     };
     for (const auto& [option, text, other_given, otherwise] : needs)
-        if (!text.empty() && !other_given) fail_usage(fmt::format("{} {}: {}", option, one_line(text), otherwise));
+        if (!text.empty() && !other_given) fail_usage(fmt::format("{} {}: {}", option, text, otherwise));
     if (texts.quiet && texts.verbose) fail_usage("-q and -v exclude each other; give one");
 }
 

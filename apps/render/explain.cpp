@@ -4,6 +4,8 @@
 
 #include <bit>
 
+#include "scene/base/shown_text.h"
+
 namespace cistula {
 namespace {
 
@@ -28,11 +30,12 @@ std::string explain_table(const std::string& scene, const std::vector<EffectReas
 
     constexpr const char* row = "{:<20} {:<7} {:<9} {}{}\n";
     const auto cost_of = [&](uint32_t effect) { return costs ? fmt::format("{:<9}", text_of(*costs, effect)) : ""; };
-    std::string table = fmt::format("{}\n\n", scene);
+    std::string table = fmt::format("{}\n\n", one_line(scene));
     table += fmt::format(row, "effect", "needed", "compiled", costs ? fmt::format("{:<9}", "cost") : "", "because");
     for (const EffectReason& reason : reasons)
         table += fmt::format(row, effect_names[std::countr_zero(reason.effect)], reason.needed ? "yes" : "no",
-                             (mask & reason.effect) != 0 ? "in" : "left out", cost_of(reason.effect), reason.because);
+                             (mask & reason.effect) != 0 ? "in" : "left out", cost_of(reason.effect),
+                             one_line(reason.because));
     table += fmt::format("\nMask {} of {} runs. Left out: {}. In without need: {}; never a bit of the image.\n",
                          chosen + 1, effect_mask_count, list_of(all_effects & ~mask), list_of(mask & ~required));
     if (costs)

@@ -3,9 +3,8 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "apps/common/backends.h"
 #include "apps/common/command_line.h"
@@ -49,7 +48,7 @@ void on_threads(const RenderOptions& options, const Work& work) {
 
 void print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
     if (options.quiet) return;
-    for (const std::string& warning : warnings) note(fmt::format("render: warning: {}", one_line(warning)));
+    for (const std::string& warning : warnings) note(fmt::format("render: warning: {}", warning));
 }
 
 /// Sets the precision of the frames, and says so where the scene decides it.
@@ -57,7 +56,7 @@ void choose_precision(RenderOptions& options, const SceneSource& source) {
     const PrecisionChoice choice = choose_precision(options.wanted_precision, smallest_part(source));
     options.precision = choice.precision;
     if (!choice.warning.empty()) print_warnings({choice.warning}, options);
-    if (!choice.note.empty() && !options.quiet) note(fmt::format("render: {}", one_line(choice.note)));
+    if (!choice.note.empty() && !options.quiet) note(fmt::format("render: {}", choice.note));
 }
 
 template <class Real>
@@ -77,8 +76,18 @@ std::unique_ptr<Renderer> prepare(SceneSource source, const RenderOptions& optio
 /// The names of the images and previews, and their frames.
 struct Outputs {
     OutputName image, preview;
-    std::vector<int> frames;
+    FrameList frames;
 };
+
+/// Checks the names of these frames against all others, creates their directories, and finds their cameras. Returns
+/// where the picture turns at once.
+std::string look_ahead(const Outputs& outputs, const RenderOptions& options, const SceneDescription& scene,
+                       const RunFiles& others, const std::vector<int>& frames) {
+    require_different_files(others, outputs.image, outputs.preview, frames);
+    make_directories(outputs.image, frames);
+    if (!options.preview.empty()) make_directories(outputs.preview, frames);
+    return camera_turns(scene.camera, frames);
+}
 
 Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene) {
     Outputs outputs;
@@ -106,53 +115,42 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
     return outputs;
 }
 
-/// Checks the files to be written against all others, and makes their directories.
-void prepare_files(const RenderOptions& options, const SceneSource& source, const Outputs& outputs) {
-    RunFiles others;
-    others.reads_scene(options.scene, source.files);
-    others.writes(options.stats, "--stats");
-    require_different_files(std::move(others), outputs.image, outputs.preview, outputs.frames);
-    make_directories(outputs.image, outputs.frames);
-    if (!options.preview.empty()) make_directories(outputs.preview, outputs.frames);
+/// Checks the files to be written against all others, makes the directories of the first frames, and finds their
+/// cameras.
+void prepare_files(const RenderOptions& options, const SceneDescription& scene, const RunFiles& others,
+                   const std::vector<std::string>& read, const Outputs& outputs) {
+    std::vector<std::string> paths = read;
+    paths.insert(paths.end(), {options.scene, options.stats});
+    for (const std::string& path : paths)
+        require_different_files(others, outputs.image, outputs.preview, frames_named_in(path, outputs.frames));
+    const std::string turns = look_ahead(outputs, options, scene, others, outputs.frames.part(0, stretch_length));
+    if (!turns.empty()) print_warnings({turns}, options);
     if (options.stats.empty()) return;
     make_directory_of(options.stats);
     const AtomicFile probe(options.stats);
 }
 
-void print_summary(const RunStats& stats, const OutputName& image, double seconds) {
-    uint64_t rays = 0;
-    double render_seconds = 0;
-    for (const FrameStats& frame : stats.frames) {
-        rays += frame.rays.total();
-        render_seconds += frame.render_seconds;
-    }
-    if (stats.frames.empty()) return;
-    const std::string what = stats.frames.size() == 1 ? stats.frames[0].file
-                                                      : fmt::format("{}: {} frames", image.text(), stats.frames.size());
-    note(fmt::format("render: {}: {:.2f} s, {} rays, {}", what, seconds, rays,
-                     format_rate(render_seconds > 0 ? static_cast<double>(rays) / render_seconds : 0)));
+void print_summary(const FilmTotals& totals, const OutputName& image, double seconds) {
+    if (totals.frames == 0) return;
+    const std::string what =
+        totals.frames == 1 ? totals.first_file : fmt::format("{}: {} frames", image.text(), totals.frames);
+    const double rate = totals.render_seconds > 0 ? static_cast<double>(totals.rays) / totals.render_seconds : 0;
+    note(fmt::format("render: {}: {:.2f} s, {} rays, {}", what, seconds, totals.rays, format_rate(rate)));
 }
 
 /// Prints a warning if values of the written frames were clamped to half precision.
-void warn_of_clamped(const RunStats& stats, const OutputName& image, const RenderOptions& options) {
-    uint64_t values = 0, frames = 0;
-    for (const FrameStats& frame : stats.frames) {
-        values += frame.clamped;
-        frames += frame.clamped != 0;
-    }
-    if (values == 0) return;
-    const std::string where = stats.frames.size() == 1
-                                  ? stats.frames[0].file
-                                  : fmt::format("{}: in {} of {} frames", image.text(), frames, stats.frames.size());
-    print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(values))}, options);
+void warn_of_clamped(const FilmTotals& totals, const OutputName& image, const RenderOptions& options) {
+    if (totals.clamped == 0) return;
+    const std::string where =
+        totals.frames == 1 ? totals.first_file
+                           : fmt::format("{}: in {} of {} frames", image.text(), totals.clamped_frames, totals.frames);
+    print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(totals.clamped))}, options);
 }
 
 /// Prints the target report. Throws Error (target) if pixels missed the target.
-void judge_target(const RunStats& stats, const FrameSettings& settings, const RenderOptions& options) {
-    const bool reached =
-        std::all_of(stats.frames.begin(), stats.frames.end(), [](const auto& f) { return f.target.missed == 0; });
-    const std::string text = describe_target(stats.frames, settings, options.precision);
-    if (!reached) throw Error(ExitCode::target, text);
+void judge_target(const FilmTotals& totals, const FrameSettings& settings, const RenderOptions& options) {
+    const std::string text = describe_target(totals.target, totals.pixels, settings, options.precision);
+    if (totals.target.missed != 0) throw Error(ExitCode::target, text);
     if (!options.quiet) note(fmt::format("render: {}", text));
 }
 
@@ -192,43 +190,55 @@ void render_scene(RenderOptions options) {
     on_threads(options, [&] {
         SceneSource source;
         stats.compile_seconds = seconds_of([&] { source = gather_scene(scene); });
-        prepare_files(options, source, outputs);
-        if (const std::string turns = camera_turns(scene.camera, outputs.frames); !turns.empty())
-            print_warnings({turns}, options);
+        RunFiles others;
+        others.reads_scene(options.scene, source.files);
+        others.writes(options.stats, "--stats");
+        prepare_files(options, scene, others, source.files, outputs);
         stats.compile_seconds += seconds_of([&] { choose_precision(options, source); });
         const std::unique_ptr<Renderer> renderer =
             options.precision == Precision::double_
                 ? prepare<double>(std::move(source), options, devices.options, stats)
                 : prepare<float>(std::move(source), options, devices.options, stats);
+        guard.watch(progress.stop);
+        std::optional<StatsFile> file;
+        if (!options.stats.empty()) {
+            file.emplace(options.stats, settings, !stats.devices.empty());
+            file->add_phase("read", stats.read_seconds);
+            file->add_phase("compile", stats.compile_seconds);
+            file->add_phase("tree", stats.tree_seconds);
+        }
         const auto write_stats = [&] {
             stats.intersector = renderer->intersector();
             stats.effects = renderer->effects();
             stats.scene_bytes = renderer->memory();
-            if (!options.stats.empty()) write_file_atomically(options.stats, stats_json(stats, settings, options));
+            if (file) file->finish(stats, options);
         };
         if (options.verbose)
             note(fmt::format("render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}",
                              stats.read_seconds, stats.compile_seconds, stats.tree_seconds, renderer->memory(),
                              stats.scene_hash));
-        guard.watch(progress.stop);
-        const FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
+        FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
+        if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
+        job.look_ahead = [&](const std::vector<int>& frames) {
+            return look_ahead(outputs, options, scene, others, frames);
+        };
         double seconds = 0;
         try {
             seconds = seconds_of([&] { render_film(job, *renderer, progress, stats); });
         } catch (const Error&) {
-            warn_of_clamped(stats, outputs.image, options);
+            warn_of_clamped(stats.totals, outputs.image, options);
             try {
                 write_stats();        // of the finished frames
             } catch (const Error&) {  // the original error is the one to report
             }
             throw;
         }
-        warn_of_clamped(stats, outputs.image, options);
+        warn_of_clamped(stats.totals, outputs.image, options);
         write_stats();
-        if (options.verbose && !stats.frames.empty())  // the renderer knows which effects it used
+        if (options.verbose && stats.totals.frames > 0)  // the renderer knows which effects it used
             note(fmt::format("render: effects: {}", fmt::join(names_of_effects(stats.effects), ", ")));
-        if (!options.quiet) print_summary(stats, outputs.image, seconds);
-        if (settings.adaptive() && !stats.frames.empty()) judge_target(stats, settings, options);
+        if (!options.quiet) print_summary(stats.totals, outputs.image, seconds);
+        if (settings.adaptive() && stats.totals.frames > 0) judge_target(stats.totals, settings, options);
     });
 }
 

@@ -125,7 +125,7 @@ RenderOptions checked(const OptionTexts& texts) {
         options.target_error = whole_number<double>(texts.target_error);
         if (!options.target_error || !std::isfinite(*options.target_error) || !(*options.target_error > 0))
             fail_usage(fmt::format("--target-error {}: must be a number above 0, in the scene's units of radiance",
-                                   one_line(texts.target_error)));
+                                   texts.target_error));
     }
     if (!texts.max_texture_gb.empty()) {
         const std::optional<double> gigabytes = whole_number<double>(texts.max_texture_gb);
@@ -183,7 +183,7 @@ Examples:
   render --print-template > input.txt
 
 Without -o a scene is written to SCENE.exr in the working directory (SCENE.####.exr where -f names several frames), the
-seed's text input to the pattern on its third line. A name without a pattern holds one frame, -f's or the first.
+seed's text input to its own pattern. A name without a pattern holds one frame, -f's or the first.
 
 Exit codes: 0 done, 1 the image cannot be trusted, 2 command line or scene, 3 file, 4 device,
 5 target error not met (the image is written), 130 interrupted.)");
@@ -196,8 +196,7 @@ PixelPlace parse_pixel(std::string_view text) {
         const auto x = whole_number<int>(text.substr(0, comma)), y = whole_number<int>(text.substr(comma + 1));
         if (x && y && *x >= 0 && *y >= 0) return {*x, *y};
     }
-    fail_usage(fmt::format("--pixel {}: must be X,Y in pixels from the top left, which is 0,0, as in 320,240",
-                           one_line(text)));
+    fail_usage(fmt::format("--pixel {}: must be X,Y in pixels from the top left, which is 0,0, as in 320,240", text));
 }
 
 OutputChannels parse_layers(std::string_view text) {
@@ -214,8 +213,8 @@ OutputChannels parse_layers(std::string_view text) {
         for (const auto& [known_name, member] : known)
             if (known_name == name) layers.*member = found = true;
         if (!found)
-            fail_usage(fmt::format("--aov {}: there is no layer '{}'; {}", one_line(text), one_line(name),
-                                   suggestion(name, names, "layers")));
+            fail_usage(
+                fmt::format("--aov {}: there is no layer '{}'; {}", text, name, suggestion(name, names, "layers")));
         begin = comma + 1;
     }
     return layers;

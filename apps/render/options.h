@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/common/film_options.h"
+#include "apps/common/frame_list.h"
 #include "apps/common/picture_size.h"
 #include "scene/film/film_picture.h"
 #include "scene/film/renderer.h"
@@ -23,11 +24,11 @@ enum class Action { render, explain, measure, pixel, print_help, print_version, 
 struct RenderOptions : FilmOptions {
     std::optional<Precision> wanted_precision;  // none: auto, which the scene decides (precision_choice.h)
     Action action = Action::render;
-    std::string scene;        // "-": standard input
-    std::string output;       // as given; empty: default_output
-    std::string preview;      // as given; empty: none
-    std::vector<int> frames;  // empty: none given
-    DeviceChoice devices;     // for the CUDA backend
+    std::string scene;     // "-": standard input
+    std::string output;    // as given; empty: default_output
+    std::string preview;   // as given; empty: none
+    FrameList frames;      // empty: none given
+    DeviceChoice devices;  // for the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
     PixelPlace pixel;  // for Action::pixel

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pixel_report.h"
+#include "scene/base/shown_text.h"
 
 namespace cistula {
 namespace {
@@ -30,6 +31,13 @@ std::string point(const glm::dvec3& p) {
 
 double largest(const glm::dvec3& c) {
     return std::max({c.x, c.y, c.z});
+}
+
+/// Names of a scene as one line each.
+SceneNames shown_names(SceneNames names) {
+    for (auto* list : {&names.solids, &names.materials, &names.lights, &names.visible_lights})
+        for (SceneNames::Named& named : *list) named.name = one_line(named.name);
+    return names;
 }
 
 std::string called(const SceneNames::Named& named) {
@@ -333,11 +341,13 @@ void write_totals(const PixelReport& report, std::string& text) {
 
 }  // namespace
 
-std::string pixel_text(const PixelReport& report, bool verbose) {
+std::string pixel_text(const PixelReport& raw, bool verbose) {
+    const SceneNames names = shown_names(raw.names);
+    const PixelReport report{raw.options, raw.scene, names, raw.settings, raw.camera, raw.tree, raw.scene_hash};
     const FrameSettings& settings = report.settings;
     const int k = settings.supersample;
     std::string text = fmt::format("{}, frame {}: pixel {},{} of {}x{}; depth {}, cutoff {}, {}, {}\n\n",
-                                   report.scene.source, report.camera.frame, report.options.pixel.x,
+                                   one_line(report.scene.source), report.camera.frame, report.options.pixel.x,
                                    report.options.pixel.y, settings.full_width, settings.full_height, settings.depth,
                                    settings.cutoff, report.options.precision == Precision::double_ ? "double" : "float",
                                    k == 1 ? std::string("one sample") : fmt::format("{} samples", k * k));

@@ -167,7 +167,9 @@ bool run_golden(const CompareOptions& options) {
     say(differing == 0 ? fmt::format("equal: all {} renders\n", results.size())
                        : fmt::format("differ: {} of {} renders\n", differing, results.size()));
     if (!options.json.empty())
-        write_file_atomically(options.json, to_json(results, differing, options, devices).dump(2) + "\n");
+        write_file_atomically(options.json, to_json(results, differing, options, devices)
+                                                    .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                                                "\n");
     return differing == 0;
 }
 

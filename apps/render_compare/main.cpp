@@ -6,6 +6,7 @@
 #include "report.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
+#include "scene/base/shown_text.h"
 #include "scene/image/exr.h"
 
 namespace cistula {
@@ -17,7 +18,7 @@ bool compare_files(const CompareOptions& options) {
     std::string text = report_text(comparison, options.thresholds);
     if (!options.diff.empty()) {
         if (comparison.channels.empty())
-            text += options.diff + ": not written, as no pixel has a partner\n";
+            text += one_line(options.diff) + ": not written, as no pixel has a partner\n";
         else
             write_exr(options.diff, difference_picture(a, b));
     }

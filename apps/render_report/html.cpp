@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/base/shown_text.h"
+
 namespace cistula::report {
 namespace {
 
@@ -23,7 +25,7 @@ std::string plain(double value, int digits) {
 
 std::string escaped(const std::string& text) {
     std::string out;
-    for (const char c : text) {
+    for (const char c : one_line(text)) {
         if (c == '&')
             out += "&amp;";
         else if (c == '<')
@@ -32,7 +34,7 @@ std::string escaped(const std::string& text) {
             out += "&gt;";
         else if (c == '"')
             out += "&quot;";
-        else if (static_cast<unsigned char>(c) >= ' ')
+        else
             out += c;
     }
     return out;

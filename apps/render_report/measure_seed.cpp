@@ -7,7 +7,7 @@
 #include "measure.h"
 #include "scene/base/error.h"
 #include "scene/base/file_bytes.h"
-#include "scene/base/suggest.h"
+#include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::report {
@@ -33,7 +33,7 @@ std::string text_of(const Json& context, const char* key) {
 SeedTable read_seed_table(const std::string& file) {
     const std::string text = read_file(file);
     try {
-        const Json json = Json::parse(text);
+        const Json json = parse_json(text, "its JSON");
         SeedTable table;
         table.context = json.at("context");
         table.scene = std::filesystem::path(text_of(table.context, "scene")).stem().string();
@@ -48,7 +48,7 @@ SeedTable read_seed_table(const std::string& file) {
         return table;
     } catch (const std::exception& error) {
         throw Error(ExitCode::file, fmt::format("{}: is no record of seed_baseline ({}); give what its --json wrote",
-                                                file, one_line(error.what())));
+                                                file, error.what()));
     }
 }
 

@@ -9,7 +9,6 @@
 #include "apps/common/command_line.h"
 #include "apps/common/picture_size.h"
 #include "reference.h"
-#include "scene/base/suggest.h"
 
 namespace cistula::report {
 namespace {
@@ -62,7 +61,7 @@ void check_from(const Texts& texts) {
     constexpr const char* why = "is for measuring; --from shows what was measured before";
     if (!texts.scenes.empty())
         fail_usage(fmt::format("{}: a scene and --from; measure the scene first with --json FILE, or leave --from out",
-                               one_line(texts.scenes.front())));
+                               texts.scenes.front()));
     const std::pair<const char*, bool> measuring[] = {{"--backend", !texts.backend.empty()},
                                                       {"--device", !texts.device.empty()},
                                                       {"--threads", !texts.threads.empty()},
@@ -80,7 +79,7 @@ void check_from(const Texts& texts) {
 double limit_option(const std::string& text) {
     const std::optional<double> value = whole_number<double>(text);
     if (!value || !std::isfinite(*value) || *value <= 0)
-        fail_usage(fmt::format("--limit {}: must be a number of seconds above 0, as in 2 or 0.5", one_line(text)));
+        fail_usage(fmt::format("--limit {}: must be a number of seconds above 0, as in 2 or 0.5", text));
     return *value;
 }
 
@@ -92,7 +91,7 @@ ReportOptions parse_report_options(int argc, const char* const* argv) {
     declare(app, texts);
     ReportOptions options;
     const bool whole = parse_command_line(
-        app, argc, argv, [](const std::string& extra) { return fmt::format("{}: unexpected", one_line(extra)); });
+        app, argc, argv, [](const std::string& extra) { return fmt::format("{}: unexpected", extra); });
     if (!whole || texts.version) {
         options.action = whole ? Action::print_version : Action::print_help;
         return options;

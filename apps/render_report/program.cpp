@@ -10,14 +10,15 @@
 #include "apps/common/interrupt.h"
 #include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
+#include "html.h"
 #include "html_page.h"
 #include "measure.h"
 #include "options.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
 #include "scene/base/file_bytes.h"
-#include "scene/base/suggest.h"
 #include "scene/compile/scene_source.h"
+#include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::report {
@@ -27,15 +28,13 @@ namespace {
 Json read_verdicts(const std::string& file) {
     const std::string text = read_file(file);
     try {
-        Json json = Json::parse(text);
-        for (const Json& one : json.at("cases"))
-            for (const char* key : {"case", "intersector", "precision", "worst", "bound", "unit", "holds", "exact"})
-                (void)one.at(key);
-        (void)json.at("context");
-        return json;
+        Record record;
+        record.verify = parse_json(text, "its JSON");
+        (void)verify_section({record});  // throws for what its table does not find
+        return *record.verify;
     } catch (const std::exception& error) {
         throw Error(ExitCode::file, fmt::format("{}: is no record of render-verify ({}); give what its --json wrote",
-                                                file, one_line(error.what())));
+                                                file, error.what()));
     }
 }
 
@@ -99,7 +98,7 @@ std::string page_of(const std::vector<Record>& records, const ReportOptions& opt
         for (const std::string& file : {options.verify, options.seed_baseline})
             if (!file.empty()) files.push_back(file);
         throw Error(ExitCode::file, fmt::format("{}: a value is not of its type ({}); give what --json wrote",
-                                                fmt::join(files, ", "), one_line(error.what())));
+                                                fmt::join(files, ", "), error.what()));
     }
 }
 

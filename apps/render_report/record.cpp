@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <string>
+
 #include "apps/common/run_context.h"
+#include "html_page.h"
 #include "scene/base/error.h"
-#include "scene/base/suggest.h"
+#include "scene/readers/json_reader.h"
 #include "target_table.h"
 
 namespace cistula {
@@ -99,6 +103,18 @@ void require(bool holds, const std::string& what) {
     if (!holds) throw std::runtime_error(what);
 }
 
+/// Throws unless counts and sizes are whole numbers. The JSON library casts any number, and a cast of 1e300 has no
+/// value.
+void check_whole_numbers(const Json& json) {
+    static const std::set<std::string> whole = {
+        "depth",    "supersample", "width",  "height",  "grid",      "parity_depth", "x",      "y",   "mask",
+        "compared", "differing",   "missed", "primary", "reflected", "transmitted",  "shadow", "rays"};
+    for (const auto& [key, value] : json.items()) {
+        require(!value.is_number_float() || whole.count(key) == 0, key + " is no whole number");
+        if (value.is_structured()) check_whole_numbers(value);
+    }
+}
+
 /// Throws if the record violates what the page relies on, beyond the types.
 void check(const Record& record) {
     require(record.context.is_object(), "its context is no object");
@@ -149,7 +165,8 @@ std::string record_text(const Record& record) {
 
 Record parse_record(const std::string& text, const std::string& name) {
     try {
-        const Json json = Json::parse(text);
+        const Json json = parse_json(text, "its JSON");
+        check_whole_numbers(json);
         Record record;
         json.at("context").get_to(record.context);
         json.at("benchmarks").get_to(record.entries);
@@ -158,10 +175,11 @@ Record parse_record(const std::string& text, const std::string& name) {
         if (json.contains("seed")) record.seed = json.at("seed").get<SeedTable>();
         if (json.contains("verify")) record.verify = json.at("verify");
         check(record);
+        (void)report_page({record});  // what has no page is no record
         return record;
     } catch (const std::exception& error) {
         throw Error(ExitCode::file, fmt::format("{}: is no record of render-report ({}); give what its --json wrote",
-                                                name, one_line(error.what())));
+                                                name, error.what()));
     }
 }
 

@@ -57,7 +57,7 @@ std::vector<const CaseEntry*> chosen_cases(const std::vector<std::string>& wante
         std::vector<std::string_view> names;
         for (const CaseEntry& entry : cases) names.push_back(entry.info.name);
         const std::string near = suggestion(text, names, "cases");
-        fail_usage(fmt::format("--case {}: there is no such case; {}--list names them all", one_line(text),
+        fail_usage(fmt::format("--case {}: there is no such case; {}--list names them all", text,
                                near.rfind("did you", 0) == 0 ? near + "; " : ""));
     }
     std::vector<const CaseEntry*> chosen;

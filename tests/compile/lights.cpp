@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/compile/compiled_scene.h"
+#include "scene/compile/scene_source.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {
@@ -77,6 +78,21 @@ TYPED_TEST(CompileLights, VisibleLightsAndThoseThatOnlyLight) {
     EXPECT_EQ(compiled->visible_lights[0].radiance, Vec3<TypeParam>(4, 0, 0) * unit);
     EXPECT_EQ(compiled->visible_lights[1].radiance, Vec3<TypeParam>(1, 0.5, 0) * unit);
     EXPECT_TRUE(compiled->visible_light_tree.empty());
+}
+
+TEST(Lights, OfMoreThanAMillionThereIsALineInPlaceOfMemory) {
+    SceneDescription scene = empty_scene();
+    SolidObject object = solid(PlatonicSolid::dodecahedron, {0, 0, 0}, 1);
+    object.edge_lights.count = 1000;
+    for (int i = 0; i < 34; ++i) {
+        object.center.x = 3 * i;
+        add_object(scene, object);
+        scene.objects.back().place = "/objects/" + std::to_string(i);
+    }
+    samples::expect_error([&] { gather_scene(scene); }, ExitCode::usage,
+                          "/objects/33: with the lights on its edges the scene has more than 1000000 lights");
+    scene.objects.pop_back();
+    EXPECT_EQ(gather_scene(scene).solids.size(), 33u);
 }
 
 }  // namespace

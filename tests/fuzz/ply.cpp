@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         meshes.push_back(read_ply(bytes, "a.ply"));
         fuzz::check_meshes(std::move(meshes));
     } catch (const Error& error) {
-        fuzz::check_error(error);
+        fuzz::check_error(error, ExitCode::file);
     }
     return 0;
 }

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <regex>
 
 #include "scene/description/camera_path.h"
@@ -247,6 +249,85 @@ TEST(TextInput, EveryShorterInputSaysWhatIsMissing) {
 
 TEST(TextInput, MessagesAreOneLine) {
     EXPECT_WRONG("300 a \x01%", "1: expected an output pattern with one %d, found '\\x01%'");
+}
+
+/// The order of the assignment, with another number on each place.
+constexpr const char* in_order_of_assignment = R"(6
+out/%d.data
+64 48 90
+5 3 0.1 1 0.5 2 3 1 0.2 0.4
+1 0.25 0.3 0.5 0.125 1 4 2 0.6 0.8
+2 0 1.5 1 0.2 0.1 1.2 0.4 0.5 5
+0 2 1.5 0.1 0.9 0.3 1.1 0.3 0.6 4
+-2 -1 1.5 0.2 0.5 0.9 1.3 0.2 0.7 3
+-7 -5 0 -7 5 0 7 5 0 7 -5 0 wood.data 0.8 0.9 0.7 0.4
+1
+-8 1 9 0.9 0.8 0.7
+6 2
+)";
+
+std::string changed_assignment(const std::string& from, const std::string& to) {
+    std::string text = in_order_of_assignment;
+    return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(TextInput, TheOrderOfTheAssignmentIsToldByTheSecondLine) {
+    const SceneDescription scene = read_scene_text(in_order_of_assignment, "in/a.txt", "in");
+    EXPECT_TRUE(scene.from_text_input);
+    EXPECT_EQ(scene.film.frames, 6);
+    EXPECT_EQ(scene.film.output, "out/%d.data");
+    EXPECT_EQ(scene.film.width, 64);
+    EXPECT_EQ(scene.film.height, 48);
+    EXPECT_EQ(scene.camera.field_of_view, 90);
+    ASSERT_EQ(scene.textures.size(), 1u);
+    EXPECT_EQ(scene.textures[0].file, "in/wood.data");
+    EXPECT_TRUE(scene.textures[0].bilinear);
+    ASSERT_EQ(scene.objects.size(), 4u);
+    EXPECT_EQ(std::get<SolidObject>(scene.objects[0].shape).edge_lights.count, 5);
+    EXPECT_EQ(std::get<SolidObject>(scene.objects[2].shape).edge_lights.count, 3);
+    const auto& floor = std::get<TrianglesObject>(scene.objects[3].shape);
+    EXPECT_EQ(floor.vertices, (std::vector<glm::dvec3>{{-7, -5, 0}, {-7, 5, 0}, {7, 5, 0}, {7, -5, 0}}));
+    const MaterialDescription& material = scene.materials[static_cast<size_t>(scene.objects[3].material)];
+    EXPECT_EQ(material.texture, 0);
+    EXPECT_EQ(material.color, glm::dvec3(0.8, 0.9, 0.7));
+    EXPECT_EQ(material.specular_color, glm::dvec3(1));
+    EXPECT_EQ(material.reflection, 0.4);
+    EXPECT_EQ(material.transmission, 0);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.lights[0].color, glm::dvec3(0.9, 0.8, 0.7));
+    EXPECT_EQ(scene.depth, 6);
+    EXPECT_EQ(scene.film.supersample, 2);
+    // A place for the number that is written wrongly tells the order too.
+    EXPECT_WRONG(changed_assignment("%d", "%5d"), "2: expected an output pattern with one %d, found 'out/%5d.data'");
+    EXPECT_WRONG(changed_assignment("%d", "%d%d"), "2: expected an output pattern with one %d, found 'out/%d%d.data'");
+    EXPECT_WRONG(changed_assignment("%d", "100%"), "3: expected an output pattern with one %d, found '64'");
+    EXPECT_EQ(read(changed("floor.data", "100%.data")).textures[0].file, "100%.data");
+}
+
+TEST(TextInput, InTheOrderOfTheAssignmentTimeRunsOnceAround) {
+    const SceneDescription scene = read(in_order_of_assignment);
+    for (int frame = 0; frame <= 6; ++frame) {
+        const double t = 2 * 3.14159265358979323846 * frame / 6;
+        const CameraFrame at = camera_at(scene.camera, frame);
+        EXPECT_NEAR(at.time, t, 1e-15 * 8);
+        const double r = 5 + 1 * std::sin(2 * t + 0.2), z = 3 + 0.5 * std::sin(3 * t + 0.4), phi = 0.1 + t;
+        EXPECT_NEAR(at.camera.position.x, r * std::cos(phi), 1e-13);
+        EXPECT_NEAR(at.camera.position.y, r * std::sin(phi), 1e-13);
+        EXPECT_NEAR(at.camera.position.z, z, 1e-13);
+        const double rn = 1 + 0.5 * std::sin(t + 0.6), zn = 0.25 + 0.125 * std::sin(4 * t + 0.8), phin = 0.3 + 2 * t;
+        const glm::dvec3 target{rn * std::cos(phin), rn * std::sin(phin), zn};
+        const glm::dvec3 view = target - glm::dvec3{at.camera.position.x, at.camera.position.y, at.camera.position.z};
+        const glm::dvec3 forward{at.camera.forward.x, at.camera.forward.y, at.camera.forward.z};
+        EXPECT_NEAR(glm::length(view / glm::length(view) - forward), 0, 1e-13);
+    }
+}
+
+TEST(TextInput, InTheOrderOfTheAssignmentErrorsNameTheFloorsParts) {
+    EXPECT_WRONG(changed_assignment(" wood.data", ""), "9: expected the floor's texture file, found '0.8'");
+    EXPECT_WRONG(changed_assignment("0.8 0.9 0.7 0.4", "0.8 0.9 0.7 1.4"),
+                 "9: expected floor reflection, a number from 0 to 1, found '1.4'");
+    EXPECT_WRONG(changed_assignment("0.8 0.9", "0.8 blue"),
+                 "9: expected floor tint green, a number from 0 to 1e30, found 'blue'");
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <stdexcept>
-#include <string>
+#include <string_view>
+
+#include "scene/base/shown_text.h"
 
 namespace cistula {
 
@@ -17,11 +19,11 @@ enum class ExitCode : int {
     interrupted = 130,
 };
 
-/// An error for the user. what() is the whole message: the place (file:line:column or file: JSON pointer), what is
-/// wrong, what would be right.
+/// An error for the user. what() is the whole message, on one line (shown_text.h): the place (file:line:column or file:
+/// JSON pointer), what is wrong, what would be right.
 class Error : public std::runtime_error {
   public:
-    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    Error(ExitCode code, std::string_view message) : std::runtime_error(message_line(message)), code_(code) {}
     ExitCode code() const { return code_; }
 
   private:

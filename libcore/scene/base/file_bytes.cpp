@@ -13,6 +13,8 @@
 namespace cistula {
 namespace {
 
+constexpr size_t largest_pipe = size_t{1} << 30;  // what has no size may have no end
+
 using FileHandle = std::unique_ptr<FILE, int (*)(FILE*)>;
 
 /// Advice for the user; empty where the system's message is clear enough.
@@ -46,26 +48,37 @@ std::string remedy(const std::string& path, const std::string& verb, int error_n
 }
 
 FileHandle open_for_reading(const std::string& path) {
+    if (path.find('\0') != std::string::npos)  // the system would open what is before it
+        throw Error(ExitCode::file, path + ": cannot read: a zero byte is in the name; check the spelling");
     FileHandle file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) throw file_error(path, "read", errno);
     struct stat status;
     if (fstat(fileno(file.get()), &status) != 0) throw file_error(path, "read", errno);
     if (S_ISDIR(status.st_mode)) throw file_error(path, "read", EISDIR);
+    if (S_ISCHR(status.st_mode))  // such as /dev/zero, which has no end
+        throw file_error(path, "read", std::string("it is a device; give the name of a file"));
     return file;
 }
 
 std::string read_up_to(const std::string& path, size_t most) {
     const FileHandle file = open_for_reading(path);
+    struct stat status;
+    if (fstat(fileno(file.get()), &status) != 0) throw file_error(path, "read", errno);
+    const bool has_size = S_ISREG(status.st_mode);
+    if (!has_size) most = std::min(most, largest_pipe + 1);
+    const size_t expected = std::max<size_t>(has_size ? static_cast<size_t>(status.st_size) + 1 : 0, 1 << 16);
     std::string bytes;
     while (bytes.size() < most) {
         const size_t old_size = bytes.size();
-        const size_t step = std::min<size_t>(most - old_size, std::max<size_t>(old_size, 1 << 16));
+        const size_t step = std::min(most - old_size, std::max(old_size, expected));
         bytes.resize(old_size + step);
         const size_t got = std::fread(bytes.data() + old_size, 1, step, file.get());
         bytes.resize(old_size + got);
         if (std::ferror(file.get())) throw file_error(path, "read", errno);
         if (got < step) break;
     }
+    if (!has_size && bytes.size() > largest_pipe)
+        throw file_error(path, "read", std::string("it is a pipe of more than 1 GiB; write it to a file first"));
     return bytes;
 }
 

@@ -40,29 +40,9 @@ std::string suggestion(std::string_view name, const std::vector<std::string_view
     if (!nearest.empty()) return fmt::format("did you mean '{}'?", one_line(nearest));
     constexpr size_t most_listed = 16;
     std::string list;
-    for (size_t i = 0; i < known.size() && i < most_listed; ++i) list += (i ? ", " : "") + one_line(known[i]);
+    for (size_t i = 0; i < known.size() && i < most_listed; ++i)
+        list += (i ? ", " : "") + first_characters(known[i], longest_compared);
     return fmt::format("known {}: {}{}", plural, list, known.size() > most_listed ? ", ..." : "");
-}
-
-std::string one_line(std::string_view text) {
-    std::string line;
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c == '\n')
-            line += "\\n";
-        else if (c == '\t')
-            line += "\\t";
-        else if (code < 0x20 || code == 0x7f)
-            line += fmt::format("\\x{:02x}", code);
-        else
-            line += c;
-    }
-    return line;
-}
-
-std::string quoted(std::string_view word) {
-    constexpr size_t longest = 40;
-    return fmt::format("'{}{}'", one_line(word.substr(0, longest)), word.size() > longest ? "..." : "");
 }
 
 }  // namespace cistula

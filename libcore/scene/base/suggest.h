@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/base/shown_text.h"
+
 namespace cistula {
 
 /// Optimal string alignment distance: the least number of insertions, deletions, substitutions and swaps of neighboring
@@ -15,11 +17,5 @@ size_t edit_distance(std::string_view a, std::string_view b);
 /// "did you mean 'width'?" if one of `known` is near `name`, else "known keys: a, b, c"; `plural` is their collective
 /// name ("keys").
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural);
-
-/// The text as a single line, with control characters escaped; for names from files in messages.
-std::string one_line(std::string_view text);
-
-/// A word from a file in single quotes, for messages: on one line, cut after 40 bytes.
-std::string quoted(std::string_view word);
 
 }  // namespace cistula

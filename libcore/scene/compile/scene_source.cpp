@@ -12,6 +12,8 @@ namespace {
 
 using glm::dvec3;
 
+constexpr size_t most_lights = 1'000'000;  // with those on edges; a short file can ask for any number of these
+
 bool finite_and_not_negative(const dvec3& v) {
     return is_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
 }
@@ -146,6 +148,7 @@ SceneSource gather_scene(const SceneDescription& description) {
         check_light(description, light.color, light.glow, light.radius, light.falloff, light.place);
     }
 
+    size_t lights = description.lights.size();
     for (const ObjectDescription& object : description.objects) {
         if (object.material >= static_cast<int>(description.materials.size()))
             throw scene_error(description, object.place, "names a material that does not exist");
@@ -162,6 +165,11 @@ SceneSource gather_scene(const SceneDescription& description) {
         if (const auto* platonic = std::get_if<SolidObject>(&object.shape)) {
             check_platonic(description, *platonic, object.place);
             solid.platonic = platonic;
+            lights += platonic_shape(platonic->solid).edges.size() * static_cast<size_t>(platonic->edge_lights.count);
+            if (lights > most_lights)
+                throw scene_error(description, object.place,
+                                  "with the lights on its edges the scene has more than " +
+                                      std::to_string(most_lights) + " lights; lower its count");
         } else {
             const auto& triangles = std::get<TrianglesObject>(object.shape);
             check_triangles(description, triangles, object.place);

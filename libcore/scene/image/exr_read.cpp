@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 
@@ -23,6 +24,8 @@
 
 namespace cistula {
 namespace {
+
+constexpr int largest_tile_side = 8192;  // the library holds a whole tile in memory, as its header says
 
 /// Runs `read`; the library's exceptions become an Error that names the file, or std::bad_alloc.
 template <class Read>
@@ -45,9 +48,31 @@ auto with_file_errors(const std::string& path, Read read) {
 void limit_sizes() {
     static const bool once = [] {
         Imf::Header::setMaxImageSize(static_cast<int>(largest_picture_side), static_cast<int>(largest_picture_side));
+        Imf::Header::setMaxTileSize(largest_tile_side, largest_tile_side);
         return true;
     }();
     (void)once;
+}
+
+/// Throws for a header that says more pixels than a file of its size can hold, before memory is taken for them. Deflate
+/// packs 1,032 to 1 at most, RLE and PIZ less; DWA does so after it took one value in 64.
+void check_claim(const Imf::InputFile& file, const std::string& path) {
+    const Imf::Header& header = file.header();
+    double packing = 2048;
+    if (header.compression() == Imf::NO_COMPRESSION) packing = 1;
+    if (header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION)
+        packing = 64 * 1032;
+    const Imath::Box2i window = header.dataWindow();
+    const double width = static_cast<double>(window.max.x) - window.min.x + 1;
+    const double height = static_cast<double>(window.max.y) - window.min.y + 1;
+    double bytes = 0;
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+        bytes += width * height * (channel.channel().type == Imf::HALF ? 2 : 4);
+    const auto size = static_cast<double>(std::filesystem::file_size(path));
+    if (bytes > packing * size)
+        throw std::runtime_error("it says that it has " + std::to_string(static_cast<int64_t>(width)) + "x" +
+                                 std::to_string(static_cast<int64_t>(height)) +
+                                 " pixels, more than its bytes can hold; it is damaged");
 }
 
 int lines_per_chunk(Imf::Compression compression) {
@@ -141,6 +166,7 @@ LayeredPicture read_layers(const std::string& path) {
     check_single_and_flat(path);
     Imf::InputFile file(path.c_str());
     check_full_sampling(file);
+    check_claim(file, path);
     check_chunks(file);
     const Imf::Header& header = file.header();
     const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
@@ -185,6 +211,7 @@ ColorPicture read_colors(const std::string& path, const SizeProblem& size_proble
     if (gray && (channels.findChannel("RY") || channels.findChannel("BY")))
         throw std::runtime_error("its colors are stored as luminance and chroma (Y, RY, BY); convert it to R, G and B");
     check_full_sampling(file);
+    check_claim(file, path);
     check_chunks(file);
 
     ColorPicture picture;

@@ -41,14 +41,13 @@ glm::vec<n, double, glm::defaultp> numbers_of(const JsonValue& value, const Key&
 }  // namespace
 
 std::string found_text(const Json& json) {
-    constexpr size_t longest = 40;
     if (json.is_object()) return json.empty() ? "an empty object" : "an object";
     if (json.is_array()) return json.empty() ? "an empty array" : fmt::format("an array of {}", json.size());
     if (json.is_number_float()) return number_text(json.get<double>());
     if (!json.is_string()) return json.dump();
     const std::string& text = json.get_ref<const std::string&>();
     if (text.empty()) return "an empty string";
-    return "'" + (text.size() <= longest ? text : text.substr(0, longest) + "...") + "'";
+    return quoted(text);
 }
 
 JsonValue JsonValue::item(size_t index) const {
@@ -60,8 +59,9 @@ JsonValue JsonValue::member(const std::string& key) const {
 }
 
 std::string JsonValue::place_of(std::string_view key) const {
+    constexpr size_t longest = 80;
     std::string place = place_ + "/";
-    for (const char c : key) {  // escapes of RFC 6901
+    for (const char c : first_characters(key, longest)) {  // escapes of RFC 6901
         if (c == '~')
             place += "~0";
         else if (c == '/')
@@ -81,8 +81,7 @@ void JsonValue::check_comment() const {
 }
 
 void JsonValue::fail_at(const std::string& place, const std::string& message) const {
-    throw Error(ExitCode::usage,
-                one_line(fmt::format("{}: {}: {}", *source_, place.empty() ? "/" : place.c_str(), message)));
+    throw Error(ExitCode::usage, fmt::format("{}: {}: {}", *source_, place.empty() ? "/" : place.c_str(), message));
 }
 
 void JsonValue::fail_expected(const std::string& expected) const {

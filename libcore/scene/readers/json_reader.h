@@ -17,7 +17,7 @@ namespace cistula {
 using Json = nlohmann::ordered_json;  // keeps the order of keys in the file
 
 /// Parses JSON with comments. Throws Error (usage): "source:line:column: ..." for syntax errors and numbers out of
-/// double's range, "source: /place: duplicate key" for repeated keys. Columns count bytes from 1.
+/// double's range, "source: /place: ..." for repeated keys and for more than 64 levels. Columns count bytes from 1.
 Json parse_json(const std::string& text, const std::string& source);
 
 /// A value and its JSON pointer. A view: tree and source must outlive it.
@@ -31,8 +31,10 @@ class JsonValue {
 
     JsonValue item(size_t index) const;
     JsonValue member(const std::string& key) const;
+    /// The member `key` where its value is at hand; looking it up takes time that grows with their number.
+    JsonValue member(const std::string& key, const Json& value) const { return {value, *source_, place_of(key)}; }
 
-    /// JSON pointer of a key of this object, present or not.
+    /// JSON pointer of a key of this object, present or not; a very long key is cut, since the pointer is for messages.
     std::string place_of(std::string_view key) const;
 
     /// Throws unless this object's comment, if it has one, is a string or an array of strings.

@@ -8,11 +8,14 @@
 #include <fmt/format.h>
 
 #include "scene/base/error.h"
-#include "scene/base/suggest.h"
+#include "scene/base/shown_text.h"
 #include "scene/readers/json_reader.h"
 
 namespace cistula {
 namespace {
+
+constexpr size_t most_levels = 64;       // of arrays and objects in one another
+constexpr size_t levels_of_a_scene = 6;  // the scene, "objects", an object, "triangles", "vertices", a point
 
 /// nlohmann's message without its prefix, and with the quoted last token shortened to its end.
 std::string plain_message(std::string message) {
@@ -20,13 +23,17 @@ std::string plain_message(std::string message) {
         message.erase(0, bracket + 2);
     if (message.starts_with("parse error at "))
         if (const size_t colon = message.find(": "); colon != message.npos) message.erase(0, colon + 2);
-    constexpr std::string_view opening = "last read: '";
+    constexpr std::string_view openings[] = {"last read: '", "number overflow parsing '"};
     constexpr size_t longest = 40;
-    const size_t start = message.find(opening);
-    const size_t end = message.rfind('\'');
-    if (start != message.npos && end > start + opening.size() + longest) {
-        const size_t first = start + opening.size();
-        message.replace(first, end - first - longest, "...");
+    for (const std::string_view opening : openings) {
+        const size_t found = message.find(opening);
+        if (found == message.npos) continue;
+        const size_t first = found + opening.size();
+        const size_t end = std::min(message.rfind("'; expected "), message.rfind('\''));
+        if (end == message.npos || end < first + longest) continue;
+        size_t kept = end - longest;
+        while (kept < end && (static_cast<unsigned char>(message[kept]) & 0xc0) == 0x80) ++kept;  // whole characters
+        message.replace(first, kept - first, "...");
     }
     return message;
 }
@@ -54,8 +61,7 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
         auto& members = open_.back()->get_ref<Json::object_t&>();
         members.emplace_back(name, Json());
         if (!names_.back().insert(name).second)
-            throw Error(ExitCode::usage,
-                        one_line(fmt::format("{}: {}: duplicate key; give it once", source_, place())));
+            throw Error(ExitCode::usage, fmt::format("{}: {}: duplicate key; give it once", source_, place()));
         return true;
     }
     bool end_object() override {
@@ -76,8 +82,8 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
         const size_t at = std::min(position == 0 ? 0 : position - 1, text_.size());
         const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<ptrdiff_t>(at), '\n');
         const size_t line_start = at == 0 ? 0 : text_.rfind('\n', at - 1) + 1;  // npos + 1 is 0
-        throw Error(ExitCode::usage, one_line(fmt::format("{}:{}:{}: {}", source_, line, at - line_start + 1,
-                                                          plain_message(error.what()))));
+        throw Error(ExitCode::usage,
+                    fmt::format("{}:{}:{}: {}", source_, line, at - line_start + 1, plain_message(error.what())));
     }
 
   private:
@@ -95,7 +101,13 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
         slot(Json(std::forward<Value>(value)));
         return true;
     }
-    void open(Json container) { open_.push_back(&slot(std::move(container))); }
+    void open(Json container) {
+        Json* level = &slot(std::move(container));
+        if (open_.size() == most_levels)
+            throw Error(ExitCode::usage, fmt::format("{}: {}: more than {} levels deep; a scene has {} at most",
+                                                     source_, place(), most_levels, levels_of_a_scene));
+        open_.push_back(level);
+    }
 
     std::string place() const {
         std::string path;
@@ -103,7 +115,7 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
             if (level->is_array())
                 path += fmt::format("/{}", level->size() - 1);
             else
-                path += "/" + level->get_ref<Json::object_t&>().back().first;
+                path += "/" + first_characters(level->get_ref<Json::object_t&>().back().first, 80);
         }
         return path;
     }

@@ -162,7 +162,7 @@ void for_each_name(const JsonValue& value, const std::string& kind, Read read) {
     for (const auto& member : value.json().items()) {
         if (member.key() == comment_key) continue;
         if (member.key().empty()) value.fail_at(value.place_of(""), fmt::format("a {}'s name is not empty", kind));
-        read(member.key(), value.member(member.key()));
+        read(member.key(), value.member(member.key(), member.value()));
     }
 }
 

@@ -25,7 +25,7 @@ void refuse_texture(JsonObject& keys, const ObjectContext& context, const Object
                     const std::string& reason) {
     const MaterialDescription& material = context.scene.materials[static_cast<size_t>(object.material)];
     if (material.texture >= 0)
-        keys.fail("material", fmt::format("the material '{}' has a texture, but {}", material.name, reason));
+        keys.fail("material", fmt::format("the material {} has a texture, but {}", quoted(material.name), reason));
 }
 
 EdgeLights read_edge_lights(const JsonValue& value) {

@@ -1,37 +1,75 @@
 #include "scene/readers/read_scene.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 
 #include <fmt/format.h>
 
+#include "scene/base/decimal.h"
 #include "scene/base/error.h"
-#include "scene/base/suggest.h"
 #include "scene/readers/read_json.h"
 #include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_kind.h"
 
 namespace cistula {
 namespace {
 
-std::string read_all(std::istream& stream, const std::string& name) {
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (stream.bad()) throw Error(ExitCode::file, one_line(fmt::format("{}: cannot be read to its end", name)));
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+constexpr size_t start_bytes = 4096;  // that tell what a file is
+constexpr std::string_view blanks = " \t\r\n\v\f";
+
+std::string_view without_mark(std::string_view text) {
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     return text;
+}
+
+/// Throws if a text that begins so cannot be a scene. `text` may be the first part of one, of several words.
+void check_start(std::string_view text, const std::string& label) {
+    text = without_mark(text);
+    const auto fail = [&label](const std::string& what) {
+        throw Error(ExitCode::usage, fmt::format("{}: {}", label, what));
+    };
+    if (const std::string reason = no_scene_because(text.substr(0, start_bytes)); !reason.empty()) fail(reason);
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    if (text.empty()) fail("the scene is empty; expected JSON or the text of --print-template");
+    if (text[0] == '/' || text[0] == '[')
+        fail(fmt::format("a JSON scene begins with '{{', found '{}'; comments may stand anywhere after it", text[0]));
+    if (text[0] != '{' && !decimal<double>(text.substr(0, text.find_first_of(blanks))))
+        read_text_input(std::string(text), label, "");  // throws: it does not begin with a number
+}
+
+/// The text of a scene. What cannot be one is refused by its first bytes, so that input without an end has one here.
+std::string read_all(std::istream& stream, const std::string& name) {
+    std::string text;
+    while (text.size() <= largest_scene_bytes) {
+        const size_t old_size = text.size();
+        const size_t step = std::min(std::max(old_size, start_bytes), largest_scene_bytes + 1 - old_size);
+        text.resize(old_size + step);
+        stream.read(text.data() + old_size, static_cast<std::streamsize>(step));
+        const auto got = static_cast<size_t>(stream.gcount());
+        text.resize(old_size + got);
+        if (stream.bad()) throw Error(ExitCode::file, fmt::format("{}: cannot be read to its end", name));
+        if (got < step) return text;
+        if (old_size == 0 && without_mark(text).find_first_not_of(blanks) != text.npos) check_start(text, name);
+    }
+    throw Error(ExitCode::usage, fmt::format("{}: is larger than {} MiB, which no scene may be; put large meshes into "
+                                             "files of their own, PLY or OBJ, and name these in \"objects\"",
+                                             name, largest_scene_bytes >> 20));
 }
 
 std::string read_file(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
-        throw Error(ExitCode::file, one_line(fmt::format("{}: is a folder; expected a scene file", path)));
+        throw Error(ExitCode::file, fmt::format("{}: is a folder; expected a scene file", path));
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     if (!stream) {
         const char* reason = errno != 0 ? std::strerror(errno) : "the file does not open";
-        throw Error(ExitCode::file, one_line(fmt::format("{}: cannot read the scene: {}", path, reason)));
+        throw Error(ExitCode::file, fmt::format("{}: cannot read the scene: {}", path, reason));
     }
     return read_all(stream, path);
 }
@@ -45,19 +83,11 @@ SceneDescription read_scene(const std::string& path) {
 
 SceneDescription read_scene_text(const std::string& text, const std::string& source_name, const std::string& base_dir) {
     const std::string label = source_name == "-" ? "standard input" : source_name;
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    const size_t start = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
-    const size_t first = text.find_first_not_of(" \t\r\n\v\f", start);
-    if (first == std::string::npos)
-        throw Error(
-            ExitCode::usage,
-            one_line(fmt::format("{}: the scene is empty; expected JSON or the text of --print-template", label)));
-    if (text[first] == '/' || text[first] == '[')
-        throw Error(ExitCode::usage, one_line(fmt::format("{}: a JSON scene begins with '{{', found '{}'; comments may "
-                                                          "stand anywhere after it",
-                                                          label, text[first])));
-    SceneDescription scene = text[first] == '{' ? read_json_scene(text, label, base_dir)
-                                                : read_text_input(text.substr(start), label, base_dir);
+    check_start(text, label);
+    const std::string_view plain = without_mark(text);
+    const bool is_json = plain[plain.find_first_not_of(blanks)] == '{';
+    SceneDescription scene =
+        is_json ? read_json_scene(text, label, base_dir) : read_text_input(std::string(plain), label, base_dir);
     scene.source = source_name;
     return scene;
 }

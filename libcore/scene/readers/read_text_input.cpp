@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/base/decimal.h"
+#include "scene/base/shown_text.h"
 #include "scene/readers/quad.h"
 #include "scene/readers/read_json.h"
 #include "scene/readers/text_tokens.h"
@@ -18,7 +20,15 @@ constexpr double glass_index = 1.5;
 constexpr double floor_reflection = 0.5;
 constexpr double visible_radius = 0.1;  // such programs return white for a ray that passes a light closer than this
 constexpr double share_slack = 1e-6;
+constexpr const char* texture_file = "the floor's texture file";
+constexpr double full_turn = 2 * 3.14159265358979323846;
 constexpr Range light_count{0, 100000};
+
+/// The order of an input's parts, and what its time is (docs/scene.md).
+enum class Order {
+    program,     // the floor's texture on the second line; t is the frame's number
+    assignment,  // the output pattern on the second line, the floor's texture behind its corners; t is 0 to 2 pi
+};
 
 struct InputSolid {
     PlatonicSolid solid;
@@ -73,6 +83,14 @@ bool is_pattern(std::string_view pattern) {
     return rest.starts_with('d');
 }
 
+/// Whether a word has a place for the frame's number, "%d" or with digits between, right or wrong.
+bool has_frame_number(std::string_view word) {
+    const size_t percent = word.find('%');
+    if (percent == std::string_view::npos) return false;
+    const size_t end = word.find_first_not_of("0123456789", percent + 1);
+    return end != std::string_view::npos && word[end] == 'd';
+}
+
 /// Lights on the edges. Their radius keeps neighbors apart: at most a quarter of their distance.
 EdgeLights edge_lights(int count, double edge_length) {
     EdgeLights lights;
@@ -116,7 +134,16 @@ void read_solid(TextTokens& tokens, const InputSolid& input, SceneDescription& s
     scene.objects.push_back(object);
 }
 
-void read_floor(TextTokens& tokens, SceneDescription& scene) {
+void add_floor_texture(std::string_view file, int line, const std::string& base_dir, SceneDescription& scene) {
+    TextureDescription texture;
+    texture.name = "floor";
+    texture.file = file_beside_scene(std::string(file), base_dir);
+    texture.place = fmt::format("line {}", line);
+    scene.textures.push_back(texture);
+}
+
+/// The floor. `order` decides whether its texture, tint and reflection follow its corners.
+void read_floor(TextTokens& tokens, Order order, const std::string& base_dir, SceneDescription& scene) {
     std::array<glm::dvec3, 4> corners;
     ObjectDescription object;
     for (size_t i = 0; i < corners.size(); ++i) {
@@ -131,6 +158,14 @@ void read_floor(TextTokens& tokens, SceneDescription& scene) {
     material.specular = 1;
     material.exponent = phong_exponent;
     material.reflection = floor_reflection;
+    if (order == Order::assignment) {
+        const std::string_view file = tokens.word(texture_file);
+        if (decimal<double>(file))
+            tokens.fail(tokens.line(), fmt::format("expected {}, found {}", texture_file, quoted(file)));
+        add_floor_texture(file, tokens.line(), base_dir, scene);
+        material.color = read_color(tokens, "floor tint");
+        material.reflection = tokens.number("floor reflection", range_of(material_keys, "reflection"));
+    }
     object.material = static_cast<int>(scene.materials.size());
     object.shape = quad_triangles(corners);
     scene.materials.push_back(material);
@@ -159,15 +194,18 @@ SceneDescription read_text_input(const std::string& text, const std::string& lab
     scene.from_text_input = true;
     scene.ambient = glm::dvec3{ambient_light};
     scene.film.frames = tokens.whole("number of frames", range_of(film_keys, "frames"));
-    TextureDescription texture;
-    texture.name = "floor";
-    texture.file = file_beside_scene(std::string(tokens.word("the floor's texture file")), base_dir);
-    texture.place = fmt::format("line {}", tokens.line());
-    scene.textures.push_back(texture);
-    scene.film.output = tokens.word("the output pattern with %d");
+    const std::string_view second = tokens.word(texture_file);
+    const Order order = has_frame_number(second) ? Order::assignment : Order::program;
+    if (order == Order::program) {
+        add_floor_texture(second, tokens.line(), base_dir, scene);
+        scene.film.output = tokens.word("the output pattern with %d");
+    } else {
+        scene.film.output = second;
+        scene.camera.time_step = full_turn / scene.film.frames;
+    }
     if (!is_pattern(scene.film.output))
         tokens.fail(tokens.line(),
-                    fmt::format("expected an output pattern with one %d, found '{}'", scene.film.output));
+                    fmt::format("expected an output pattern with one %d, found {}", quoted(scene.film.output)));
     scene.film.width = tokens.whole("picture width", range_of(film_keys, "width"));
     scene.film.height = tokens.whole("picture height", range_of(film_keys, "height"));
     scene.camera.field_of_view = tokens.number("horizontal field of view", range_of(camera_keys, "fov"));
@@ -175,7 +213,7 @@ SceneDescription read_text_input(const std::string& text, const std::string& lab
     scene.camera.place = fmt::format("{}:{}", label, tokens.line());
     scene.camera.target_path = read_path(tokens, "target");
     for (const InputSolid& solid : input_solids) read_solid(tokens, solid, scene);
-    read_floor(tokens, scene);
+    read_floor(tokens, order, base_dir, scene);
     read_lights(tokens, scene);
     scene.depth = tokens.whole("depth", range_of(scene_keys, "depth"));
     scene.film.supersample = tokens.whole("supersampling k", range_of(film_keys, "supersample"));

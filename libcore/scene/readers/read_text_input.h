@@ -8,7 +8,8 @@
 
 namespace cistula {
 
-/// Parses the text input. Throws Error (usage): "label:line: expected ..., found ...". Does not set `source`.
+/// Parses the text input, in either order of its parts. Throws Error (usage): "label:line: expected ..., found ...".
+/// Does not set `source`.
 SceneDescription read_text_input(const std::string& text, const std::string& label, const std::string& base_dir);
 
 /// A valid, colorful input in the text input's format; it describes the same scene as scenes/seed.json.

@@ -8,7 +8,7 @@
 
 #include "scene/base/decimal.h"
 #include "scene/base/error.h"
-#include "scene/base/suggest.h"
+#include "scene/base/shown_text.h"
 
 namespace cistula {
 namespace {
@@ -22,25 +22,24 @@ std::optional<double> finite_decimal(std::string_view word) {
 
 }  // namespace
 
-TextTokens::TextTokens(std::string_view text, std::string label) : label_(std::move(label)) {
+TextTokens::Token TextTokens::after(const Token& token) const {
     constexpr std::string_view white = " \t\r\n\v\f";
-    int line = 1;
-    size_t at = 0;
-    while (at < text.size()) {
-        if (white.find(text[at]) != std::string_view::npos) {
-            line += text[at++] == '\n';
-            continue;
-        }
-        const size_t end = std::min(text.find_first_of(white, at), text.size());
-        tokens_.push_back({text.substr(at, end - at), line});
-        last_line_ = line;
-        at = end;
-    }
+    const char* const end = text_.data() + text_.size();
+    const char* const from = token.text.empty() ? text_.data() : token.text.data() + token.text.size();
+    const std::string_view rest(from, static_cast<size_t>(end - from));
+    const size_t first = std::min(rest.find_first_not_of(white), rest.size());
+    const std::string_view gap = rest.substr(0, first);
+    const std::string_view word = rest.substr(first, rest.find_first_of(white, first) - first);
+    return {word, token.line + static_cast<int>(std::count(gap.begin(), gap.end(), '\n'))};
 }
 
 std::string_view TextTokens::word(const std::string& what) {
-    if (next_ == tokens_.size()) fail(last_line_, fmt::format("expected {}, found the end of the input", what));
-    return tokens_[next_++].text;
+    const Token next = after(last_);
+    if (next.text.empty()) fail(last_.line, fmt::format("expected {}, found the end of the input", what));
+    last_ = next;
+    if (next.text.find('\0') != next.text.npos)
+        fail(next.line, fmt::format("expected {}, found {}, which has a zero byte", what, quoted(next.text)));
+    return next.text;
 }
 
 double TextTokens::number(const std::string& what, const Range& range) {
@@ -61,24 +60,27 @@ int TextTokens::whole(const std::string& what, const Range& range) {
 }
 
 bool TextTokens::one_more_on_line() const {
-    if (next_ == 0 || next_ >= tokens_.size() || tokens_[next_].line != tokens_[next_ - 1].line) return false;
-    return next_ + 1 == tokens_.size() || tokens_[next_ + 1].line != tokens_[next_].line;
+    const Token next = after(last_);
+    if (next.text.empty() || next.line != last_.line) return false;
+    const Token second = after(next);
+    return second.text.empty() || second.line != next.line;
 }
 
 size_t TextTokens::words_on_new_line() const {
-    if (next_ >= tokens_.size() || (next_ > 0 && tokens_[next_ - 1].line == tokens_[next_].line)) return 0;
-    size_t count = 1;
-    while (next_ + count < tokens_.size() && tokens_[next_ + count].line == tokens_[next_].line) ++count;
+    const Token first = after(last_);
+    if (!last_.text.empty() && first.line == last_.line) return 0;
+    size_t count = 0;
+    for (Token token = first; !token.text.empty() && token.line == first.line; token = after(token)) ++count;
     return count;
 }
 
 void TextTokens::finish() const {
-    if (next_ < tokens_.size())
-        fail(tokens_[next_].line, fmt::format("expected the end of the input, found {}", quoted(tokens_[next_].text)));
+    const Token next = after(last_);
+    if (!next.text.empty()) fail(next.line, fmt::format("expected the end of the input, found {}", quoted(next.text)));
 }
 
 void TextTokens::fail(int line, const std::string& message) const {
-    throw Error(ExitCode::usage, one_line(fmt::format("{}:{}: {}", label_, line, message)));
+    throw Error(ExitCode::usage, fmt::format("{}:{}: {}", label_, line, message));
 }
 
 }  // namespace cistula

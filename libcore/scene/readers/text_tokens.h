@@ -3,7 +3,7 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 #include "scene/readers/scene_keys.h"
 
@@ -11,7 +11,8 @@ namespace cistula {
 
 class TextTokens {
   public:
-    TextTokens(std::string_view text, std::string label);
+    /// `text` must outlive this object.
+    TextTokens(std::string_view text, std::string label) : label_(std::move(label)), text_(text) {}
 
     /// The next word; `what` names it in messages. Throws Error (usage) at the end of the text.
     std::string_view word(const std::string& what);
@@ -30,21 +31,24 @@ class TextTokens {
     void finish() const;
 
     /// Line of the last word, from 1; 1 before any is read.
-    int line() const { return next_ == 0 ? 1 : tokens_[next_ - 1].line; }
+    int line() const { return last_.line; }
 
     /// Throws Error (usage): "label:line: message", on one line.
     [[noreturn]] void fail(int line, const std::string& message) const;
 
   private:
+    /// A word and its line; empty at the end of the text.
     struct Token {
         std::string_view text;
-        int line;
+        int line = 1;
     };
 
-    std::vector<Token> tokens_;
-    size_t next_ = 0;
-    int last_line_ = 1;
+    /// The word that follows `token`; the first one for a default token.
+    Token after(const Token& token) const;
+
     std::string label_;
+    std::string_view text_;
+    Token last_;  // the last word read
 };
 
 }  // namespace cistula

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 
@@ -52,12 +53,18 @@ class FilmLoop : public RenderProgram {
     }
 
     /// What it prints.
-    std::string film(const std::vector<int>& frames, Backend backend) {
+    std::string film(const FrameList& frames, Backend backend) {
         options_.backend = backend;
         const OutputName output(file("f.##.exr"), "-o"), none;
-        const FilmJob job{options_, scene_, "hash", settings_, output, none, frames};
+        FilmJob job{options_, scene_, "hash", settings_, output, none, frames};
+        job.written = [this](const FrameStats& frame) { written_.push_back(frame); };
+        job.look_ahead = [this](const std::vector<int>& stretch) {
+            stretches_.push_back(stretch);
+            return warning_;
+        };
         RenderProgress progress;
         stats_ = RunStats();
+        written_.clear();
         testing::internal::CaptureStderr();
         try {
             render_film(job, renderer_, progress, stats_);
@@ -68,7 +75,7 @@ class FilmLoop : public RenderProgram {
         return testing::internal::GetCapturedStderr();
     }
 
-    void expect_failure(const std::vector<int>& frames, Backend backend, ExitCode code, const std::string& part) {
+    void expect_failure(const FrameList& frames, Backend backend, ExitCode code, const std::string& part) {
         try {
             film(frames, backend);
             ADD_FAILURE() << "no error";
@@ -83,6 +90,9 @@ class FilmLoop : public RenderProgram {
     FrameSettings settings_;
     FakeRenderer renderer_;
     RunStats stats_;
+    std::vector<FrameStats> written_;
+    std::vector<std::vector<int>> stretches_;  // that were looked at ahead
+    std::string warning_;                      // that comes of it
 };
 
 TEST_F(FilmLoop, AnnouncesTheNextFrameBeforeItAsksForOne) {
@@ -102,22 +112,55 @@ TEST_F(FilmLoop, SaysEachNoteOnceAndNothingWhereQuiet) {
     EXPECT_EQ(film({0, 1, 2}, Backend::cuda), "");
 }
 
-TEST_F(FilmLoop, StatsAreInTheOrderOfTheFilmWithTheDevicesTimes) {
+TEST_F(FilmLoop, FramesArePassedOnInTheOrderOfTheFilmWithTheDevicesTimes) {
     std::vector<int> frames;
     for (int i = 0; i < 20; ++i) frames.push_back(i * 7 % 20);
     film(frames, Backend::cuda);
-    ASSERT_EQ(stats_.frames.size(), frames.size());
+    ASSERT_EQ(written_.size(), frames.size());
     for (size_t i = 0; i < frames.size(); ++i) {
-        EXPECT_EQ(stats_.frames[i].frame, frames[i]);
-        EXPECT_EQ(stats_.frames[i].device.kernel, 0.25);
-        EXPECT_EQ(stats_.frames[i].device.transfer, 0.5);
+        EXPECT_EQ(written_[i].frame, frames[i]);
+        EXPECT_EQ(written_[i].device.kernel, 0.25);
+        EXPECT_EQ(written_[i].device.transfer, 0.5);
     }
-    const auto has = [&](const char* key) {
-        return stats_json(stats_, settings_, options_).find(key) != std::string::npos;
+    EXPECT_EQ(stats_.totals.frames, 20u);
+    EXPECT_EQ(stats_.totals.pixels, 20u * 40 * 24);
+    EXPECT_EQ(stats_.totals.first_file, file("f.00.exr"));
+    const auto text = [&](bool has_device) {
+        StatsFile stats(file("stats.json"), settings_, has_device);
+        for (const FrameStats& frame : written_) stats.add(frame);
+        stats.finish(stats_, options_);
+        return bytes_of(file("stats.json"));
     };
-    EXPECT_FALSE(has("kernel_ms") || has("transfer_ms"));
-    stats_.devices = {"a GPU"};
-    EXPECT_TRUE(has("\"kernel_ms\": 250.0") && has("\"transfer_ms\": 500.0"));
+    EXPECT_EQ(nlohmann::json::parse(text(false)).at("benchmarks").size(), 20u);
+    EXPECT_EQ(text(false).find("kernel_ms"), std::string::npos);
+    EXPECT_EQ(text(false).find("transfer_ms"), std::string::npos);
+    EXPECT_NE(text(true).find("\"kernel_ms\": 250.0"), std::string::npos);
+    EXPECT_NE(text(true).find("\"transfer_ms\": 500.0"), std::string::npos);
+}
+
+TEST_F(FilmLoop, AMillionFramesBeginAtOnceAndAreLookedAtInStretches) {
+    renderer_.stop_at = 2003;
+    expect_failure(first_frames(1'000'000), Backend::embree, ExitCode::interrupted,
+                   "interrupted; 2003 of 1000000 frames written; ");
+    ASSERT_EQ(stretches_.size(), 2u);
+    EXPECT_EQ(stretches_[0].size(), 1001u);
+    EXPECT_EQ(stretches_[0].front(), 999);
+    EXPECT_EQ(stretches_[1].front(), 1999);
+    EXPECT_EQ(stretches_[1].back(), 2999);
+    EXPECT_EQ(written_.size(), 2003u);
+    options_.resume = true;
+    renderer_.stop_at = 2005;
+    expect_failure(first_frames(1'000'000), Backend::embree, ExitCode::interrupted,
+                   "interrupted; 2005 of 1000000 frames written; ");
+    EXPECT_EQ(stats_.resumed, first_frames(2003));
+}
+
+TEST_F(FilmLoop, WarningsOfWhatIsAheadAreSaidOnce) {
+    warning_ = "the camera turns";
+    EXPECT_EQ(film(parse_frames("0-99999x99"), Backend::embree),
+              "render: memory is short\nrender: warning: the camera turns\n");
+    options_.quiet = true;
+    EXPECT_EQ(film(parse_frames("0-99999x99"), Backend::embree), "");
 }
 
 TEST_F(FilmLoop, OnTheCpuAFilmIsWrittenBeforeTheNextIsHandedOver) {
@@ -146,7 +189,7 @@ TEST_F(FilmLoop, WhatWasRenderedBeforeAnInterruptionIsWhole) {
     for (int i = 0; i < 12; ++i) frames.push_back(i);
     for (const Backend backend : {Backend::embree, Backend::cuda}) {
         expect_failure(frames, backend, ExitCode::interrupted, "interrupted; 7 of 12 frames written; ");
-        EXPECT_EQ(stats_.frames.size(), 7u);
+        EXPECT_EQ(written_.size(), 7u);
         for (const int frame : frames) {
             const std::string name = file(fmt::format("f.{:02}.exr", frame));
             EXPECT_EQ(exr_is_complete(name), frame < 7) << name;
@@ -163,9 +206,9 @@ TEST_F(FilmLoop, AFailedWriteEndsTheFilm) {
     for (const Backend backend : {Backend::embree, Backend::cuda}) {
         expect_failure(frames, backend, ExitCode::file, "f.03.exr");
         EXPECT_FALSE(exists("f.999.exr"));
-        for (const FrameStats& stats : stats_.frames) EXPECT_TRUE(exr_is_complete(stats.file)) << stats.file;
-        ASSERT_GE(stats_.frames.size(), 3u);
-        EXPECT_EQ(stats_.frames[2].frame, 2);
+        for (const FrameStats& stats : written_) EXPECT_TRUE(exr_is_complete(stats.file)) << stats.file;
+        ASSERT_GE(written_.size(), 3u);
+        EXPECT_EQ(written_[2].frame, 2);
     }
 }
 

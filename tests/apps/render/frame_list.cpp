@@ -47,6 +47,23 @@ TEST(FrameList, Errors) {
     EXPECT_ERROR(parse_frames("0-9x0"), ExitCode::usage, "--frames 0-9x0: the step of 0-9x0 must be 1 or more");
     EXPECT_ERROR(parse_frames("0-1000000"), ExitCode::usage, "--frames 0-1000000: more than 1000000 frames");
     EXPECT_EQ(parse_frames("0-999999").size(), 1000000u);
+    EXPECT_EQ(parse_frames("9000000-9999999").part(999998, 9), (Frames{9999998, 9999999}));
+    std::string many;
+    for (int i = 0; i < 9999; ++i) many += "0-999999x1,";
+    try {  // what is written counts, so that a list takes no longer than a million frames
+        parse_frames(many + "0");
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_LT(std::string(error.what()).size(), 300u);
+        EXPECT_TRUE(std::string(error.what()).ends_with(": more than 1000000 frames"));
+    }
+}
+
+TEST(FrameList, Contains) {
+    const FrameList frames = parse_frames("3-999999x3,7,500000");
+    for (const int inside : {3, 6, 999999, 7, 500000}) EXPECT_TRUE(frames.contains(inside)) << inside;
+    for (const int outside : {0, 1, 2, 4, 8, 1000002, 9999999}) EXPECT_FALSE(frames.contains(outside)) << outside;
+    EXPECT_FALSE(FrameList().contains(0));
 }
 
 TEST(FrameList, FormatIsReadBack) {
@@ -54,6 +71,9 @@ TEST(FrameList, FormatIsReadBack) {
     EXPECT_EQ(format_frames({}), "");
     EXPECT_EQ(format_frames({4}), "4");
     EXPECT_EQ(format_frames({3, 2, 1}), "3,2,1");
+    EXPECT_EQ(format_frames({0, 5, 10, 15, 7, 9}), "0-15x5,7,9");
+    EXPECT_EQ(format_frames(parse_frames("3-999999x3"), 2), "9-999999x3");
+    EXPECT_EQ(format_frames(parse_frames("3-999999x3"), 333333), "");
     for (const Frames& frames : {Frames{0, 5, 10, 7}, Frames{9, 10, 11, 12, 3, 4}, Frames{2, 3}})
         EXPECT_EQ(parse_frames(format_frames(frames)), frames);
 }

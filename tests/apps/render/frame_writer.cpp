@@ -61,12 +61,13 @@ class Writers : public testing::Test {
     const ScratchDirectory folder_;
     std::atomic<bool> stop_{false};
     std::vector<FrameStats> written_;
+    const FrameSink sink_ = [this](const FrameStats& frame) { written_.push_back(frame); };
 };
 
 TEST_F(Writers, FilesAreWholeAndStatsInOrderWhateverIsDoneFirst) {
     const auto side = [](int number) { return number % 3 == 0 ? 400 : small; };
     {
-        FrameWriter writer({}, true, {4}, stop_, written_);
+        FrameWriter writer({}, true, {4}, stop_, sink_);
         for (int number = 0; number < 10; ++number) writer.put(frame(number, side(number)));
         writer.finish();
         EXPECT_EQ(numbers(), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
@@ -80,8 +81,20 @@ TEST_F(Writers, FilesAreWholeAndStatsInOrderWhateverIsDoneFirst) {
     EXPECT_FALSE(stop_);
 }
 
+TEST_F(Writers, WhatTheReceiverOfFramesThrowsIsAFailedWrite) {
+    const FrameSink full = [this](const FrameStats& frame) {
+        if (frame.frame == 2) throw Error(ExitCode::file, "the disk is full");
+        written_.push_back(frame);
+    };
+    FrameWriter writer({}, false, {2}, stop_, full);
+    for (int number = 0; number < 3; ++number) writer.put(frame(number, small));
+    samples::expect_error([&] { writer.finish(); }, ExitCode::file, "the disk is full");
+    EXPECT_TRUE(stop_);
+    EXPECT_EQ(numbers(), (std::vector<int>{0, 1}));
+}
+
 TEST_F(Writers, AFrameOvertakesALongerOne) {
-    FrameWriter writer({}, false, {2}, stop_, written_);
+    FrameWriter writer({}, false, {2}, stop_, sink_);
     writer.put(frame(0, big));
     writer.put(frame(1, small));
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
@@ -94,13 +107,13 @@ TEST_F(Writers, AFrameOvertakesALongerOne) {
 }
 
 TEST_F(Writers, FramesInWorkAreBoundedByTheirNumber) {
-    FrameWriter writer({}, false, {2}, stop_, written_);
+    FrameWriter writer({}, false, {2}, stop_, sink_);
     for (int number = 0; number < 3; ++number) writer.put(frame(number, big));
     EXPECT_TRUE(exists(0) || exists(1));
 }
 
 TEST_F(Writers, FramesInWorkAreBoundedByTheirBytes) {
-    FrameWriter writer({}, false, {8, 1000}, stop_, written_);
+    FrameWriter writer({}, false, {8, 1000}, stop_, sink_);
     for (int number = 0; number < 2; ++number) writer.put(frame(number, big));
     EXPECT_FALSE(exists(0) || exists(1)) << "two at least, however large";
     writer.put(frame(2, big));
@@ -120,7 +133,7 @@ TEST_F(Writers, TheFirstFailureEndsAllAndIsTheOneReported) {
         return "nothing";
     };
     {
-        FrameWriter writer({}, false, {4}, stop_, written_);
+        FrameWriter writer({}, false, {4}, stop_, sink_);
         writer.put(frame(0, big));
         writer.put(frame(1, big, "a.exr"));
         writer.put(frame(2, small, "b.exr"));  // fails long before the one before it
@@ -145,7 +158,7 @@ TEST_F(Writers, WhatHalfDoesNotHoldIsCountedOrFails) {
         one.film.pixels[0].radiance[1] = 0;
         return one;
     };
-    FrameWriter writer(half, false, {1}, stop_, written_);
+    FrameWriter writer(half, false, {1}, stop_, sink_);
     writer.put(frame(0, small));
     writer.put(bright(1));
     writer.finish();
@@ -165,7 +178,7 @@ TEST_F(Writers, WhatHalfDoesNotHoldIsCountedOrFails) {
 }
 
 TEST_F(Writers, FilmsComeBackForTheirMemory) {
-    FrameWriter writer({}, false, {2}, stop_, written_);
+    FrameWriter writer({}, false, {2}, stop_, sink_);
     EXPECT_EQ(writer.take_spare().pixels.capacity(), 0u);
     FinishedFrame one = frame(0, 100);
     const PixelRecord* place = one.film.pixels.data();
@@ -174,7 +187,7 @@ TEST_F(Writers, FilmsComeBackForTheirMemory) {
     EXPECT_EQ(writer.take_spare().pixels.data(), place);
     EXPECT_EQ(writer.take_spare().pixels.capacity(), 0u);
 
-    FrameWriter narrow({}, false, {2, 1000}, stop_, written_);
+    FrameWriter narrow({}, false, {2, 1000}, stop_, sink_);
     narrow.put(frame(1, 100));
     narrow.finish();
     EXPECT_EQ(narrow.take_spare().pixels.capacity(), 0u) << "more than may be kept";

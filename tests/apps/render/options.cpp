@@ -23,6 +23,7 @@
 #include "cistula/transport/ray_tree.h"
 #include "scene/film/frame_settings.h"
 #include "testing/support/expect_error.h"
+#include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {
@@ -312,7 +313,11 @@ TEST(Backends, WithoutCudaThereIsNothingInstead) {
 TEST(Stats, NameTheGpusWhereOnesRan) {
     RunStats stats;
     RenderOptions options;
-    const auto context = [&] { return nlohmann::json::parse(stats_json(stats, {}, options)).at("context"); };
+    const ScratchDirectory scratch;
+    const auto context = [&] {
+        StatsFile(scratch.file("s.json"), {}, !stats.devices.empty()).finish(stats, options);
+        return nlohmann::json::parse(bytes_of(scratch.file("s.json"))).at("context");
+    };
     EXPECT_EQ(context().at("backend"), "embree");
     EXPECT_FALSE(context().contains("devices") || context().contains("driver"));
     options.backend = Backend::cuda;

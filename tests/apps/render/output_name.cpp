@@ -119,5 +119,13 @@ TEST(OutputName, DirectoriesAreMade) {
                  scratch.file("d.exr") + ": cannot be written: it is a directory; name a file in it");
 }
 
+TEST(OutputName, FramesThatAPathMayBeOf) {
+    const FrameList frames = parse_frames("0-999999x5,7");
+    EXPECT_EQ(frames_named_in("d/f.000125.exr", frames), (std::vector<int>{0, 5, 25, 125}));
+    EXPECT_EQ(frames_named_in("f17.exr", frames), (std::vector<int>{7}));
+    EXPECT_EQ(frames_named_in("a.exr", frames), std::vector<int>());
+    EXPECT_EQ(frames_named_in("99999999999999999999", first_frames(5)), std::vector<int>());
+}
+
 }  // namespace
 }  // namespace cistula

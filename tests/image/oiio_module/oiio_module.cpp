@@ -1,6 +1,5 @@
 // OpenImageIO is a module of the program that reads pictures: never in this process; both are found where they lie, and
 // missed with a clear error.
-#include <algorithm>
 #include <sstream>
 
 #include "scene/image/picture_io.h"

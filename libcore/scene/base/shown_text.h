@@ -1,0 +1,27 @@
+// Text from outside, such as names and paths, as messages show it: nothing in it can act on a terminal or break a line.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace cistula {
+
+/// The text as a single line of whole characters. Escaped are control characters (\n, \t, \x1b, \u0085), characters
+/// that break lines or turn the direction of writing (\u2028, \u202e), and bytes that are no UTF-8 (\xff). A backslash
+/// stays as it is, so the text of the text is the text.
+std::string one_line(std::string_view text);
+
+/// The first `most` characters of one_line(text), none of them cut.
+std::string first_characters(std::string_view text, size_t most);
+
+/// A name or word from a file in single quotes, for messages: on one line, cut after 40 characters.
+std::string quoted(std::string_view word);
+inline std::string quoted(const std::string& word) {  // std::quoted would match strings better than the one above
+    return quoted(std::string_view(word));
+}
+
+/// A message as a single line. Of more than 4,000 characters those in the middle are left out.
+std::string message_line(std::string_view message);
+
+}  // namespace cistula

@@ -1,0 +1,25 @@
+// OpenEXR files, as they are read for comparisons, for --resume and as textures.
+#include "scene/image/exr.h"
+#include "checks.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    using namespace cistula;
+    const fuzz::MemoryFile file(data, size);
+    try {
+        const LayeredPicture picture = read_exr(file.path());
+        fuzz::require(picture.width > 0 && picture.height > 0);
+        for (const LayeredPicture::Channel& channel : picture.channels)
+            fuzz::require(channel.values.size() ==
+                          static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height));
+        fuzz::require(exr_is_complete(file.path()));
+    } catch (const Error& error) {
+        fuzz::check_error(error, ExitCode::file);
+    }
+    try {
+        const ColorPicture picture = read_exr_texture(file.path());
+        fuzz::require(picture.texels.size() == static_cast<size_t>(picture.width) * picture.height);
+    } catch (const Error& error) {
+        fuzz::check_error(error, ExitCode::file);
+    }
+    return 0;
+}

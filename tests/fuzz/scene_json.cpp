@@ -1,0 +1,13 @@
+// Scene files, JSON or not, to the arrays of a scene that names no other files.
+#include "scene/readers/read_scene.h"
+#include "scene_checks.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    using namespace cistula;
+    try {
+        fuzz::check_scene(read_scene_text(std::string(reinterpret_cast<const char*>(data), size), "a.json", ""));
+    } catch (const Error& error) {
+        fuzz::check_error(error, ExitCode::usage);
+    }
+    return 0;
+}
