@@ -168,7 +168,6 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             if (!next || progress.stop) break;
             const CameraFrame camera = *next;
             if (rendered == 0) probe_outputs(job, camera.frame);
-            if (rendered == 0) probe_outputs(job, camera.frame);
             next = frames.next(most_looked_at);
             progress.pixels_done = 0;
             progress.rays = 0;
