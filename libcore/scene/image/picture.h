@@ -19,6 +19,13 @@ struct ColorPicture {
     std::vector<glm::vec3> texels;
 };
 
+/// A fraction, as EXR headers give frame rates.
+struct Ratio {
+    int numerator = 0;
+    unsigned denominator = 1;
+    bool operator==(const Ratio&) const = default;
+};
+
 /// The contents of an EXR file: named channels of width x height floats each, row-major from the top left.
 struct LayeredPicture {
     int width = 0, height = 0;  // of the data window
@@ -31,8 +38,8 @@ struct LayeredPicture {
     };
     std::vector<Channel> channels;
     /// Header attributes, written in the order of their names. 16 floats become an M44f (row-vector convention of
-    /// OpenEXR).
-    std::map<std::string, std::variant<std::string, int, double, std::vector<float>>> attributes;
+    /// OpenEXR). screenWindowWidth, a double here, is a float in the file; without it that is 1.
+    std::map<std::string, std::variant<std::string, int, double, std::vector<float>, Ratio>> attributes;
 };
 
 }  // namespace cistula
