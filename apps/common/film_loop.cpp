@@ -25,6 +25,7 @@ namespace {
 Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
     Attributes attributes =
         header_attributes(job.scene_hash, job.settings, job.options.precision, camera, job.options.intersection);
+    add_channel_attributes(job.options.channels, attributes);
     add_film_attributes(job.scene.film, attributes);
     return attributes;
 }

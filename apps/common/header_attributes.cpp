@@ -59,7 +59,6 @@ std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera, Intersection intersection) {
     Attributes attributes = {
-        {"chromaticities", std::vector<float>{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
         {"cistula:cameraHash", camera_hash(camera.camera)},
         {"cistula:cutoff", settings.truncation()},
         {"cistula:depth", settings.depth},
@@ -69,7 +68,6 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
         {"cistula:supersample", settings.grid()},
         {"cistula:time", camera.time},
         {"cistula:version", std::string(CISTULA_VERSION)},
-        {"colorInteropID", std::string("lin_rec709_scene")},
         {"imageCounter", camera.frame},
         {"screenWindowWidth", static_cast<double>(static_cast<float>(2 * camera.camera.tan_half_width))},
         {"worldToCamera", world_to_camera(camera.camera)},
@@ -83,9 +81,22 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
     return attributes;
 }
 
+void add_channel_attributes(const OutputChannels& channels, Attributes& attributes) {
+    const ColorSpace& space = channels.space ? *channels.space : color_spaces().front();
+    std::vector<float> chromaticities;
+    for (const auto* xy : {space.red, space.green, space.blue, space.white})
+        for (int i = 0; i < 2; ++i) chromaticities.push_back(static_cast<float>(xy[i]));
+    attributes["chromaticities"] = chromaticities;
+    attributes["colorInteropID"] = std::string(space.id);
+    if (space.id == "lin_ap0_scene" && channels.half && channels.compression == Compression::none)
+        attributes["acesImageContainerFlag"] = 1;
+    if (channels.transparent) attributes["cistula:background"] = std::string("transparent");
+    if (channels.z && channels.z_far != OutputChannels().z_far)
+        attributes["cistula:zFar"] = static_cast<double>(channels.z_far);
+}
+
 void add_film_attributes(const FilmDescription& film, Attributes& attributes) {
-    if (film.rate > 0)
-        attributes["framesPerSecond"] = Ratio{film.rate, static_cast<unsigned>(film.rate_divisor)};
+    if (film.rate > 0) attributes["framesPerSecond"] = Ratio{film.rate, static_cast<unsigned>(film.rate_divisor)};
     if (!film.owner.empty()) attributes["owner"] = film.owner;
     if (!film.comments.empty()) attributes["comments"] = film.comments;
 }

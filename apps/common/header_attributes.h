@@ -9,6 +9,7 @@
 
 #include "apps/common/target.h"
 #include "scene/description/camera_path.h"
+#include "scene/film/film_picture.h"
 #include "scene/film/renderer.h"
 #include "scene/image/picture.h"
 
@@ -17,10 +18,14 @@ namespace cistula {
 using Attributes = decltype(LayeredPicture::attributes);
 
 /// The attributes: scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera,
-/// worldToNDC, screenWindowWidth, chromaticities (Rec. 709, D65) with their colorInteropID, imageCounter, and the
-/// intersector if it is not the exact one. docs/programs.md documents each.
+/// worldToNDC, screenWindowWidth, imageCounter, and the intersector if it is not the exact one. docs/programs.md
+/// documents each.
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera, Intersection intersection = Intersection::exact);
+
+/// Adds how the pixels are given: chromaticities and colorInteropID of the color space; background and zFar where they
+/// are not the defaults; acesImageContainerFlag for what SMPTE ST 2065-4 allows.
+void add_channel_attributes(const OutputChannels& channels, Attributes& attributes);
 
 /// Adds what the scene says of the film: framesPerSecond, owner and comments, where given.
 void add_film_attributes(const FilmDescription& film, Attributes& attributes);

@@ -128,12 +128,33 @@ void insert(Imf::Header& header, const std::string& name, const std::vector<floa
     }
 }
 
+Imf::Compression compression_of(Compression compression) {
+    switch (compression) {
+        case Compression::none:
+            return Imf::NO_COMPRESSION;
+        case Compression::rle:
+            return Imf::RLE_COMPRESSION;
+        case Compression::zips:
+            return Imf::ZIPS_COMPRESSION;
+        case Compression::zip:
+            return Imf::ZIP_COMPRESSION;
+        case Compression::piz:
+            return Imf::PIZ_COMPRESSION;
+        case Compression::dwaa:
+            return Imf::DWAA_COMPRESSION;
+        case Compression::dwab:
+            return Imf::DWAB_COMPRESSION;
+    }
+    throw std::invalid_argument("write_exr: no such compression");
+}
+
 Imf::Header header_of(const LayeredPicture& picture) {
     const Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(picture.display_width - 1, picture.display_height - 1));
     const Imath::Box2i data(Imath::V2i(picture.x, picture.y),
                             Imath::V2i(picture.x + picture.width - 1, picture.y + picture.height - 1));
-    Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, compression_of(picture.compression));
     header.zipCompressionLevel() = 4;  // explicit, because the default differs between versions
+    header.dwaCompressionLevel() = picture.dwa_level;
     for (const auto& [name, value] : picture.attributes) {
         if (const auto* text = std::get_if<std::string>(&value))
             header.insert(name.c_str(), Imf::StringAttribute(*text));
