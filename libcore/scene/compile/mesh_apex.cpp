@@ -34,9 +34,9 @@ double volume(const dvec3& top, const dvec3& a, const dvec3& b, const dvec3& c) 
     return dot(top - a, cross(b - a, c - a));
 }
 
-/// Whether an open segment passes through a triangle. Touching with an end does not count.
-bool crosses(const dvec3& from, double from_volume, const dvec3& to, const std::array<dvec3, 3>& q) {
-    const double to_volume = volume(to, q[0], q[1], q[2]);
+/// Whether an open segment passes through a triangle, given the volumes between its ends and the triangle. Touching
+/// with an end does not count.
+bool crosses(const dvec3& from, double from_volume, const dvec3& to, double to_volume, const std::array<dvec3, 3>& q) {
     if (!((from_volume > 0 && to_volume < 0) || (from_volume < 0 && to_volume > 0))) return false;
     const double a = volume(from, to, q[0], q[1]), b = volume(from, to, q[1], q[2]), c = volume(from, to, q[2], q[0]);
     return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
@@ -71,18 +71,23 @@ struct ApexView {
     bool blocked_by(const std::array<dvec3, 3>& q, const Placement& place, double height) const {
         const int* const shared = place.shared;
         const dvec3 apex = along(centroid, height, up);
-        const double apex_volume = volume(apex, q[0], q[1], q[2]);
+        const dvec3 plane = cross(q[1] - q[0], q[2] - q[0]);
+        const double apex_volume = dot(apex - q[0], plane);
         for (int i = 0; i < 3; ++i)
-            if (shared[0] != i && shared[1] != i && shared[2] != i && crosses(apex, apex_volume, corner[i], q))
+            if (shared[0] != i && shared[1] != i && shared[2] != i &&
+                crosses(apex, apex_volume, corner[i], dot(corner[i] - q[0], plane), q))
                 return true;
         for (int i = 0; i < 3; ++i) {  // the side opposite corner i
             const int b = (i + 1) % 3, c = (i + 2) % 3;
             const std::array<dvec3, 3> face{apex, corner[b], corner[c]};
+            const dvec3 side = cross(face[1] - face[0], face[2] - face[0]);
+            double beyond[3];
+            for (int k = 0; k < 3; ++k) beyond[k] = dot(q[k] - face[0], side);
             for (int k = 0; k < 3; ++k) {
                 const int l = (k + 1) % 3;
                 // An edge that starts at a corner of a side only touches that side.
                 const bool touches = shared[k] == b || shared[k] == c || shared[l] == b || shared[l] == c;
-                if (!touches && crosses(q[k], volume(q[k], face[0], face[1], face[2]), q[l], face)) return true;
+                if (!touches && crosses(q[k], beyond[k], q[l], beyond[l], face)) return true;
             }
         }
         return holds(apex, q);
@@ -105,8 +110,8 @@ constexpr uint32_t cost_of_test = 8;
 
 /// What may be spent on a group of triangles.
 struct ApexLimits {
-    size_t around;         // triangles that are looked at
-    uint32_t cost_a_side;  // of tests, for each side of each triangle
+    size_t around;       // triangles that are looked at
+    size_t cost_a_side;  // of tests, for each side of each triangle
 };
 
 /// Checks the apexes of groups, each for itself.
@@ -159,7 +164,7 @@ class ApexCheck {
         });
     }
 
-    void check_triangle(uint32_t t, const std::array<dvec3, 3>& corner, uint32_t most_cost, ApexFaults& faults) {
+    void check_triangle(uint32_t t, const std::array<dvec3, 3>& corner, size_t most_cost, ApexFaults& faults) {
         const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
         const double size = length(normal);
         if (!(size > 0)) return;
@@ -167,7 +172,7 @@ class ApexCheck {
             const ApexView view(corner, side ? normal / size : -normal / size);
             float& height = heights_.side[side][t];
             int halvings = 0;
-            uint32_t cost = 0;
+            size_t cost = 0;
             bool through = false, all = all_around_;
             for (const Neighbor* other : near_) {
                 if (cost >= most_cost) {
@@ -214,12 +219,11 @@ class ApexCheck {
 }  // namespace
 
 ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
-    // First with limits that only tangles and fans of hundreds of triangles reach. Groups that reach them, if they are
-    // few, share what may be spent on all of them.
-    const size_t cost_of_the_rest = 480 * std::max<size_t>(mesh.size(), 100'000);
-    const size_t fair_share = cost_of_the_rest / (2 * std::max<size_t>(mesh.size(), 1));  // if all groups needed more
-    const ApexLimits first_limits{std::max<size_t>(2048, fair_share),
-                                  static_cast<uint32_t>(fair_share > 1024 ? fair_share : 1024)};
+    // First every side may take an equal share of the work. Groups that need more, if they are few, share as much
+    // again.
+    const size_t most_work = 800 * std::max<size_t>(mesh.size(), 100'000);
+    const size_t equal_share = most_work / (2 * std::max<size_t>(mesh.size(), 1));
+    const ApexLimits first_limits{equal_share, equal_share};
     const ApexHeights initial = heights;
     std::vector<ApexFaults> faults(groups.size());
     const auto check = [&](const auto& range, const ApexLimits& limits, const auto& group_at) {
@@ -237,13 +241,13 @@ ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const 
             rest.push_back(g);
             sides += 2 * (groups.first[g + 1] - groups.first[g]);
         }
-    const size_t share = rest.empty() ? 0 : cost_of_the_rest / sides;
-    if (share >= 2 * first_limits.cost_a_side) {
+    const size_t share = rest.empty() ? 0 : most_work / sides;
+    if (share >= 2 * equal_share) {
         for (const uint32_t g : rest)
             for (uint32_t i = groups.first[g]; i < groups.first[g + 1]; ++i)
                 for (int side = 0; side < 2; ++side)
                     heights.side[side][groups.order[i]] = initial.side[side][groups.order[i]];
-        const ApexLimits limits{4 * share, static_cast<uint32_t>(share)};
+        const ApexLimits limits{4 * share, share};
         tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(rest.size()), 1),
                           [&](const auto& range) { check(range, limits, [&](uint32_t i) { return rest[i]; }); });
     }
