@@ -25,6 +25,13 @@ namespace cistula {
 namespace {
 
 /// The picture that a frame's file must match, without values: its windows, channels and attributes.
+Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
+    Attributes attributes =
+        header_attributes(job.scene_hash, job.settings, job.options.precision, camera, job.options.intersection);
+    add_film_attributes(job.scene.film, attributes);
+    return attributes;
+}
+
 LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
     Film one;
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
@@ -37,8 +44,7 @@ LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
     picture.y = crop.y;
     picture.display_width = job.settings.full_width;
     picture.display_height = job.settings.full_height;
-    picture.attributes =
-        header_attributes(job.scene_hash, job.settings, job.options.precision, camera, job.options.intersection);
+    picture.attributes.merge(attributes_of(job, camera));
     return picture;
 }
 
@@ -193,8 +199,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             }
             finished.path = job.output.for_frame(camera.frame);
             finished.preview = job.preview.for_frame(camera.frame);
-            finished.attributes =
-                header_attributes(job.scene_hash, job.settings, options.precision, camera, options.intersection);
+            finished.attributes = attributes_of(job, camera);
             finished.stats = stats_of(finished.film, camera.frame, finished.path, seconds, renderer.times());
             finished.settings = job.settings;
             finished.strict = options.strict;

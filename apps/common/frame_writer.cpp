@@ -163,7 +163,7 @@ void FrameWriter::write(Task& task) {
     stats.encode_seconds = seconds_of([&] {
         if (raw || !frame.preview.empty()) color = to_color(frame.film);
         if (!raw) layers = to_layers(frame.film, channels_, &stats.clamped);
-        layers.attributes = std::move(frame.attributes);
+        layers.attributes.merge(std::move(frame.attributes));
         if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
     });
     if (frame.strict && stats.clamped != 0)

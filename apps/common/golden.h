@@ -37,7 +37,7 @@ inline FrameSettings settings_for(const SceneDescription& scene) {
 
 inline OutputChannels channels() {
     OutputChannels channels;
-    channels.error = channels.id = channels.z = channels.normal = true;
+    channels.error = channels.id = channels.z = channels.normal = channels.coverage = true;
     return channels;
 }
 

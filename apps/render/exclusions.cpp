@@ -37,6 +37,9 @@ void refuse_exclusions(const OptionTexts& texts) {
         {"--pixel", texts.pixel, "--aov", !texts.layers.empty(), no_image},
         {"--pixel", texts.pixel, "--bits", texts.bits != defaults.bits, no_image},
         {"--pixel", texts.pixel, "--strict", texts.strict, no_image},
+        {"--pixel", texts.pixel, "--background", texts.background != defaults.background, no_image},
+        {"--pixel", texts.pixel, "--colorspace", texts.color_space != defaults.color_space, no_image},
+        {"--pixel", texts.pixel, "--compression", texts.compression != defaults.compression, no_image},
         {"--pixel", texts.pixel, "--crop", !texts.crop.empty(), "the pixel counts from the top left of the full frame"},
         {"--pixel", texts.pixel, "--resume", texts.resume, no_image},
         {"--pixel", texts.pixel, "--progress", texts.progress != defaults.progress, "one pixel takes no time"},
@@ -63,6 +66,8 @@ void refuse_exclusions(const OptionTexts& texts) {
          "is for --pixel X,Y; of a render, --stats FILE.json tells the times"},
         {"--max-samples", texts.max_samples, !texts.target_error.empty(),
          "is for --target-error E; a grid's are --supersample's"},
+        {"--z-far", texts.z_far, !texts.layers.empty(), "is for --aov Z"},
+        {"--dwa-level", texts.dwa_level, texts.compression.substr(0, 3) == "dwa", "is for --compression dwaa and dwab"},
     };
     for (const auto& [option, text, other_given, otherwise] : needs)
         if (!text.empty() && !other_given) fail_usage(fmt::format("{} {}: {}", option, text, otherwise));

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cmath>
+#include <limits>
 
 #include "apps/common/command_line.h"
 #include "apps/common/frame_list.h"
@@ -54,7 +55,17 @@ void declare(CLI::App& app, OptionTexts& texts) {
         ->type_name("N");
     app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
     app.add_flag("--strict", texts.strict, "with --bits half: a value over 65504 is an error, and not clamped");
-    app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N")->type_name("LIST");
+    app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N,coverage")->type_name("LIST");
+    app.add_option("--z-far", texts.z_far, "with --aov Z: the depth of nothing, a number or inf; 1e10")->type_name("Z");
+    app.add_option("--background", texts.background, "opaque, or transparent: alpha is coverage, color premultiplied")
+        ->type_name("NAME");
+    app.add_option("--colorspace", texts.color_space,
+                   "lin_rec709_scene, lin_ap1_scene (ACEScg), lin_ap0_scene (ACES2065-1) or lin_rec2020_scene")
+        ->type_name("NAME");
+    app.add_option("--compression", texts.compression, "none, rle, zips, zip, piz, or with losses dwaa, dwab")
+        ->type_name("NAME");
+    app.add_option("--dwa-level", texts.dwa_level, "with dwaa and dwab: 0 to 1000, more is smaller; 45")
+        ->type_name("L");
     app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
     add_valued_flag(
@@ -70,6 +81,29 @@ void declare(CLI::App& app, OptionTexts& texts) {
     app.add_flag("--print-template", texts.print_template, "print the seed's text input and exit");
     app.add_flag("--version", texts.version, "print the version and exit");
     app.set_help_flag("-h,--help", "print this and exit");
+}
+
+const ColorSpace* parse_color_space(const std::string& text) {
+    if (const ColorSpace* space = find_color_space(text)) return space;
+    std::vector<std::string_view> names;
+    for (const ColorSpace& space : color_spaces()) names.push_back(space.id);
+    fail_usage(
+        fmt::format("--colorspace {}: there is no such space; {}", one_line(text), suggestion(text, names, "spaces")));
+}
+
+float parse_z_far(const std::string& text) {
+    if (text == "inf") return std::numeric_limits<float>::infinity();
+    const auto value = whole_number<double>(text);
+    if (!value || !(*value > 0) || !(*value <= double(std::numeric_limits<float>::max())))
+        fail_usage(fmt::format("--z-far {}: must be a number above 0, or inf", one_line(text)));
+    return static_cast<float>(*value);
+}
+
+float parse_dwa_level(const std::string& text) {
+    const auto value = whole_number<double>(text);
+    if (!value || !(*value >= 0 && *value <= 1000))
+        fail_usage(fmt::format("--dwa-level {}: must be a number from 0 to 1000", one_line(text)));
+    return static_cast<float>(*value);
 }
 
 RenderOptions checked(const OptionTexts& texts) {
@@ -111,6 +145,19 @@ RenderOptions checked(const OptionTexts& texts) {
     }
     if (!texts.layers.empty()) options.channels = parse_layers(texts.layers);
     options.channels.half = chosen<bool>("--bits", texts.bits, {{"float", false}, {"half", true}});
+    options.channels.transparent =
+        chosen<bool>("--background", texts.background, {{"opaque", false}, {"transparent", true}});
+    options.channels.space = parse_color_space(texts.color_space);
+    options.channels.compression = chosen<Compression>("--compression", texts.compression,
+                                                       {{"none", Compression::none},
+                                                        {"rle", Compression::rle},
+                                                        {"zips", Compression::zips},
+                                                        {"zip", Compression::zip},
+                                                        {"piz", Compression::piz},
+                                                        {"dwaa", Compression::dwaa},
+                                                        {"dwab", Compression::dwab}});
+    if (!texts.z_far.empty()) options.channels.z_far = parse_z_far(texts.z_far);
+    if (!texts.dwa_level.empty()) options.channels.dwa_level = parse_dwa_level(texts.dwa_level);
     if (!texts.supersample.empty())
         options.supersample = integer_option("--supersample", texts.supersample, 1, largest_supersample);
     if (!texts.depth.empty()) options.depth = integer_option("--depth", texts.depth, 1, largest_depth);
@@ -202,8 +249,9 @@ PixelPlace parse_pixel(std::string_view text) {
 OutputChannels parse_layers(std::string_view text) {
     OutputChannels layers;
     const std::vector<std::pair<std::string_view, bool OutputChannels::*>> known = {
-        {"error", &OutputChannels::error}, {"id", &OutputChannels::id}, {"samples", &OutputChannels::samples},
-        {"cost", &OutputChannels::cost},   {"Z", &OutputChannels::z},   {"N", &OutputChannels::normal}};
+        {"error", &OutputChannels::error},      {"id", &OutputChannels::id}, {"samples", &OutputChannels::samples},
+        {"cost", &OutputChannels::cost},        {"Z", &OutputChannels::z},   {"N", &OutputChannels::normal},
+        {"coverage", &OutputChannels::coverage}};
     std::vector<std::string_view> names;
     for (const auto& entry : known) names.push_back(entry.first);
     for (size_t begin = 0; begin <= text.size();) {

@@ -52,8 +52,8 @@ std::string help_text();
 /// Parses "X,Y". Throws Error (usage).
 PixelPlace parse_pixel(std::string_view text);
 
-/// Parses a list of layers, any of "error,id,samples,cost,Z,N". Throws Error (usage) with the nearest name for an
-/// unknown one.
+/// Parses a list of layers, any of "error,id,samples,cost,Z,N,coverage". Throws Error (usage) with the nearest name for
+/// an unknown one.
 OutputChannels parse_layers(std::string_view text);
 
 /// Reads the scene, and adds what options say about reading it. Throws Error.

@@ -81,7 +81,7 @@ class PixelJson {
             {"radiance", channels("R", "G", "B")},
             {"error", channels("error.R", "error.G", "error.B")},
             {"sums", {{"radiance", pixel.radiance}, {"pruned", pixel.pruned}, {"cut", pixel.cut}}},
-            {"coverage", number(shown(report_, "A"))},
+            {"coverage", number(shown(report_, "coverage"))},
             {"id", pixel.id},
             {"Z", number(shown(report_, "Z"))},
             {"N", channels("N.X", "N.Y", "N.Z")},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -40,7 +41,8 @@ double degrees_of(double cosine) {
 
 float shown(const PixelReport& report, const std::string& channel) {
     OutputChannels all;
-    all.error = all.id = all.samples = all.cost = all.z = all.normal = true;
+    all.error = all.id = all.samples = all.cost = all.z = all.normal = all.coverage = true;
+    all.z_far = std::numeric_limits<float>::infinity();
     for (const LayeredPicture::Channel& one : to_layers(report.tree.film, all).channels)
         if (one.name == channel) return one.values.at(0);
     throw std::invalid_argument("no channel " + channel);

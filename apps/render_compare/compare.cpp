@@ -28,6 +28,8 @@ std::string to_text(const Attribute& value) {
     if (const auto* text = std::get_if<std::string>(&value)) return *text;
     if (const auto* whole = std::get_if<int>(&value)) return fmt::format("{}", *whole);
     if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+    if (const auto* ratio = std::get_if<Ratio>(&value))
+        return fmt::format("{}/{}", ratio->numerator, ratio->denominator);
     return fmt::format("{}", fmt::join(std::get<std::vector<float>>(value), " "));
 }
 

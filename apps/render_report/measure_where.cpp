@@ -66,9 +66,9 @@ void measure_stages(Frames& frames, const MeasureSettings& settings, SceneRecord
         check_interrupt(frames.progress);
         encode.runs.push_back(1e3 * seconds_of([&] {
                                   LayeredPicture picture = to_layers(film, {});
-                                  picture.attributes = header_attributes(
+                                  picture.attributes.merge(header_attributes(
                                       scene.hash, frame_settings(scene.base, frames.width, frames.height),
-                                      Precision::double_, frames.camera);
+                                      Precision::double_, frames.camera));
                                   write_exr(file.path(), picture);
                               }));
         frames.progress.advance();

@@ -80,14 +80,14 @@ TEST(FilmPicture, Values) {
     expect("R", 8, 0);
     expect("G", 4, 0);
     expect("B", 2, 0);
-    expect("A", 0.75f, 0);
+    expect("A", 1, 1);
     expect("error.R", 4, 0);
     expect("error.G", 6, 0);
     expect("error.B", 0, 0);
     expect("id", 5, 0);
     expect("samples", 4, 9);  // each pixel's own
     expect("cost", 77, 4);
-    expect("Z", 2.5f, infinity);
+    expect("Z", 2.5f, 1e10f);
     expect("N.X", 0, 0);
     expect("N.Y", 0.6f, 0);
     expect("N.Z", -0.8f, 0);
@@ -95,6 +95,64 @@ TEST(FilmPicture, Values) {
     EXPECT_EQ(color.width, 2u);
     EXPECT_EQ(color.height, 1u);
     EXPECT_EQ(color.texels, (std::vector<glm::vec3>{{8, 4, 2}, {0, 0, 0}}));
+}
+
+TEST(FilmPicture, BackgroundsAreOpaqueOrTransparent) {
+    // Two of four samples of the first pixel met something, none of the second.
+    const int64_t one = int64_t(1) << 60;
+    PixelRecord half_covered = some_pixel(), empty = some_pixel();
+    half_covered.hits = 2;
+    half_covered.z = 4;
+    empty.hits = 0;
+    empty.z = infinity;
+    const int64_t background[3] = {one, one / 2, 0};
+    for (int c = 0; c < 3; ++c) {
+        half_covered.radiance[c] = one + 2 * background[c];
+        empty.radiance[c] = 4 * background[c];
+    }
+    Film film = film_of(4, 0, {half_covered, empty});
+    std::copy(background, background + 3, film.background);
+    OutputChannels channels;
+    channels.coverage = channels.z = true;
+    const auto expect = [&](const char* name, float first, float second) {
+        EXPECT_EQ(channel(to_layers(film, channels), name).values, (std::vector<float>{first, second})) << name;
+    };
+    expect("R", 0.75f, 1);
+    expect("G", 0.5f, 0.5f);
+    expect("A", 1, 1);
+    expect("coverage", 0.5f, 0);
+    expect("Z", 4, 1e10f);
+    channels.transparent = true;
+    channels.z_far = infinity;
+    for (const char* name : {"R", "G", "B"}) expect(name, 0.25f, 0);
+    expect("A", 0.5f, 0);
+    expect("coverage", 0.5f, 0);
+    expect("Z", 4, infinity);
+}
+
+TEST(FilmPicture, ColorsAreThoseOfTheSpace) {
+    const int64_t one = int64_t(1) << 60;
+    PixelRecord gray = some_pixel(), red = some_pixel();
+    for (int c = 0; c < 3; ++c) gray.radiance[c] = 3 * one;
+    red.radiance[0] = 4 * one;
+    red.radiance[1] = red.radiance[2] = 0;
+    red.pruned[0] = red.cut[0] = red.cut[1] = red.cut[2] = red.pruned[2] = 0;
+    red.pruned[1] = 2 * one;
+    const Film film = film_of(4, 0, {gray, red});
+    for (const ColorSpace& space : color_spaces()) {
+        OutputChannels channels;
+        channels.error = true;
+        channels.space = &space;
+        const LayeredPicture picture = to_layers(film, channels);
+        const glm::dmat3 matrix = color_matrix(color_spaces().front(), space);
+        for (int c = 0; c < 3; ++c) {
+            const std::string name(1, "RGB"[c]);
+            EXPECT_NEAR(channel(picture, name).values[0], 0.75f, 1e-6) << space.id;
+            EXPECT_NEAR(channel(picture, name).values[1], matrix[0][c], 1e-6) << space.id;
+            EXPECT_GE(channel(picture, "error." + name).values[1], std::abs(matrix[1][c]) / 2) << space.id;
+            EXPECT_NEAR(channel(picture, "error." + name).values[1], std::abs(matrix[1][c]) / 2, 1e-6) << space.id;
+        }
+    }
 }
 
 TEST(FilmPicture, LedgerRoundsUpByTheLeastStep) {

@@ -109,7 +109,9 @@ struct FilmDescription {
     int width = 640, height = 480;
     int frames = 1;
     int supersample = 1;
-    std::string output;  // the seed's pattern for output files; empty: none given
+    int rate = 0, rate_divisor = 1;  // frames per second are their quotient; 0: none given
+    std::string owner, comments;     // for the headers of files; empty: none given
+    std::string output;              // the seed's pattern for output files; empty: none given
 };
 
 struct FrameOfReference {

@@ -39,9 +39,10 @@ struct DefaultInitAllocator : std::allocator<T> {
 struct Film {
     int full_width = 0, full_height = 0;
     PixelRect rect;
-    int radiance_exponent = 0;  // radiances were divided by 2^radiance_exponent
-    int samples = 1;            // per pixel
-    int fixed_shift = 0;        // s of the fixed sums
+    int radiance_exponent = 0;          // radiances were divided by 2^radiance_exponent
+    int samples = 1;                    // per pixel
+    int fixed_shift = 0;                // s of the fixed sums
+    int64_t background[3] = {0, 0, 0};  // what a sample that meets nothing adds to its pixel's sums
     double rounding = 0;  // bound on how far rounding moves points, in widths of a pixel at distance 1 (scene units)
     std::vector<PixelRecord, DefaultInitAllocator<PixelRecord>> pixels;
     RayCounts rays;

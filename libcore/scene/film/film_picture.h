@@ -3,26 +3,36 @@
 
 #include <string>
 
+#include "scene/film/color_space.h"
 #include "scene/film/film.h"
 #include "scene/image/picture.h"
 
 namespace cistula {
 
-/// The optional channels of a file, besides R, G, B and A.
+/// The optional channels of a file, besides R, G, B and A, and how values are given.
 struct OutputChannels {
-    bool half = false;  // R G B A, error.* and N.* in half precision; id, samples, cost and Z are always float
-    bool error = false, id = false, samples = false, cost = false, z = false, normal = false;
+    bool half =
+        false;  // R G B A, coverage, error.* and N.* in half precision; id, samples, cost and Z are always float
+    bool error = false, id = false, samples = false, cost = false, z = false, normal = false, coverage = false;
+    bool transparent = false;           // samples that meet nothing add nothing to R, G, B and A
+    float z_far = 1e10f;                // Z where there is nothing
+    const ColorSpace* space = nullptr;  // of R, G, B and error.*; null: that of scenes, lin_rec709_scene
+    Compression compression = Compression::zip;
+    float dwa_level = 45;
 };
 
 /// The largest finite number in half precision.
 inline constexpr float largest_half = 65504;
 
-/// All channels of a file. R G B: mean radiance. A: share of samples that hit anything. error.R error.G error.B: bound
+/// All channels of a file. R G B: mean radiance. A: 1, or, if the background is transparent, as coverage: the share of
+/// samples that hit anything; radiance is premultiplied then. error.R error.G error.B: bound
 /// on the error from pruned and cut branches, rounded up so that it stays a bound in the file's precision. id: 1 +
 /// solid, or 1 + solids + visible light; 0 for none. samples: per pixel. cost: rays. Z: distance along the view axis,
-/// infinity for none. N.X N.Y N.Z: unit normal in world axes, 0 for none. Values of
+/// z_far for none. N.X N.Y N.Z: unit normal in world axes, 0 for none. Values of
 /// half channels that are over largest_half become that, and are added to `clamped`; such an error.* is no bound. The
-/// data window is the film's rectangle.
+/// data window is the film's rectangle. Attributes: chromaticities and colorInteropID of the color space;
+/// cistula:background and cistula:zFar where they are not the defaults; acesImageContainerFlag for what SMPTE ST 2065-4
+/// allows.
 LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped = nullptr);
 
 /// The mean radiance in the film's rectangle.

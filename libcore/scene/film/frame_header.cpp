@@ -28,18 +28,18 @@ std::string camera_hash(const Camera& camera) {
 std::vector<float> world_to_camera(const Camera& camera) {
     const Vec3<double>&r = camera.right, &u = camera.up, &f = camera.forward;
     const Row rows[4] = {
-        {r.x, u.x, -f.x, 0},
-        {r.y, u.y, -f.y, 0},
-        {r.z, u.z, -f.z, 0},
-        {-dot(camera.position, r), -dot(camera.position, u), dot(camera.position, f), 1},
+        {r.x, u.x, f.x, 0},
+        {r.y, u.y, f.y, 0},
+        {r.z, u.z, f.z, 0},
+        {-dot(camera.position, r), -dot(camera.position, u), -dot(camera.position, f), 1},
     };
     return to_floats(rows);
 }
 
 std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
-    const Vec3<double> x = camera.right / camera.tan_half_width;
-    const Vec3<double> y = camera.up / (camera.tan_half_width * height / width);
+    const double half_across = 2 * camera.tan_half_width, half_down = half_across * height / width;
     const Vec3<double>& f = camera.forward;
+    const Vec3<double> x = camera.right / half_across + 0.5 * f, y = 0.5 * f - camera.up / half_down;
     const double depth = -dot(camera.position, f);
     const Row rows[4] = {
         {x.x, y.x, f.x, f.x},
@@ -53,7 +53,6 @@ std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera, Intersection intersection) {
     Attributes attributes = {
-        {"chromaticities", std::vector<float>{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
         {"cistula:cameraHash", camera_hash(camera.camera)},
         {"cistula:cutoff", settings.truncation()},
         {"cistula:depth", settings.depth},
@@ -63,6 +62,8 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
         {"cistula:supersample", settings.grid()},
         {"cistula:time", camera.time},
         {"cistula:version", std::string(CISTULA_VERSION)},
+        {"imageCounter", camera.frame},
+        {"screenWindowWidth", static_cast<double>(static_cast<float>(2 * camera.camera.tan_half_width))},
         {"worldToCamera", world_to_camera(camera.camera)},
         {"worldToNDC", world_to_ndc(camera.camera, settings.full_width, settings.full_height)},
     };
@@ -72,6 +73,12 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
     }
     if (intersection == Intersection::native) attributes["cistula:intersector"] = std::string("native");
     return attributes;
+}
+
+void add_film_attributes(const FilmDescription& film, Attributes& attributes) {
+    if (film.rate > 0) attributes["framesPerSecond"] = Ratio{film.rate, static_cast<unsigned>(film.rate_divisor)};
+    if (!film.owner.empty()) attributes["owner"] = film.owner;
+    if (!film.comments.empty()) attributes["comments"] = film.comments;
 }
 
 }  // namespace cistula

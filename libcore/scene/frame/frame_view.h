@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cistula/transport/pixel.h"
+#include "cistula/transport/pixel_sums.h"
 #include "scene/base/error.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/film/renderer.h"
@@ -75,6 +76,11 @@ void prepare_film(Film& film, const FrameSettings& settings, const CompiledScene
     film.radiance_exponent = scene.radiance_exponent;
     film.samples = settings.grid() * settings.grid();
     film.fixed_shift = fixed_shift(uint32_t(film.samples));
+    PixelRecord nothing = {};
+    TreeSettings settings_of_sums;
+    settings_of_sums.fixed_scale = float(fixed_scale(film.fixed_shift));
+    PixelSums<Real>(settings_of_sums, scene.view(), nothing, film.flags).add(scene.background);
+    std::copy(nothing.radiance, nothing.radiance + 3, film.background);
     const double place = 2 * double(RealTraits<Real>::unit) * std::ldexp(double(scene.extent), -scene.scale);
     film.rounding = place * film.full_width / (2 * camera.camera.tan_half_width);
     film.pixels.clear();

@@ -9,11 +9,12 @@
 
 namespace cistula {
 
-/// Writes a scan line file with ZIP compression. Equal pictures give equal files: no dates, nothing of the machine or
+/// Writes a scan line file. Equal pictures give equal files: no dates, nothing of the machine or
 /// the number of threads (see set_exr_threads). Half channels round to nearest even. Attributes: string, int, double,
 /// 16 floats -> m44f, 8 floats named "chromaticities" -> chromaticities (red, green, blue, white xy), other lengths ->
-/// floatvector. Throws Error(ExitCode::file) if it cannot be written, std::invalid_argument if the picture is
-/// inconsistent or an attribute has a name that OpenEXR reserves ("compression", "version", ...).
+/// floatvector, Ratio -> rational; "screenWindowWidth" -> float. Throws Error(ExitCode::file) if it cannot be written,
+/// std::invalid_argument if the picture is inconsistent or an attribute has a name that OpenEXR reserves
+/// ("compression", "version", ...).
 void write_exr(const std::string& path, const LayeredPicture& picture);
 
 /// Sets the number of OpenEXR's own threads, shared by all files of the process: they compress what callers of

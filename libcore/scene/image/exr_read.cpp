@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
@@ -139,7 +140,7 @@ void check_whole_numbers(const LayeredPicture::Channel& channel) {
 void read_attributes(const Imf::Header& header, LayeredPicture& picture) {
     for (auto entry = header.begin(); entry != header.end(); ++entry) {
         const std::string name = entry.name();
-        if (name == "pixelAspectRatio" || name == "screenWindowWidth") continue;  // every file has them
+        if (name == "pixelAspectRatio") continue;  // every file has it
         const Imf::Attribute& attribute = entry.attribute();
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
             picture.attributes[name] = text->value();
@@ -149,6 +150,8 @@ void read_attributes(const Imf::Header& header, LayeredPicture& picture) {
             picture.attributes[name] = number->value();
         } else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) {
             picture.attributes[name] = static_cast<double>(single->value());
+        } else if (const auto* ratio = dynamic_cast<const Imf::RationalAttribute*>(&attribute)) {
+            picture.attributes[name] = Ratio{ratio->value().n, ratio->value().d};
         } else if (const auto* list = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute)) {
             picture.attributes[name] = std::vector<float>(list->value());
         } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute)) {

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 
@@ -77,6 +78,9 @@ class CheckedStream : public Imf::OStream {
     int error_number_ = 0;
 };
 
+/// An attribute that every file has, here among the others.
+constexpr const char* screen_window_width = "screenWindowWidth";
+
 void check(const LayeredPicture& picture) {
     if (picture.width < 1 || picture.height < 1 || picture.display_width < 1 || picture.display_height < 1)
         throw std::invalid_argument("write_exr: the windows must not be empty");
@@ -100,13 +104,13 @@ void check(const LayeredPicture& picture) {
                                                "name",
                                                "pixelAspectRatio",
                                                "screenWindowCenter",
-                                               "screenWindowWidth",
                                                "tiles",
                                                "type",
                                                "version",
                                                "view"};
     for (const auto& [name, value] : picture.attributes)
-        if (name.empty() || name.size() > 255 || kept.count(name) != 0)
+        if (name.empty() || name.size() > 255 || kept.count(name) != 0 ||
+            (name == screen_window_width && !std::holds_alternative<double>(value)))
             throw std::invalid_argument("write_exr: OpenEXR does not allow the attribute name '" + name + "'");
 }
 
@@ -124,17 +128,42 @@ void insert(Imf::Header& header, const std::string& name, const std::vector<floa
     }
 }
 
+Imf::Compression compression_of(Compression compression) {
+    switch (compression) {
+        case Compression::none:
+            return Imf::NO_COMPRESSION;
+        case Compression::rle:
+            return Imf::RLE_COMPRESSION;
+        case Compression::zips:
+            return Imf::ZIPS_COMPRESSION;
+        case Compression::zip:
+            return Imf::ZIP_COMPRESSION;
+        case Compression::piz:
+            return Imf::PIZ_COMPRESSION;
+        case Compression::dwaa:
+            return Imf::DWAA_COMPRESSION;
+        case Compression::dwab:
+            return Imf::DWAB_COMPRESSION;
+    }
+    throw std::invalid_argument("write_exr: no such compression");
+}
+
 Imf::Header header_of(const LayeredPicture& picture) {
     const Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(picture.display_width - 1, picture.display_height - 1));
     const Imath::Box2i data(Imath::V2i(picture.x, picture.y),
                             Imath::V2i(picture.x + picture.width - 1, picture.y + picture.height - 1));
-    Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, compression_of(picture.compression));
     header.zipCompressionLevel() = 4;  // explicit, because the default differs between versions
+    header.dwaCompressionLevel() = picture.dwa_level;
     for (const auto& [name, value] : picture.attributes) {
         if (const auto* text = std::get_if<std::string>(&value))
             header.insert(name.c_str(), Imf::StringAttribute(*text));
         else if (const auto* whole = std::get_if<int>(&value))
             header.insert(name.c_str(), Imf::IntAttribute(*whole));
+        else if (const auto* ratio = std::get_if<Ratio>(&value))
+            header.insert(name.c_str(), Imf::RationalAttribute(Imf::Rational(ratio->numerator, ratio->denominator)));
+        else if (name == screen_window_width)
+            header.screenWindowWidth() = static_cast<float>(std::get<double>(value));
         else if (const auto* number = std::get_if<double>(&value))
             header.insert(name.c_str(), Imf::DoubleAttribute(*number));
         else

@@ -19,6 +19,16 @@ struct ColorPicture {
     std::vector<glm::vec3> texels;
 };
 
+/// A fraction, as EXR headers give frame rates.
+struct Ratio {
+    int numerator = 0;
+    unsigned denominator = 1;
+    bool operator==(const Ratio&) const = default;
+};
+
+/// How the pixels of an EXR file are compressed; dwaa and dwab lose some.
+enum class Compression { none, rle, zips, zip, piz, dwaa, dwab };
+
 /// The contents of an EXR file: named channels of width x height floats each, row-major from the top left.
 struct LayeredPicture {
     int width = 0, height = 0;  // of the data window
@@ -30,9 +40,11 @@ struct LayeredPicture {
         std::vector<float> values;
     };
     std::vector<Channel> channels;
+    Compression compression = Compression::zip;
+    float dwa_level = 45;  // for dwaa and dwab: 0 loses nothing but for half's rounding, more is smaller
     /// Header attributes, written in the order of their names. 16 floats become an M44f (row-vector convention of
-    /// OpenEXR).
-    std::map<std::string, std::variant<std::string, int, double, std::vector<float>>> attributes;
+    /// OpenEXR). screenWindowWidth, a double here, is a float in the file; without it that is 1.
+    std::map<std::string, std::variant<std::string, int, double, std::vector<float>, Ratio>> attributes;
 };
 
 }  // namespace cistula

@@ -16,6 +16,20 @@ using NameIndices = std::unordered_map<std::string, int>;
 // Tolerance for shares that should add up to 1 but exceed it a little when written in decimal.
 constexpr double share_slack = 1e-6;
 
+/// A whole number of frames per second, or a fraction of two.
+void read_rate(const JsonValue& value, FilmDescription& film) {
+    static constexpr Key part{"frames_per_second", KeyType::whole, {1, 1000000}, {}, false, {}};
+    if (!value.json().is_array()) {
+        if (!value.json().is_number_integer())
+            value.fail_expected("a whole number, or [numerator, denominator] as in [24000, 1001]");
+        film.rate = static_cast<int>(value.whole(part));
+        return;
+    }
+    if (value.json().size() != 2) value.fail_expected("[numerator, denominator] as in [24000, 1001]");
+    film.rate = static_cast<int>(value.item(0).whole(part));
+    film.rate_divisor = static_cast<int>(value.item(1).whole(part));
+}
+
 FilmDescription read_film(const JsonValue& value) {
     FilmDescription film;
     JsonObject keys(value, film_keys);
@@ -23,6 +37,9 @@ FilmDescription read_film(const JsonValue& value) {
     keys.read("height", film.height);
     keys.read("frames", film.frames);
     keys.read("supersample", film.supersample);
+    if (keys.has("frames_per_second")) read_rate(keys.at("frames_per_second"), film);
+    keys.read("owner", film.owner);
+    keys.read("comments", film.comments);
     keys.finish();
     return film;
 }

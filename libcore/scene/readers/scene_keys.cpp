@@ -69,6 +69,9 @@ constexpr Key film_list[] = {
     whole("height", {1, 65536}, "480"),
     whole("frames", {1, 1000000}, "1"),
     whole("supersample", {1, 64}, "1"),
+    other("frames_per_second"),
+    text("owner"),
+    text("comments"),
 };
 
 constexpr Key camera_list[] = {

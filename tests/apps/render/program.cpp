@@ -356,10 +356,11 @@ TEST_F(RenderProgram, TheHeaderSaysWhatTheImageDependsOn) {
     const auto& attributes = picture.attributes;
     std::vector<std::string> names;
     for (const auto& entry : attributes) names.push_back(entry.first);
-    EXPECT_EQ(names, (std::vector<std::string>{"chromaticities", "cistula:cameraHash", "cistula:cutoff",
-                                               "cistula:depth", "cistula:frame", "cistula:precision",
-                                               "cistula:sceneHash", "cistula:supersample", "cistula:time",
-                                               "cistula:version", "worldToCamera", "worldToNDC"}));
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"chromaticities", "cistula:cameraHash", "cistula:cutoff", "cistula:depth",
+                                        "cistula:frame", "cistula:precision", "cistula:sceneHash",
+                                        "cistula:supersample", "cistula:time", "cistula:version", "colorInteropID",
+                                        "imageCounter", "screenWindowWidth", "worldToCamera", "worldToNDC"}));
     EXPECT_EQ(std::get<double>(attributes.at("cistula:cutoff")), 0.125);
     EXPECT_EQ(std::get<int>(attributes.at("cistula:depth")), 6);
     EXPECT_EQ(std::get<int>(attributes.at("cistula:frame")), 2);

@@ -1,0 +1,122 @@
+// Attributes of the header as other programs read them.
+#include "scene/film/frame_header.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/description/camera_path.h"
+#include "scene/film/film_picture.h"
+
+namespace cistula {
+namespace {
+
+struct Point {
+    double x, y, z, w;
+};
+
+/// p M, for row vectors.
+Point times(const glm::dvec3& p, const std::vector<float>& m) {
+    const auto column = [&](size_t c) { return p.x * m[c] + p.y * m[4 + c] + p.z * m[8 + c] + m[12 + c]; };
+    return {column(0), column(1), column(2), column(3)};
+}
+
+/// A camera at (1, 2, 3) that looks along +y, with z up: +x is to the right in its picture.
+CameraDescription camera_along_y(double fov) {
+    CameraDescription camera;
+    camera.position = {1, 2, 3};
+    camera.target = {1, 12, 3};
+    camera.up = {0, 0, 1};
+    camera.field_of_view = fov;
+    return camera;
+}
+
+/// The attributes of a picture with these channels.
+Attributes attributes_of(const OutputChannels& channels) {
+    Film film;
+    film.full_width = film.full_height = film.rect.width = film.rect.height = 1;
+    film.pixels.assign(1, PixelRecord());
+    return to_layers(film, channels).attributes;
+}
+
+TEST(Header, CameraSpaceIsLeftHandedWithZAhead) {
+    const std::vector<float> matrix = world_to_camera(camera_at(camera_along_y(60), 0).camera);
+    const auto expect = [&](const glm::dvec3& world, const glm::dvec3& camera) {
+        const Point p = times(world, matrix);
+        EXPECT_NEAR(p.x, camera.x, 1e-6);
+        EXPECT_NEAR(p.y, camera.y, 1e-6);
+        EXPECT_NEAR(p.z, camera.z, 1e-6);
+        EXPECT_NEAR(p.w, 1, 1e-6);
+    };
+    expect({1, 2, 3}, {0, 0, 0});
+    expect({1, 7, 3}, {0, 0, 5});  // ahead
+    expect({3, 2, 3}, {2, 0, 0});  // right
+    expect({1, 2, 7}, {0, 4, 0});  // up
+    expect({0, 12, 2}, {-1, -1, 10});
+}
+
+TEST(Header, NdcIsZeroAtTheUpperLeftAndOneAtTheLowerRight) {
+    const double fov = 90;  // half as wide as far away
+    const std::vector<float> matrix = world_to_ndc(camera_at(camera_along_y(fov), 0).camera, 200, 100);
+    const auto expect = [&](const glm::dvec3& world, double x, double y, double distance) {
+        const Point p = times(world, matrix);
+        EXPECT_NEAR(p.w, distance, 1e-5);
+        EXPECT_NEAR(p.x / p.w, x, 1e-6);
+        EXPECT_NEAR(p.y / p.w, y, 1e-6);
+    };
+    expect({1, 12, 3}, 0.5, 0.5, 10);
+    expect({1 - 10, 12, 3 + 5}, 0, 0, 10);
+    expect({1 + 10, 12, 3 - 5}, 1, 1, 10);
+    expect({1 + 4, 6, 3 + 2}, 1, 0, 4);
+    expect({1 + 1, 4, 3}, 0.75, 0.5, 2);
+}
+
+TEST(Header, ScreenWindowIsThatOfTheFieldOfView) {
+    const Attributes attributes =
+        header_attributes("abc", FrameSettings(), Precision::single_, camera_at(camera_along_y(60), 7));
+    EXPECT_NEAR(std::get<double>(attributes.at("screenWindowWidth")), 2 * std::tan(M_PI / 6), 1e-7);
+    EXPECT_EQ(std::get<int>(attributes.at("imageCounter")), 7);
+}
+
+TEST(Header, WhatTheFilmDoesNotSayIsNotThere) {
+    Attributes attributes;
+    FilmDescription film;
+    add_film_attributes(film, attributes);
+    EXPECT_TRUE(attributes.empty());
+    film.rate = 24000;
+    film.rate_divisor = 1001;
+    film.owner = "A. Owner";
+    film.comments = "first take";
+    add_film_attributes(film, attributes);
+    EXPECT_EQ(attributes, (Attributes{{"framesPerSecond", Ratio{24000, 1001}},
+                                      {"owner", std::string("A. Owner")},
+                                      {"comments", std::string("first take")}}));
+}
+
+TEST(Header, ColorsAreNamedAsOtherProgramsKnowThem) {
+    OutputChannels channels;
+    EXPECT_EQ(attributes_of(channels),
+              (Attributes{{"chromaticities", std::vector<float>{.64f, .33f, .3f, .6f, .15f, .06f, .3127f, .329f}},
+                          {"colorInteropID", std::string("lin_rec709_scene")}}));
+    channels.space = find_color_space("lin_ap0_scene");
+    channels.half = true;
+    Attributes attributes = attributes_of(channels);
+    EXPECT_EQ(std::get<std::string>(attributes.at("colorInteropID")), "lin_ap0_scene");
+    EXPECT_EQ(std::get<std::vector<float>>(attributes.at("chromaticities"))[5], -0.077f);
+    EXPECT_EQ(attributes.count("acesImageContainerFlag"), 0u);  // compressed
+    channels.compression = Compression::none;
+    attributes = attributes_of(channels);
+    EXPECT_EQ(std::get<int>(attributes.at("acesImageContainerFlag")), 1);
+}
+
+TEST(Header, WhatChangesPixelsIsThere) {
+    OutputChannels channels;
+    channels.transparent = channels.z = true;
+    channels.z_far = 1000;
+    const Attributes attributes = attributes_of(channels);
+    EXPECT_EQ(std::get<std::string>(attributes.at("cistula:background")), "transparent");
+    EXPECT_EQ(std::get<double>(attributes.at("cistula:zFar")), 1000);
+}
+
+}  // namespace
+}  // namespace cistula
