@@ -50,7 +50,7 @@ TEST_F(RenderNames, AreEscapedInReports) {
         for (size_t at = 0; (at = text.find("\"" + old + "\"", at)) != text.npos; ++at)
             text.replace(at + 1, old.size(), old + "\\n\\u001b[7m\\u202e");
     put_bytes(file(name + ".json"), text);
-    for (const Arguments& report : {Arguments{"--explain"}, Arguments{"--pixel", "20,12", "-v"}}) {
+    for (const Arguments& report : {Arguments{"--explain"}, Arguments{"--pixel", "20,3", "-v"}}) {
         Arguments arguments{name + ".json"};
         arguments.insert(arguments.end(), report.begin(), report.end());
         const ProgramResult result = run(arguments);
@@ -59,7 +59,7 @@ TEST_F(RenderNames, AreEscapedInReports) {
         EXPECT_NE(result.out.find("\\n\\x1b[7m\\u202e"), std::string::npos) << result.out;
         expect_lines(result.out);
     }
-    const ProgramResult pixel = run({name + ".json", "--pixel", "20,12", "--json", "-"});
+    const ProgramResult pixel = run({name + ".json", "--pixel", "20,3", "--json", "-"});
     EXPECT_EQ(pixel.code, 0) << pixel.error;
     EXPECT_TRUE(nlohmann::json::accept(pixel.out));
     expect_done({name + ".json", "-o", name + ".exr", "--stats", "stats.json"});
@@ -71,11 +71,12 @@ TEST_F(RenderNames, OfAMillionTheFirstIsWrittenAtOnce) {
     text.replace(text.find("\"frames\": 3"), 11, "\"frames\": 1000000");
     put_bytes(file("long.json"), text);
     for (const Arguments& more : {Arguments{}, Arguments{"--resume"}, Arguments{"-f", "999999-1999998"}}) {
-        Arguments arguments{"long.json", "-q", "--res", "8x6", "-o", "f.#.exr", "--stats", "stats.json"};
+        const std::string film = more.empty() ? "all" : more[0].substr(1);
+        Arguments arguments{"long.json", "-q", "--res", "8x6", "-o", film + ".#.exr", "--stats", "stats.json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         RunningProgram running(program_, arguments, file(""));
         const bool range = more.size() == 2;
-        ASSERT_TRUE(running.wait_until([&] { return exists(range ? "f.999999.exr" : "f.1.exr"); }, 20));
+        ASSERT_TRUE(running.wait_until([&] { return exists(film + (range ? ".999999.exr" : ".1.exr")); }, 20));
         running.send(SIGINT);
         const ProgramResult result = running.wait();
         EXPECT_EQ(result.code, 130) << result.error;
