@@ -38,6 +38,7 @@ else()
             set(_why "${_nvcc} does not work (see ${CMAKE_BINARY_DIR}/CMakeFiles/CMakeError.log)")
         else()
             enable_language(CUDA)
+            find_package(CUDAToolkit QUIET REQUIRED)  # its include folders: newer CMakes have no variable of the compiler's
             if(NOT DEFINED CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 has not heard that nvcc knows C++20
                 set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
                 set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")

@@ -100,6 +100,7 @@ std::string tick_text(double value) {
 
 std::vector<double> ticks(double low, double high, bool log) {
     std::vector<double> all;
+    if (!std::isfinite(high - low) || (log && !(low > 0))) return all;
     if (log) {
         const double decades = std::log10(high / low);
         const int step = std::max(1, static_cast<int>(std::ceil(decades / 7)));
@@ -119,7 +120,9 @@ std::vector<double> ticks(double low, double high, bool log) {
     for (const double factor : {2.0, 2.5, 2.0})
         if ((high - low) / step > 7) step *= factor;
     if (low >= 0 && high <= 20 && step < 1) step = 1;  // small counts have integer ticks
-    for (double value = std::ceil(low / step) * step; value <= high; value += step) all.push_back(value);
+    constexpr int most = 32;                           // where rounding makes steps of nothing
+    const double first = std::ceil(low / step) * step;
+    for (int i = 0; i < most && first + i * step <= high; ++i) all.push_back(first + i * step);
     return all;
 }
 

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/common/output_name.h"
 #include "apps/render/options.h"
 #include "apps/render_compare/options.h"
 #include "apps/render_report/options.h"

@@ -151,6 +151,8 @@ TEST(Exr, Attributes) {
     picture.attributes["empty"] = std::string();
     picture.attributes["depth"] = -16;
     picture.attributes["cutoff"] = 0.1;
+    picture.attributes["rate"] = Ratio{24000, 1001};
+    picture.attributes["screenWindowWidth"] = 1.25;
     picture.attributes["bound"] = std::vector<float>{1, 2, 3};
     picture.attributes[std::string(100, 'n')] = 7;
     write_exr(scratch.file("a.exr"), picture);

@@ -144,7 +144,8 @@ TEST(FilmPicture, ColorsAreThoseOfTheSpace) {
         channels.error = true;
         channels.space = &space;
         const LayeredPicture picture = to_layers(film, channels);
-        const glm::dmat3 matrix = color_matrix(color_spaces().front(), space);
+        const bool own = &space == &color_spaces().front();
+        const glm::dmat3 matrix = own ? glm::dmat3(1.0) : color_matrix(color_spaces().front(), space);
         for (int c = 0; c < 3; ++c) {
             const std::string name(1, "RGB"[c]);
             EXPECT_NEAR(channel(picture, name).values[0], 0.75f, 1e-6) << space.id;

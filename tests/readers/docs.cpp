@@ -298,6 +298,11 @@ TEST(SceneReader, RefusesToForgetAKeyOfItsTable) {
     keys.read("frames", value);
     EXPECT_THROW(keys.finish(), std::logic_error);
     keys.read("supersample", value);
+    std::string text;
+    keys.read("owner", text);
+    keys.read("comments", text);
+    EXPECT_THROW(keys.finish(), std::logic_error);
+    EXPECT_FALSE(keys.has("frames_per_second"));
     EXPECT_NO_THROW(keys.finish());
     EXPECT_THROW(keys.has("quality"), std::logic_error);
 }

@@ -73,8 +73,10 @@ TEST(SceneFile, FormatIsToldByTheFirstCharacter) {
 TEST(SceneKeys, UnknownOnesNameTheNearest) {
     EXPECT_WRONG(with("\"dept\": 1"), "a.json: /dept: unknown key; did you mean 'depth'?");
     EXPECT_WRONG(with("\"film\": {\"widht\": 1}"), "a.json: /film/widht: unknown key; did you mean 'width'?");
-    EXPECT_WRONG(with("\"film\": {\"quality\": 1}"),
-                 "a.json: /film/quality: unknown key; known keys: width, height, frames, supersample");
+    EXPECT_WRONG(
+        with("\"film\": {\"quality\": 1}"),
+        "a.json: /film/quality: unknown key; known keys: width, height, frames, supersample, frames_per_second, "
+        "owner, comments");
     EXPECT_WRONG(
         with("\"a/b~\\n\": 1"),
         "a.json: /a~1b~0\\n: unknown key; known keys: $schema, film, depth, cutoff, ambient, background, camera, "

@@ -98,9 +98,13 @@ TEST(SceneSyntax, CommentsLeaveTheHash) {
               compile_scene<float>(read("{" + scene))->hash);
 }
 
-TEST(SceneSyntax, DeepNestingIsNoProblem) {
+TEST(SceneSyntax, DeepNestingIsRefusedWithItsPlace) {
     const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+    std::string places;
+    for (int i = 0; i < 63; ++i) places += "/0";
     EXPECT_WRONG(with("\"depth\": " + deep),
+                 "a.json: /depth" + places + ": more than 64 levels deep; a scene has 6 at most");
+    EXPECT_WRONG(with("\"depth\": [[3]]"),
                  "a.json: /depth: expected a whole number from 1 to 1024, found an array of 1");
 }
 

@@ -344,9 +344,11 @@ TEST(RenderOptions, Layers) {
     EXPECT_TRUE(all.normal && all.z && all.cost && all.samples && all.id && all.error);
     EXPECT_ERROR(parse_layers("eror"), ExitCode::usage, "--aov eror: there is no layer 'eror'; did you mean 'error'?");
     EXPECT_ERROR(parse_layers("id,normals"), ExitCode::usage,
-                 "--aov id,normals: there is no layer 'normals'; known layers: error, id, samples, cost, Z, N");
+                 "--aov id,normals: there is no layer 'normals'; known layers: error, id, samples, cost, Z, N, "
+                 "coverage");
     EXPECT_ERROR(parse_layers("id,"), ExitCode::usage,
-                 "--aov id,: there is no layer ''; known layers: error, id, samples, cost, Z, N");
+                 "--aov id,: there is no layer ''; known layers: error, id, samples, cost, Z, N, "
+                 "coverage");
 }
 
 TEST(RenderOptions, OptionsOverrideTheScene) {
@@ -399,13 +401,13 @@ TEST(HeaderAttributes, MatricesTakePointsWhereTheCameraSeesThem) {
                 const double depth = distance * dot(direction, camera.forward);
                 const auto ndc = transformed(world_to_ndc(camera, width, height), point);
                 EXPECT_NEAR(ndc[3], depth, 1e-5);
-                EXPECT_NEAR(ndc[0] / ndc[3], 2 * x / width - 1, 2e-5);
-                EXPECT_NEAR(ndc[1] / ndc[3], 1 - 2 * y / height, 2e-5);
+                EXPECT_NEAR(ndc[0] / ndc[3], x / width, 2e-5);
+                EXPECT_NEAR(ndc[1] / ndc[3], y / height, 2e-5);
                 EXPECT_NEAR(ndc[2] / ndc[3], 1 - 1 / depth, 2e-5);
                 const auto seen = transformed(world_to_camera(camera), point);
                 EXPECT_NEAR(seen[0], distance * dot(direction, camera.right), 1e-5);
                 EXPECT_NEAR(seen[1], distance * dot(direction, camera.up), 1e-5);
-                EXPECT_NEAR(seen[2], -depth, 1e-5);
+                EXPECT_NEAR(seen[2], depth, 1e-5);
                 EXPECT_EQ(seen[3], 1);
             }
 }
