@@ -37,6 +37,10 @@ TEST(Chart, TicksAreRound) {
     EXPECT_EQ(ticks(0.5, 2000, true), (std::vector<double>{1, 10, 100, 1000}));
     EXPECT_EQ(ticks(0, 4, false), (std::vector<double>{0, 1, 2, 3, 4}));
     EXPECT_FALSE(ticks(3, 4, true).empty());
+    // Values that no chart shows, as damaged records have them.
+    EXPECT_TRUE(ticks(0, 1e308, true).empty());
+    EXPECT_TRUE(ticks(-1e308, 1e308, false).empty());
+    EXPECT_LE(ticks(1e16, 1e16 + 2, false).size(), 32u);
 }
 
 TEST(Chart, LeavesOutWhatCannotBeDrawn) {
