@@ -65,10 +65,11 @@ lint: ## check the format of all sources, and libcore/scene, apps/common and app
 	$(call configure,$(PRESET))
 	tests/lint $(BUILD)
 
-check-all: lint ## before a release: lint, all tests, the quick tests under sanitizers and by clang
+check-all: lint ## before a release: lint, all tests, the quick tests under sanitizers and by clang, ten seconds of fuzzing each reader
 	@$(MAKE) --no-print-directory test
 	@$(MAKE) --no-print-directory test-quick PRESET=asan CMAKE_ARGS='$(CMAKE_ARGS) -DCISTULA_WITH_CUDA=OFF'
 	@$(MAKE) --no-print-directory test-quick PRESET=clang
+	@$(MAKE) --no-print-directory fuzz SECONDS=10
 
 test-report: ## measure a small report, open it in headless Chromium and look for what is wrong; screenshots into out/report
 	$(call setup,packages.txt tests/report-packages.txt)
