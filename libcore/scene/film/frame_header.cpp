@@ -63,10 +63,11 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
         {"cistula:time", camera.time},
         {"cistula:version", std::string(CISTULA_VERSION)},
         {"imageCounter", camera.frame},
-        {"screenWindowWidth", static_cast<double>(static_cast<float>(2 * camera.camera.tan_half_width))},
         {"worldToCamera", world_to_camera(camera.camera)},
         {"worldToNDC", world_to_ndc(camera.camera, settings.full_width, settings.full_height)},
     };
+    const float width = static_cast<float>(2 * camera.camera.tan_half_width);
+    if (width != 1) attributes["screenWindowWidth"] = static_cast<double>(width);  // without it, files say 1
     if (settings.adaptive()) {
         attributes["cistula:maxSamples"] = settings.max_samples;
         attributes["cistula:targetError"] = settings.target_error;

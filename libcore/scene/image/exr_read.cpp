@@ -140,7 +140,8 @@ void check_whole_numbers(const LayeredPicture::Channel& channel) {
 void read_attributes(const Imf::Header& header, LayeredPicture& picture) {
     for (auto entry = header.begin(); entry != header.end(); ++entry) {
         const std::string name = entry.name();
-        if (name == "pixelAspectRatio") continue;  // every file has it
+        // Every file has these.
+        if (name == "pixelAspectRatio" || (name == "screenWindowWidth" && header.screenWindowWidth() == 1)) continue;
         const Imf::Attribute& attribute = entry.attribute();
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
             picture.attributes[name] = text->value();
