@@ -17,8 +17,10 @@ void write_and_compare(const fs::path& file, const LayeredPicture& picture) {
     if (!fs::exists(file)) {
         fmt::print("  {}: new\n", file.string());
     } else {
-        const golden::Difference d = golden::compare(read_exr(file.string()), picture, false);
-        if (d.differing == 0) {
+        const LayeredPicture before = read_exr(file.string());
+        const golden::Difference d = golden::compare(before, picture, false);
+        if (d.differing == 0 && before.channels.size() == picture.channels.size() &&
+            before.attributes == picture.attributes) {
             fmt::print("  {}: unchanged\n", file.string());
             return;
         }
