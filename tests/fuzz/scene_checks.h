@@ -30,7 +30,8 @@ inline void check_scene(const SceneDescription& scene) {
     for (const int frame : {0, 1, scene.film.frames - 1, 9'999'999}) camera_at(scene.camera, frame);
     if (const std::string turns = camera_turns(scene.camera, {0, 1, 2, 7, 8}); !turns.empty()) one_line(turns);
     if (!is_small(scene)) return;
-    for (const std::string& warning : compile_scene<double>(scene)->warnings) one_line(warning);
+    const auto compiled = compile_scene<double>(scene);
+    for (const std::string& warning : compiled->warnings) one_line(warning);
     compile_scene<float>(scene);
 }
 
