@@ -24,7 +24,7 @@
 namespace cistula {
 namespace {
 
-/// The picture that a frame's file must match, without values: its windows, channels and attributes.
+/// What the header of a frame's file says, beyond what its channels say.
 Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
     Attributes attributes =
         header_attributes(job.scene_hash, job.settings, job.options.precision, camera, job.options.intersection);
@@ -32,6 +32,7 @@ Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
     return attributes;
 }
 
+/// The picture that a frame's file must match, without values: its windows, channels and attributes.
 LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
     Film one;
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;

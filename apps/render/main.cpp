@@ -100,7 +100,8 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
         };
         if (options.channels.half) refuse("--bits half", "raw frames have 8 bits a channel");
         const OutputChannels& c = options.channels;
-        if (c.error || c.id || c.samples || c.cost || c.z || c.normal) refuse("--aov", "raw frames have no layers");
+        if (c.error || c.id || c.samples || c.cost || c.z || c.normal || c.coverage)
+            refuse("--aov", "raw frames have no layers");
         if (options.resume) refuse("--resume", "raw frames do not say what they show");
     }
     if (!options.preview.empty()) {
