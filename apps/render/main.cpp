@@ -102,6 +102,9 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
         const OutputChannels& c = options.channels;
         if (c.error || c.id || c.samples || c.cost || c.z || c.normal || c.coverage)
             refuse("--aov", "raw frames have no layers");
+        if (c.transparent) refuse("--background transparent", "raw frames have no alpha");
+        if (c.space != &color_spaces().front()) refuse("--colorspace", "raw frames are sRGB");
+        if (c.compression != Compression::zip) refuse("--compression", "raw frames have none");
         if (options.resume) refuse("--resume", "raw frames do not say what they show");
     }
     if (!options.preview.empty()) {

@@ -76,6 +76,17 @@ TEST_F(RenderColors, SpacesAreThoseOfTheHeader) {
                    "--colorspace lin_ap2_scene: there is no such space; did you mean 'lin_ap");
 }
 
+TEST_F(RenderColors, RawFramesRefuseWhatTheyCannotHold) {
+    for (const Arguments& option : {Arguments{"--aov", "coverage"}, Arguments{"--background", "transparent"},
+                                    Arguments{"--colorspace", "lin_ap1_scene"}, Arguments{"--compression", "piz"}}) {
+        Arguments arguments{"b.json", "-o", "b.data"};
+        arguments.insert(arguments.end(), option.begin(), option.end());
+        expect_refused(arguments, ExitCode::usage, "-o b.data: " + option[0]);
+        EXPECT_FALSE(exists("b.data"));
+    }
+    expect_done({"b.json", "-q", "-o", "b.data"});
+}
+
 TEST_F(RenderColors, LosslessCompressionsGiveTheSamePixels) {
     const auto own = rendered({"--aov", "Z,id"});
     for (const char* name : {"none", "rle", "zips", "zip", "piz"}) {
