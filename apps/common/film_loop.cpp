@@ -200,6 +200,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             }
             finished.path = job.output.for_frame(camera.frame);
             finished.preview = job.preview.for_frame(camera.frame);
+            finished.view = options.view;
             finished.attributes = attributes_of(job, camera);
             finished.stats = stats_of(finished.film, camera.frame, finished.path, seconds, renderer.times());
             finished.settings = job.settings;

@@ -19,8 +19,8 @@ size_t bytes_of(const Film& film) {
     return film.pixels.size() * sizeof(PixelRecord);
 }
 
-size_t bytes_of(const LayeredPicture& layers, const ColorPicture& color) {
-    size_t bytes = color.texels.size() * sizeof(glm::vec3);
+size_t bytes_of(const LayeredPicture& layers, const ColorPicture& color, const ColorPicture& preview) {
+    size_t bytes = (color.texels.size() + preview.texels.size()) * sizeof(glm::vec3);
     for (const LayeredPicture::Channel& channel : layers.channels) bytes += channel.values.size() * sizeof(float);
     return bytes;
 }
@@ -158,10 +158,12 @@ void FrameWriter::write(Task& task) {
     FrameStats& stats = frame.stats;
     const bool raw = file_kind(frame.path) == FileKind::raw;
     LayeredPicture layers;
-    ColorPicture color;
+    ColorPicture color, preview;
     if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
     stats.encode_seconds = seconds_of([&] {
         if (raw || !frame.preview.empty()) color = to_color(frame.film);
+        if (!frame.preview.empty())
+            preview = viewed(raw ? color : std::move(color), frame.view, static_cast<uint32_t>(frame.film.full_height));
         if (!raw) layers = to_layers(frame.film, channels_, &stats.clamped);
         layers.attributes.merge(std::move(frame.attributes));
         if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
@@ -173,10 +175,10 @@ void FrameWriter::write(Task& task) {
         stats.pruned = ledger_totals(frame.film, &PixelRecord::pruned);
         stats.cut = ledger_totals(frame.film, &PixelRecord::cut);
     }
-    give_film_back(task, bytes_of(layers, color));
+    give_film_back(task, bytes_of(layers, color, preview));
     stats.write_seconds = seconds_of([&] {
         // The preview is written first: if the image is complete, --resume can rely on both.
-        if (!frame.preview.empty()) write_preview(frame.preview, color);
+        if (!frame.preview.empty()) write_preview(frame.preview, preview);
         if (raw)
             write_raw_picture(frame.path, color);
         else

@@ -17,6 +17,7 @@
 #include "apps/common/stats.h"
 #include "scene/film/film.h"
 #include "scene/film/film_picture.h"
+#include "scene/image/picture_view.h"
 
 namespace cistula {
 
@@ -25,6 +26,7 @@ struct FinishedFrame {
     Film film;
     Attributes attributes;
     std::string path, preview;  // empty preview: none
+    PictureView view;           // of the preview
     FrameStats stats;           // the writer adds what depends on the film
     FrameSettings settings;
     bool strict = false;  // not written, but an Error (failed), if a value is over the largest half

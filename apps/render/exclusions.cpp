@@ -61,7 +61,12 @@ void refuse_exclusions(const OptionTexts& texts) {
         if (!text.empty() && other_given)
             fail_usage(fmt::format("{} {}: {} has no place here: {}; leave it out", option, text, other, why));
 
+    constexpr const char* for_preview = "is for --preview FILE.png; the image keeps the scene's light";
+    const bool has_preview = !texts.preview.empty();
     const Need needs[] = {
+        {"--exposure", texts.view.exposure, has_preview, for_preview},
+        {"--view", texts.view.view, has_preview, for_preview},
+        {"--bloom", texts.view.bloom, has_preview, for_preview},
         {"--json", texts.json, !texts.pixel.empty(),
          "is for --pixel X,Y; of a render, --stats FILE.json tells the times"},
         {"--max-samples", texts.max_samples, !texts.target_error.empty(),

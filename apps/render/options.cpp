@@ -67,6 +67,13 @@ void declare(CLI::App& app, OptionTexts& texts) {
     app.add_option("--dwa-level", texts.dwa_level, "with dwaa and dwab: 0 to 1000, more is smaller; 45")
         ->type_name("L");
     app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
+    app.add_option("--exposure", texts.view.exposure, "with --preview: stops by which it is brighter; 0")
+        ->type_name("EV");
+    app.add_option("--view", texts.view.view,
+                   "with --preview: srgb cuts off above white, filmic tells bright colors apart; srgb")
+        ->type_name("NAME");
+    app.add_option("--bloom", texts.view.bloom, "with --preview: how much light above white glows around; 0")
+        ->type_name("AMOUNT");
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
     add_valued_flag(
         app, "--explain", texts.explain, "needs",
@@ -87,8 +94,7 @@ const ColorSpace* parse_color_space(const std::string& text) {
     if (const ColorSpace* space = find_color_space(text)) return space;
     std::vector<std::string_view> names;
     for (const ColorSpace& space : color_spaces()) names.push_back(space.id);
-    fail_usage(
-        fmt::format("--colorspace {}: there is no such space; {}", one_line(text), suggestion(text, names, "spaces")));
+    fail_usage(fmt::format("--colorspace {}: there is no such space; {}", text, nearest_first(text, names, "spaces")));
 }
 
 float parse_z_far(const std::string& text) {
@@ -119,6 +125,7 @@ RenderOptions checked(const OptionTexts& texts) {
     options.scene = texts.scene;
     options.output = texts.output;
     options.preview = texts.preview;
+    options.view = parse_view(texts.view);
     options.stats = texts.stats;
     options.resume = texts.resume;
     options.strict = texts.strict;
@@ -218,6 +225,7 @@ std::string help_text() {
     app.footer(R"(
 Examples:
   render scenes/platonic.json -o platonic.exr --preview platonic.png
+  render scenes/platonic.json -o p.exr --preview p.png --view filmic --exposure 1 --bloom 2
   render scenes/seed.json -o out/beauty.####.exr                   all frames of the film
   render scenes/seed.json -o out/beauty.####.exr --resume          those still missing
   render scenes/seed.json -o out/f%04d.exr -f 0-299x30,7 --res 320x180

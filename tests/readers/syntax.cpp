@@ -157,6 +157,16 @@ TEST(Suggest, HugeNamesAndManyNamesStayShort) {
     const std::string text = suggestion(std::string(1000000, 'x'), {names.begin(), names.end()}, "materials");
     EXPECT_LT(text.size(), 400u);
     EXPECT_TRUE(text.ends_with(", ..."));
+    EXPECT_TRUE(nearest_first(std::string(1000000, 'x'), {names.begin(), names.end()}, "materials")
+                    .ends_with(", ... (100 in all)"));
+}
+
+TEST(Suggest, AllThatExistAreNamedThoseMostLikeItFirst) {
+    EXPECT_EQ(nearest_first("depht", {"RGB", "depth_ray", "depth", "Z"}, "layers"),
+              "the layers are: depth, depth_ray, RGB, Z");
+    EXPECT_EQ(nearest_first("rgb", {"N", "RGB"}, "layers"), "the layers are: RGB, N");
+    EXPECT_EQ(nearest_first("x", {"a\nb"}, "layers"), "the layers are: a\\nb");
+    EXPECT_EQ(nearest_first("x", {}, "layers"), "there are no layers");
 }
 
 }  // namespace

@@ -1,10 +1,23 @@
 #include "scene/base/suggest.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace cistula {
+namespace {
+
+constexpr size_t longest_compared = 64;  // distances take time quadratic in the length
+
+}  // namespace
+
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& letter : lower)
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    return lower;
+}
 
 size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
@@ -24,7 +37,6 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural) {
     if (known.empty()) return fmt::format("there are no {}", plural);
-    constexpr size_t longest_compared = 64;  // distances take time quadratic in the length
     std::string_view nearest;
     size_t least = std::max<size_t>(2, name.size() / 3) + 1;
     if (name.size() <= longest_compared) {
@@ -43,6 +55,25 @@ std::string suggestion(std::string_view name, const std::vector<std::string_view
     for (size_t i = 0; i < known.size() && i < most_listed; ++i)
         list += (i ? ", " : "") + first_characters(known[i], longest_compared);
     return fmt::format("known {}: {}{}", plural, list, known.size() > most_listed ? ", ..." : "");
+}
+
+std::string nearest_first(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural) {
+    if (known.empty()) return fmt::format("there are no {}", plural);
+    constexpr size_t most_listed = 64;
+    std::vector<std::pair<double, std::string_view>> by_distance;  // as a share of the longer name
+    const std::string wanted = lower_case(name.substr(0, longest_compared));
+    for (const std::string_view candidate : known) {
+        const std::string other = lower_case(candidate.substr(0, longest_compared));
+        const auto longer = static_cast<double>(std::max({wanted.size(), other.size(), size_t{1}}));
+        by_distance.emplace_back(static_cast<double>(edit_distance(wanted, other)) / longer, candidate);
+    }
+    std::stable_sort(by_distance.begin(), by_distance.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::string list;
+    for (size_t i = 0; i < by_distance.size() && i < most_listed; ++i)
+        list += (i ? ", " : "") + first_characters(by_distance[i].second, longest_compared);
+    const std::string rest = known.size() > most_listed ? fmt::format(", ... ({} in all)", known.size()) : "";
+    return fmt::format("the {} are: {}{}", plural, list, rest);
 }
 
 }  // namespace cistula

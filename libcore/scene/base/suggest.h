@@ -10,6 +10,9 @@
 
 namespace cistula {
 
+/// The text with A to Z in lower case.
+std::string lower_case(std::string_view text);
+
 /// Optimal string alignment distance: the least number of insertions, deletions, substitutions and swaps of neighboring
 /// bytes that turn a into b.
 size_t edit_distance(std::string_view a, std::string_view b);
@@ -17,5 +20,9 @@ size_t edit_distance(std::string_view a, std::string_view b);
 /// "did you mean 'width'?" if one of `known` is near `name`, else "known keys: a, b, c"; `plural` is their collective
 /// name ("keys").
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural);
+
+/// All that are known, those most like `name` first, whatever the case of letters: "the views are: filmic, srgb"; of
+/// more than 64 the first, and their number.
+std::string nearest_first(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural);
 
 }  // namespace cistula

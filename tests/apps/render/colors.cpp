@@ -73,7 +73,8 @@ TEST_F(RenderColors, SpacesAreThoseOfTheHeader) {
                             matrix[0][c] * own["R"][i] + matrix[1][c] * own["G"][i] + matrix[2][c] * own["B"][i], 1e-5);
     }
     expect_refused({"b.json", "-o", "b.exr", "--colorspace", "lin_ap2_scene"}, ExitCode::usage,
-                   "--colorspace lin_ap2_scene: there is no such space; did you mean 'lin_ap");
+                   "--colorspace lin_ap2_scene: there is no such space; the spaces are: "
+                   "lin_ap1_scene, lin_ap0_scene, lin_rec2020_scene, lin_rec709_scene");
 }
 
 TEST_F(RenderColors, RawFramesRefuseWhatTheyCannotHold) {

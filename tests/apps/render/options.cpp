@@ -1,5 +1,6 @@
 #include "apps/render/options.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pty.h>
@@ -142,35 +143,14 @@ TEST(RenderOptions, Actions) {
 
 TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
     const std::string help = help_text();
-    for (const char* part : {"--output",
-                             "--frames",
-                             "--backend",
-                             "--res",
-                             "--crop",
-                             "--supersample",
-                             "--depth",
-                             "--cutoff",
-                             "--precision",
-                             "--threads",
-                             "--bits",
-                             "--preview",
-                             "--aov",
-                             "--explain",
-                             "--pixel",
-                             "--json",
-                             "--effects",
-                             "--stats",
-                             "--resume",
-                             "--progress",
-                             "--quiet",
-                             "--verbose",
-                             "--help",
-                             "--device ",
-                             "--list-devices",
-                             "--version",
-                             "--print-template",
-                             "Examples:",
-                             "Exit codes: 0 done",
+    for (const char* part : {"--output",       "--frames",         "--backend",  "--res",
+                             "--crop",         "--supersample",    "--depth",    "--cutoff",
+                             "--precision",    "--threads",        "--bits",     "--preview",
+                             "--exposure",     "--view",           "--bloom",    "--aov",
+                             "--explain",      "--pixel",          "--json",     "--effects",
+                             "--stats",        "--resume",         "--progress", "--quiet",
+                             "--verbose",      "--help",           "--device ",  "--list-devices",
+                             "--version",      "--print-template", "Examples:",  "Exit codes: 0 done",
                              "130 interrupted"})
         EXPECT_NE(help.find(part), std::string::npos) << part;
 }
@@ -200,6 +180,36 @@ TEST(RenderOptions, Errors) {
     EXPECT_THROW(parse({"s", "-o"}), Error);
     EXPECT_THROW(parse({"s", "-o", ""}), Error);
     EXPECT_THROW(parse({"s", "--depth", "3", "--depth", "4"}), Error);
+}
+
+TEST(RenderOptions, ViewsOfThePreview) {
+    const auto view = [](std::vector<const char*> more) {
+        more.insert(more.begin(), {"s", "--preview", "p.png"});
+        return parse(more).view;
+    };
+    EXPECT_EQ(view({}).exposure, 0);
+    EXPECT_EQ(view({}).curve, ViewCurve::srgb);
+    EXPECT_EQ(view({}).bloom, 0);
+    EXPECT_EQ(view({"--exposure", "-1.5"}).exposure, -1.5);
+    EXPECT_EQ(view({"--view", "filmic"}).curve, ViewCurve::filmic);
+    EXPECT_EQ(view({"--view", "srgb"}).curve, ViewCurve::srgb);
+    EXPECT_EQ(view({"--bloom", "0.25"}).bloom, 0.25);
+    for (const char* text : {"65", "-64.5", "nan", "inf", "1ev", "x", "1 "})
+        expect_refused(
+            {"s", "--preview", "p.png", "--exposure", text},
+            std::string("--exposure ") + text + ": must be a number of stops from -64 to 64; each doubles the light");
+    for (const char* text : {"-0.1", "101", "nan", "x"})
+        expect_refused({"s", "--preview", "p.png", "--bloom", text},
+                       std::string("--bloom ") + text +
+                           ": must be a number from 0 to 100; 1 adds the light above white once, spread around it");
+    expect_refused({"s", "--preview", "p.png", "--view", "fimlic"},
+                   "--view fimlic: there is no such view; the views are: filmic, srgb");
+    expect_refused({"s", "--preview", "p.png", "--view", "ACES"},
+                   "--view ACES: there is no such view; the views are: srgb, filmic");
+    for (const auto& [option, text] : {std::pair("--exposure", "1"), {"--view", "srgb"}, {"--bloom", "0"}})
+        expect_refused(
+            {"s", option, text},
+            fmt::format("{} {}: is for --preview FILE.png; the image keeps the scene's light", option, text));
 }
 
 TEST(RenderOptions, TargetErrors) {

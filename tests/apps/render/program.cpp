@@ -5,11 +5,14 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
 #include "apps/common/backends.h"
 #include "apps/common/target.h"
 #include "scene/image/exr.h"
+#include "scene/image/picture_view.h"
+#include "scene/image/png.h"
 #include "scene/image/raw_picture.h"
 #include "testing/support/gpu.h"
 #include "testing/support/render_program.h"
@@ -191,6 +194,35 @@ TEST_F(RenderProgram, Previews) {
     for (const char* name : {"p.0.png", "p.1.png", "p.2.png"})
         EXPECT_EQ(bytes_of(file(name)).substr(1, 3), "PNG") << name;
     EXPECT_FALSE(exists("p.3.png"));
+}
+
+TEST_F(RenderProgram, ViewsChangeThePreviewAlone) {
+    const auto render = [&](const std::string& name, const Arguments& more) {
+        Arguments arguments{"s.json", "-q", "-f", "0", "-o", name + ".exr", "--preview", name + ".png"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expect_done(arguments);
+        EXPECT_EQ(bytes_of(file(name + ".exr")), bytes_of(file("plain.exr"))) << name;
+        return bytes_of(file(name + ".png"));
+    };
+    const std::string plain = render("plain", {});
+    EXPECT_EQ(render("same", {"--exposure", "0", "--view", "srgb", "--bloom", "0"}), plain);
+    std::set<std::string> previews{plain};
+    previews.insert(render("bright", {"--exposure", "2"}));
+    previews.insert(render("film", {"--exposure", "2", "--view", "filmic"}));
+    previews.insert(render("glow", {"--exposure", "2", "--view", "filmic", "--bloom", "1"}));
+    EXPECT_EQ(previews.size(), 4u);
+    // They are what a picture of the image's channels becomes.
+    const LayeredPicture image = read_exr(file("plain.exr"));
+    ColorPicture color{40, 24, {}};
+    for (size_t i = 0; i < 40 * 24; ++i)
+        color.texels.emplace_back(channel(image, "R")[i], channel(image, "G")[i], channel(image, "B")[i]);
+    EXPECT_EQ(encode_png(viewed(color, {2, ViewCurve::filmic, 1}, 24)), bytes_of(file("glow.png")));
+}
+
+TEST_F(RenderProgram, ViewsLeaveRawFrames) {
+    expect_done({"s.json", "-q", "-f", "0", "-o", "plain.out"});
+    expect_done({"s.json", "-q", "-f", "0", "-o", "a.out", "--preview", "a.png", "--exposure", "2", "--bloom", "1"});
+    EXPECT_EQ(bytes_of(file("a.out")), bytes_of(file("plain.out")));
 }
 
 TEST_F(RenderProgram, ReadsStandardInput) {
