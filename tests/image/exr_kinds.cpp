@@ -4,16 +4,16 @@
 #include <OpenEXR/ImfDeepScanLineOutputFile.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "scene/image/exr.h"
+#include "scene/image/exr_file.h"
 #include "testing/support/expect_error.h"
+#include "testing/support/exr_parts.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
@@ -30,22 +30,9 @@ Imf::Header header_with(const char* channel, Imf::PixelType type) {
 TEST(ExrKinds, FilesOfSeveralPartsAreRefused) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("parts.exr");
-    std::array<Imf::Header, 2> headers = {header_with("Z", Imf::FLOAT), header_with("Z", Imf::FLOAT)};
-    for (size_t part = 0; part < 2; ++part) {
-        headers[part].setName(part == 0 ? "left" : "right");
-        headers[part].setType(Imf::SCANLINEIMAGE);
-    }
-    std::array<float, width * height> values{};
-    {
-        Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
-        for (int part = 0; part < 2; ++part) {
-            Imf::FrameBuffer buffer;
-            buffer.insert("Z", Imf::Slice::Make(Imf::FLOAT, values.data(), headers[0].dataWindow()));
-            Imf::OutputPart output(file, part);
-            output.setFrameBuffer(buffer);
-            output.writePixels(height);
-        }
-    }
+    const std::vector<float> values(width * height);
+    test::write_parts(path,
+                      {{"left", width, height, {{"Z", values, {}}}}, {"right", width, height, {{"Z", values, {}}}}});
     EXPECT_ERROR(read_exr(path), ExitCode::file, path + ": cannot read: it has 2 parts; give a file of one part");
 }
 
@@ -70,6 +57,8 @@ TEST(ExrKinds, DeepFilesAreRefused) {
         file.writePixels(height);
     }
     EXPECT_ERROR(read_exr(path), ExitCode::file,
+                 path + ": cannot read: it is deep, with several samples in a pixel; flatten it first");
+    EXPECT_ERROR(ExrFile{path}, ExitCode::file,
                  path + ": cannot read: it is deep, with several samples in a pixel; flatten it first");
 }
 

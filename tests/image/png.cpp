@@ -1,26 +1,21 @@
 // What is in the PNGs: the very codes, as libpng reads them.
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <limits>
 
 #include "scene/image/png.h"
 #include "scene/image/srgb_codes.h"
+#include "testing/support/png_pixels.h"
 
 namespace cistula {
 namespace {
 
 /// Bytes of red, green and blue, row-major, after the size has been checked.
 std::vector<uint8_t> decoded(const std::string& png, uint32_t width, uint32_t height) {
-    png_image image = {};
-    image.version = PNG_IMAGE_VERSION;
-    EXPECT_TRUE(png_image_begin_read_from_memory(&image, png.data(), png.size())) << image.message;
-    EXPECT_EQ(image.width, width);
-    EXPECT_EQ(image.height, height);
-    image.format = PNG_FORMAT_RGB;
-    std::vector<uint8_t> bytes(PNG_IMAGE_SIZE(image));
-    EXPECT_TRUE(png_image_finish_read(&image, nullptr, bytes.data(), 0, nullptr)) << image.message;
-    return bytes;
+    const PngPixels pixels = png_pixels(png);
+    EXPECT_EQ(pixels.width, width);
+    EXPECT_EQ(pixels.height, height);
+    return pixels.bytes;
 }
 
 TEST(Png, HoldsTheNearestCodes) {
