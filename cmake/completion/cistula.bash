@@ -5,4 +5,4 @@ _cistula() {
     mapfile -t COMPREPLY < <(compgen -W "$("$1" --help 2>/dev/null |
         sed -nE 's/^ +(-[a-zA-Z])?,? *(--[a-z-]+)?([ =,].*)?$/\1 \2/p')" -- "$word")
 }
-complete -o default -F _cistula render render-compare render-verify render-report
+complete -o default -F _cistula render render-compare render-view render-verify render-report

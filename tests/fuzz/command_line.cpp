@@ -1,4 +1,5 @@
-// Command lines, one word a line. The first line is the program's name: render, render-compare or render-report.
+// Command lines, one word a line. The first line is the program's name: render, render-compare, render-view or
+// render-report.
 #include <algorithm>
 #include <string_view>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "apps/render/options.h"
 #include "apps/render_compare/options.h"
 #include "apps/render_report/options.h"
+#include "apps/render_view/options.h"
 #include "checks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -24,6 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     try {
         if (words[0] == "render-compare") {
             parse_compare_options(count, arguments.data());
+        } else if (words[0] == "render-view") {
+            parse_view_options(count, arguments.data());
         } else if (words[0] == "render-report") {
             report::parse_report_options(count, arguments.data());
         } else {

@@ -1,0 +1,67 @@
+#include "layer_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/common/command_line.h"
+#include "scene/base/suggest.h"
+
+namespace cistula {
+namespace {
+
+const Layer* find(const std::vector<Layer>& layers, std::string_view name) {
+    const auto found =
+        std::find_if(layers.begin(), layers.end(), [&](const Layer& layer) { return layer.name == name; });
+    return found == layers.end() ? nullptr : &*found;
+}
+
+/// The text's names; a layer whose own name has commas is one.
+std::vector<std::string> names_in(const std::vector<Layer>& layers, const std::string& text) {
+    if (find(layers, text)) return {text};
+    std::vector<std::string> names;
+    for (size_t begin = 0; begin <= text.size();) {
+        const size_t comma = std::min(text.find(',', begin), text.size());
+        names.push_back(text.substr(begin, comma - begin));
+        begin = comma + 1;
+    }
+    return names;
+}
+
+}  // namespace
+
+std::vector<Layer> chosen_layers(const std::vector<Layer>& layers, const std::vector<std::string>& texts,
+                                 const std::string& file) {
+    if (texts.empty()) return {default_layer(layers)};
+    std::vector<Layer> chosen;
+    for (const std::string& text : texts)
+        for (const std::string& name : names_in(layers, text)) {
+            const Layer* layer = find(layers, name);
+            if (!layer) {
+                std::vector<std::string_view> names;
+                for (const Layer& known : layers) names.push_back(known.name);
+                fail_usage(fmt::format("--layer {}: {} has no layer {}; {}", text, file, quoted(name),
+                                       nearest_first(name, names, "layers")));
+            }
+            if (!find(chosen, name)) chosen.push_back(*layer);
+        }
+    return chosen;
+}
+
+std::string layer_table(const std::vector<ExrPart>& parts, const std::vector<Layer>& layers) {
+    size_t width = 5;
+    for (const Layer& layer : layers) width = std::max(width, one_line(layer.name).size());
+    std::string table = fmt::format("{:<{}}  {:<19}  {:<11}  {}\n", "layer", width, "shown as", "size", "channels");
+    for (const Layer& layer : layers) {
+        const ExrPart& part = parts[layer.part];
+        std::string channels;
+        for (const size_t channel : layer.channels) channels += " " + one_line(part.channels[channel].name);
+        constexpr const char* types[] = {"half", "float", "uint"};
+        table += fmt::format("{:<{}}  {:<19}  {:<11}  {}{}\n", one_line(layer.name), width, kind_name(layer.kind),
+                             fmt::format("{}x{}", part.width, part.height),
+                             types[static_cast<size_t>(part.channels[layer.channels[0]].type)], channels);
+    }
+    return table;
+}
+
+}  // namespace cistula
