@@ -47,6 +47,7 @@ struct EdgeLights {
     std::optional<glm::dvec3> glow;  // radiance of the visible sphere; default: color
     double radius = 0;               // 0: not visible
     bool falloff = false;
+    std::string group;  // the light layer that they are part of; empty: one of their own
 };
 
 struct SolidObject {
@@ -87,6 +88,7 @@ struct LightDescription {
     std::optional<glm::dvec3> glow;
     double radius = 0;     // 0: not visible
     bool falloff = false;  // 1 / distance^2, clamped at radius, which must then be positive
+    std::string group;     // the light layer that it is part of; empty: one of its own
     std::string place;
 };
 

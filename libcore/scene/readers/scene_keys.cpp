@@ -131,6 +131,7 @@ constexpr Key edge_lights_list[] = {
     color("glow", not_negative, {}),
     number("radius", not_negative, "0"),
     choice("falloff", falloff_choices, "\"none\""),
+    text("group"),
 };
 
 constexpr Key quad_list[] = {text("name"), other("quad", required), text("material", required)};
@@ -160,6 +161,7 @@ constexpr Key light_list[] = {
     color("glow", not_negative, {}),
     number("radius", not_negative, "0"),
     choice("falloff", falloff_choices, "\"none\""),
+    text("group"),
 };
 
 constexpr Key frame_list[] = {

@@ -79,7 +79,7 @@ TEST(RenderOptions, AllTogether) {
                                          "half",
                                          "--preview",
                                          "p.png",
-                                         "--aov",
+                                         "--layers",
                                          "error,Z",
                                          "--stats",
                                          "s.json",
@@ -154,7 +154,7 @@ TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
                              "--threads",
                              "--bits",
                              "--preview",
-                             "--aov",
+                             "--layers",
                              "--explain",
                              "--pixel",
                              "--json",
@@ -342,13 +342,20 @@ TEST(RenderOptions, Sizes) {
 TEST(RenderOptions, Layers) {
     const OutputChannels all = parse_layers("N,Z,cost,samples,id,error,id");
     EXPECT_TRUE(all.normal && all.z && all.cost && all.samples && all.id && all.error);
-    EXPECT_ERROR(parse_layers("eror"), ExitCode::usage, "--aov eror: there is no layer 'eror'; did you mean 'error'?");
+    const OutputChannels groups = parse_layers("path,cryptomatte,uv");
+    EXPECT_TRUE(groups.path[0] && groups.path[path_layer_count - 1] && groups.uv && !groups.light && !groups.z);
+    EXPECT_TRUE(groups.object_mattes && groups.material_mattes && groups.light_mattes);
+    const OutputChannels data = parse_layers("data");
+    EXPECT_TRUE(data.position && data.material_id && data.error && data.coverage && !data.path[0]);
+    EXPECT_TRUE(parse_layers("light").light && parse_layers("specular").path[4]);
+    EXPECT_ERROR(parse_layers("eror"), ExitCode::usage,
+                 "--layers eror: there is no layer 'eror'; did you mean 'error'?");
     EXPECT_ERROR(parse_layers("id,normals"), ExitCode::usage,
-                 "--aov id,normals: there is no layer 'normals'; known layers: error, id, samples, cost, Z, N, "
-                 "coverage");
+                 "--layers id,normals: there is no layer 'normals'; known layers: path, data, cryptomatte, P, "
+                 "uv, albedo");
     EXPECT_ERROR(parse_layers("id,"), ExitCode::usage,
-                 "--aov id,: there is no layer ''; known layers: error, id, samples, cost, Z, N, "
-                 "coverage");
+                 "--layers id,: there is no layer ''; known layers: path, data, cryptomatte, P, "
+                 "uv, albedo");
 }
 
 TEST(RenderOptions, OptionsOverrideTheScene) {
