@@ -105,7 +105,7 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
         };
         if (options.channels.half) refuse("--bits half", "raw frames have 8 bits a channel");
         const OutputChannels& c = options.channels;
-        if (!options.layers.empty()) refuse("--layers " + options.layers, "raw frames have none");
+        if (!options.layers.empty()) refuse("--layers", "raw frames have none");
         if (c.transparent) refuse("--background transparent", "raw frames have no alpha");
         if (c.space != &color_spaces().front()) refuse("--colorspace", "raw frames are sRGB");
         if (c.compression != Compression::zip) refuse("--compression", "raw frames have none");

@@ -352,10 +352,10 @@ TEST(RenderOptions, Layers) {
                  "--layers eror: there is no layer 'eror'; did you mean 'error'?");
     EXPECT_ERROR(parse_layers("id,normals"), ExitCode::usage,
                  "--layers id,normals: there is no layer 'normals'; known layers: path, data, cryptomatte, P, "
-                 "uv, albedo");
+                 "uv, albedo, N, Z, depth_ray, coverage, id, material_id, samples, cost, error, light, ...");
     EXPECT_ERROR(parse_layers("id,"), ExitCode::usage,
                  "--layers id,: there is no layer ''; known layers: path, data, cryptomatte, P, "
-                 "uv, albedo");
+                 "uv, albedo, N, Z, depth_ray, coverage, id, material_id, samples, cost, error, light, ...");
 }
 
 TEST(RenderOptions, OptionsOverrideTheScene) {
