@@ -57,7 +57,8 @@ TEST(FileColors, IdsAndChromaticitiesSayTheSpace) {
 
 TEST(FileColors, WhatIsNotKnownOrContradictsItselfIsRefused) {
     const std::string remedy =
-        "; the texture's key \"colorspace\" overrides what the file says: it is one of srgb, linear, lin_rec709_scene, "
+        "; the key \"colorspace\" of a scene's texture overrides what the file says: it is one of srgb, linear, "
+        "lin_rec709_scene, "
         "lin_ap1_scene, lin_ap0_scene, lin_rec2020_scene, lin_p3d65_scene, lin_adobergb_scene, srgb_rec709_scene, "
         "srgb_ap1_scene, srgb_p3d65_scene, g18_rec709_scene, g22_rec709_scene, g24_rec709_scene, g22_ap1_scene, "
         "g22_adobergb_scene, data";

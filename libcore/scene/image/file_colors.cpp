@@ -12,8 +12,8 @@ namespace {
 /// Throws what is wrong with a file's colors, and what the user can do.
 [[noreturn]] void refuse(const std::string& problem) {
     throw std::runtime_error(
-        fmt::format("{}; the texture's key \"colorspace\" overrides what the file says: it is one of {}", problem,
-                    fmt::join(color_encoding_names, ", ")));
+        fmt::format("{}; the key \"colorspace\" of a scene's texture overrides what the file says: it is one of {}",
+                    problem, fmt::join(color_encoding_names, ", ")));
 }
 
 FileEncoding encoding_of(const ColorEncoding& encoding) {

@@ -86,7 +86,8 @@ TEST_F(TextureColors, TheKeyOverridesTheFile) {
     for (const auto& [attributes, reason] : files) {
         write_texel({0.5f, 0.25f, 0.1f}, attributes);
         expect_refused({"t.json", "-o", "t.out.exr"}, ExitCode::file, reason);
-        expect_refused({"t.json", "-o", "t.out.exr"}, ExitCode::file, "the texture's key \"colorspace\" overrides");
+        expect_refused({"t.json", "-o", "t.out.exr"}, ExitCode::file,
+                       "the key \"colorspace\" of a scene's texture overrides");
         EXPECT_FALSE(exists("t.out.exr"));
         expect_near(shown("linear"), stored);
         const std::string hash = hash_;
