@@ -63,7 +63,8 @@ void declare(CLI::App& app, OptionTexts& texts) {
     app.add_option("--background", texts.background, "opaque, or transparent: alpha is coverage, color premultiplied")
         ->type_name("NAME");
     app.add_option("--colorspace", texts.color_space,
-                   "lin_rec709_scene, lin_ap1_scene (ACEScg), lin_ap0_scene (ACES2065-1) or lin_rec2020_scene")
+                   "lin_rec709_scene, lin_ap1_scene (ACEScg), lin_ap0_scene (ACES2065-1), lin_rec2020_scene, "
+                   "lin_p3d65_scene or lin_adobergb_scene")
         ->type_name("NAME");
     app.add_option("--compression", texts.compression, "none, rle, zips, zip, piz, or with losses dwaa, dwab")
         ->type_name("NAME");

@@ -36,6 +36,7 @@ TEST(ExrKinds, FilesOfSeveralPartsAreRefused) {
         headers[part].setType(Imf::SCANLINEIMAGE);
     }
     std::array<float, width * height> values{};
+    values.fill(0.5f);
     {
         Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
         for (int part = 0; part < 2; ++part) {
@@ -47,6 +48,8 @@ TEST(ExrKinds, FilesOfSeveralPartsAreRefused) {
         }
     }
     EXPECT_ERROR(read_exr(path), ExitCode::file, path + ": cannot read: it has 2 parts; give a file of one part");
+    // As a texture it is its first part.
+    EXPECT_EQ(read_exr_texture(path).texels, std::vector<glm::vec3>(width * height, glm::vec3(0.5f)));
 }
 
 TEST(ExrKinds, DeepFilesAreRefused) {
@@ -70,6 +73,8 @@ TEST(ExrKinds, DeepFilesAreRefused) {
         file.writePixels(height);
     }
     EXPECT_ERROR(read_exr(path), ExitCode::file,
+                 path + ": cannot read: it is deep, with several samples in a pixel; flatten it first");
+    EXPECT_ERROR(read_exr_texture(path), ExitCode::file,
                  path + ": cannot read: it is deep, with several samples in a pixel; flatten it first");
 }
 

@@ -6,6 +6,7 @@
 
 #include "scene/image/png.h"
 #include "scene/image/srgb_codes.h"
+#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {

@@ -33,10 +33,11 @@ struct TextureDescription {
     std::string name;
     std::string file;  // absolute or relative to the working directory; empty: a checkerboard
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
-    bool bilinear = true;  // ignored by a checkerboard, which is always nearest
-    glm::dvec2 repeat{1};  // factor on uv; a checkerboard's period is 1 in uv: two cells
-    bool strict = false;   // texels of the file that are negative or not finite are an error, and not clamped
-    std::string place;     // "/textures/tiles", "line 3"
+    bool bilinear = true;    // ignored by a checkerboard, which is always nearest
+    glm::dvec2 repeat{1};    // factor on uv; a checkerboard's period is 1 in uv: two cells
+    std::string colorspace;  // one of color_encoding_names (image/color_encoding.h); empty: what the file says
+    bool strict = false;     // texels of the file that are negative or not finite are an error, and not clamped
+    std::string place;       // "/textures/tiles", "line 3"
 };
 
 enum class PlatonicSolid { tetrahedron, cube, octahedron, dodecahedron, icosahedron };

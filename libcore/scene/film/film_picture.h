@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "scene/film/color_space.h"
 #include "scene/film/film.h"
+#include "scene/image/color_space.h"
 #include "scene/image/picture.h"
 
 namespace cistula {

@@ -7,6 +7,7 @@
 
 #include "scene/base/suggest.h"
 #include "scene/description/light_group.h"
+#include "scene/image/color_encoding.h"
 #include "scene/readers/json_reader.h"
 
 namespace cistula {
@@ -97,7 +98,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     const bool has_checker = is_object && value.json().contains("checker");
     if (has_file && has_checker) value.fail("expected one of 'file' and 'checker', found both");
     if (is_object && !has_file && !has_checker) {
-        const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat", "strict"};
+        const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat", "colorspace", "strict"};
         for (const auto& member : value.json().items())
             if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
                 value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
@@ -109,6 +110,8 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
         texture.file = file_beside_scene(texture.file, base_dir);
         if (const int filter = keys.read_choice("filter"); filter >= 0) texture.bilinear = filter == 1;
         keys.read("repeat", texture.repeat);
+        if (const int name = keys.read_choice("colorspace"); name >= 0)
+            texture.colorspace = color_encoding_names[static_cast<size_t>(name)];
         keys.read("strict", texture.strict);
         keys.finish();
         return texture;

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 
-#include "scene/film/color_space.h"
+#include "scene/image/color_space.h"
 #include "scene/image/exr.h"
 #include "testing/support/render_program.h"
 
