@@ -58,8 +58,7 @@ std::string heat_figure(const Shown& shown) {
                         "<div class=\"ends\"><span>few</span><span>{} rays</span></div>",
                         stops, count_text(scene.heat_most)),
         fmt::format("<b>Cost of a pixel</b>, logarithmic: {} rays in the mean, {} at most, at depth {}.",
-                    number_text(scene.heat_mean), count_text(scene.heat_most),
-                    scene.base.depth));
+                    number_text(scene.heat_mean), count_text(scene.heat_most), scene.base.depth));
 }
 
 const Entry* entry_with(const Shown& shown, const Setting& setting) {

@@ -31,7 +31,7 @@ std::string window(int32_t right, int32_t bottom) {
 class ExrHeader : public ::testing::Test {
   protected:
     void check(const std::string& attributes, int flags = 0) {
-        folder_.write("a.exr", number(20000630) + number(2 | flags) + attributes);
+        put_bytes(folder_.file("a.exr"), number(20000630) + number(2 | flags) + attributes);
         check_exr_header(folder_.file("a.exr"));
     }
     void expect_refused(const std::string& attributes, const std::string& what, int flags = 0) {
@@ -79,15 +79,15 @@ TEST_F(ExrHeader, AllPartsAreLookedAt) {
 }
 
 TEST_F(ExrHeader, OtherFilesAreTheLibrarys) {
-    folder_.write("b.exr", "no EXR");
+    put_bytes(folder_.file("b.exr"), "no EXR");
     EXPECT_NO_THROW(check_exr_header(folder_.file("b.exr")));
-    folder_.write("c.exr", number(20000630));
+    put_bytes(folder_.file("c.exr"), number(20000630));
     EXPECT_NO_THROW(check_exr_header(folder_.file("c.exr")));
     EXPECT_NO_THROW(check(std::string(1000, 'a')));
 }
 
 TEST_F(ExrHeader, ReadersRefuseInOneLine) {
-    folder_.write("a.exr", number(20000630) + number(2) + attribute("a", "string", "", 1 << 30));
+    put_bytes(folder_.file("a.exr"), number(20000630) + number(2) + attribute("a", "string", "", 1 << 30));
     const std::string file = folder_.file("a.exr");
     EXPECT_THROW(read_exr(file), Error);
     EXPECT_THROW(read_exr_texture(file), Error);

@@ -70,7 +70,8 @@ class HeaderCheck {
             const int32_t size = bytes_.whole();
             if (!type || bytes_.fails()) return false;
             if (size < 0 || size > bytes_.left())
-                fail("an attribute " + quoted(std::string_view(*name)) + " of " + std::to_string(static_cast<uint32_t>(size)) + " bytes");
+                fail("an attribute " + quoted(std::string_view(*name)) + " of " +
+                     std::to_string(static_cast<uint32_t>(size)) + " bytes");
             const int64_t end = bytes_.place() + size;
             look_at(*name, *type, end);
             bytes_.go_to(end);
@@ -85,7 +86,8 @@ class HeaderCheck {
         if (type == "stringvector") {
             while (bytes_.place() + 4 <= end) {
                 const int32_t size = bytes_.whole();
-                if (size < 0 || bytes_.place() + size > end) fail("a text too long in " + quoted(std::string_view(name)));
+                if (size < 0 || bytes_.place() + size > end)
+                    fail("a text too long in " + quoted(std::string_view(name)));
                 bytes_.go_to(bytes_.place() + size);
             }
         } else if (type == "preview") {

@@ -11,8 +11,8 @@
 
 #include "scene/image/exr.h"
 #include "scene/image/exr_checks.h"
-#include "scene/image/exr_header.h"
 #include "scene/image/exr_chroma.h"
+#include "scene/image/exr_header.h"
 #include "scene/image/file_colors.h"
 
 namespace cistula {
