@@ -8,7 +8,9 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS libcore/cistula.h
 file(STRINGS libcore/cistula.h _headers REGEX "^#include \"")
 list(TRANSFORM _headers REPLACE "^#include \"([^\"]+)\".*" "\\1")
 list(APPEND _headers cistula.h scene/base/shown_text.h scene/compile/effect_reason.h scene/compile/hull.h scene/description/mesh_source.h
-    scene/film/color_space.h)
+    scene/film/film_layers.h
+    scene/film/film_memory.h
+    scene/image/color_space.h)
 foreach(_header IN LISTS _headers)
     cmake_path(GET _header PARENT_PATH _folder)
     install(FILES "libcore/${_header}" DESTINATION "${CISTULA_INSTALL_HEADERS}/${_folder}")

@@ -15,6 +15,7 @@ std::string describe_flags(uint32_t flags) {
     if (flags & flag_media_overflow) parts.push_back("a ray was inside more solids at once than it can list");
     if (flags & flag_stack_overflow) parts.push_back("a ray's tree had more branches waiting than there is room for");
     if (flags & flag_too_many_crossings) parts.push_back("a straight ray crossed more faces than the limit");
+    if (flags & flag_objects_overflow) parts.push_back("a pixel showed more objects than its table holds");
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 

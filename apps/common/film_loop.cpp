@@ -37,6 +37,7 @@ LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
     Film one;
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
     one.pixels.assign(1, PixelRecord());
+    begin_layers(one.layers, job.settings.layers, 1, job.layer_names);
     LayeredPicture picture = to_layers(one, job.options.channels);
     const PixelRect& crop = job.settings.crop;
     picture.width = crop.width;
@@ -129,6 +130,14 @@ void reserve(Film& film, uint64_t pixels) {
     if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
 }
 
+/// Whether a pixel shows more objects than its table holds; the tables of this film and the next are then larger. One
+/// entry for each sample is always enough.
+bool needs_larger_tables(const Film& film, LayerRequest& layers) {
+    if ((film.flags & flag_objects_overflow) == 0 || layers.object_entries >= film.samples) return false;
+    layers.object_entries = std::min(4 * layers.object_entries, film.samples);
+    return true;
+}
+
 FrameStats stats_of(const Film& film, int frame, const std::string& path, double seconds, const RenderTimes& device) {
     FrameStats stats;
     stats.frame = frame;
@@ -166,6 +175,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
                            if (job.written) job.written(frame);
                        });
     size_t rendered = 0;
+    FrameSettings settings = job.settings;
     {
         FilmProgress report(options.quiet ? ProgressStyle::none : options.progress, progress);
         FramesToRender frames(job, progress.stop, stats.resumed, report);
@@ -184,10 +194,16 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             FinishedFrame finished;
             finished.film = writer.take_spare();
             reserve(finished.film, pixels);
-            if (next) renderer.expect(*next, job.settings);
+            if (next) renderer.expect(*next, settings);
             bool whole = false;
-            const double seconds =
-                seconds_of([&] { whole = renderer.render(camera, job.settings, finished.film, progress); });
+            const double seconds = seconds_of([&] {
+                whole = renderer.render(camera, settings, finished.film, progress);
+                while (whole && needs_larger_tables(finished.film, settings.layers)) {
+                    progress.pixels_done = 0;
+                    progress.rays = 0;
+                    whole = renderer.render(camera, settings, finished.film, progress);
+                }
+            });
             for (const std::string& note : renderer.notes())
                 if (!options.quiet && notes.insert(note).second) report.say("render: " + note);
             if (!whole) break;

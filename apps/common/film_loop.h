@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct FilmJob {
     const OutputName& output;
     const OutputName& preview;  // empty text: none
     const FrameList& frames;
+    std::shared_ptr<const LayerNames> layer_names = std::make_shared<const LayerNames>();
     /// Called for each frame whose files are whole, in the film's order, on any thread, one at a time.
     FrameSink written = {};
     /// Called with the frames that are next, and the one before them, in stretches of the length below. Returns a

@@ -16,7 +16,7 @@ namespace cistula {
 namespace {
 
 size_t bytes_of(const Film& film) {
-    return film.pixels.size() * sizeof(PixelRecord);
+    return film.pixels.size() * sizeof(PixelRecord) + film.layers.words.size() * sizeof(int64_t);
 }
 
 size_t bytes_of(const LayeredPicture& layers, const ColorPicture& color, const ColorPicture& preview) {

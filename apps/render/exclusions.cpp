@@ -34,7 +34,7 @@ void refuse_exclusions(const OptionTexts& texts) {
         {"--pixel", texts.pixel, "-o", !texts.output.empty(), no_image},
         {"--pixel", texts.pixel, "--preview", !texts.preview.empty(), no_image},
         {"--pixel", texts.pixel, "--stats", !texts.stats.empty(), "nothing is timed"},
-        {"--pixel", texts.pixel, "--aov", !texts.layers.empty(), no_image},
+        {"--pixel", texts.pixel, "--layers", !texts.layers.empty(), no_image},
         {"--pixel", texts.pixel, "--bits", texts.bits != defaults.bits, no_image},
         {"--pixel", texts.pixel, "--strict", texts.strict, no_image},
         {"--pixel", texts.pixel, "--background", texts.background != defaults.background, no_image},
@@ -50,6 +50,8 @@ void refuse_exclusions(const OptionTexts& texts) {
          "the CPU follows the rays, and every backend gives the same bits"},
         {"--pixel", texts.pixel, "--intersector", texts.intersector != defaults.intersector,
          "the rays of the exact image are followed"},
+        {"--layers", texts.layers, "--intersector", texts.intersector != defaults.intersector && texts.layers != "",
+         "they are parts of the exact image"},
         {"--target-error", texts.target_error, "--supersample", !texts.supersample.empty(),
          "pixels get as many samples as they need"},
         {"--target-error", texts.target_error, "--cutoff", !texts.cutoff.empty(),
@@ -71,7 +73,7 @@ void refuse_exclusions(const OptionTexts& texts) {
          "is for --pixel X,Y; of a render, --stats FILE.json tells the times"},
         {"--max-samples", texts.max_samples, !texts.target_error.empty(),
          "is for --target-error E; a grid's are --supersample's"},
-        {"--z-far", texts.z_far, !texts.layers.empty(), "is for --aov Z"},
+        {"--z-far", texts.z_far, !texts.layers.empty(), "is for --layers Z"},
         {"--dwa-level", texts.dwa_level, texts.compression.substr(0, 3) == "dwa", "is for --compression dwaa and dwab"},
     };
     for (const auto& [option, text, other_given, otherwise] : needs)

@@ -59,9 +59,14 @@ void choose_precision(RenderOptions& options, const SceneSource& source) {
     if (!choice.note.empty() && !options.quiet) note(fmt::format("render: {}", choice.note));
 }
 
+/// A scene that is ready to be rendered.
+struct Prepared {
+    std::unique_ptr<Renderer> renderer;
+    std::shared_ptr<const LayerNames> layer_names;
+};
+
 template <class Real>
-std::unique_ptr<Renderer> prepare(SceneSource source, const RenderOptions& options, const CudaOptions& cuda,
-                                  RunStats& stats) {
+Prepared prepare(SceneSource source, const RenderOptions& options, const CudaOptions& cuda, RunStats& stats) {
     std::shared_ptr<const CompiledScene<Real>> compiled;
     stats.compile_seconds += seconds_of([&] { compiled = compile_scene<Real>(std::move(source)); });
     stats.scene_hash = compiled->hash;
@@ -70,7 +75,7 @@ std::unique_ptr<Renderer> prepare(SceneSource source, const RenderOptions& optio
     std::unique_ptr<Renderer> renderer;
     stats.tree_seconds =
         seconds_of([&] { renderer = make_renderer<Real>(options.backend, compiled, cuda, options.intersection); });
-    return renderer;
+    return {std::move(renderer), compiled->layer_names};
 }
 
 /// The names of the images and previews, and their frames.
@@ -95,13 +100,12 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
     outputs.image = OutputName(name, "-o");
     outputs.frames = frames_to_render(outputs.image, options.frames, scene.film.frames);
     if (file_kind(name) == FileKind::raw) {
-        const auto refuse = [&](const char* option, const char* why) {
+        const auto refuse = [&](const std::string& option, const char* why) {
             throw Error(ExitCode::usage, fmt::format("-o {}: {} needs an .exr; {}", name, option, why));
         };
         if (options.channels.half) refuse("--bits half", "raw frames have 8 bits a channel");
         const OutputChannels& c = options.channels;
-        if (c.error || c.id || c.samples || c.cost || c.z || c.normal || c.coverage)
-            refuse("--aov", "raw frames have no layers");
+        if (!options.layers.empty()) refuse("--layers", "raw frames have none");
         if (c.transparent) refuse("--background transparent", "raw frames have no alpha");
         if (c.space != &color_spaces().front()) refuse("--colorspace", "raw frames are sRGB");
         if (c.compression != Compression::zip) refuse("--compression", "raw frames have none");
@@ -199,10 +203,10 @@ void render_scene(RenderOptions options) {
         others.writes(options.stats, "--stats");
         prepare_files(options, scene, others, source.files, outputs);
         stats.compile_seconds += seconds_of([&] { choose_precision(options, source); });
-        const std::unique_ptr<Renderer> renderer =
-            options.precision == Precision::double_
-                ? prepare<double>(std::move(source), options, devices.options, stats)
-                : prepare<float>(std::move(source), options, devices.options, stats);
+        const Prepared prepared = options.precision == Precision::double_
+                                      ? prepare<double>(std::move(source), options, devices.options, stats)
+                                      : prepare<float>(std::move(source), options, devices.options, stats);
+        Renderer& renderer = *prepared.renderer;
         guard.watch(progress.stop);
         std::optional<StatsFile> file;
         if (!options.stats.empty()) {
@@ -212,23 +216,24 @@ void render_scene(RenderOptions options) {
             file->add_phase("tree", stats.tree_seconds);
         }
         const auto write_stats = [&] {
-            stats.intersector = renderer->intersector();
-            stats.effects = renderer->effects();
-            stats.scene_bytes = renderer->memory();
+            stats.intersector = renderer.intersector();
+            stats.effects = renderer.effects();
+            stats.scene_bytes = renderer.memory();
             if (file) file->finish(stats, options);
         };
         if (options.verbose)
             note(fmt::format("render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}",
-                             stats.read_seconds, stats.compile_seconds, stats.tree_seconds, renderer->memory(),
+                             stats.read_seconds, stats.compile_seconds, stats.tree_seconds, renderer.memory(),
                              stats.scene_hash));
         FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
+        job.layer_names = prepared.layer_names;
         if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
         job.look_ahead = [&](const std::vector<int>& frames) {
             return look_ahead(outputs, options, scene, others, frames);
         };
         double seconds = 0;
         try {
-            seconds = seconds_of([&] { render_film(job, *renderer, progress, stats); });
+            seconds = seconds_of([&] { render_film(job, renderer, progress, stats); });
         } catch (const Error&) {
             warn_of_clamped(stats.totals, outputs.image, options);
             try {

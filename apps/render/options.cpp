@@ -55,12 +55,16 @@ void declare(CLI::App& app, OptionTexts& texts) {
         ->type_name("N");
     app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
     app.add_flag("--strict", texts.strict, "with --bits half: a value over 65504 is an error, and not clamped");
-    app.add_option("--aov", texts.layers, "more layers: any of error,id,samples,cost,Z,N,coverage")->type_name("LIST");
-    app.add_option("--z-far", texts.z_far, "with --aov Z: the depth of nothing, a number or inf; 1e10")->type_name("Z");
+    app.add_option("--layers,--aov", texts.layers,
+                   "more layers: path, light, data, cryptomatte, or single ones such as diffuse, Z, N")
+        ->type_name("LIST");
+    app.add_option("--z-far", texts.z_far, "with --layers Z: the depth of nothing, a number or inf; 1e10")
+        ->type_name("Z");
     app.add_option("--background", texts.background, "opaque, or transparent: alpha is coverage, color premultiplied")
         ->type_name("NAME");
     app.add_option("--colorspace", texts.color_space,
-                   "lin_rec709_scene, lin_ap1_scene (ACEScg), lin_ap0_scene (ACES2065-1) or lin_rec2020_scene")
+                   "lin_rec709_scene, lin_ap1_scene (ACEScg), lin_ap0_scene (ACES2065-1), lin_rec2020_scene, "
+                   "lin_p3d65_scene or lin_adobergb_scene")
         ->type_name("NAME");
     app.add_option("--compression", texts.compression, "none, rle, zips, zip, piz, or with losses dwaa, dwab")
         ->type_name("NAME");
@@ -123,6 +127,7 @@ RenderOptions checked(const OptionTexts& texts) {
             chosen<Action>("--explain", texts.explain, {{"needs", Action::explain}, {"measure", Action::measure}});
 
     options.scene = texts.scene;
+    options.layers = texts.layers;
     options.output = texts.output;
     options.preview = texts.preview;
     options.view = parse_view(texts.view);
@@ -229,7 +234,7 @@ Examples:
   render scenes/seed.json -o out/beauty.####.exr                   all frames of the film
   render scenes/seed.json -o out/beauty.####.exr --resume          those still missing
   render scenes/seed.json -o out/f%04d.exr -f 0-299x30,7 --res 320x180
-  render scenes/glass.json -o g.exr --precision double --supersample 4 --aov error,id,Z,N
+  render scenes/glass.json -o g.exr --precision double --supersample 4 --layers path,error,id,Z,N
   render scenes/infinity.json -o corner.exr --crop 64x64+128+96 --cutoff 0.001 --stats corner.json
   render scenes/benchmark.json -o b.exr --target-error 0.004       as many samples and bounces as that takes
   render scenes/seed.json -o out/beauty.####.exr --backend cuda --device all
@@ -256,21 +261,39 @@ PixelPlace parse_pixel(std::string_view text) {
 
 OutputChannels parse_layers(std::string_view text) {
     OutputChannels layers;
-    const std::vector<std::pair<std::string_view, bool OutputChannels::*>> known = {
-        {"error", &OutputChannels::error},      {"id", &OutputChannels::id}, {"samples", &OutputChannels::samples},
-        {"cost", &OutputChannels::cost},        {"Z", &OutputChannels::z},   {"N", &OutputChannels::normal},
-        {"coverage", &OutputChannels::coverage}};
-    std::vector<std::string_view> names;
-    for (const auto& entry : known) names.push_back(entry.first);
+    struct Layer {
+        std::string_view name, group;
+        bool* wanted;
+    };
+    std::vector<Layer> known = {{"P", "data", &layers.position},
+                                {"uv", "data", &layers.uv},
+                                {"albedo", "data", &layers.albedo},
+                                {"N", "data", &layers.normal},
+                                {"Z", "data", &layers.z},
+                                {"depth_ray", "data", &layers.depth_ray},
+                                {"coverage", "data", &layers.coverage},
+                                {"id", "data", &layers.id},
+                                {"material_id", "data", &layers.material_id},
+                                {"samples", "data", &layers.samples},
+                                {"cost", "data", &layers.cost},
+                                {"error", "data", &layers.error},
+                                {"light", "light", &layers.light},
+                                {"CryptoObject", "cryptomatte", &layers.object_mattes},
+                                {"CryptoMaterial", "cryptomatte", &layers.material_mattes},
+                                {"CryptoLight", "cryptomatte", &layers.light_mattes}};
+    for (int layer = 0; layer < path_layer_count; ++layer)
+        known.push_back({path_layer_names[layer], "path", &layers.path[layer]});
+    std::vector<std::string_view> names = {"path", "data", "cryptomatte"};
+    for (const Layer& layer : known) names.push_back(layer.name);
     for (size_t begin = 0; begin <= text.size();) {
         const size_t comma = std::min(text.find(',', begin), text.size());
         const std::string_view name = text.substr(begin, comma - begin);
         bool found = false;
-        for (const auto& [known_name, member] : known)
-            if (known_name == name) layers.*member = found = true;
+        for (const Layer& layer : known)
+            if (layer.name == name || layer.group == name) *layer.wanted = found = true;
         if (!found)
             fail_usage(
-                fmt::format("--aov {}: there is no layer '{}'; {}", text, name, suggestion(name, names, "layers")));
+                fmt::format("--layers {}: there is no layer '{}'; {}", text, name, suggestion(name, names, "layers")));
         begin = comma + 1;
     }
     return layers;
@@ -290,6 +313,7 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     settings.cutoff = options.cutoff.value_or(settings.cutoff);
     settings.target_error = options.target_error.value_or(0);
     settings.max_samples = options.max_samples.value_or(settings.max_samples);
+    settings.layers = layers_for(options.channels);
     settings.effects = options.all_effects ? all_effects : 0;
     // With a target error the depth is unlimited by default: the budget of truncation ends the ray trees.
     if (settings.adaptive()) settings.depth = options.depth.value_or(largest_depth);

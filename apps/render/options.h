@@ -25,6 +25,7 @@ struct RenderOptions : FilmOptions {
     std::optional<Precision> wanted_precision;  // none: auto, which the scene decides (precision_choice.h)
     Action action = Action::render;
     std::string scene;     // "-": standard input
+    std::string layers;    // as given; empty: none
     std::string output;    // as given; empty: default_output
     std::string preview;   // as given; empty: none
     FrameList frames;      // empty: none given
@@ -52,8 +53,8 @@ std::string help_text();
 /// Parses "X,Y". Throws Error (usage).
 PixelPlace parse_pixel(std::string_view text);
 
-/// Parses a list of layers, any of "error,id,samples,cost,Z,N,coverage". Throws Error (usage) with the nearest name for
-/// an unknown one.
+/// Parses a list of layers and groups of layers (docs/programs.md). Throws Error (usage) with the nearest name for an
+/// unknown one.
 OutputChannels parse_layers(std::string_view text);
 
 /// Reads the scene, and adds what options say about reading it. Throws Error.

@@ -1,4 +1,6 @@
 // render-compare: compares two images, or a backend's images with the golden ones.
+#include <algorithm>
+
 #include "apps/common/command_line.h"
 #include "compare.h"
 #include "golden_run.h"
@@ -8,6 +10,7 @@
 #include "scene/base/error.h"
 #include "scene/base/shown_text.h"
 #include "scene/image/exr.h"
+#include "sums.h"
 
 namespace cistula {
 namespace {
@@ -30,6 +33,18 @@ bool compare_files(const CompareOptions& options) {
     return passes(comparison, options.thresholds);
 }
 
+bool check_sums(const CompareOptions& options) {
+    const LayeredPicture picture = read_exr(options.a);
+    const std::vector<DivisionSums> divisions = division_sums(picture);
+    if (divisions.empty())
+        throw Error(ExitCode::file,
+                    one_line(options.a) +
+                        ": has no R G B with all layers by path or by light; render --layers path,light writes them");
+    if (!options.quiet)
+        print(sums_text(divisions, static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height)));
+    return std::all_of(divisions.begin(), divisions.end(), [](const DivisionSums& d) { return d.pixels_off == 0; });
+}
+
 int run(const CompareOptions& options) {
     bool holds = true;
     switch (options.action) {
@@ -41,6 +56,9 @@ int run(const CompareOptions& options) {
             break;
         case CompareAction::compare:
             holds = compare_files(options);
+            break;
+        case CompareAction::sums:
+            holds = check_sums(options);
             break;
         case CompareAction::golden:
             holds = run_golden(options);

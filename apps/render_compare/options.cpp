@@ -17,7 +17,7 @@ constexpr const char* default_golden = "golden";
 
 /// The options' texts as CLI11 stores them.
 struct Texts {
-    std::string a, b, fail, failpercent, hardfail, diff, json, golden, backend, device, precision;
+    std::string a, b, fail, failpercent, hardfail, diff, json, golden, sums, backend, device, precision;
     bool quiet = false, version = false;
 };
 
@@ -29,6 +29,8 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--hardfail", texts.hardfail, "no pixel may differ by more than E")->type_name("E");
     app.add_option("--diff", texts.diff, "write the absolute differences as an image")->type_name("FILE.exr");
     app.add_option("--json", texts.json, "write the result as JSON")->type_name("FILE");
+    app.add_option("--sums", texts.sums, "whether an image's layers by path and by light add up to its R G B")
+        ->type_name("FILE.exr");
     app.add_option("--golden", texts.golden,
                    "render the golden images in DIR again, of the scenes in DIR/../scenes, and compare; golden")
         ->type_name("[DIR]")
@@ -101,6 +103,21 @@ void check_images(const Texts& texts, CompareOptions& options) {
         fail_usage(fmt::format("--diff {}: differences are written as an EXR; name it *.exr", options.diff));
 }
 
+void check_sums(const Texts& texts, CompareOptions& options) {
+    constexpr const char* one = "--sums looks at one image by itself; leave it out";
+    refuse(!texts.a.empty(), texts.a.c_str(), one);
+    refuse(!texts.fail.empty(), "--fail", one);
+    refuse(!texts.failpercent.empty(), "--failpercent", one);
+    refuse(!texts.hardfail.empty(), "--hardfail", one);
+    refuse(!texts.diff.empty(), "--diff", one);
+    refuse(!texts.json.empty(), "--json", one);
+    refuse(!texts.backend.empty(), "--backend", one);
+    refuse(!texts.device.empty(), "--device", one);
+    refuse(!texts.precision.empty(), "--precision", one);
+    options.action = CompareAction::sums;
+    options.a = texts.sums;
+}
+
 }  // namespace
 
 CompareOptions parse_compare_options(int argc, const char* const* argv) {
@@ -120,7 +137,10 @@ CompareOptions parse_compare_options(int argc, const char* const* argv) {
     if (app.count("--golden") > 0) {
         const std::string& extra = texts.b.empty() ? texts.a : texts.b;
         if (!extra.empty()) fail_usage(fmt::format("{}: --golden takes one folder and no images", extra));
+        refuse(!texts.sums.empty(), "--sums", "belongs to one image, and --golden renders its own; leave one out");
         check_golden(texts, options);
+    } else if (!texts.sums.empty()) {
+        check_sums(texts, options);
     } else {
         check_images(texts, options);
     }
@@ -138,6 +158,7 @@ std::string compare_help_text() {
 Examples:
   render-compare a.exr b.exr
   render-compare float.exr double.exr --fail 0.002 --failpercent 0.1 --hardfail 0.5 --diff differences.exr
+  render-compare --sums layers.exr                         whether layers by path and by light add up
   render-compare --golden                                  in the source tree: every golden image, on the CPU
   render-compare --golden --backend cuda --device all      the same on the GPUs
 

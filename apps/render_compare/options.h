@@ -9,11 +9,11 @@
 
 namespace cistula {
 
-enum class CompareAction { compare, golden, print_help, print_version };
+enum class CompareAction { compare, golden, sums, print_help, print_version };
 
 struct CompareOptions {
     CompareAction action = CompareAction::compare;
-    std::string a, b;
+    std::string a, b;  // with --sums: a alone
     Thresholds thresholds;
     std::string diff, json;  // files; empty: none
     bool quiet = false;

@@ -72,6 +72,10 @@ std::string count_text(uint64_t value) {
     return text;
 }
 
+std::string count_text(double value) {
+    return value >= 0 && value < 0x1p64 ? count_text(static_cast<uint64_t>(value)) : number_text(value);
+}
+
 std::string percent_text(double share) {
     return plain(100 * share, share < 0.1 ? 2 : 3) + " %";
 }

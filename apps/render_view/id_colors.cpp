@@ -21,7 +21,7 @@ glm::vec3 id_color(uint32_t id) {
         const double around =
             std::abs(std::fmod(hue + 6 - 2 * c, 6) - 3);  // from 0, opposite to the channel's hue, to 3
         const double share = std::clamp(around - 1, 0.0, 1.0);
-        color[c] = linear_from_srgb8(static_cast<uint8_t>(low + std::lround(share * (high - low))));
+        color[c] = srgb8_to_linear(static_cast<uint8_t>(low + std::lround(share * (high - low))));
     }
     return color;
 }

@@ -75,7 +75,7 @@ Sheet make_sheet(const ExrFile& file, const std::vector<Layer>& layers, const Vi
                                layers.size(), grid.width(), grid.height()));
     Sheet sheet;
     sheet.picture = {static_cast<uint32_t>(grid.width()), static_cast<uint32_t>(grid.height()), {}};
-    sheet.picture.texels.assign(grid.width() * grid.height(), glm::vec3(linear_from_srgb8(48)));
+    sheet.picture.texels.assign(grid.width() * grid.height(), glm::vec3(srgb8_to_linear(48)));
     std::vector<std::string> lines(layers.size());
     std::set<size_t> parts;
     for (const Layer& layer : layers) parts.insert(layer.part);

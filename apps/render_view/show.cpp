@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "id_colors.h"
-#include "scene/film/color_space.h"
+#include "scene/image/color_space.h"
 #include "scene/image/srgb_codes.h"
 
 namespace cistula {
@@ -35,7 +36,7 @@ struct Range {
 
 /// The linear value that is shown as a share of the codes of a PNG, from 0 to 1.
 float linear_of_code(double share) {
-    return linear_from_srgb8(static_cast<uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
+    return srgb8_to_linear(static_cast<uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
 }
 
 /// From the primaries of a part to those of sRGB; nothing if it says none, or these, or what is no color space.
@@ -44,19 +45,15 @@ std::optional<glm::dmat3> to_rec709(const ExrPart& part) {
     if (found == part.attributes.end()) return std::nullopt;
     const auto* xy = std::get_if<std::vector<float>>(&found->second);
     if (!xy || xy->size() != 8) return std::nullopt;
-    ColorSpace space{};
-    double* const points[] = {space.red, space.green, space.blue, space.white};
+    Chromaticities chromaticities;
+    std::copy_n(xy->begin(), chromaticities.size(), chromaticities.begin());
     const ColorSpace& target = color_spaces().front();
-    const double* const targets[] = {target.red, target.green, target.blue, target.white};
-    bool is_same = true;
-    for (size_t i = 0; i < 8; ++i) {
-        points[i / 2][i % 2] = static_cast<double>((*xy)[i]);
-        is_same &= (*xy)[i] == static_cast<float>(targets[i / 2][i % 2]);
+    try {
+        const ColorSpace space = color_space_of(chromaticities);
+        return space.id == target.id ? std::nullopt : std::optional(color_matrix(space, target));
+    } catch (const std::runtime_error&) {
+        return std::nullopt;
     }
-    const glm::dmat3 matrix = color_matrix(space, target);
-    for (int i = 0; i < 9; ++i)
-        if (!std::isfinite(matrix[i / 3][i % 3])) return std::nullopt;
-    return is_same ? std::nullopt : std::optional(matrix);
 }
 
 /// Fills the picture, one pixel after the other; those with a value that is not finite stay black.

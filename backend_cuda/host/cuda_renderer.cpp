@@ -30,17 +30,7 @@ class CudaRenderer : public Renderer {
         : scene_(std::move(scene)), options_(options), view_(scene_->view()) {
         const std::vector<CudaDevice> known = list_cuda_devices();
         for (const int index : options_.devices) require(known, index);
-        path_ = options_.always_tree ? DevicePath::tree : path_for(view_);
-        if (path_ == DevicePath::tree) {
-            tree_ = facet_tree(view_);
-            tree_.put_into(view_);
-        }
-        const SceneArena<Real> arena(view_);
-        bytes_ = arena.bytes().size();
-        for (const int index : options_.devices) {
-            use_device(index);
-            workers_.push_back(std::make_unique<DeviceWorker<Real>>(index, arena, view_, path_));
-        }
+        take_path(options_.always_tree ? DevicePath::tree : path_for(view_));
     }
 
     ~CudaRenderer() override {
@@ -55,6 +45,10 @@ class CudaRenderer : public Renderer {
         notes_.clear();
         times_ = {};
         prepare_film(film, settings, *scene_, camera);
+        if (settings.layers.any() && path_ != DevicePath::tree) {
+            drop();
+            take_path(DevicePath::tree);
+        }
         if (!begun_ || !same(begun_->camera, camera) || begun_->settings != settings) {
             if (begun_) drop();
             FramePlan fresh = planned(camera, settings);
@@ -109,6 +103,22 @@ class CudaRenderer : public Renderer {
                                                       known[size_t(index)].obstacle));
     }
 
+    /// Brings the scene to the devices in the form that a path needs.
+    void take_path(DevicePath path) {
+        path_ = path;
+        if (path_ == DevicePath::tree) {
+            tree_ = facet_tree(view_);
+            tree_.put_into(view_);
+        }
+        const SceneArena<Real> arena(view_);
+        bytes_ = arena.bytes().size();
+        workers_.clear();
+        for (const int index : options_.devices) {
+            use_device(index);
+            workers_.push_back(std::make_unique<DeviceWorker<Real>>(index, arena, view_, path_));
+        }
+    }
+
     /// The plan of a frame, undivided, whose first part is to go to a slot.
     FramePlan planned(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) const {
         use_default_rounding();
@@ -152,8 +162,7 @@ class CudaRenderer : public Renderer {
         const int wanted = strips;
         const auto has_room = [&] {
             return std::all_of(workers_.begin(), workers_.end(), [&](const auto& worker) {
-                return worker->reserve(size_t(strips) * plan.strip_pixels, options_.memory_limit, plan.sampling,
-                                       plan.mask);
+                return worker->reserve(size_t(strips) * plan.strip_pixels, options_.memory_limit, plan);
             });
         };
         for (; !has_room(); strips = (strips + 1) / 2)

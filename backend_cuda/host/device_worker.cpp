@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "scene/film/put_pixels.h"
+#include "scene/frame/frame_view.h"
 
 namespace cistula {
 namespace {
@@ -75,6 +76,7 @@ template <class Real>
 FrameJob DeviceWorker<Real>::job_for(const PartSlot& slot) const {
     FrameJob job;
     job.records = slot.records.template as<PixelRecord>();
+    job.layers = slot.layers.template as<int64_t>();
     job.tally = slot.tally.template as<DeviceTally>();
     job.next = next_.as<unsigned int>();
     job.stop = stop_.on_device();
@@ -103,21 +105,26 @@ void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
 }
 
 template <class Real>
-bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, Sampling sampling, int mask) {
+bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const FramePlan& plan) {
     use_device(device_);
-    prime(sampling, mask);
+    prime(plan.sampling, plan.mask);
     const size_t bytes = pixels * sizeof(PixelRecord);
-    if (memory_limit != 0 && slots * bytes > memory_limit) return false;
+    const size_t layer_bytes = pixels * size_t(plan.view.layers.words) * sizeof(int64_t);
+    if (memory_limit != 0 && slots * (bytes + layer_bytes) > memory_limit) return false;
     bool room = true;
     // At most one block per tile.
     const size_t list_bytes = pixels / (tile_width * tile_height) * sizeof(BlockPlace);
     for (PartSlot& slot : slots_) {
-        room = room && slot.records.try_reserve(bytes) && slot.blocks.try_reserve(list_bytes);
+        room = room && slot.records.try_reserve(bytes) && slot.layers.try_reserve(layer_bytes) &&
+               slot.blocks.try_reserve(list_bytes);
         slot.blocks_copy.reserve(list_bytes);
     }
     if (room) return true;
     // Frees what was allocated: it would be missing when less is requested.
-    for (PartSlot& slot : slots_) slot.records.free();
+    for (PartSlot& slot : slots_) {
+        slot.records.free();
+        slot.layers.free();
+    }
     return false;
 }
 
@@ -141,6 +148,8 @@ void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips, int 
     job.mapping = plan.blocks.mapping;
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     CISTULA_CUDA_CHECK(cudaMemsetAsync(job.next, 0, next_bytes, compute_));
+    const size_t words = places.size() * size_t(plan.blocks.shape().pixels()) * size_t(plan.view.layers.words);
+    if (words != 0) CISTULA_CUDA_CHECK(cudaMemsetAsync(job.layers, 0, words * sizeof(int64_t), compute_));
     CISTULA_CUDA_CHECK(cudaMemcpyAsync(slot.blocks.template as<void>(), slot.blocks_copy.template as<void>(),
                                        places.size() * sizeof(BlockPlace), cudaMemcpyHostToDevice, compute_));
     CISTULA_CUDA_CHECK(cudaEventRecord(slot.begin, compute_));
@@ -161,6 +170,7 @@ bool DeviceWorker<Real>::fetch(int index, Film& film, const std::atomic<bool>& s
     if (!slot.list.places().empty()) {
         totals.kernel_seconds += slot.end.since(slot.begin) * 1e-3;
         readback_.copy(slot.records.template as<PixelRecord>(), slot.list, film);
+        readback_.copy_layers(slot.layers.template as<int64_t>(), slot.list, film);
     }
     const DeviceTally& tally = *slot.tally_copy.template as<DeviceTally>();
     for (const auto& counts : tally.rays) {
@@ -200,6 +210,7 @@ void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
         slot.list.for_each_gap(i, [&](int row, int begin, int end) {
             slot.hints->fill(writer, film.rect.x + begin, film.rect.y + row, end - begin,
                              &film.pixels[size_t(row) * size_t(film.rect.width) + size_t(begin)], rays, flags);
+            fill_background_layers(film, size_t(row) * size_t(film.rect.width) + size_t(begin), size_t(end - begin));
         });
         const std::lock_guard<std::mutex> lock(together);
         totals.rays.add(rays);

@@ -25,7 +25,7 @@ class DeviceWorker {
 
     /// Allocates memory for parts of `pixels` pixels, counting whole blocks, in both slots, beside what a mask's kernel
     /// allocates for itself. False if there is not enough.
-    bool reserve(size_t pixels, size_t memory_limit, Sampling sampling, int mask);
+    bool reserve(size_t pixels, size_t memory_limit, const FramePlan& plan);
 
     /// Enqueues a part of a frame without waiting. Its slot must be free.
     void start(const FramePlan& plan, const Strips& strips, int slot);
@@ -51,7 +51,7 @@ class DeviceWorker {
   private:
     /// A part that is being rendered.
     struct PartSlot {
-        DeviceMemory records, blocks, tally;
+        DeviceMemory records, layers, blocks, tally;
         PinnedMemory blocks_copy, tally_copy;
         CudaEvent begin, end, done;  // around the kernel; after the tally's copy too
         std::shared_ptr<const FrameHints> hints;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "scene/film/put_pixels.h"
 
@@ -29,48 +30,80 @@ RecordOrder rows_of_records(const BlockPlan& plan) {
     return records;
 }
 
-/// Writes a block's records to the film.
-void unpack(const PixelRecord* from, const RecordOrder& records, BlockShape shape, const BlockPlace& block, Film& film,
-            const PixelWriter& writer) {
+/// Calls put(pixel of the film, record of the block) for the pixels of a block that lie in the film.
+template <class Put>
+void for_each_pixel(const RecordOrder& records, BlockShape shape, const BlockPlace& block, const Film& film,
+                    const Put& put) {
     const int left = block.column * shape.width, top = block.row * shape.height;
     const int width = std::min(shape.width, film.rect.width - left),
               height = std::min(shape.height, film.rect.height - top);
     for (int row = 0; row < height; ++row) {
-        PixelRecord* to = &film.pixels[size_t(top + row) * size_t(film.rect.width) + size_t(left)];
+        const size_t first = size_t(top + row) * size_t(film.rect.width) + size_t(left);
         for (int column = 0; column < width; ++column)
-            writer.put(to[column], from[records[size_t(row * shape.width + column)]]);
+            put(first + size_t(column), records[size_t(row * shape.width + column)]);
     }
 }
 
 }  // namespace
 
-void Readback::copy(const PixelRecord* records, const BlockList& list, Film& film) {
-    const std::vector<BlockPlace>& places = list.places();
-    const BlockShape shape = list.shape();
-    const auto order = rows_of_records(list.plan());
-    const size_t in_block = size_t(shape.pixels());
-    const int count = int(places.size());
+/// Copies what the device has of each pixel of a list's blocks, `pixel_bytes` from `from` on, in batches. Calls
+/// unpack(bytes, first, count) for the blocks first to first + count - 1, in several threads.
+template <class Unpack>
+void Readback::copy_blocks(const std::byte* from, size_t pixel_bytes, const BlockList& list, const Unpack& unpack) {
+    const size_t block_bytes = size_t(list.shape().pixels()) * pixel_bytes;
+    const int count = int(list.places().size());
     // Staging buffers no larger than needed: locking pages takes longer than rendering a small frame.
-    const int batch = std::min(int(staging_bytes / (in_block * sizeof(PixelRecord))), count);
-    for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * in_block * sizeof(PixelRecord));
+    const int batch = std::clamp(int(staging_bytes / block_bytes), 1, count);
+    for (PinnedMemory& buffer : staging_) buffer.reserve(size_t(batch) * block_bytes);
     const auto fill = [&](int first, int buffer) {
-        const size_t pixels = size_t(std::min(batch, count - first)) * in_block;
-        CISTULA_CUDA_CHECK(cudaMemcpyAsync(staging_[buffer].as<void>(), records + size_t(first) * in_block,
-                                           pixels * sizeof(PixelRecord), cudaMemcpyDeviceToHost, stream_));
+        const size_t bytes = size_t(std::min(batch, count - first)) * block_bytes;
+        CISTULA_CUDA_CHECK(cudaMemcpyAsync(staging_[buffer].as<void>(), from + size_t(first) * block_bytes, bytes,
+                                           cudaMemcpyDeviceToHost, stream_));
         CISTULA_CUDA_CHECK(cudaEventRecord(staged_[buffer], stream_));
     };
     fill(0, 0);
     for (int first = 0, buffer = 0; first < count; first += batch, buffer ^= 1) {
         CISTULA_CUDA_CHECK(cudaEventSynchronize(staged_[buffer]));
         if (first + batch < count) fill(first + batch, buffer ^ 1);
-        const PixelRecord* from = staging_[buffer].as<PixelRecord>();
+        const std::byte* staged = staging_[buffer].as<std::byte>();
         const tbb::blocked_range<int> blocks(0, std::min(batch, count - first), blocks_together);
         tbb::parallel_for(blocks, [&](const tbb::blocked_range<int>& some) {
-            const PixelWriter writer;
-            for (int i = some.begin(); i < some.end(); ++i)
-                unpack(from + size_t(i) * in_block, order, shape, places[size_t(first + i)], film, writer);
+            unpack(staged + size_t(some.begin()) * block_bytes, first + some.begin(), int(some.size()));
         });
     }
+}
+
+void Readback::copy(const PixelRecord* records, const BlockList& list, Film& film) {
+    const auto order = rows_of_records(list.plan());
+    const BlockShape shape = list.shape();
+    copy_blocks(reinterpret_cast<const std::byte*>(records), sizeof(PixelRecord), list,
+                [&](const std::byte* bytes, int first, int count) {
+                    const PixelWriter writer;
+                    for (int i = 0; i < count; ++i) {
+                        const PixelRecord* from =
+                            reinterpret_cast<const PixelRecord*>(bytes) + size_t(i) * size_t(shape.pixels());
+                        for_each_pixel(
+                            order, shape, list.places()[size_t(first + i)], film,
+                            [&](size_t pixel, size_t record) { writer.put(film.pixels[pixel], from[record]); });
+                    }
+                });
+}
+
+void Readback::copy_layers(const int64_t* layers, const BlockList& list, Film& film) {
+    const auto order = rows_of_records(list.plan());
+    const BlockShape shape = list.shape();
+    const size_t words = size_t(film.layers.plan.words), pixel_bytes = words * sizeof(int64_t);
+    if (words == 0) return;
+    copy_blocks(
+        reinterpret_cast<const std::byte*>(layers), pixel_bytes, list,
+        [&](const std::byte* bytes, int first, int count) {
+            for (int i = 0; i < count; ++i) {
+                const std::byte* from = bytes + size_t(i) * size_t(shape.pixels()) * pixel_bytes;
+                for_each_pixel(order, shape, list.places()[size_t(first + i)], film, [&](size_t pixel, size_t record) {
+                    std::memcpy(film.layers.words.data() + pixel * words, from + record * pixel_bytes, pixel_bytes);
+                });
+            }
+        });
 }
 
 }  // namespace cistula

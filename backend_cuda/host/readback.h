@@ -1,6 +1,8 @@
 // Copies the records of blocks from a GPU's memory to a film.
 #pragma once
 
+#include <cstddef>
+
 #include "backend_cuda/host/block_list.h"
 #include "backend_cuda/host/cuda_resources.h"
 #include "scene/film/film.h"
@@ -14,9 +16,15 @@ class Readback {
     /// page-locked buffers: one is filled while threads distribute the other over the film.
     void copy(const PixelRecord* records, const BlockList& list, Film& film);
 
+    /// Copies the words of layers, as copy() does records.
+    void copy_layers(const int64_t* layers, const BlockList& list, Film& film);
+
     cudaStream_t stream() const { return stream_; }
 
   private:
+    template <class Unpack>
+    void copy_blocks(const std::byte* from, size_t pixel_bytes, const BlockList& list, const Unpack& unpack);
+
     CudaStream stream_;
     PinnedMemory staging_[2];
     CudaEvent staged_[2];

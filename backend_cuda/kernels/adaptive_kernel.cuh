@@ -103,8 +103,9 @@ class WarpPixels {
     }
 
     /// Lets pixels that have all samples of their round decide which samples they want next, and writes the sums of
-    /// those that are finished.
-    __device__ void finish_round() {
+    /// those that are finished. stands_for(x, y, record, slot, weight) is told of their samples if it is `wanted`.
+    template <class StandsFor>
+    __device__ void finish_round(const StandsFor& stands_for) {
         const bool ready = wanted_ != 0 && given_ == wanted_;
         if (!__any_sync(whole_warp, ready)) return;
         const LatticeSettings& settings = job_.frame.lattice;
@@ -121,12 +122,20 @@ class WarpPixels {
         for (int j = lane_; __any_sync(whole_warp, j < standing.total); j += warp_threads) {
             int pixel = 0, i = 0;
             standing.find(j, pixel, i);
-            PixelRecord& to = records_[__shfl_sync(whole_warp, record, pixel)];
+            const unsigned int place = __shfl_sync(whole_warp, record, pixel);
+            PixelRecord& to = records_[place];
+            int x = 0, y = 0;
+            if constexpr (StandsFor::wanted) {
+                x = __shfl_sync(whole_warp, x_, pixel);
+                y = __shfl_sync(whole_warp, y_, pixel);
+            }
             if (j >= standing.total) continue;
             // Summed locally: reading the next sample right after an atomic addition would wait for it.
             PixelRecord cell = PixelRecord();
-            storage_[pixel].pixel.accumulate(
-                i, [&](int slot, int weight) { storage_[pixel].samples[slot].give(cell, weight, Plus()); });
+            storage_[pixel].pixel.accumulate(i, [&](int slot, int weight) {
+                storage_[pixel].samples[slot].give(cell, weight, Plus());
+                if constexpr (StandsFor::wanted) stands_for(x, y, place, slot, weight);
+            });
             cell.give(to, AtomicAdd());
         }
         if (done) storage_[lane_].pixel.describe(records_[record_]);
@@ -166,7 +175,29 @@ class WarpPixels {
     int cells_ = 0;
 };
 
-template <class Real, DevicePath path>
+/// What happens to samples that count in the end: nothing more.
+struct NoLayers {
+    static constexpr bool wanted = false;
+};
+/// What happens to samples that count in the end: they are traced again into the layers of their pixel.
+template <class Real, class Intersector, class Stack>
+struct IntoLayers {
+    static constexpr bool wanted = true;
+    using E = Effects<effect_masks[layered_mask]>;
+    const FrameJob& job;
+    const typename Intersector::Scene& scene;
+    const Intersector& intersector;
+    PixelWork& own;
+    Stack& stack;
+
+    __device__ void operator()(int x, int y, unsigned int record, int slot, int weight) const {
+        add_layers(
+            PixelTask<E, Intersector, Stack>{scene, job.frame, intersector, x, y, own, stack, job.layers_of(record)},
+            slot, weight);
+    }
+};
+
+template <class Real, DevicePath path, bool layered>
 __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(adaptive_shape, path))
     render_adaptive(const __grid_constant__ FrameJob job,
                     const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
@@ -193,7 +224,10 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
             if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
         });
         if (!any || __any_sync(whole_warp, ends)) break;
-        pixels.finish_round();
+        if constexpr (layered)
+            pixels.finish_round(IntoLayers<Real, Intersector, Stack>{job, scene, intersector, own, stack});
+        else
+            pixels.finish_round(NoLayers());
     }
     add_to_tally(*job.tally, own.rays, own.flags);
 }

@@ -31,6 +31,7 @@ inline constexpr int pixels_at_work = 16;
 struct FrameJob {
     FrameView frame;
     PixelRecord* records = nullptr;  // ordered by blocks; unset beyond the rectangle
+    int64_t* layers = nullptr;       // frame.layers.words for each record, 0 at first
     int x = 0, y = 0;                // of the rectangle in the frame
     int width = 0, height = 0;       // of the rectangle
     const BlockPlace* blocks = nullptr;
@@ -41,6 +42,10 @@ struct FrameJob {
     unsigned int* next = nullptr;        // adaptive sampling: the pixel that the next free warp takes,
     LatticeStorage* storage = nullptr;   // ... pixels_at_work for each of storage_blocks
     unsigned int storage_blocks = 0;
+
+    CISTULA_INLINE PixelLayers layers_of(unsigned int record) const {
+        return {layers + size_t(record) * size_t(frame.layers.words), 1};
+    }
 };
 
 /// A scene in both forms; `constant` is set for the plain loop only.
@@ -53,8 +58,8 @@ struct DeviceScene {
 /// How a kernel samples: every pixel on its uniform grid, or adaptively in a frame with a target error.
 enum class Sampling { uniform, adaptive };
 
-/// Enqueues a job's kernel. `mask` is an index of effect_masks; adaptive sampling is compiled only for all effects, the
-/// last mask of scenes. Throws Error (device).
+/// Enqueues a job's kernel. `mask` is an index of effect_masks. Adaptive sampling is compiled only for all effects,
+/// with and without layers; layers only for DevicePath::tree. Throws Error (device).
 template <class Real>
 void launch(Sampling sampling, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
             cudaStream_t stream);

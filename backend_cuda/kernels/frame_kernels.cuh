@@ -41,7 +41,9 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     Stack stack(branches, JobStop{job.stop});
     using Intersector = typename PathTraits<Real, path>::Intersector;
     const Intersector intersector = PathTraits<Real, path>::intersector(scene, block.in_view);
-    const PixelTask<E, Intersector, Stack> task{scene, job.frame, intersector, job.x + column, job.y + row, own, stack};
+    PixelTask<E, Intersector, Stack> task{scene, job.frame, intersector, job.x + column, job.y + row, own, stack};
+    if constexpr (E::has(fills_layers))
+        task.layers = job.layers_of(blockIdx.x * unsigned(shape.pixels()) + (shared_tile ? lane : threadIdx.x));
     const bool is_inside = column < job.width && row < job.height;
     const int samples = job.frame.supersample * job.frame.supersample;
     if (is_inside) begin_pixel(record);
@@ -77,9 +79,9 @@ unsigned int filling_blocks(const Kernel& kernel, int threads) {
     return unsigned(multiprocessors) * unsigned(max_or_second(blocks, 1));
 }
 
-/// Whether adaptive sampling is compiled for this mask: for all effects only.
+/// Whether adaptive sampling is compiled for this mask: for all effects only, with and without layers.
 constexpr bool samples_adaptively(int mask) {
-    return mask == effect_mask_count - 1;
+    return mask == effect_mask_count - 1 || mask == layered_mask;
 }
 
 template <class Real, int mask>
@@ -91,7 +93,7 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
             check_cuda(cudaGetLastError(), "launch of render_pixels");
         } else if constexpr (samples_adaptively(mask)) {
             constexpr int threads = adaptive_shape.threads();
-            const auto kernel = render_adaptive<Real, here>;
+            const auto kernel = render_adaptive<Real, here, mask == layered_mask>;
             kernel<<<min_or_second(filling_blocks(kernel, threads), job.storage_blocks), threads, 0, stream>>>(job,
                                                                                                                own);
             check_cuda(cudaGetLastError(), "launch of render_adaptive");
@@ -99,6 +101,8 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
     };
     if (path == DevicePath::tree)
         launch.template operator()<DevicePath::tree>(scene.view);
+    else if constexpr (mask == layered_mask)
+        throw Error(ExitCode::failed, "internal error: layers need the tree");
     else
         launch.template operator()<DevicePath::plain_loop>(scene.constant);
 }

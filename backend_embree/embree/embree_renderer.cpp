@@ -5,6 +5,9 @@
 
 namespace cistula {
 
+template <class Real>
+inline constexpr bool fills_film_layers<EmbreeIntersector<Real>> = true;
+
 namespace {
 
 template <class Real>
@@ -19,21 +22,24 @@ class EmbreeRenderer : public Renderer {
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
-        if (plain_) return plain_->render(camera, settings, film, progress);
+        used_plain_ = plain_ && !settings.layers.any();
+        if (used_plain_) return plain_->render(camera, settings, film, progress);
+        if (!tree_) tree_ = embree_tree(view_, EmbreeOptions{.always_tree = true});
         const EmbreeIntersector<Real> intersector{view_, tree_->scene()};
         FrameTask task(*scene_, intersector, camera, settings, film, progress);
         effects_ = task.effects();
         return task.run();
     }
-    uint32_t effects() const override { return plain_ ? plain_->effects() : effects_; }
+    uint32_t effects() const override { return used_plain_ ? plain_->effects() : effects_; }
     std::string intersector() const override { return "embree"; }
-    size_t memory() const override { return plain_ ? plain_->memory() : scene_->memory() + tree_->memory(); }
+    size_t memory() const override { return tree_ ? scene_->memory() + tree_->memory() : plain_->memory(); }
 
   private:
     std::shared_ptr<const CompiledScene<Real>> scene_;
     SceneView<Real> view_;
     std::shared_ptr<const EmbreeTree<Real>> tree_;
-    std::unique_ptr<Renderer> plain_;  // set if a loop over few primitives replaces the tree
+    std::unique_ptr<Renderer> plain_;  // set if a loop over few primitives replaces the tree, which layers need
+    bool used_plain_ = false;          // for the last frame
     uint32_t effects_ = 0;
 };
 

@@ -34,6 +34,12 @@ inline constexpr bool runs_every_mask<BvhIntersector<Real>> = false;
 template <class Real>
 inline constexpr bool runs_every_mask<BruteIntersector<Real>> = false;
 
+/// Whether an intersector is compiled for layers: the backends' own.
+template <class Intersector>
+inline constexpr bool fills_film_layers = false;
+template <class Real>
+inline constexpr bool fills_film_layers<BvhIntersector<Real>> = true;
+
 /// The rendering of one frame on the host.
 template <class Real, class Intersector>
 class FrameTask {
@@ -54,7 +60,9 @@ class FrameTask {
         prepare_film(film, settings, compiled, camera);
         if (!find_camera_solids(scene_, intersector, frame_)) film.flags |= flag_media_overflow;
         mask_ = mask_to_run(compiled.effects, settings, frame_);
-        if (!runs_every_mask<Intersector> && mask_ != unshadowed_mask) mask_ = effect_mask_count - 1;
+        if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = effect_mask_count - 1;
+        if (settings.layers.any() && !fills_film_layers<Intersector>)
+            throw Error(ExitCode::usage, "this intersector has no layers");
     }
 
     /// The effects that are compiled into the code that runs (mask_to_run; all of them for references).
@@ -62,14 +70,15 @@ class FrameTask {
 
     /// Renders the frame; false if it was stopped.
     bool run() {
+        if (settings_.layers.any())
+            return settings_.adaptive() ? render_adaptive_layers() : render_mask<layered_mask>();
         if (settings_.adaptive()) return render_adaptive();
         if constexpr (!runs_every_mask<Intersector>) {
-            return mask_ == unshadowed_mask ? render_uniform<unshadowed_mask>()
-                                            : render_uniform<effect_mask_count - 1>();
+            return mask_ == unshadowed_mask ? render_mask<unshadowed_mask>() : render_mask<effect_mask_count - 1>();
         } else {
             using Render = bool (FrameTask::*)();
             static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
-                return std::array<Render, sizeof...(I)>{&FrameTask::render_uniform<int(I)>...};
+                return std::array<Render, sizeof...(I)>{&FrameTask::render_mask<int(I)>...};
             }
             (std::make_index_sequence<compiled_mask_count>());
             return (this->*table[size_t(mask_)])();
@@ -87,14 +96,45 @@ class FrameTask {
 
     bool stopped() const { return progress_.stop.load(std::memory_order_relaxed); }
 
+    /// Renders with a uniform grid of samples.
     template <int mask>
-    bool render_uniform() {
-        using E = Effects<effect_masks[mask]>;
-        return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
-            typename Stack<E>::Storage storage;
-            Stack<E> stack(storage, RenderStop{progress_.stop});
-            render_pixel(task_for<E>(x, y, own, stack), SampleRange(), pixel);
-        });
+    bool render_mask() {
+        if constexpr (mask == layered_mask && !fills_film_layers<Intersector>) {
+            return false;  // never called
+        } else {
+            using E = Effects<effect_masks[mask]>;
+            return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+                typename Stack<E>::Storage storage;
+                Stack<E> stack(storage, RenderStop{progress_.stop});
+                PixelTask task = task_for<E>(x, y, own, stack);
+                if constexpr (mask == layered_mask) task.layers = layers_of(pixel);
+                render_pixel(task, SampleRange(), pixel);
+            });
+        }
+    }
+
+    /// Renders with a target error, and enters each sample that counts into the layers.
+    bool render_adaptive_layers() {
+        if constexpr (!fills_film_layers<Intersector>) {
+            return false;  // never called
+        } else {
+            using E = Effects<all_effects>;
+            using Layered = Effects<effect_masks[layered_mask]>;
+            const bool gradual = shades_gradually(scene_);
+            return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+                typename Stack<E>::Storage storage;
+                Stack<E> stack(storage, RenderStop{progress_.stop});
+                PixelTask layered = task_for<Layered>(x, y, own, stack);
+                layered.layers = layers_of(pixel);
+                render_adaptive_pixel(task_for<E>(x, y, own, stack), gradual, pixel,
+                                      [&](int slot, int weight) { add_layers(layered, slot, weight); });
+            });
+        }
+    }
+
+    PixelLayers layers_of(const PixelRecord& pixel) {
+        const size_t index = size_t(&pixel - film_.pixels.data());
+        return {film_.layers.words.data() + index * size_t(film_.layers.plan.words), 1};
     }
 
     bool render_adaptive() {
@@ -148,6 +188,7 @@ class FrameTask {
                 if (!covered) {
                     hints_.fill(writer, film_.rect.x + begin, film_.rect.y + y, end - begin, pixels, counts.rays,
                                 counts.flags);
+                    fill_background_layers(film_, size_t(pixels - film_.pixels.data()), size_t(end - begin));
                     return;
                 }
                 for (int x = begin; x < end && !stopped(); ++x) {

@@ -80,8 +80,10 @@ struct ReplayedShadows {
 
 /// A sink for radiance that was added before.
 struct DiscardedSums {
-    template <class Radiance>
-    void add(const Radiance&) const {}
+    template <class... Parts>
+    void add(const Parts&...) const {}
+    template <class... Parts>
+    void add_light(const Parts&...) const {}
 };
 
 }  // namespace cistula

@@ -13,7 +13,8 @@ class ContactSearch {
     explicit ContactSearch(uint64_t seed)
         : random_(0x9E3779B97F4A7C15u + seed),
           meshes_(seed % 3 == 2),
-          made_(Basis::random(random_), random_.in_cube(random_.below(2) != 0 ? 5 : 0.1)) {
+          away_(random_.in_cube(random_.below(2) != 0 ? 5 : 0.1)),
+          made_(Basis::random(random_), away_) {
         SceneDescription& scene = made_.scene;
         scene.film.width = 36, scene.film.height = 27;
         scene.depth = 7;
@@ -63,9 +64,12 @@ class ContactSearch {
     }
 
     void decal(double height) {
-        made_.quad({random_.between(-0.8, 0), random_.between(-0.8, 0), height},
-                   {random_.between(0.3, 1), random_.between(-0.2, 0.2), 0},
-                   {random_.between(-0.2, 0.2), random_.between(0.3, 1), 0}, opaque());
+        // One after the other: compilers order the arguments of a call as they like.
+        const int material = opaque();
+        const dvec3 down{random_.between(-0.2, 0.2), random_.between(0.3, 1), 0};
+        const dvec3 across{random_.between(0.3, 1), random_.between(-0.2, 0.2), 0};
+        const dvec3 corner{random_.between(-0.8, 0), random_.between(-0.8, 0), height};
+        made_.quad(corner, across, down, material);
     }
     /// Boxes side by side and on one another, with some left out.
     void grid(double side) {
@@ -91,6 +95,7 @@ class ContactSearch {
 
     Random random_;
     bool meshes_;
+    dvec3 away_;  // of the scene from the origin
     ContactScene made_;
 };
 

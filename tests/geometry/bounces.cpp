@@ -193,7 +193,7 @@ double seen_through(const SceneView<Real>& scene, const Ray<Real>& ray, uint32_t
     typename Stack::Storage storage;
     Stack stack(storage);
     struct Unnoted {
-        void surface(const Hit<Real>&, const Vec3<Real>&) const {}
+        void surface(const Hit<Real>&, const Surface<Real>&) const {}
         void light(const SceneView<Real>&, const VisibleLightHit<Real>&, const Ray<Real>&) const {}
     };
     RayTree<Real, Effects<all_effects>, Intersector, Stack>(scene, Intersector{scene}, 4, sums, rays, stack)

@@ -30,10 +30,12 @@ Imf::Header header_with(const char* channel, Imf::PixelType type) {
 TEST(ExrKinds, FilesOfSeveralPartsAreRefused) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("parts.exr");
-    const std::vector<float> values(width * height);
+    const std::vector<float> values(width * height, 0.5f);
     test::write_parts(path,
                       {{"left", width, height, {{"Z", values, {}}}}, {"right", width, height, {{"Z", values, {}}}}});
     EXPECT_ERROR(read_exr(path), ExitCode::file, path + ": cannot read: it has 2 parts; give a file of one part");
+    // As a texture it is its first part.
+    EXPECT_EQ(read_exr_texture(path).texels, std::vector<glm::vec3>(width * height, glm::vec3(0.5f)));
 }
 
 TEST(ExrKinds, DeepFilesAreRefused) {
@@ -59,6 +61,8 @@ TEST(ExrKinds, DeepFilesAreRefused) {
     EXPECT_ERROR(read_exr(path), ExitCode::file,
                  path + ": cannot read: it is deep, with several samples in a pixel; flatten it first");
     EXPECT_ERROR(ExrFile{path}, ExitCode::file,
+                 path + ": cannot read: it is deep, with several samples in a pixel; flatten it first");
+    EXPECT_ERROR(read_exr_texture(path), ExitCode::file,
                  path + ": cannot read: it is deep, with several samples in a pixel; flatten it first");
 }
 

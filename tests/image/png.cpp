@@ -6,6 +6,7 @@
 #include "scene/image/png.h"
 #include "scene/image/srgb_codes.h"
 #include "testing/support/png_pixels.h"
+#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {
@@ -53,6 +54,7 @@ TEST(Png, HoldsEveryCode) {
                                     linear_from_srgb8(codes[codes.size() - 2]), linear_from_srgb8(codes.back()));
     }
     EXPECT_EQ(decoded(encode_png(picture), 256, 1), codes);
+    for (const uint8_t code : codes) EXPECT_EQ(srgb8_to_linear(code), linear_from_srgb8(code));
 }
 
 TEST(Png, IndexedOnesHoldTheirColors) {

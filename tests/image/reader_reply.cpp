@@ -5,8 +5,8 @@
 
 #include <cstring>
 
-#include "scene/image/srgb_codes.h"
 #include "scene/image/texture_limits.h"
+#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {
@@ -32,7 +32,10 @@ ColorPicture read_answer(const std::string& answer, uint64_t left = 1200) {
         std::memcpy(to, answer.data() + at, size);
         at += size;
     };
-    return receive_texels(receive, receive_size(receive, left));
+    const ReplyStart start = receive_start(receive, left);
+    const bool is_floating = start.size.sample_bytes == 4;
+    const FileEncoding encoding = file_encoding("", start.colors, is_floating);
+    return receive_texels(receive, start.size, {encoding, start.size.sample_bytes, start.colors.is_half});
 }
 
 TEST(ReaderReply, PicturesOfEveryKindOfSample) {
@@ -53,6 +56,26 @@ TEST(ReaderReply, PicturesOfEveryKindOfSample) {
               std::vector<glm::vec3>{glm::vec3(1e-42f)});
 }
 
+ReplyColors colors_of_ap1() {
+    return {{0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f}, 1, 0, 1};
+}
+
+TEST(ReaderReply, ColorsOfTheFileComeBeforeItsSize) {
+    const std::string samples = size_part(1, 1, 3, 4) + part(ReplyKind::samples, raw(0.5f) + raw(0.25f) + raw(0.1f));
+    const auto with = [&](const ReplyColors& colors, const std::string& id) {
+        return read_answer(part(ReplyKind::colors, raw(colors) + id) + samples).texels.at(0);
+    };
+    const glm::vec3 converted = with(colors_of_ap1(), "");
+    EXPECT_NEAR(converted.x, 0.688752f, 2e-6f);
+    EXPECT_EQ(with(colors_of_ap1(), "lin_ap1_scene"), converted);
+    EXPECT_EQ(with({}, "lin_ap1_scene"), converted);
+    EXPECT_EQ(with({}, ""), glm::vec3(0.5f, 0.25f, 0.1f));
+    EXPECT_EQ(with({}, "data"), glm::vec3(0.5f, 0.25f, 0.1f));
+    EXPECT_NE(with({{}, 0, 1, 0}, ""), converted);
+    EXPECT_THROW(with(colors_of_ap1(), "lin_rec709_scene"), std::runtime_error);
+    EXPECT_THROW(with({}, std::string(largest_reply_id, 'x')), std::runtime_error);
+}
+
 TEST(ReaderReply, WhatMakesNoSenseIsRefused) {
     const std::string good = size_part(2, 1, 3, 1), six("abcdef");
     const std::string answers[] = {
@@ -70,6 +93,10 @@ TEST(ReaderReply, WhatMakesNoSenseIsRefused) {
         part(ReplyKind::size, raw(ReplySize{2, 1, 3, 1}) + "x"),
         part(ReplyKind::size, ""),
         part(ReplyKind::samples, six),
+        part(ReplyKind::colors, six),
+        part(ReplyKind::colors, raw(ReplyColors{}) + std::string(largest_reply_id + 1, 'x')) + good,
+        part(ReplyKind::colors, raw(ReplyColors{})) + part(ReplyKind::colors, raw(ReplyColors{})) + good,
+        good + part(ReplyKind::colors, raw(ReplyColors{})),
         part(ReplyKind{0}, six),
         part(ReplyKind{77}, six),
         raw(ReplyHead{ReplyKind::size, 0xffffffff}),

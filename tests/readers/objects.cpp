@@ -92,7 +92,15 @@ TEST(SceneSolids, EdgeLightErrors) {
     EXPECT_WRONG(solid("{}"), "/edge_lights: missing key 'count': expected a whole number from 0 to 1000");
     EXPECT_WRONG(solid(R"({"count": 1001})"), "/edge_lights/count: expected a whole number from 0 to 1000, found 1001");
     EXPECT_WRONG(solid(R"({"count": 1, "position": [0, 0, 0]})"),
-                 "/edge_lights/position: unknown key; known keys: count, color, glow, radius, falloff");
+                 "/edge_lights/position: unknown key; known keys: count, color, glow, radius, falloff, group");
+    EXPECT_WRONG(solid(R"({"count": 1, "group": "key.left"})"),
+                 "/edge_lights/group: the name 'key.left' has a dot, which separates layers from channels");
+    EXPECT_WRONG(solid(R"({"count": 1, "group": "key left"})"),
+                 "/edge_lights/group: the name 'key left' has other characters than letters, digits, _ and -");
+    EXPECT_WRONG(solid(R"({"count": 1, "group": "glow"})"),
+                 "/edge_lights/group: the name 'glow' is that of a layer which every scene has");
+    EXPECT_WRONG(solid(R"({"count": 1, "group": ""})"),
+                 "/edge_lights/group: expected a string that is not empty, found an empty string");
     EXPECT_WRONG(solid(R"({"count": 1, "falloff": "inverse-square"})"),
                  "/edge_lights/falloff: inverse-square needs a 'radius' above 0, within which it stays constant");
 }
@@ -199,6 +207,19 @@ TEST(SceneObjects, HaveOneForm) {
                  ": expected one of 'solid', 'quad', 'triangles' and 'mesh', found both 'solid' and 'mesh'");
     EXPECT_ERROR(read(R"({"mesh": "a"}, {"mesh": "b"}, {"solid": "cube", "center": 0, "material": "glass"})"),
                  ExitCode::usage, "a.json: /objects/2/center: expected [x, y, z], each from -1e30 to 1e30, found 0");
+}
+
+TEST(SceneObjects, HaveDifferentNames) {
+    const auto scene = [](const std::string& first, const std::string& second) {
+        const auto cube = [](const std::string& name) {
+            return R"({"solid": "cube", "material": "m")" + (name.empty() ? "" : ", \"name\": \"" + name + "\"") + "}";
+        };
+        return R"({"materials": {"m": {}}, "objects": [)" + cube(first) + "," + cube(second) + "]}";
+    };
+    EXPECT_NO_THROW(read_scene_text(scene("a", "b"), "a.json", ""));
+    EXPECT_NO_THROW(read_scene_text(scene("", ""), "a.json", ""));
+    EXPECT_ERROR(read_scene_text(scene("a", "a"), "a.json", ""), ExitCode::usage,
+                 "a.json: /objects/1/name: 'a' is the name of /objects/0 too; give each its own");
 }
 
 TEST(SceneObjects, KeepTheOrderOfTheFile) {

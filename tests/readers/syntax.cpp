@@ -151,6 +151,17 @@ TEST(Suggest, EditDistance) {
     EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
 }
 
+TEST(Suggest, NamesInAnotherCaseOrWithoutTheirEndAreNear) {
+    const std::vector<std::string_view> known = {"srgb", "linear", "lin_ap0_scene", "lin_ap1_scene"};
+    const auto suggested = [&](std::string_view name) { return suggestion(name, known, "values"); };
+    EXPECT_EQ(suggested("sRGB"), "did you mean 'srgb'?");
+    EXPECT_EQ(suggested("LIN_AP1_SCENE"), "did you mean 'lin_ap1_scene'?");
+    EXPECT_EQ(suggested("lin_ap1"), "did you mean 'lin_ap1_scene'?");
+    EXPECT_EQ(suggested("linaer"), "did you mean 'linear'?");
+    for (const char* far : {"", "s", "ap1", "acescg"})
+        EXPECT_EQ(suggested(far), "known values: srgb, linear, lin_ap0_scene, lin_ap1_scene") << far;
+}
+
 TEST(Suggest, HugeNamesAndManyNamesStayShort) {
     std::vector<std::string> names;
     for (int i = 0; i < 100; ++i) names.push_back("material_number_" + std::to_string(i));

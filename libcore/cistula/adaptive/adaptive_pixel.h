@@ -31,6 +31,35 @@ CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task
     }
 }
 
+/// Enters sample `slot` into the pixel's layers as if it represented `weight` samples of the lattice, by tracing it
+/// again. E: with fills_layers. False if its tree has more than most_branches.
+template <class E, class Intersector, class Stack>
+CISTULA_INLINE bool trace_layers(const PixelTask<E, Intersector, Stack>& task, const TreeSettings& settings, int slot,
+                                 int weight) {
+    using Real = typename PixelTask<E, Intersector, Stack>::Real;
+    using Limited = HashingStack<Stack, Real>;
+    PathHash unused;
+    Limited stack(task.stack, unused, Real(task.frame.lattice.significant));
+    PixelWork work;
+    PixelRecord record;
+    begin_pixel(record);
+    const PixelTask<E, Intersector, Limited> traced{task.scene, task.frame, task.intersector,           task.x, task.y,
+                                                    work,       stack,      {task.layers.words, weight}};
+    render_sample(traced, settings, {slot % lattice_side, slot / lattice_side, LatticePixel::is_chosen(slot)}, record);
+    task.work.flags |= work.flags & flag_objects_overflow;
+    return !stack.drop();
+}
+
+/// Enters a sample into the pixel's layers, with the budget that take_sample came to.
+template <class E, class Intersector, class Stack>
+CISTULA_INLINE void add_layers(const PixelTask<E, Intersector, Stack>& task, int slot, int weight) {
+    TreeSettings settings = task.frame.tree;
+    while (!trace_layers(task, settings, slot, weight) && !task.stack.stopped()) {
+        trace_layers(task, settings, slot, -weight);  // takes back what it added
+        settings.budget = 4 * max_or_second(settings.budget, int64_t(1));
+    }
+}
+
 /// Copies the data that belong to a single sample: id, depth and normal.
 CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel) {
     pixel.id = sample.id;
@@ -38,11 +67,16 @@ CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel)
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
 }
 
+/// What sample_adaptively tells of a sample that represents `weight` samples: nothing.
+struct IgnoredWeights {
+    CISTULA_INLINE void operator()(int, int) const {}
+};
+
 /// Takes all samples that the pixel wants into `record`, with local storage for them. take(slot, taken) renders a
-/// sample into `taken` and returns its path hash.
-template <class Take>
+/// sample into `taken` and returns its path hash; stands_for(slot, weight) is told of those that count in the end.
+template <class Take, class StandsFor = IgnoredWeights>
 CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, bool checked, PixelRecord& record,
-                                      const Take& take) {
+                                      const Take& take, const StandsFor& stands_for = {}) {
     LatticeSample samples[lattice_samples];
     PixelRecord taken;
     LatticePixel pixel;
@@ -59,16 +93,20 @@ CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, bool chec
         pixel.divide(settings, samples);
     }
     for (int i = 0; i < pixel.cells(); ++i)
-        pixel.accumulate(i, [&](int slot, int weight) { samples[slot].give(record, weight, Plus()); });
+        pixel.accumulate(i, [&](int slot, int weight) {
+            samples[slot].give(record, weight, Plus());
+            stands_for(slot, weight);
+        });
     pixel.describe(record);
 }
 
-/// Renders a pixel of a frame with a target error.
-template <class E, class Intersector, class Stack>
+/// Renders a pixel of a frame with a target error. `stands_for` is that of sample_adaptively.
+template <class E, class Intersector, class Stack, class StandsFor = IgnoredWeights>
 CISTULA_INLINE void render_adaptive_pixel(const PixelTask<E, Intersector, Stack>& task, bool gradual,
-                                          PixelRecord& record) {
-    sample_adaptively(task.frame.lattice, is_checked(task.x, task.y), record,
-                      [&](int slot, PixelRecord& taken) { return take_sample(task, slot, gradual, taken); });
+                                          PixelRecord& record, const StandsFor& stands_for = {}) {
+    sample_adaptively(
+        task.frame.lattice, is_checked(task.x, task.y), record,
+        [&](int slot, PixelRecord& taken) { return take_sample(task, slot, gradual, taken); }, stands_for);
 }
 
 }  // namespace cistula

@@ -82,6 +82,7 @@ struct ConstantScene {
     Span<TreeNode> tree;
     Span<uint32_t> tree_items;
     Span<LightNode> visible_light_tree;
+    Span<uint32_t> light_groups;
     Vec3<Real> background;
     Vec3<Real> bound;
     Real largest_bound;

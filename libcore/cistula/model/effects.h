@@ -30,6 +30,9 @@ enum Effect : uint32_t {
 inline constexpr int effect_count = 18;
 inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
+/// A bit of masks whose code also fills the layers of a film (layers.h). No scene calls for it.
+inline constexpr uint32_t fills_layers = 1u << effect_count;
+
 /// Effect names, in the order of the bits, as in --explain, --stats and the documentation.
 inline constexpr const char* effect_names[effect_count] = {
     "texture",      "diffuse",    "specular",  "opaque-shadows", "transparent-shadows", "reflection",
@@ -66,12 +69,15 @@ inline constexpr uint32_t effect_masks[] = {
     clear_bodies,
     clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
     all_effects,
+    all_effects | fills_layers,
     all_effects & ~(effect_opaque_shadows | effect_transparent_shadows),  // never chosen: measures shadows' cost
 };
 inline constexpr int compiled_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
 inline constexpr int unshadowed_mask = compiled_mask_count - 1;
-/// The number of masks that scenes are rendered with; the last of them is all_effects.
-inline constexpr int effect_mask_count = unshadowed_mask;
+inline constexpr int layered_mask = compiled_mask_count - 2;
+/// The number of masks that scenes are rendered with, without layers; the last of them is all_effects.
+inline constexpr int effect_mask_count = layered_mask;
+static_assert(effect_masks[effect_mask_count - 1] == all_effects);
 
 /// The index in effect_masks of the smallest mask that contains `required`.
 constexpr int least_mask(uint32_t required) {

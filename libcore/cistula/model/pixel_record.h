@@ -11,6 +11,7 @@ enum RenderFlag : uint32_t {
     flag_media_overflow = 1u << 1,      // more nested solids than an interior list holds
     flag_stack_overflow = 1u << 2,      // a ray tree needed more pending branches than the branch stack holds
     flag_too_many_crossings = 1u << 3,  // a straight ray crossed more faces than the limit
+    flag_objects_overflow = 1u << 4,    // a pixel shows more objects than its table holds (layers.h)
 };
 
 /// Ray counts of one pixel. 32 bits suffice: 2^32 rays would take hours.

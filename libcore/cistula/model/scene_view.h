@@ -239,6 +239,7 @@ struct SceneView {
     Span<TreeNode> tree;  // over primitives; may be empty (then brute force or Embree finds hits)
     Span<uint32_t> tree_items;
     Span<LightNode> visible_light_tree;  // over visible_lights; empty where there are few
+    Span<uint32_t> light_groups;         // of each of lights
     Vec3<Real> background;
     Vec3<Real> bound;    // radiance bound B per channel, at most 1, slack included
     Real largest_bound;  // largest component of bound

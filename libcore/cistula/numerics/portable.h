@@ -208,4 +208,25 @@ struct Span {
     CISTULA_INLINE bool empty() const { return size == 0; }
 };
 
+/// Adds to a word to which other threads of a kernel may add. On the host a word belongs to one thread.
+CISTULA_INLINE void add_to_word(int64_t& to, int64_t value) {
+#ifdef __CUDA_ARCH__
+    atomicAdd(reinterpret_cast<unsigned long long*>(&to), static_cast<unsigned long long>(value));
+#else
+    to += value;
+#endif
+}
+
+/// Puts `value` into a word that is 0. Returns what the word held before.
+CISTULA_INLINE int64_t claim_word(int64_t& word, int64_t value) {
+#ifdef __CUDA_ARCH__
+    return static_cast<int64_t>(
+        atomicCAS(reinterpret_cast<unsigned long long*>(&word), 0ull, static_cast<unsigned long long>(value)));
+#else
+    const int64_t before = word;
+    if (before == 0) word = value;
+    return before;
+#endif
+}
+
 }  // namespace cistula

@@ -1,7 +1,7 @@
 // Local light of a surface: ambient light, and each point light added by itself, so that lights may come in any order.
 #pragma once
 
-#include "cistula/model/pixel_record.h"
+#include "cistula/model/layers.h"
 #include "cistula/shading/contact.h"
 #include "cistula/shading/phong.h"
 #include "cistula/shading/shadow.h"
@@ -81,7 +81,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             around = &corrected;
         }
     const Material<Real>& m = scene.materials[s.material];
-    sums.add(weight * (s.color * m.ambient));
+    sums.add(weight * (s.color * m.ambient), LightSource::ambient);
     if constexpr (E::has(effect_diffuse | effect_specular)) {
         for (uint32_t i = 0; i < scene.lights.size; ++i) {
             const Light<Real>& light = scene.lights[i];
@@ -109,7 +109,10 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                 arrives = intersector.template transmittance<E>(shadow);
                 observer.arrives(i, shadow, arrives);
             }
-            sums.add(weight * (arrives * lit));
+            sums.add_light(weight * (arrives * lit), i, [&] {
+                return weight * (arrives * phong<Real, Effects<E::mask & ~effect_specular>>(
+                                               m, s.color, light, aim.cosine, Real(0), aim.distance));
+            });
         }
     }
 }

@@ -6,7 +6,7 @@
 #include "cistula/shading/interface.h"
 #include "cistula/shading/surface_event.h"
 #include "cistula/transport/branch.h"
-#include "cistula/transport/pixel_sums.h"
+#include "cistula/transport/layered_sums.h"
 
 namespace cistula {
 
@@ -25,9 +25,10 @@ class NextSurface {
     using Media = typename Intersector::Media;
     using Scene = typename Intersector::Scene;
     using Entry = BranchOf<Real, E, Media>;
+    using Sums = SumsOf<Real, E>;
 
     /// `depth`: maximum number of surfaces on a path.
-    CISTULA_INLINE NextSurface(const Scene& scene, const Intersector& intersector, int depth, PixelSums<Real>& sums)
+    CISTULA_INLINE NextSurface(const Scene& scene, const Intersector& intersector, int depth, Sums& sums)
         : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums) {}
 
     /// Finds the branch's next surface. False if there is none: the visible light or background at the end of the ray
@@ -41,7 +42,8 @@ class NextSurface {
             const bool light = visible.light != no_light;
             if (light || !hit.found()) {
                 absorption.dim(scene_, branch.ray.media, light ? visible.t : hit.t, branch.weight);
-                sums_.add(branch.weight * light_or_background(visible));
+                sums_.add(branch.weight * light_or_background(visible),
+                          light ? LightSource::visible_light : LightSource::background);
                 return false;
             }
             resolve_event<E>(scene_, intersector_, branch.ray, hit, event);
@@ -128,7 +130,7 @@ class NextSurface {
     const Scene& scene_;
     const Intersector& intersector_;
     const int depth_;
-    PixelSums<Real>& sums_;
+    Sums& sums_;
 };
 
 }  // namespace cistula

@@ -30,6 +30,7 @@ struct FrameView {
     int supersample = 1;
     TreeSettings tree;
     LatticeSettings lattice;  // if it has a target: supersample is then 16
+    LayerPlan layers;
 };
 
 /// The number of the CameraSide of a ray.
@@ -147,9 +148,9 @@ struct FirstSeen {
     PixelRecord& record;
     bool middle;  // whether this sample gives the pixel's id, depth and normal
 
-    CISTULA_INLINE void surface(const Hit<Real>& hit, const Vec3<Real>& normal) const {
+    CISTULA_INLINE void surface(const Hit<Real>& hit, const Surface<Real>& surface) const {
         ++record.hits;
-        if (middle) keep(key_solid(hit.key), hit.t, normal);
+        if (middle) keep(key_solid(hit.key), hit.t, surface.normal);
     }
     template <class Scene, class Media>
     CISTULA_INLINE void light(const Scene& scene, const VisibleLightHit<Real>& hit, const Ray<Real, Media>& ray) const {
@@ -162,6 +163,50 @@ struct FirstSeen {
         record.id = int32_t(index) + 1;
         record.z = float((work.start + double(t)) * work.facing * frame.unit_length);
         for (int c = 0; c < 3; ++c) record.normal[c] = float(normal[c]);
+    }
+};
+
+/// Records the first hit of a sample, and enters it into the pixel's layers.
+template <class Real, class Scene>
+struct LayeredFirstSeen {
+    FirstSeen<Real> seen;
+    const Scene& scene;
+    const LayerPlan& plan;
+    const PixelLayers& layers;
+    uint32_t& flags;
+
+    CISTULA_INLINE void surface(const Hit<Real>& hit, const Surface<Real>& surface) const {
+        seen.surface(hit, surface);
+        const uint32_t solid = key_solid(hit.key);
+        const bool textured = scene.materials[surface.material].texture >= 0;
+        const Vec2<Real> uv = textured ? texture_uv(scene, hit) : Vec2<Real>();
+        enter(solid, surface.point, hit.t, uv, surface.color, surface.material + 1);
+    }
+    template <class Media>
+    CISTULA_INLINE void light(const Scene&, const VisibleLightHit<Real>& hit, const Ray<Real, Media>& ray) const {
+        seen.light(scene, hit, ray);
+        enter(scene.solids.size + hit.light, along(ray.origin, hit.t, ray.direction), hit.t, Vec2<Real>(),
+              Vec3<Real>(Real(0)), 0);
+    }
+
+  private:
+    CISTULA_INLINE void enter(uint32_t index, const Vec3<Real>& point, Real t, const Vec2<Real>& uv,
+                              const Vec3<Real>& albedo, uint32_t material) const {
+        if (plan.objects >= 0 &&
+            !count_object(layers.words + plan.objects, plan.object_entries, index + 1, layers.weight))
+            flags |= flag_objects_overflow;
+        if (plan.first_hit < 0 || !seen.middle) return;
+        FirstHit hit;
+        for (int c = 0; c < 3; ++c) {
+            hit.position[c] = double(point[c]);
+            hit.albedo[c] = float(albedo[c]);
+        }
+        hit.uv[0] = float(uv.x);
+        hit.uv[1] = float(uv.y);
+        hit.distance = float((seen.work.start + double(t)) * seen.frame.unit_length);
+        hit.material = material;
+        hit.object = index + 1;
+        memcpy(layers.words + plan.first_hit, &hit, sizeof hit);
     }
 };
 
@@ -178,6 +223,7 @@ struct PixelTask {
     int x, y;         // the pixel, in the full frame
     PixelWork& work;  // of the pixel, or of the thread
     Stack& stack;
+    PixelLayers layers = {};  // of effects with fills_layers
 };
 
 /// The samples of a pixel to render: all, or every step-th where several threads share a pixel.
@@ -204,11 +250,12 @@ CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, 
     const int across = 2 * (task.x * k + sample.column) + 1 - frame.width * k;
     const int down = 2 * (task.y * k + sample.row) + 1 - frame.height * k;
     const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
-    PixelSums<Real> sums(settings, task.scene, record, task.work.flags);
+    SumsOf<Real, E> sums(settings, task.scene, record, task.work.flags);
+    if constexpr (E::has(fills_layers)) sums.divide(frame.layers, task.layers, task.scene.light_groups);
     ++task.work.rays.primary;
     double start;
     if (!primary_ray(task.scene, frame, direction, ray, start)) {
-        sums.add(task.scene.background);
+        sums.add(task.scene.background, LightSource::background);
         return;
     }
     if (sample.middle) {
@@ -217,7 +264,12 @@ CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, 
     }
     RayTree<Real, E, Intersector, Stack> tree(task.scene, task.intersector, settings.depth, sums, task.work.rays,
                                               task.stack);
-    tree.trace(ray, FirstSeen<Real>{frame, task.work, record, sample.middle});
+    const FirstSeen<Real> seen{frame, task.work, record, sample.middle};
+    if constexpr (E::has(fills_layers))
+        tree.trace(ray, LayeredFirstSeen<Real, typename Task::Scene>{seen, task.scene, frame.layers, task.layers,
+                                                                     task.work.flags});
+    else
+        tree.trace(ray, seen);
 }
 
 /// Initializes a pixel's record before its first sample; end_pixel completes it after the last.

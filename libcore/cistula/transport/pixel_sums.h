@@ -1,7 +1,7 @@
 // Accumulation of samples in a pixel: radiance and what truncation removed, as integers (docs/rules.md, 7 and 8).
 #pragma once
 
-#include "cistula/model/pixel_record.h"
+#include "cistula/model/layers.h"
 #include "cistula/numerics/fixed_sum.h"
 #include "cistula/numerics/vec.h"
 
@@ -50,9 +50,14 @@ class PixelSums {
           flags_(flags),
           left_(settings.budget) {}
 
-    CISTULA_INLINE void add(const Vec3<Real>& radiance) {
+    CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource = LightSource::background) {
         const Vec3<Real> units = in_units(radiance, Real(settings_.fixed_scale), flags_);
         for (int c = 0; c < 3; ++c) record_.radiance[c] += whole_of(units[c]);
+    }
+    /// Adds what a point light sends. The light's number and the diffuse part matter to LayeredSums alone.
+    template <class Diffuse>
+    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t, const Diffuse&) {
+        add(radiance);
     }
 
     /// Whether to follow a branch with this throughput; if not, its bound is added to the ledger. A branch is dropped
@@ -77,6 +82,18 @@ class PixelSums {
     }
 
     CISTULA_INLINE void flag(uint32_t bits) { flags_ |= bits; }
+
+  protected:
+    /// A radiance in units of the sums.
+    CISTULA_INLINE void units_of(const Vec3<Real>& radiance, int64_t (&to)[3]) {
+        const Vec3<Real> units = in_units(radiance, Real(settings_.fixed_scale), flags_);
+        for (int c = 0; c < 3; ++c) to[c] = whole_of(units[c]);
+    }
+    /// Adds a radiance, and tells how many units that is.
+    CISTULA_INLINE void add_units(const Vec3<Real>& radiance, int64_t (&added)[3]) {
+        units_of(radiance, added);
+        for (int c = 0; c < 3; ++c) record_.radiance[c] += added[c];
+    }
 
   private:
     /// Whether the branch could add more than one unit of the sums. False for values that are not finite or exceed the

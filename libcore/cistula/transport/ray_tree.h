@@ -4,8 +4,8 @@
 
 #include "cistula/shading/lighting.h"
 #include "cistula/transport/branch_stack.h"
+#include "cistula/transport/layered_sums.h"
 #include "cistula/transport/next_surface.h"
-#include "cistula/transport/pixel_sums.h"
 
 namespace cistula {
 
@@ -16,7 +16,7 @@ inline constexpr uint32_t turns_between_stops = 64;
 template <class Real, class E, class Intersector, class Stack>
 class RayTree {
   public:
-    using Sums = PixelSums<Real>;
+    using Sums = SumsOf<Real, E>;
     using Media = typename Intersector::Media;
     using Scene = typename Intersector::Scene;
     using Weight = Throughput<Real, E>;
@@ -34,7 +34,7 @@ class RayTree {
           stack_(stack) {}
 
     /// Traces the tree of a primary ray and adds what it sees to the sums. Reports the first hit by first.surface(hit,
-    /// normal), or by first.light(scene, hit, ray) if the ray ends on a visible light.
+    /// surface), or by first.light(scene, hit, ray) if the ray ends on a visible light.
     template <class First>
     CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
         Entry branch;
@@ -51,7 +51,7 @@ class RayTree {
             VisibleLightHit<Real> light;
             if (line_.find(branch, event, light)) {
                 const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
-                if (at_first) first.surface(event.hit, s.normal);
+                if (at_first) first.surface(event.hit, s);
                 shade(branch, event, s);
             } else if constexpr (E::has(effect_visible_lights)) {
                 if (at_first && light.light != no_light) first.light(scene_, light, branch.ray);
@@ -68,6 +68,9 @@ class RayTree {
                 if (!stack_.pop(branch)) return false;
             } while (!sums_.afford(branch.weight));
             find_start_plane<E>(scene_, branch.ray);
+            // All that comes from one of the first surface's children is followed before the other.
+            if constexpr (E::has(fills_layers))
+                if (branch.depth == 1) sums_.enter(branch.mirrored);
             rays_.reflected += branch.mirrored;
             rays_.transmitted += 1 - branch.mirrored;
             return true;

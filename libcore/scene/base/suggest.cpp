@@ -35,6 +35,17 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     return above[b.size()];
 }
 
+namespace {
+
+/// The edit distance, but less where only case differs or the candidate goes on after the name.
+size_t distance_to(std::string_view candidate, std::string_view name) {
+    if (lower_case(name) == lower_case(candidate)) return 0;
+    if (name.size() >= 3 && candidate.starts_with(name)) return 1;
+    return edit_distance(name, candidate);
+}
+
+}  // namespace
+
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural) {
     if (known.empty()) return fmt::format("there are no {}", plural);
     std::string_view nearest;
@@ -42,7 +53,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string_view
     if (name.size() <= longest_compared) {
         for (const std::string_view candidate : known) {
             if (candidate.size() > longest_compared) continue;
-            const size_t distance = edit_distance(name, candidate);
+            const size_t distance = distance_to(candidate, name);
             if (distance < least && distance < candidate.size()) {
                 least = distance;
                 nearest = candidate;

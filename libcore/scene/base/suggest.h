@@ -17,8 +17,8 @@ std::string lower_case(std::string_view text);
 /// bytes that turn a into b.
 size_t edit_distance(std::string_view a, std::string_view b);
 
-/// "did you mean 'width'?" if one of `known` is near `name`, else "known keys: a, b, c"; `plural` is their collective
-/// name ("keys").
+/// "did you mean 'width'?" if one of `known` is near `name`, differs in case alone or begins with it, else "known keys:
+/// a, b, c"; `plural` is their collective name ("keys").
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural);
 
 /// All that are known, those most like `name` first, whatever the case of letters: "the views are: filmic, srgb"; of

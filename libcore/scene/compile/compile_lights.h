@@ -18,7 +18,7 @@ struct NormalizedLight {
     glm::dvec3 color, radiance;
     double radius;
     bool falloff;
-    std::string place;
+    std::string place, group;
     int convex = -1;                       // the convex solid on whose edge it lies; -1: none
     std::array<uint32_t, 2> edge_faces{};  // the two faces at that edge
 

@@ -36,7 +36,7 @@ ColorPicture read_file_texture(TextureReader& reader, const TextureDescription& 
     ClampedTexels clamped;
     ColorPicture picture;
     try {
-        picture = reader.read(texture.file, texture.strict ? nullptr : &clamped);
+        picture = reader.read(texture.file, texture.strict ? nullptr : &clamped, texture.colorspace);
     } catch (const Error& error) {
         throw Error(error.code(), scene_error(scene, place, error.what()).what());
     }

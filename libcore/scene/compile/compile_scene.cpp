@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -297,6 +298,13 @@ class Compiler {
     }
 
     void compile_lights() {
+        LayerNames names;
+        for (const SourceSolid& solid : source_.solids) {
+            names.objects.push_back(name_of(solid));
+            names.object_materials.push_back(solid.material);
+        }
+        for (const MaterialDescription& material : source_.materials) names.materials.push_back(material.name);
+        std::unordered_map<std::string, uint32_t> groups;
         std::vector<uint32_t> owners;  // of visible lights
         for (size_t i = 0; i < lights_.size(); ++i) {
             const NormalizedLight& light = lights_[i];
@@ -312,6 +320,7 @@ class Compiler {
             if (light.radius > 0) {
                 const Vec3<Real> radiance(scaled(light.radiance));
                 scene_.visible_lights.push_back({position, static_cast<Real>(light.radius), radiance});
+                names.visible_lights.push_back(light.group);
                 owners.push_back(light.convex < 0 ? no_solid : convex_[static_cast<size_t>(light.convex)].solid);
             }
             if (!light.lights()) continue;
@@ -323,7 +332,11 @@ class Compiler {
             scene_.lights.push_back({position, intensity, static_cast<Real>(light.falloff ? light.radius : 0.0), first,
                                      static_cast<uint32_t>(faces.size())});
             scene_.incidents.insert(scene_.incidents.end(), faces.begin(), faces.end());
+            const auto [group, is_new] = groups.try_emplace(light.group, uint32_t(names.light_groups.size()));
+            if (is_new) names.light_groups.push_back(light.group);
+            scene_.light_groups.push_back(group->second);
         }
+        scene_.layer_names = std::make_shared<const LayerNames>(std::move(names));
         if (scene_.visible_lights.size() < fewest_in_light_tree) return;
         std::vector<RTCBuildPrimitive> primitives;
         for (const auto& light : scene_.visible_lights) {

@@ -9,6 +9,7 @@
 #include "scene/compile/effect_reason.h"
 #include "scene/compile/hull.h"
 #include "scene/description/description.h"
+#include "scene/film/film_layers.h"
 
 namespace cistula {
 
@@ -32,7 +33,8 @@ struct CompiledScene {
     std::vector<TreeNode> tree;  // filled by build_primitive_tree only
     std::vector<uint32_t> tree_items;
     std::vector<LightNode> visible_light_tree;
-    std::vector<Hull> hulls;  // around everything visible
+    std::vector<uint32_t> light_groups;  // of each of lights
+    std::vector<Hull> hulls;             // around everything visible
     Vec3<Real> background, bound;
     Real extent = 1;
 
@@ -43,7 +45,8 @@ struct CompiledScene {
     std::vector<EffectReason> effect_reasons;  // one per effect: needed or not, and because of what
     std::string hash;  // of everything that affects the image except camera and settings; equal in both precisions
     std::vector<std::string> solid_names;  // a name per solid, for messages and the id layer
-    std::vector<std::string> warnings;     // degenerate triangles left out, open meshes taken as sheets, ...
+    std::shared_ptr<const LayerNames> layer_names = std::make_shared<const LayerNames>();
+    std::vector<std::string> warnings;  // degenerate triangles left out, open meshes taken as sheets, ...
 
     SceneView<Real> view() const;
     size_t memory() const;  // bytes of all arrays

@@ -67,6 +67,7 @@ bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantS
     to.tree = there.tree;
     to.tree_items = there.tree_items;
     to.visible_light_tree = there.visible_light_tree;
+    to.light_groups = there.light_groups;
     to.planes.assign(to.clusters.size, [&](uint32_t i) { return boxed_plane(here, i); });
     to.sides.assign(to.clusters.size * cluster_lanes, [&](uint32_t slot) {
         const bool is_used = slot % cluster_lanes < to.clusters[slot / cluster_lanes].count;

@@ -133,6 +133,11 @@ Error scene_error(const SceneDescription& description, const std::string& place,
     return {ExitCode::usage, message + ": " + text};
 }
 
+std::string name_of(const SourceSolid& solid) {
+    if (!solid.name.empty() && solid.name.front() != '/') return solid.name;
+    return "object" + solid.place.substr(solid.place.find_last_of('/') + 1) + solid.name;
+}
+
 SceneSource gather_scene(const SceneDescription& description) {
     SceneSource source;
     source.description = &description;

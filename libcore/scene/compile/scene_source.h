@@ -20,6 +20,9 @@ struct SourceSolid {
     bool keep_triangles = false;  // the mesh is not given by planes, even where it could be
 };
 
+/// The solid's name, or one after its place in the file, "object3", if the file gives none.
+std::string name_of(const SourceSolid& solid);
+
 struct SceneSource {
     const SceneDescription* description = nullptr;
     std::vector<MaterialDescription> materials;  // those of the description, then those from mesh files

@@ -33,10 +33,11 @@ struct TextureDescription {
     std::string name;
     std::string file;  // absolute or relative to the working directory; empty: a checkerboard
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
-    bool bilinear = true;  // ignored by a checkerboard, which is always nearest
-    glm::dvec2 repeat{1};  // factor on uv; a checkerboard's period is 1 in uv: two cells
-    bool strict = false;   // texels of the file that are negative or not finite are an error, and not clamped
-    std::string place;     // "/textures/tiles", "line 3"
+    bool bilinear = true;    // ignored by a checkerboard, which is always nearest
+    glm::dvec2 repeat{1};    // factor on uv; a checkerboard's period is 1 in uv: two cells
+    std::string colorspace;  // one of color_encoding_names (image/color_encoding.h); empty: what the file says
+    bool strict = false;     // texels of the file that are negative or not finite are an error, and not clamped
+    std::string place;       // "/textures/tiles", "line 3"
 };
 
 enum class PlatonicSolid { tetrahedron, cube, octahedron, dodecahedron, icosahedron };
@@ -47,6 +48,7 @@ struct EdgeLights {
     std::optional<glm::dvec3> glow;  // radiance of the visible sphere; default: color
     double radius = 0;               // 0: not visible
     bool falloff = false;
+    std::string group;  // the light layer that they are part of; empty: one of their own
 };
 
 struct SolidObject {
@@ -87,6 +89,7 @@ struct LightDescription {
     std::optional<glm::dvec3> glow;
     double radius = 0;     // 0: not visible
     bool falloff = false;  // 1 / distance^2, clamped at radius, which must then be positive
+    std::string group;     // the light layer that it is part of; empty: one of its own
     std::string place;
 };
 

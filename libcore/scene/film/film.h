@@ -3,11 +3,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
-#include <utility>
 #include <vector>
 
 #include "cistula/model/pixel_record.h"
+#include "scene/film/film_layers.h"
 
 namespace cistula {
 
@@ -16,23 +15,6 @@ struct PixelRect {
     int x = 0, y = 0, width = 0, height = 0;
 
     bool operator==(const PixelRect&) const = default;
-};
-
-/// Allocator that leaves trivial elements uninitialized, so that the rendering threads touch their memory first.
-template <class T>
-struct DefaultInitAllocator : std::allocator<T> {
-    template <class U>
-    struct rebind {
-        using other = DefaultInitAllocator<U>;
-    };
-    template <class U>
-    void construct(U* place) {
-        ::new (static_cast<void*>(place)) U;
-    }
-    template <class U, class... Arguments>
-    void construct(U* place, Arguments&&... arguments) {
-        ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
-    }
 };
 
 /// One rendered frame (or its crop). pixels is row-major over rect.
@@ -45,6 +27,7 @@ struct Film {
     int64_t background[3] = {0, 0, 0};  // what a sample that meets nothing adds to its pixel's sums
     double rounding = 0;  // bound on how far rounding moves points, in widths of a pixel at distance 1 (scene units)
     std::vector<PixelRecord, DefaultInitAllocator<PixelRecord>> pixels;
+    FilmLayers layers;  // as asked for
     RayCounts rays;
     uint32_t flags = 0;  // RenderFlag bits of all pixels
 

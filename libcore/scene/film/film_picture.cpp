@@ -3,13 +3,11 @@
 #include <Imath/half.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 
-#include "cistula/numerics/elementary.h"
-#include "cistula/numerics/fixed_sum.h"
 #include "scene/base/fnv128.h"
+#include "scene/film/film_channel.h"
 
 namespace cistula {
 namespace {
@@ -19,71 +17,6 @@ void check(const Film& film) {
         film.pixels.size() != static_cast<size_t>(film.rect.width) * static_cast<size_t>(film.rect.height))
         throw std::invalid_argument("a film has samples, and as many pixels as its rectangle");
 }
-
-template <class Real = float>
-Real radiance(const Film& film, int64_t sum) {
-    return resolve<Real>(sum, film.fixed_shift, static_cast<uint32_t>(film.samples), film.radiance_exponent);
-}
-
-/// The sum of a pixel's samples that hit something, in integers: each of the others added the same.
-int64_t sum_of_hits(const Film& film, const PixelRecord& pixel, int c) {
-    return pixel.radiance[c] - (film.samples - static_cast<int64_t>(pixel.hits)) * film.background[c];
-}
-
-/// The least float that is not below `exact`, which must be >= 0.
-float rounded_up_to_float(double exact) {
-    const float nearest = static_cast<float>(exact);
-    return static_cast<double>(nearest) >= exact ? nearest : bits_as<float>(bits_as<uint32_t>(nearest) + 1);
-}
-
-/// A pixel's error bound: the mean of its ledger, rounded up to a unit of the fixed sums and then to a float.
-float ledger_bound(const Film& film, const PixelRecord& pixel, int c) {
-    const uint64_t total = static_cast<uint64_t>(pixel.pruned[c]) + static_cast<uint64_t>(pixel.cut[c]);
-    const uint64_t samples = static_cast<uint64_t>(film.samples);
-    const uint64_t mean = total / samples + (total % samples != 0);
-    const int width = static_cast<int>(std::bit_width(mean));
-    const int dropped = width > 24 ? width - 24 : 0;
-    const uint64_t kept = (mean >> dropped) + ((mean & ((uint64_t(1) << dropped) - 1)) != 0);
-    const double exact =
-        elementary::scaled(static_cast<double>(kept), dropped - film.fixed_shift + film.radiance_exponent);
-    return rounded_up_to_float(exact);
-}
-
-/// What a file's R, G and B are of the radiance: the color space, and whether the background counts.
-class Colors {
-  public:
-    Colors(const Film& film, const OutputChannels& channels) : film_(film), transparent_(channels.transparent) {
-        const ColorSpace& own = color_spaces().front();
-        if (!channels.space || channels.space->id == own.id) return;
-        converts_ = true;
-        matrix_ = color_matrix(own, *channels.space);
-    }
-
-    float radiance(const PixelRecord& pixel, int c) const {
-        if (!converts_) return cistula::radiance(film_, sum(pixel, c));
-        double value = 0;
-        for (int k = 0; k < 3; ++k) value += matrix_[k][c] * cistula::radiance<double>(film_, sum(pixel, k));
-        return static_cast<float>(value);
-    }
-
-    /// A bound on the error of radiance() from the ledger.
-    float error(const PixelRecord& pixel, int c) const {
-        if (!converts_) return ledger_bound(film_, pixel, c);
-        double value = 0;
-        for (int k = 0; k < 3; ++k)
-            value += magnitude(matrix_[k][c]) * static_cast<double>(ledger_bound(film_, pixel, k));
-        return rounded_up_to_float(value * (1 + 0x1p-50));  // five roundings of double
-    }
-
-  private:
-    int64_t sum(const PixelRecord& pixel, int c) const {
-        return transparent_ ? sum_of_hits(film_, pixel, c) : pixel.radiance[c];
-    }
-
-    const Film& film_;
-    bool transparent_, converts_ = false;
-    glm::dmat3 matrix_{1.0};
-};
 
 /// The smallest half that is not below `value`, which must be >= 0.
 float rounded_up_to_half(float value) {
@@ -118,6 +51,47 @@ decltype(LayeredPicture::attributes) attributes_of(const OutputChannels& channel
     return attributes;
 }
 
+/// The film's own channels, in the order of the file.
+std::vector<FilmChannel> pixel_channels(const Film& film, const OutputChannels& channels, const FilmColors& colors) {
+    const bool half = channels.half;
+    const auto coverage = [&film](size_t pixel) {
+        return static_cast<float>(static_cast<double>(film.pixels[pixel].hits) / film.samples);
+    };
+    std::vector<FilmChannel> to;
+    const char* const rgb[] = {"R", "G", "B"};
+    for (int c = 0; c < 3; ++c)
+        to.push_back(film_channel(rgb[c], half, [&film, &colors, c](size_t pixel) {
+            const PixelRecord& of = film.pixels[pixel];
+            int64_t sums[3];
+            for (int k = 0; k < 3; ++k) sums[k] = of.radiance[k] - colors.left_out(of, k);
+            return colors.radiance(sums, c);
+        }));
+    if (channels.transparent)
+        to.push_back(film_channel("A", half, coverage));
+    else
+        to.push_back(film_channel("A", half, [](size_t) { return 1.0f; }));
+    if (channels.coverage) to.push_back(film_channel("coverage", half, coverage));
+    for (int c = 0; c < 3 && channels.error; ++c)
+        to.push_back(film_channel(std::string("error.") + rgb[c], half, [&film, &colors, c, half](size_t pixel) {
+            const float bound = colors.error(film.pixels[pixel], c);
+            return half ? rounded_up_to_half(bound) : bound;
+        }));
+    const auto add = [&](const char* name, bool wanted, auto value) {
+        if (wanted)
+            to.push_back(film_channel(
+                name, false, [&film, value](size_t pixel) { return static_cast<float>(value(film.pixels[pixel])); }));
+    };
+    add("id", channels.id, [](const PixelRecord& pixel) { return pixel.id; });
+    add("samples", channels.samples, [](const PixelRecord& pixel) { return pixel.samples; });
+    add("cost", channels.cost, [](const PixelRecord& pixel) { return pixel.rays; });
+    add("Z", channels.z,
+        [far = channels.z_far](const PixelRecord& pixel) { return std::isinf(pixel.z) ? far : pixel.z; });
+    const char* const axes[] = {"N.X", "N.Y", "N.Z"};
+    for (int c = 0; c < 3 && channels.normal; ++c)
+        to.push_back(film_channel(axes[c], half, [&film, c](size_t pixel) { return film.pixels[pixel].normal[c]; }));
+    return to;
+}
+
 }  // namespace
 
 LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped) {
@@ -130,70 +104,53 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint6
     picture.display_width = film.full_width;
     picture.display_height = film.full_height;
     picture.attributes = attributes_of(channels);
+    for (const auto& [name, text] : cryptomatte_attributes(film, channels)) picture.attributes[name] = text;
     picture.compression = channels.compression;
     picture.dwa_level = channels.dwa_level;
-    const bool half = channels.half;
-    const auto add = [&](const char* name, bool as_half) { picture.channels.push_back({name, as_half, {}}); };
-    for (const char* name : {"R", "G", "B", "A"}) add(name, half);
-    if (channels.coverage) add("coverage", half);
-    for (const char* name : {"error.R", "error.G", "error.B"})
-        if (channels.error) add(name, half);
-    if (channels.id) add("id", false);
-    if (channels.samples) add("samples", false);
-    if (channels.cost) add("cost", false);
-    if (channels.z) add("Z", false);
-    for (const char* name : {"N.X", "N.Y", "N.Z"})
-        if (channels.normal) add(name, half);
-    for (LayeredPicture::Channel& channel : picture.channels) channel.values.resize(film.pixels.size());
+    const FilmColors colors(film, channels);
+    std::vector<FilmChannel> sources = pixel_channels(film, channels, colors);
+    for (auto& more : {layer_channels(film, channels, colors), cryptomatte_channels(film, channels)})
+        sources.insert(sources.end(), more.begin(), more.end());
+    for (const FilmChannel& source : sources) {
+        picture.channels.push_back({source.name, source.half, {}});
+        picture.channels.back().values.resize(film.pixels.size());
+    }
 
     // All channels of one block of pixels before the next block, while its pixels are still in a cache.
     constexpr size_t block = 1024;
     uint64_t over = 0;
-    const Colors colors(film, channels);
-    const auto coverage = [&film](const PixelRecord& pixel) {
-        return static_cast<float>(static_cast<double>(pixel.hits) / film.samples);
-    };
-    for (size_t begin = 0; begin < film.pixels.size(); begin += block) {
-        const PixelRecord* first = film.pixels.data() + begin;
-        const PixelRecord* last = first + std::min(block, film.pixels.size() - begin);
-        size_t next = 0;
-        const auto fill = [&](const auto& value) {
-            LayeredPicture::Channel& channel = picture.channels[next++];
-            float *start = channel.values.data() + begin, *to = start;
-            for (const PixelRecord* pixel = first; pixel != last; ++pixel) *to++ = value(*pixel);
-            if (channel.half) over += clamp_to_half(start, to);
-        };
-        for (int c = 0; c < 3; ++c) fill([&colors, c](const PixelRecord& pixel) { return colors.radiance(pixel, c); });
-        if (channels.transparent)
-            fill(coverage);
-        else
-            fill([](const PixelRecord&) { return 1.0f; });
-        if (channels.coverage) fill(coverage);
-        for (int c = 0; c < 3 && channels.error; ++c)
-            fill([&colors, c, half](const PixelRecord& pixel) {
-                const float bound = colors.error(pixel, c);
-                return half ? rounded_up_to_half(bound) : bound;
-            });
-        if (channels.id) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.id); });
-        if (channels.samples) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.samples); });
-        if (channels.cost) fill([](const PixelRecord& pixel) { return static_cast<float>(pixel.rays); });
-        if (channels.z)
-            fill([&channels](const PixelRecord& pixel) { return std::isinf(pixel.z) ? channels.z_far : pixel.z; });
-        for (int c = 0; c < 3 && channels.normal; ++c) fill([c](const PixelRecord& pixel) { return pixel.normal[c]; });
+    for (size_t first = 0; first < film.pixels.size(); first += block) {
+        const size_t last = std::min(first + block, film.pixels.size());
+        for (size_t i = 0; i < sources.size(); ++i) {
+            float* to = picture.channels[i].values.data();
+            sources[i].write(first, last, to + first);
+            if (sources[i].half) over += clamp_to_half(to + first, to + last);
+        }
     }
     if (clamped) *clamped += over;
     return picture;
 }
 
+LayerRequest layers_for(const OutputChannels& channels) {
+    LayerRequest request;
+    for (const bool wanted : channels.path) request.path |= wanted;
+    request.light = channels.light;
+    request.first_hit =
+        channels.position || channels.uv || channels.albedo || channels.depth_ray || channels.material_id;
+    request.objects = channels.object_mattes || channels.material_mattes || channels.light_mattes;
+    return request;
+}
+
 ColorPicture to_color(const Film& film) {
     check(film);
+    const FilmColors colors(film, {});
     ColorPicture picture;
     picture.width = static_cast<uint32_t>(film.rect.width);
     picture.height = static_cast<uint32_t>(film.rect.height);
     picture.texels.reserve(film.pixels.size());
     for (const PixelRecord& pixel : film.pixels)
-        picture.texels.emplace_back(radiance(film, pixel.radiance[0]), radiance(film, pixel.radiance[1]),
-                                    radiance(film, pixel.radiance[2]));
+        picture.texels.emplace_back(colors.radiance(pixel.radiance, 0), colors.radiance(pixel.radiance, 1),
+                                    colors.radiance(pixel.radiance, 2));
     return picture;
 }
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "scene/film/color_space.h"
 #include "scene/film/film.h"
+#include "scene/image/color_space.h"
 #include "scene/image/picture.h"
 
 namespace cistula {
@@ -14,12 +14,23 @@ struct OutputChannels {
     bool half =
         false;  // R G B A, coverage, error.* and N.* in half precision; id, samples, cost and Z are always float
     bool error = false, id = false, samples = false, cost = false, z = false, normal = false, coverage = false;
+    bool position = false, uv = false, albedo = false, depth_ray = false, material_id = false;
+    bool path[path_layer_count] = {};  // by PathLayer
+    bool light = false;                // all light layers
+    bool object_mattes = false, material_mattes = false, light_mattes = false;
     bool transparent = false;           // samples that meet nothing add nothing to R, G, B and A
     float z_far = 1e10f;                // Z where there is nothing
     const ColorSpace* space = nullptr;  // of R, G, B and error.*; null: that of scenes, lin_rec709_scene
     Compression compression = Compression::zip;
     float dwa_level = 45;
 };
+
+/// The names of path layers, in the order of PathLayer.
+inline constexpr const char* path_layer_names[path_layer_count] = {"emission", "background", "ambient",     "diffuse",
+                                                                   "specular", "reflection", "transmission"};
+
+/// The layers that a film needs for these channels.
+LayerRequest layers_for(const OutputChannels& channels);
 
 /// The largest finite number in half precision.
 inline constexpr float largest_half = 65504;

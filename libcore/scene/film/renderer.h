@@ -27,6 +27,7 @@ struct FrameSettings {
     double target_error =
         0;  // above 0: adaptive sampling on the 16 x 16 lattice; a quarter of it is the budget for the cutoff
     int max_samples = 256;    // per pixel, with a target error: 5 to 256
+    LayerRequest layers;      // not by every intersector: "exact" ones of the backends
     uint32_t effects = 0;     // mask to run; 0: the smallest that contains what the scene requires
     bool unshadowed = false;  // for measuring the cost of shadows: the image is wrong; not with a target error
     int tile = 16;            // side of a tile in pixels; never changes the image

@@ -30,6 +30,11 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     if (!(settings.cutoff >= 0)) refuse("cutoff: must be at least 0");
     if (!(settings.target_error >= 0)) refuse("target error: must be at least 0");
     if (settings.unshadowed && settings.adaptive()) refuse("target error: not of a frame without shadows");
+    if (settings.unshadowed && settings.layers.any()) refuse("layers: not of a frame without shadows");
+    if (settings.layers.light && scene.layer_names->light_groups.size() > size_t(most_light_groups))
+        refuse("light layers: the scene has " + std::to_string(scene.layer_names->light_groups.size()) +
+               " groups of lights; put lights together with \"group\", at most " + std::to_string(most_light_groups) +
+               " groups");
     if (settings.max_samples < least_lattice_samples || settings.max_samples > lattice_samples)
         refuse("max samples " + std::to_string(settings.max_samples) + ": must be from " +
                std::to_string(least_lattice_samples) + " to " + std::to_string(lattice_samples));
@@ -52,6 +57,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     const double budget = min_or_second(elementary::scaled(settings.truncation(), -scene.radiance_exponent), 16.0);
     frame.tree.budget = int64_t(floor_of(min_or_second(budget * fixed_scale(shift), 0x1p62)));
     if (settings.adaptive()) set_lattice(scene, settings, frame.lattice);
+    frame.layers = layer_plan(settings.layers, scene.layer_names->light_groups.size());
     return frame;
 }
 
@@ -59,11 +65,27 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
 /// camera inside a body adds effects. Adaptive sampling runs with all effects.
 inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.unshadowed) return unshadowed_mask;
+    if (settings.layers.any()) return layered_mask;
     if (settings.adaptive()) return effect_mask_count - 1;
     uint32_t of_camera = 0;
     for (int i = 0; i < 1 << frame.camera_planes; ++i)
         if (!frame.camera_sides[i].media.empty()) of_camera = effect_insides;
     return least_mask(settings.effects | effects | of_camera);
+}
+
+/// Enters pixels that show only background, whose sums are known, into their layers.
+inline void fill_background_layers(Film& film, size_t first, size_t count) {
+    const LayerPlan& plan = film.layers.plan;
+    const auto put = [&](int place, int layer, size_t pixel) {
+        if (place < 0) return;
+        int64_t* to = film.layers.words.data() + pixel * size_t(plan.words) + place + 3 * layer;
+        for (int c = 0; c < 3; ++c) to[c] = film.pixels[pixel].radiance[c];
+    };
+    if (plan.path < 0 && plan.light < 0) return;
+    for (size_t pixel = first; pixel < first + count; ++pixel) {
+        put(plan.path, int(PathLayer::background), pixel);
+        put(plan.light, int(LightLayer::environment), pixel);
+    }
 }
 
 /// A film of the frame's size, with uninitialized pixels.
@@ -87,6 +109,9 @@ void prepare_film(Film& film, const FrameSettings& settings, const CompiledScene
     film.pixels.resize(size_t(film.rect.width) * size_t(film.rect.height));
     film.rays = RayCounts();
     film.flags = 0;
+    begin_layers(film.layers, settings.layers, film.pixels.size(), scene.layer_names);
+    film.layers.unit_length = elementary::power_of_two(-scene.scale);
+    for (int c = 0; c < 3; ++c) film.layers.center[c] = scene.center[c];
 }
 
 }  // namespace cistula

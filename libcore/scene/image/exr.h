@@ -9,6 +9,8 @@
 
 namespace cistula {
 
+struct FileColors;
+
 /// Writes a scan line file. Equal pictures give equal files: no dates, nothing of the machine or
 /// the number of threads (see set_exr_threads). Half channels round to nearest even. Attributes: string, int, double,
 /// 16 floats -> m44f, 8 floats named "chromaticities" -> chromaticities (red, green, blue, white xy), other lengths ->
@@ -33,8 +35,11 @@ bool exr_is_complete(const std::string& path);
 /// Why a picture of a width and a height is refused; empty if it is not.
 using SizeProblem = std::function<std::string(int64_t width, int64_t height)>;
 
-/// Reads R, G, B, or Y alone, of the data window; half, float or uint. Memory for them is taken after `size_problem`
-/// has seen their size. Throws Error(ExitCode::file).
-ColorPicture read_exr_texture(const std::string& path, const SizeProblem& size_problem = {});
+/// Reads the numbers of a texture from the data window, of the first part; half, float or uint: R, G and B; or one
+/// channel, Y or the only one, which is gray; or luminance and chroma (Y, RY, BY), by the file's chromaticities.
+/// `colors` becomes what the file says of its colors. Memory for pixels is taken after `size_problem` has seen their
+/// size. Throws Error(ExitCode::file).
+ColorPicture read_exr_texture(const std::string& path, const SizeProblem& size_problem = {},
+                              FileColors* colors = nullptr);
 
 }  // namespace cistula

@@ -1,19 +1,10 @@
 #include "scene/image/exr_checks.h"
 
 #include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfChromaticitiesAttribute.h>
-#include <OpenEXR/ImfDoubleAttribute.h>
-#include <OpenEXR/ImfFloatAttribute.h>
-#include <OpenEXR/ImfFloatVectorAttribute.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfInputPart.h>
-#include <OpenEXR/ImfIntAttribute.h>
-#include <OpenEXR/ImfMatrixAttribute.h>
-#include <OpenEXR/ImfRationalAttribute.h>
-#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfPartType.h>
 
-#include <cstdint>
 #include <filesystem>
 #include <stdexcept>
 
@@ -45,7 +36,7 @@ int lines_per_chunk(Imf::Compression compression) {
 
 }  // namespace
 
-void limit_exr_sizes() {
+void limit_sizes() {
     static const bool once = [] {
         Imf::Header::setMaxImageSize(static_cast<int>(largest_picture_side), static_cast<int>(largest_picture_side));
         Imf::Header::setMaxTileSize(largest_tile_side, largest_tile_side);
@@ -55,6 +46,7 @@ void limit_exr_sizes() {
 }
 
 void check_claim(const Imf::Header& header, const std::string& path) {
+    // Deflate packs 1,032 to 1 at most, RLE and PIZ less; DWA does so after it took one value in 64.
     double packing = 2048;
     if (header.compression() == Imf::NO_COMPRESSION) packing = 1;
     if (header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION)
@@ -64,7 +56,8 @@ void check_claim(const Imf::Header& header, const std::string& path) {
     const double height = static_cast<double>(window.max.y) - window.min.y + 1;
     double bytes = 0;
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
-        bytes += width * height * (channel.channel().type == Imf::HALF ? 2 : 4);
+        bytes += width * height * (channel.channel().type == Imf::HALF ? 2 : 4) /
+                 (static_cast<double>(channel.channel().xSampling) * channel.channel().ySampling);
     const auto size = static_cast<double>(std::filesystem::file_size(path));
     if (bytes > packing * size)
         throw std::runtime_error("it says that it has " + std::to_string(static_cast<int64_t>(width)) + "x" +
@@ -88,47 +81,21 @@ void check_chunks(File& file) {
 template void check_chunks(Imf::InputFile& file);
 template void check_chunks(Imf::InputPart& file);
 
-void check_full_sampling(const Imf::Header& header, const std::string& name) {
-    const Imf::Channel& channel = header.channels()[name.c_str()];
-    if (channel.xSampling != 1 || channel.ySampling != 1)
-        throw std::runtime_error("channel " + name + " is subsampled; convert it to one value per pixel");
-}
-
-void check_full_sampling(const Imf::Header& header) {
-    const Imf::ChannelList& channels = header.channels();
-    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
-        check_full_sampling(header, channel.name());
-}
-
-ExrAttributes read_attributes(const Imf::Header& header) {
-    ExrAttributes attributes;
-    for (auto entry = header.begin(); entry != header.end(); ++entry) {
-        const std::string name = entry.name();
-        // Every file has these.
-        if (name == "pixelAspectRatio" || (name == "screenWindowWidth" && header.screenWindowWidth() == 1)) continue;
-        const Imf::Attribute& attribute = entry.attribute();
-        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
-            attributes[name] = text->value();
-        } else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&attribute)) {
-            attributes[name] = whole->value();
-        } else if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) {
-            attributes[name] = number->value();
-        } else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) {
-            attributes[name] = static_cast<double>(single->value());
-        } else if (const auto* ratio = dynamic_cast<const Imf::RationalAttribute*>(&attribute)) {
-            attributes[name] = Ratio{ratio->value().n, ratio->value().d};
-        } else if (const auto* list = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute)) {
-            attributes[name] = std::vector<float>(list->value());
-        } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute)) {
-            const float* first = matrix->value().getValue();
-            attributes[name] = std::vector<float>(first, first + 16);
-        } else if (const auto* colors = dynamic_cast<const Imf::ChromaticitiesAttribute*>(&attribute)) {
-            const Imf::Chromaticities& c = colors->value();
-            attributes[name] =
-                std::vector<float>{c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y};
-        }
+void check_sampling(const Imf::InputFile& file, bool is_chroma) {
+    const Imf::ChannelList& channels = file.header().channels();
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+        const std::string name = channel.name();
+        const int x = channel.channel().xSampling, y = channel.channel().ySampling;
+        const bool may_be_halved = is_chroma && (name == "RY" || name == "BY");
+        if ((x != 1 || y != 1) && !(may_be_halved && x == 2 && y == 2))
+            throw std::runtime_error("channel " + name + " is subsampled; convert it to one value per pixel" +
+                                     (may_be_halved ? ", or one for two by two" : ""));
     }
-    return attributes;
+}
+
+void check_flat(const Imf::Header& header) {
+    if (header.hasType() && Imf::isDeepData(header.type()))
+        throw std::runtime_error("it is deep, with several samples in a pixel; flatten it first");
 }
 
 }  // namespace cistula

@@ -1,7 +1,8 @@
-// What every reader of OpenEXR files checks before it believes one.
+// What is checked of an OpenEXR file before its pixels are read, for all of its readers. Private to image/.
 #pragma once
 
-#include <OpenEXR/ImfForward.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 
 #include <cerrno>
 #include <exception>
@@ -9,11 +10,8 @@
 #include <string>
 
 #include "scene/base/file_bytes.h"
-#include "scene/image/picture.h"
 
 namespace cistula {
-
-using ExrAttributes = decltype(LayeredPicture::attributes);
 
 /// Runs `read`; the library's exceptions become an Error that names the file, or std::bad_alloc.
 template <class Read>
@@ -33,22 +31,20 @@ auto with_file_errors(const std::string& path, Read read) {
 }
 
 /// Limits picture sizes before the library opens a file, so that a damaged header cannot make it allocate huge arrays.
-void limit_exr_sizes();
+void limit_sizes();
 
-/// Throws for a header that says more pixels than a file of its size can hold, before memory is taken for them. Deflate
-/// packs 1,032 to 1 at most, RLE and PIZ less; DWA does so after it took one value in 64.
+/// Throws for several samples in a pixel.
+void check_flat(const Imf::Header& header);
+
+/// Throws unless all channels have one value per pixel; where `is_chroma`, RY and BY may have one for two by two.
+void check_sampling(const Imf::InputFile& file, bool is_chroma = false);
+
+/// Throws for a header that says more pixels than a file of its size can hold, before memory is taken for them.
 void check_claim(const Imf::Header& header, const std::string& path);
 
 /// Throws unless every chunk is present. The table of offsets is not enough: it precedes the pixels, so a truncated
 /// file has all of it. Tiles are checked when their pixels are read. File: Imf::InputFile or Imf::InputPart.
 template <class File>
 void check_chunks(File& file);
-
-/// Throws if a channel, by name or any, has fewer values than there are pixels.
-void check_full_sampling(const Imf::Header& header, const std::string& name);
-void check_full_sampling(const Imf::Header& header);
-
-/// The attributes of the types that write_exr writes; float attributes become doubles.
-ExrAttributes read_attributes(const Imf::Header& header);
 
 }  // namespace cistula

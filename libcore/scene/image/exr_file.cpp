@@ -9,7 +9,9 @@
 
 #include <stdexcept>
 
+#include "scene/image/exr_attributes.h"
 #include "scene/image/exr_checks.h"
+#include "scene/image/exr_header.h"
 
 namespace cistula {
 namespace {
@@ -57,10 +59,11 @@ struct ExrFile::Open {
 };
 
 ExrFile::ExrFile(const std::string& path) : path_(path) {
-    limit_exr_sizes();
+    limit_sizes();
     regular_file_size(path);  // a pipe would be waited for
     check_readable(path);
     with_file_errors(path, [&] {
+        check_exr_header(path);
         file_ = std::make_unique<Open>(path);
         for (int i = 0; i < file_->file.parts(); ++i) {
             parts_.push_back(part_of(file_->file.header(i)));
@@ -78,7 +81,10 @@ std::vector<ExrChannel> ExrFile::read(size_t part, const std::vector<size_t>& ch
         std::vector<ExrChannel> read;
         for (const size_t channel : channels) {
             read.push_back(parts_[part].channels[channel]);
-            check_full_sampling(header, read.back().name);
+            const Imf::Channel& of_file = header.channels()[read.back().name.c_str()];
+            if (of_file.xSampling != 1 || of_file.ySampling != 1)
+                throw std::runtime_error("channel " + read.back().name +
+                                         " is subsampled; convert it to one value per pixel");
         }
         check_chunks(input);
         const Imath::Box2i data = header.dataWindow();

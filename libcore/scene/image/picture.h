@@ -13,7 +13,8 @@
 
 namespace cistula {
 
-/// A picture in linear RGB, row-major from the top left; textures are read into it.
+/// A picture in linear RGB, Rec. 709 unless something else is said, row-major from the top left; textures are read into
+/// it.
 struct ColorPicture {
     uint32_t width = 0, height = 0;
     std::vector<glm::vec3> texels;

@@ -9,8 +9,8 @@
 #include "scene/image/texture_reader.h"
 
 namespace cistula {
-ColorPicture read_texture(const std::string& path) {
-    return TextureReader().read(path, nullptr);
+ColorPicture read_texture(const std::string& path, std::string_view encoding) {
+    return TextureReader().read(path, nullptr, encoding);
 }
 
 void write_preview(const std::string& path, const ColorPicture& linear) {

@@ -11,8 +11,7 @@ namespace cistula {
 /// Loads what reading with OpenImageIO needs, which stays loaded; empty if that succeeds, or the reason.
 std::string load_oiio();
 
-/// Reads a picture after load_oiio: 8- and 16-bit samples are sRGB codes, float ones linear; half and double become
-/// float. True on success.
+/// Reads a picture after load_oiio: samples of 8 and 16 bits as they are, half and double as float. True on success.
 bool oiio_read(const std::string& path, const OiioHost& host);
 
 }  // namespace cistula

@@ -6,6 +6,7 @@
 #include "scene/base/atomic_file.h"
 #include "scene/base/file_bytes.h"
 #include "scene/image/srgb_codes.h"
+#include "scene/image/texel_decoder.h"
 #include "scene/image/texture_limits.h"
 
 namespace cistula {
@@ -25,7 +26,7 @@ void append_little_endian(std::string& bytes, uint32_t value) {
 
 }  // namespace
 
-ColorPicture read_raw_picture(const std::string& path, uint64_t left, uint64_t limit) {
+ColorPicture read_raw_picture(const std::string& path, uint64_t left, uint64_t limit, const FileEncoding& encoding) {
     const std::string header = read_file_start(path, header_size);
     if (header.size() < header_size)
         throw file_error(path, "read",
@@ -53,12 +54,8 @@ ColorPicture read_raw_picture(const std::string& path, uint64_t left, uint64_t l
     ColorPicture picture;
     picture.width = static_cast<uint32_t>(width);
     picture.height = static_cast<uint32_t>(height);
-    picture.texels.resize(static_cast<size_t>(width) * static_cast<size_t>(height));
-    const auto channel = [&](size_t at) { return linear_from_srgb8(static_cast<uint8_t>(bytes[at])); };
-    for (size_t i = 0; i < picture.texels.size(); ++i) {
-        const size_t at = header_size + 4 * i;
-        picture.texels[i] = glm::vec3(channel(at), channel(at + 1), channel(at + 2));
-    }
+    picture.texels.reserve(static_cast<size_t>(width) * static_cast<size_t>(height));
+    TexelDecoder(encoding, 1).append(std::string_view(bytes).substr(header_size), 4, picture.texels);
     return picture;
 }
 

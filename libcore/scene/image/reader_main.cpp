@@ -18,6 +18,7 @@
 
 #include "scene/base/file_bytes.h"
 #include "scene/image/exr.h"
+#include "scene/image/file_colors.h"
 #include "scene/image/picture_oiio.h"
 #include "scene/image/reader_wire.h"
 #include "scene/image/texture_limits.h"
@@ -85,6 +86,19 @@ class Answer {
         return problem;
     }
 
+    /// Says what a file says of its colors.
+    void colors(const FileColors& colors) const {
+        ReplyColors reply = {};
+        if (colors.chromaticities)
+            std::copy(colors.chromaticities->begin(), colors.chromaticities->end(), reply.chromaticities);
+        reply.has_chromaticities = colors.chromaticities.has_value();
+        reply.is_aces = colors.is_aces;
+        reply.is_half = colors.is_half;
+        std::string bytes(reinterpret_cast<const char*>(&reply), sizeof reply);
+        bytes.append(colors.id, 0, largest_reply_id);
+        send_part(ReplyKind::colors, bytes.data(), bytes.size());
+    }
+
     bool begin(int64_t width, int64_t height, uint32_t channels, OiioSamples type) {
         if (const std::string problem = size_problem(width, height); !problem.empty()) {
             fail(problem);
@@ -129,14 +143,16 @@ OiioHost host_of(Answer& answer, uint64_t left) {
 
 void answer_exr(const std::string& path, Answer& answer) {
     ColorPicture picture;
+    FileColors colors;
     try {
-        picture =
-            read_exr_texture(path, [&](int64_t width, int64_t height) { return answer.size_problem(width, height); });
+        picture = read_exr_texture(
+            path, [&](int64_t width, int64_t height) { return answer.size_problem(width, height); }, &colors);
     } catch (const std::exception& error) {
         const std::string_view message = error.what();
         const std::string before = path + ": cannot read: ";  // which the other process says, too
         return fail(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
     }
+    answer.colors(colors);
     if (answer.begin(picture.width, picture.height, 3, OiioSamples::float32))
         answer.samples(picture.texels.data(), picture.texels.size());
 }

@@ -4,8 +4,10 @@
 #include <functional>
 #include <stdexcept>
 
+#include "scene/image/file_colors.h"
 #include "scene/image/picture.h"
 #include "scene/image/reader_wire.h"
+#include "scene/image/texel_decoder.h"
 
 namespace cistula {
 
@@ -22,12 +24,17 @@ struct ReaderBroken : std::runtime_error {
 /// Fills `size` bytes at `to` with what the program says next, or throws.
 using Receive = std::function<void(void* to, size_t size)>;
 
-/// The first part of an answer: the size of the picture, whose texels take `left` bytes at most. Throws PictureRefused,
-/// ReaderBroken and what `receive` throws.
-ReplySize receive_size(const Receive& receive, uint64_t left);
+/// What comes before the samples.
+struct ReplyStart {
+    ReplySize size;
+    FileColors colors;
+};
 
-/// The rest of an answer as linear colors: 8- and 16-bit samples are decoded from sRGB, single channels are gray.
-/// Throws also std::bad_alloc.
-ColorPicture receive_texels(const Receive& receive, const ReplySize& size);
+/// The first parts of an answer; the texels of the picture take `left` bytes at most. Throws PictureRefused,
+/// ReaderBroken and what `receive` throws.
+ReplyStart receive_start(const Receive& receive, uint64_t left);
+
+/// The rest of an answer, by a decoder for samples of its size; single channels are gray. Throws also std::bad_alloc.
+ColorPicture receive_texels(const Receive& receive, const ReplySize& size, const TexelDecoder& decoder);
 
 }  // namespace cistula

@@ -7,7 +7,7 @@
 namespace cistula {
 
 /// The program's only argument; it changes whenever this header does.
-inline constexpr const char* reader_protocol = "cistula-pictures-1 " CISTULA_VERSION;
+inline constexpr const char* reader_protocol = "cistula-pictures-2 " CISTULA_VERSION;
 
 inline constexpr int reader_socket = 3;           // the program's descriptor of its end
 inline constexpr int reader_wrong_protocol = 64;  // the program's exit code for another argument
@@ -21,11 +21,13 @@ struct ReadRequest {
     uint32_t reserved;
 };
 
-/// The answer is `size` and then `samples` until there are all, or at any time `failed`.
+/// The answer is `colors`, where the file says something of them, `size`, and then `samples` until there are all, or at
+/// any time `failed`.
 enum class ReplyKind : uint32_t {
     size = 1,  // a ReplySize
     samples,   // whole texels, row-major from the top left
     failed,    // the reason, without the file's name
+    colors,    // a ReplyColors, and then the id
 };
 
 /// Begins each part of an answer.
@@ -38,7 +40,14 @@ inline constexpr uint32_t largest_reply_part = 1 << 20;
 struct ReplySize {
     uint32_t width, height;
     uint32_t channels;      // 1 or 3
-    uint32_t sample_bytes;  // 1 or 2: sRGB codes; 4: linear floats
+    uint32_t sample_bytes;  // 1 or 2: codes, whose largest is white; 4: floats
 };
+
+/// FileColors.
+struct ReplyColors {
+    float chromaticities[8];
+    uint32_t has_chromaticities, is_aces, is_half;
+};
+inline constexpr uint32_t largest_reply_id = 255;
 
 }  // namespace cistula

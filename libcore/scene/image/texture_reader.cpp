@@ -30,10 +30,10 @@ TextureReader::TextureReader(const TextureLimits& limits) : limits_(within_reach
 
 TextureReader::~TextureReader() = default;
 
-ColorPicture TextureReader::read(const std::string& path, ClampedTexels* clamped) {
+ColorPicture TextureReader::read(const std::string& path, ClampedTexels* clamped, std::string_view encoding) {
     ColorPicture picture;
     try {
-        picture = read_any(path);
+        picture = read_any(path, encoding);
     } catch (const Error&) {
         throw;
     } catch (const PictureRefused& refused) {
@@ -52,15 +52,17 @@ ColorPicture TextureReader::read(const std::string& path, ClampedTexels* clamped
     return picture;
 }
 
-ColorPicture TextureReader::read_any(const std::string& path) {
+ColorPicture TextureReader::read_any(const std::string& path, std::string_view encoding) {
     if (regular_file_size(path) == 0) throw file_error(path, "read", std::string("it is empty; give a picture"));
     const std::string extension = lower_extension(path);
-    if (extension == ".exr" || read_file_start(path, 4) == "\x76\x2f\x31\x01") return read_in_child(path, true);
-    if (extension == ".data" || extension == ".out") return read_raw_picture(path, left_, limits_.bytes);
-    return read_in_child(path, false);
+    if (extension == ".exr" || read_file_start(path, 4) == "\x76\x2f\x31\x01")
+        return read_in_child(path, true, encoding);
+    if (extension == ".data" || extension == ".out")
+        return read_raw_picture(path, left_, limits_.bytes, file_encoding(encoding, {}, false));
+    return read_in_child(path, false, encoding);
 }
 
-ColorPicture TextureReader::read_in_child(const std::string& path, bool is_exr) {
+ColorPicture TextureReader::read_in_child(const std::string& path, bool is_exr, std::string_view encoding) {
     if (!process_) process_ = std::make_unique<ReaderProcess>();
     const auto start = ReaderProcess::Clock::now();
     const ReadRequest request = {
@@ -69,9 +71,11 @@ ColorPicture TextureReader::read_in_child(const std::string& path, bool is_exr) 
     process_->send(path.data(), path.size());
     auto end = start + patience(limits_.seconds);
     const Receive receive = [&](void* to, size_t size) { process_->receive(to, size, end); };
-    const ReplySize size = receive_size(receive, left_);
+    const auto [size, colors] = receive_start(receive, left_);
+    const bool is_floating = size.sample_bytes == sizeof(float);
+    const TexelDecoder decoder(file_encoding(encoding, colors, is_floating), size.sample_bytes, colors.is_half);
     end = start + patience(seconds_for(limits_.seconds, texel_bytes * size.width * size.height));
-    return receive_texels(receive, size);
+    return receive_texels(receive, size, decoder);
 }
 
 }  // namespace cistula

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "scene/image/clamped_texels.h"
 #include "scene/image/picture.h"
@@ -21,15 +22,16 @@ class TextureReader {
     TextureReader(const TextureReader&) = delete;
     TextureReader& operator=(const TextureReader&) = delete;
 
-    /// A texture as linear RGB. OpenEXR, by extension or by content, and raw pictures are read by every build, other
-    /// formats through OpenImageIO. Integer samples are decoded from sRGB, floating-point ones are linear. Values that
-    /// are negative, infinite or not a number are clamped and counted in `clamped`; without that they are an error.
-    /// Throws Error(ExitCode::file) with the path.
-    ColorPicture read(const std::string& path, ClampedTexels* clamped);
+    /// A texture as linear Rec. 709. OpenEXR, by extension or by content, and raw pictures are read by every build,
+    /// other formats through OpenImageIO. `encoding`, the name of one of color_encodings, says what its numbers mean;
+    /// without it the file does, and if that says nothing, integers are sRGB, floating-point numbers linear Rec. 709.
+    /// Values that are then negative, infinite or not a number are clamped and counted in `clamped`; without that they
+    /// are an error. Throws Error(ExitCode::file) with the path.
+    ColorPicture read(const std::string& path, ClampedTexels* clamped, std::string_view encoding = {});
 
   private:
-    ColorPicture read_any(const std::string& path);
-    ColorPicture read_in_child(const std::string& path, bool is_exr);
+    ColorPicture read_any(const std::string& path, std::string_view encoding);
+    ColorPicture read_in_child(const std::string& path, bool is_exr, std::string_view encoding);
 
     TextureLimits limits_;
     uint64_t left_;  // bytes

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "scene/base/suggest.h"
+#include "scene/description/light_group.h"
+#include "scene/image/color_encoding.h"
 #include "scene/readers/json_reader.h"
 
 namespace cistula {
@@ -96,7 +98,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     const bool has_checker = is_object && value.json().contains("checker");
     if (has_file && has_checker) value.fail("expected one of 'file' and 'checker', found both");
     if (is_object && !has_file && !has_checker) {
-        const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat", "strict"};
+        const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat", "colorspace", "strict"};
         for (const auto& member : value.json().items())
             if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
                 value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
@@ -108,6 +110,8 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
         texture.file = file_beside_scene(texture.file, base_dir);
         if (const int filter = keys.read_choice("filter"); filter >= 0) texture.bilinear = filter == 1;
         keys.read("repeat", texture.repeat);
+        if (const int name = keys.read_choice("colorspace"); name >= 0)
+            texture.colorspace = color_encoding_names[static_cast<size_t>(name)];
         keys.read("strict", texture.strict);
         keys.finish();
         return texture;
@@ -154,6 +158,7 @@ LightDescription read_light(const JsonValue& value) {
     keys.read("glow", light.glow);
     keys.read("radius", light.radius);
     light.falloff = keys.read_choice("falloff") == 1;
+    read_light_group(keys, light.group);
     keys.finish();
     if (light.falloff && light.radius == 0)
         keys.fail("falloff", "inverse-square needs a 'radius' above 0, within which it stays constant");
@@ -171,6 +176,19 @@ FrameOfReference read_frame(const JsonValue& value) {
     return frame;
 }
 
+/// Two objects of one name could not be told apart in mattes.
+void require_different_names(const std::vector<ObjectDescription>& objects, const JsonValue& list) {
+    std::unordered_map<std::string_view, size_t> first;
+    for (size_t i = 0; i < objects.size(); ++i) {
+        if (objects[i].name.empty()) continue;
+        const auto [other, is_new] = first.try_emplace(objects[i].name, i);
+        if (is_new) continue;
+        const JsonValue value = list.item(i);
+        value.fail_at(value.place_of("name"), fmt::format("{} is the name of /objects/{} too; give each its own",
+                                                          quoted(objects[i].name), other->second));
+    }
+}
+
 /// Calls read(name, value) for every member of an object whose keys are names, except its comment.
 template <class Read>
 void for_each_name(const JsonValue& value, const std::string& kind, Read read) {
@@ -184,6 +202,13 @@ void for_each_name(const JsonValue& value, const std::string& kind, Read read) {
 }
 
 }  // namespace
+
+void read_light_group(JsonObject& keys, std::string& group) {
+    if (!keys.has("group")) return;
+    keys.read("group", group);
+    if (const std::string fault = fault_of_light_group(group); !fault.empty())
+        keys.fail("group", fmt::format("the name {} {}", quoted(std::string_view(group)), fault));
+}
 
 std::string file_beside_scene(const std::string& file, const std::string& base_dir) {
     if (base_dir.empty()) return file;
@@ -234,6 +259,7 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
     const ObjectContext context{scene, materials, base_dir};
     const size_t object_count = objects.array_size(0, "an array of objects");
     for (size_t i = 0; i < object_count; ++i) scene.objects.push_back(read_json_object(objects.item(i), context));
+    require_different_names(scene.objects, objects);
     if (keys.has("lights")) {
         const JsonValue lights = keys.at("lights");
         const size_t light_count = lights.array_size(0, "an array of lights");

@@ -8,11 +8,15 @@
 
 namespace cistula {
 
+class JsonObject;
 class JsonValue;
 
 /// Parses a JSON scene. Throws Error (usage) with `label` and the JSON pointer, or line and column. Does not set
 /// `source`.
 SceneDescription read_json_scene(const std::string& text, const std::string& label, const std::string& base_dir);
+
+/// Reads the key "group" of lights. Throws Error (usage) if layers cannot be named so.
+void read_light_group(JsonObject& keys, std::string& group);
 
 /// Path of `file`, which is named in a scene in folder `base_dir`.
 std::string file_beside_scene(const std::string& file, const std::string& base_dir);

@@ -36,6 +36,7 @@ EdgeLights read_edge_lights(const JsonValue& value) {
     keys.read("glow", lights.glow);
     keys.read("radius", lights.radius);
     lights.falloff = keys.read_choice("falloff") == 1;
+    read_light_group(keys, lights.group);
     keys.finish();
     if (lights.falloff && lights.radius == 0)
         keys.fail("falloff", "inverse-square needs a 'radius' above 0, within which it stays constant");

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/image/color_encoding.h"
+
 namespace cistula {
 namespace {
 
@@ -35,6 +37,9 @@ constexpr Key text(std::string_view name, bool needed = false) {
 }
 constexpr Key choice(std::string_view name, std::span<const std::string_view> choices, std::string_view fallback) {
     return {name, KeyType::choice, {}, fallback, fallback.empty(), choices};
+}
+constexpr Key optional_choice(std::string_view name, std::span<const std::string_view> choices) {
+    return {name, KeyType::choice, {}, {}, false, choices};
 }
 constexpr Key color(std::string_view name, Range range, std::string_view fallback) {
     return {name, KeyType::color, range, fallback, false, {}};
@@ -97,6 +102,7 @@ constexpr Key texture_file_list[] = {
     text("file", required),
     choice("filter", filter_choices, "\"bilinear\""),
     pair("repeat", repeats, "[1, 1]"),
+    optional_choice("colorspace", color_encoding_names),
     boolean("strict", "false"),
 };
 
@@ -131,6 +137,7 @@ constexpr Key edge_lights_list[] = {
     color("glow", not_negative, {}),
     number("radius", not_negative, "0"),
     choice("falloff", falloff_choices, "\"none\""),
+    text("group"),
 };
 
 constexpr Key quad_list[] = {text("name"), other("quad", required), text("material", required)};
@@ -160,6 +167,7 @@ constexpr Key light_list[] = {
     color("glow", not_negative, {}),
     number("radius", not_negative, "0"),
     choice("falloff", falloff_choices, "\"none\""),
+    text("group"),
 };
 
 constexpr Key frame_list[] = {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 
-#include "scene/film/color_space.h"
+#include "scene/image/color_space.h"
 #include "scene/image/exr.h"
 #include "testing/support/render_program.h"
 
@@ -35,8 +35,8 @@ TEST_F(RenderColors, ATransparentBackgroundIsTakenOutOfColorAndAlpha) {
             options.insert(options.end(), sampling.begin(), sampling.end());
             return rendered(options);
         };
-        auto opaque = with({"--aov", "coverage,Z"}),
-             clear = with({"--background", "transparent", "--aov", "Z", "--z-far", "inf"});
+        auto opaque = with({"--layers", "coverage,Z"}),
+             clear = with({"--background", "transparent", "--layers", "Z", "--z-far", "inf"});
         EXPECT_EQ(std::get<std::string>(last_.attributes.at("cistula:background")), "transparent");
         EXPECT_EQ(clear["A"], opaque["coverage"]);
         size_t empty = 0, part = 0;
@@ -72,13 +72,14 @@ TEST_F(RenderColors, SpacesAreThoseOfTheHeader) {
                 EXPECT_NEAR(other[std::string(1, "RGB"[c])][i],
                             matrix[0][c] * own["R"][i] + matrix[1][c] * own["G"][i] + matrix[2][c] * own["B"][i], 1e-5);
     }
-    expect_refused({"b.json", "-o", "b.exr", "--colorspace", "lin_ap2_scene"}, ExitCode::usage,
-                   "--colorspace lin_ap2_scene: there is no such space; the spaces are: "
-                   "lin_ap1_scene, lin_ap0_scene, lin_rec2020_scene, lin_rec709_scene");
+    expect_refused(
+        {"b.json", "-o", "b.exr", "--colorspace", "lin_ap2_scene"}, ExitCode::usage,
+        "--colorspace lin_ap2_scene: there is no such space; the spaces are: "
+        "lin_ap1_scene, lin_ap0_scene, lin_p3d65_scene, lin_rec2020_scene, lin_rec709_scene, lin_adobergb_scene");
 }
 
 TEST_F(RenderColors, RawFramesRefuseWhatTheyCannotHold) {
-    for (const Arguments& option : {Arguments{"--aov", "coverage"}, Arguments{"--background", "transparent"},
+    for (const Arguments& option : {Arguments{"--layers", "coverage"}, Arguments{"--background", "transparent"},
                                     Arguments{"--colorspace", "lin_ap1_scene"}, Arguments{"--compression", "piz"}}) {
         Arguments arguments{"b.json", "-o", "b.data"};
         arguments.insert(arguments.end(), option.begin(), option.end());
@@ -89,11 +90,11 @@ TEST_F(RenderColors, RawFramesRefuseWhatTheyCannotHold) {
 }
 
 TEST_F(RenderColors, LosslessCompressionsGiveTheSamePixels) {
-    const auto own = rendered({"--aov", "Z,id"});
+    const auto own = rendered({"--layers", "Z,id"});
     for (const char* name : {"none", "rle", "zips", "zip", "piz"}) {
-        EXPECT_EQ(rendered({"--aov", "Z,id", "--compression", name}), own) << name;
+        EXPECT_EQ(rendered({"--layers", "Z,id", "--compression", name}), own) << name;
     }
-    const auto lossy = rendered({"--aov", "Z,id", "--bits", "half", "--compression", "dwaa", "--dwa-level", "20"});
+    const auto lossy = rendered({"--layers", "Z,id", "--bits", "half", "--compression", "dwaa", "--dwa-level", "20"});
     EXPECT_NE(lossy.at("R"), own.at("R"));
     for (size_t i = 0; i < own.at("R").size(); ++i) EXPECT_NEAR(lossy.at("R")[i], own.at("R")[i], 0.1);
     EXPECT_EQ(lossy.at("id"), own.at("id"));
@@ -103,7 +104,7 @@ TEST_F(RenderColors, LosslessCompressionsGiveTheSamePixels) {
     expect_refused({"b.json", "-o", "b.exr", "--compression", "dwab", "--dwa-level", "nan"}, ExitCode::usage,
                    "from 0 to 1000");
     for (const char* wrong : {"-1", "0", "nan", "1e39", "far"})
-        expect_refused({"b.json", "-o", "b.exr", "--aov", "Z", std::string("--z-far=") + wrong}, ExitCode::usage,
+        expect_refused({"b.json", "-o", "b.exr", "--layers", "Z", std::string("--z-far=") + wrong}, ExitCode::usage,
                        "must be a number above 0, or inf");
 }
 

@@ -37,7 +37,7 @@ TEST_F(RenderFilm, ResumeSkipsWhatIsCompleteAndTheSame) {
     EXPECT_TRUE(rendered_again({"--depth", "3"}));
     EXPECT_FALSE(rendered_again({"--depth", "3"}));
     EXPECT_TRUE(rendered_again({"--bits", "half"}));
-    EXPECT_TRUE(rendered_again({"--aov", "Z"}));
+    EXPECT_TRUE(rendered_again({"--layers", "Z"}));
     EXPECT_TRUE(rendered_again({"--crop", "20x10+0+0"}));
     EXPECT_TRUE(rendered_again({"--preview", "a.##.png"}));
     EXPECT_FALSE(rendered_again({"--preview", "a.##.png"}));
@@ -68,7 +68,8 @@ TEST_F(RenderFilm, AFileThatCannotBeWrittenLeavesTheOldOneWhole) {
     expect_done({"s.json", "-q", "-o", "a.exr"});
     const std::string old = bytes_of(file("a.exr"));
     ProgramResult result =
-        RunningProgram(program_, {"s.json", "-q", "-o", "a.exr", "--res", "200x100", "--aov", "N,Z,id"}, file(""), "",
+        RunningProgram(program_, {"s.json", "-q", "-o", "a.exr", "--res", "200x100", "--layers", "N,Z,id"}, file(""),
+                       "",
                        [] {
                            const rlimit limit{4096, 4096};
                            setrlimit(RLIMIT_FSIZE, &limit);

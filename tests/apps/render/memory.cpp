@@ -9,7 +9,8 @@ namespace {
 class RenderMemory : public RenderProgram {
   protected:
     RenderMemory() {
-        const Arguments film = {"s.json", "-q", "-o", "whole.#.exr", "--preview", "whole.#.png", "--aov", "error,id"};
+        const Arguments film = {"s.json",    "-q",          "-o",       "whole.#.exr",
+                                "--preview", "whole.#.png", "--layers", "error,id"};
         expect_done(film);
     }
 
@@ -33,7 +34,7 @@ class RenderMemory : public RenderProgram {
         for (const std::string& name : folder_.names())
             if (name.starts_with("f.")) std::filesystem::remove(file(name));
         const ProgramResult result = run_with({"s.json", "-q", "--threads", "4", "-o", "f.#.exr", "--preview",
-                                               "f.#.png", "--aov", "error,id", "--stats", "f.json"},
+                                               "f.#.png", "--layers", "error,id", "--stats", "f.json"},
                                               prepare);
         const bool is_done = result.code == 0;
         EXPECT_TRUE(is_done || result.code == 1) << result.code << " " << result.error;

@@ -32,7 +32,8 @@ TEST_F(RenderNames, AreEscapedInMessages) {
     const std::string name = hostile;
     expect_refused({name + ".json"}, ExitCode::file, std::string(shown) + ".json: cannot read the scene: ");
     expect_refused({"s.json", "-o", name + ".png"}, ExitCode::usage, std::string(shown) + ".png: images are written");
-    expect_refused({"s.json", "-o", "a.exr", "--aov", name}, ExitCode::usage, "no layer '" + std::string(shown) + "'");
+    expect_refused({"s.json", "-o", "a.exr", "--layers", name}, ExitCode::usage,
+                   "no layer '" + std::string(shown) + "'");
     expect_refused({"s.json", "--" + name}, ExitCode::usage, "--" + std::string(shown) + ": no such option");
     expect_refused({"s.json", "--res", name}, ExitCode::usage, shown);
     expect_refused({"s.json", name}, ExitCode::usage, shown);

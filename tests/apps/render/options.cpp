@@ -1,6 +1,5 @@
 #include "apps/render/options.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pty.h>
@@ -80,7 +79,7 @@ TEST(RenderOptions, AllTogether) {
                                          "half",
                                          "--preview",
                                          "p.png",
-                                         "--aov",
+                                         "--layers",
                                          "error,Z",
                                          "--stats",
                                          "s.json",
@@ -146,7 +145,7 @@ TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
     for (const char* part : {"--output",       "--frames",         "--backend",  "--res",
                              "--crop",         "--supersample",    "--depth",    "--cutoff",
                              "--precision",    "--threads",        "--bits",     "--preview",
-                             "--exposure",     "--view",           "--bloom",    "--aov",
+                             "--exposure",     "--view",           "--bloom",    "--layers",
                              "--explain",      "--pixel",          "--json",     "--effects",
                              "--stats",        "--resume",         "--progress", "--quiet",
                              "--verbose",      "--help",           "--device ",  "--list-devices",
@@ -180,36 +179,6 @@ TEST(RenderOptions, Errors) {
     EXPECT_THROW(parse({"s", "-o"}), Error);
     EXPECT_THROW(parse({"s", "-o", ""}), Error);
     EXPECT_THROW(parse({"s", "--depth", "3", "--depth", "4"}), Error);
-}
-
-TEST(RenderOptions, ViewsOfThePreview) {
-    const auto view = [](std::vector<const char*> more) {
-        more.insert(more.begin(), {"s", "--preview", "p.png"});
-        return parse(more).view;
-    };
-    EXPECT_EQ(view({}).exposure, 0);
-    EXPECT_EQ(view({}).curve, ViewCurve::srgb);
-    EXPECT_EQ(view({}).bloom, 0);
-    EXPECT_EQ(view({"--exposure", "-1.5"}).exposure, -1.5);
-    EXPECT_EQ(view({"--view", "filmic"}).curve, ViewCurve::filmic);
-    EXPECT_EQ(view({"--view", "srgb"}).curve, ViewCurve::srgb);
-    EXPECT_EQ(view({"--bloom", "0.25"}).bloom, 0.25);
-    for (const char* text : {"65", "-64.5", "nan", "inf", "1ev", "x", "1 "})
-        expect_refused(
-            {"s", "--preview", "p.png", "--exposure", text},
-            std::string("--exposure ") + text + ": must be a number of stops from -64 to 64; each doubles the light");
-    for (const char* text : {"-0.1", "101", "nan", "x"})
-        expect_refused({"s", "--preview", "p.png", "--bloom", text},
-                       std::string("--bloom ") + text +
-                           ": must be a number from 0 to 100; 1 adds the light above white once, spread around it");
-    expect_refused({"s", "--preview", "p.png", "--view", "fimlic"},
-                   "--view fimlic: there is no such view; the views are: filmic, srgb");
-    expect_refused({"s", "--preview", "p.png", "--view", "ACES"},
-                   "--view ACES: there is no such view; the views are: srgb, filmic");
-    for (const auto& [option, text] : {std::pair("--exposure", "1"), {"--view", "srgb"}, {"--bloom", "0"}})
-        expect_refused(
-            {"s", option, text},
-            fmt::format("{} {}: is for --preview FILE.png; the image keeps the scene's light", option, text));
 }
 
 TEST(RenderOptions, TargetErrors) {
@@ -352,13 +321,20 @@ TEST(RenderOptions, Sizes) {
 TEST(RenderOptions, Layers) {
     const OutputChannels all = parse_layers("N,Z,cost,samples,id,error,id");
     EXPECT_TRUE(all.normal && all.z && all.cost && all.samples && all.id && all.error);
-    EXPECT_ERROR(parse_layers("eror"), ExitCode::usage, "--aov eror: there is no layer 'eror'; did you mean 'error'?");
+    const OutputChannels groups = parse_layers("path,cryptomatte,uv");
+    EXPECT_TRUE(groups.path[0] && groups.path[path_layer_count - 1] && groups.uv && !groups.light && !groups.z);
+    EXPECT_TRUE(groups.object_mattes && groups.material_mattes && groups.light_mattes);
+    const OutputChannels data = parse_layers("data");
+    EXPECT_TRUE(data.position && data.material_id && data.error && data.coverage && !data.path[0]);
+    EXPECT_TRUE(parse_layers("light").light && parse_layers("specular").path[4]);
+    EXPECT_ERROR(parse_layers("eror"), ExitCode::usage,
+                 "--layers eror: there is no layer 'eror'; did you mean 'error'?");
     EXPECT_ERROR(parse_layers("id,normals"), ExitCode::usage,
-                 "--aov id,normals: there is no layer 'normals'; known layers: error, id, samples, cost, Z, N, "
-                 "coverage");
+                 "--layers id,normals: there is no layer 'normals'; known layers: path, data, cryptomatte, P, "
+                 "uv, albedo, N, Z, depth_ray, coverage, id, material_id, samples, cost, error, light, ...");
     EXPECT_ERROR(parse_layers("id,"), ExitCode::usage,
-                 "--aov id,: there is no layer ''; known layers: error, id, samples, cost, Z, N, "
-                 "coverage");
+                 "--layers id,: there is no layer ''; known layers: path, data, cryptomatte, P, "
+                 "uv, albedo, N, Z, depth_ray, coverage, id, material_id, samples, cost, error, light, ...");
 }
 
 TEST(RenderOptions, OptionsOverrideTheScene) {

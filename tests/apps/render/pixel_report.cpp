@@ -271,7 +271,7 @@ TEST_F(PixelReports, TextAndJsonTellTheSame) {
 }
 
 TEST_F(PixelReports, ShowTheImagesValues) {
-    expect_done({"s.json", "-q", "-o", "a.exr", "--aov", "error,cost,id,Z", "-f", "2", "--precision", "double"});
+    expect_done({"s.json", "-q", "-o", "a.exr", "--layers", "error,cost,id,Z", "-f", "2", "--precision", "double"});
     const LayeredPicture picture = read_exr(file("a.exr"));
     const auto value = [&](const std::string& name, size_t i) {
         for (const LayeredPicture::Channel& channel : picture.channels)
@@ -354,7 +354,7 @@ TEST_F(PixelReports, RefuseInOneLine) {
     expect_refused({"s.json", "--pixel", "16,8", "--res", "16x9"}, ExitCode::usage,
                    "which is 16x9; its last pixel is 15,8");
     const std::vector<Arguments> senseless = {{"-o", "a.exr"},       {"--preview", "p.png"}, {"--stats", "t.json"},
-                                              {"--aov", "id"},       {"--bits", "half"},     {"--strict"},
+                                              {"--layers", "id"},    {"--bits", "half"},     {"--strict"},
                                               {"--crop", "4x4+0+0"}, {"--resume"},           {"--progress", "plain"},
                                               {"--explain"},         {"--backend", "cuda"}};
     for (const Arguments& more : senseless) {

@@ -89,7 +89,7 @@ TEST_F(RenderProgram, RefusesInOneLine) {
     expect_refused({"s.json", "-o", "a.exr", "-f", "1-2"}, ExitCode::usage, "-o a.####.exr");
     expect_refused({"s.json", "-o", "a.exr", "--crop", "8x8+33+0"}, ExitCode::usage,
                    "leaves the frame, which is 40x24");
-    expect_refused({"s.json", "-o", "a.out", "--aov", "id"}, ExitCode::usage, "--aov needs an .exr");
+    expect_refused({"s.json", "-o", "a.out", "--layers", "id"}, ExitCode::usage, "--layers needs an .exr");
     expect_refused({"s.json", "-o", "a.out", "--resume"}, ExitCode::usage, "--resume needs an .exr");
     expect_refused({"s.json", "-o", "a.out", "--bits", "half"}, ExitCode::usage, "--bits half needs an .exr");
     expect_refused({"s.json", "-o", "a.##.exr", "--preview", "p.png"}, ExitCode::usage, "put #### into the name");
@@ -271,7 +271,7 @@ TEST_F(RenderProgram, TheExampleOfTheTextInputRuns) {
 }
 
 TEST_F(RenderProgram, ACropIsTheSameRegion) {
-    const Arguments layers{"-q", "--aov", "error,id,samples,cost,Z,N", "--cutoff", "0.01", "--supersample", "2"};
+    const Arguments layers{"-q", "--layers", "error,id,samples,cost,Z,N", "--cutoff", "0.01", "--supersample", "2"};
     Arguments full{"s.json", "-o", "full.exr"}, crop{"s.json", "-o", "crop.exr", "--crop", "13x7+21+11"};
     full.insert(full.end(), layers.begin(), layers.end());
     crop.insert(crop.end(), layers.begin(), layers.end());
@@ -301,7 +301,7 @@ TEST_F(RenderProgram, ACropIsTheSameRegion) {
 TEST_F(RenderProgram, ThreadsNeverShow) {
     for (const char* threads : {"1", "2", "7"})
         expect_done(
-            {"s.json", "-q", "--aov", "id,cost", "-o", std::string("t") + threads + ".exr", "--threads", threads});
+            {"s.json", "-q", "--layers", "id,cost", "-o", std::string("t") + threads + ".exr", "--threads", threads});
     EXPECT_EQ(bytes_of(file("t1.exr")), bytes_of(file("t2.exr")));
     EXPECT_EQ(bytes_of(file("t1.exr")), bytes_of(file("t7.exr")));
 }
@@ -311,14 +311,14 @@ TEST_F(RenderProgram, OptionsReachTheImage) {
     const std::string base = bytes_of(file("base.exr"));
     const std::vector<Arguments> changes = {{"--depth", "1"},   {"--precision", "double"}, {"--supersample", "2"},
                                             {"--res", "20x12"}, {"--bits", "half"},        {"--cutoff", "0.1"},
-                                            {"--aov", "N"}};
+                                            {"--layers", "N"}};
     for (const Arguments& change : changes) {
         Arguments arguments{"s.json", "-q", "-o", "other.exr"};
         arguments.insert(arguments.end(), change.begin(), change.end());
         expect_done(arguments);
         EXPECT_NE(bytes_of(file("other.exr")), base) << change[0];
     }
-    expect_done({"s.json", "-q", "-o", "other.exr", "--bits", "half", "--aov", "Z"});
+    expect_done({"s.json", "-q", "-o", "other.exr", "--bits", "half", "--layers", "Z"});
     for (const LayeredPicture::Channel& one : read_exr(file("other.exr")).channels)
         EXPECT_EQ(one.half, one.name != "Z");
 }
@@ -328,7 +328,7 @@ TEST_F(RenderProgram, HalfNeverHoldsAnInfinity) {
     const std::string light = R"({"position": [-4, 4, 5]})";
     bright.replace(bright.find(light), light.size(), R"({"position": [-4, 4, 5], "color": 2e6})");
     put_bytes(file("bright.json"), bright);
-    const Arguments film{"bright.json", "-o", "b.#.exr", "--bits", "half", "--aov", "error", "--depth", "2"};
+    const Arguments film{"bright.json", "-o", "b.#.exr", "--bits", "half", "--layers", "error", "--depth", "2"};
     const ProgramResult result = run(film);
     EXPECT_EQ(result.code, 0) << result.error;
     uint64_t at_most = 0;
@@ -373,7 +373,7 @@ TEST_F(RenderProgram, AFilmOverTheZenithSaysWhereItTurns) {
     replace("6.0 5.0 0.0 2.0 1.0 0.05 0.1 0.05 0.0 0.0", "0 9 0 0 0 0 0 0 0 0");
     replace("3.0 0.0 3.1415926 1.5 0.5 0.03 0.07 0.02 0.0 0.0", "0 0 0 0 0 0 0 0 0 0");
     write_raw_picture(file("floor.data"), ColorPicture{1, 1, {glm::vec3(1, 1, 1)}});
-    expect_done({"-", "-q", "-o", "down.exr", "-f", "0", "--aov", "id"}, text);
+    expect_done({"-", "-q", "-o", "down.exr", "-f", "0", "--layers", "id"}, text);
     const LayeredPicture down = read_exr(file("down.exr"));
     // As from a little off the axis, on its +x side: the right is +y, below is +x.
     const auto id_at = [&](size_t x, size_t y) { return channel(down, "id")[y * 32 + x]; };
@@ -412,7 +412,7 @@ TEST_F(RenderProgram, TheHeaderSaysWhatTheImageDependsOn) {
 }
 
 TEST_F(RenderProgram, StatsAreJson) {
-    expect_done({"s.json", "-q", "-o", "a.##.exr", "--stats", "s.stats.json", "--threads", "2", "--aov", "cost",
+    expect_done({"s.json", "-q", "-o", "a.##.exr", "--stats", "s.stats.json", "--threads", "2", "--layers", "cost",
                  "--cutoff", "0.05"});
     const auto stats = nlohmann::json::parse(bytes_of(file("s.stats.json")));
     const auto& context = stats.at("context");
@@ -457,7 +457,7 @@ TEST_F(RenderProgram, StatsAreJson) {
 }
 
 TEST_F(RenderProgram, OfATargetItIsSaidWhatIsProvenAndWhatIsEstimated) {
-    const ProgramResult result = run({"s.json", "-o", "a.exr", "--target-error", "0.02", "--aov", "samples,error",
+    const ProgramResult result = run({"s.json", "-o", "a.exr", "--target-error", "0.02", "--layers", "samples,error",
                                       "--stats", "s.stats.json", "--progress", "none"});
     EXPECT_EQ(result.code, 0) << result.error;
     EXPECT_NE(result.error.find("render: target error 0.02: truncation is proven to reach its quarter, taking "),
@@ -508,7 +508,7 @@ TEST_F(RenderProgram, OfATargetItIsSaidWhatIsProvenAndWhatIsEstimated) {
     EXPECT_EQ(std::get<int>(image.attributes.at("cistula:checkedPixels")), int(checked));
     EXPECT_EQ(std::get<int>(image.attributes.at("cistula:offPixels")), int(off));
     // What is known of the image afterwards does not make it another.
-    EXPECT_NE(run({"s.json", "-o", "a.exr", "--target-error", "0.02", "--aov", "samples,error", "--resume"})
+    EXPECT_NE(run({"s.json", "-o", "a.exr", "--target-error", "0.02", "--layers", "samples,error", "--resume"})
                   .error.find("1 of 1 frames are complete"),
               std::string::npos);
 

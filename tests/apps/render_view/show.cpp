@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "apps/render_view/id_colors.h"
-#include "scene/film/color_space.h"
+#include "scene/image/color_space.h"
 #include "scene/image/srgb_codes.h"
 
 namespace cistula {

@@ -8,9 +8,9 @@
 
 #include "scene/image/exr.h"
 #include "scene/image/raw_picture.h"
-#include "scene/image/srgb_codes.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
+#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {

@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include "scene/image/picture_io.h"
-#include "scene/image/srgb_codes.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/render_program.h"
+#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {

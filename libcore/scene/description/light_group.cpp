@@ -1,0 +1,41 @@
+#include "scene/description/light_group.h"
+
+#include <algorithm>
+
+namespace cistula {
+namespace {
+
+constexpr const char* reserved[] = {"ambient", "environment", "glow"};  // layers that every scene has
+constexpr size_t longest = 100;  // characters; names of channels have at most 255
+
+/// Whether a character may be in the name of a layer. All of UTF-8 beyond ASCII may.
+bool is_allowed(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           static_cast<unsigned char>(c) >= 0x80;
+}
+
+}  // namespace
+
+std::string light_group(const LightDescription& light, size_t i) {
+    return light.group.empty() ? "light" + std::to_string(i) : light.group;
+}
+
+std::string light_group(const EdgeLights& lights, const std::string& solid) {
+    if (!lights.group.empty()) return lights.group;
+    std::string name = "edges_" + solid.substr(0, longest);
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return !is_allowed(c); }, '_');
+    return name;
+}
+
+std::string fault_of_light_group(const std::string& name) {
+    if (name.empty()) return "is empty";
+    if (name.size() > longest) return "is longer than " + std::to_string(longest) + " bytes";
+    if (name.find('.') != std::string::npos) return "has a dot, which separates layers from channels";
+    if (!std::all_of(name.begin(), name.end(), is_allowed)) return "has other characters than letters, digits, _ and -";
+    for (const char* layer : reserved)
+        if (name == layer) return "is that of a layer which every scene has";
+    return "";
+}
+
+}  // namespace cistula

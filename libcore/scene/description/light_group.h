@@ -1,0 +1,19 @@
+// The groups in which lights enter the layers of a film.
+#pragma once
+
+#include <string>
+
+#include "scene/description/description.h"
+
+namespace cistula {
+
+/// The group of the scene's i-th light: as given, or one of its own, "light0".
+std::string light_group(const LightDescription& light, size_t i);
+
+/// The group of the lights on a solid's edges: as given, or "edges_" and the solid's name.
+std::string light_group(const EdgeLights& lights, const std::string& solid);
+
+/// What is wrong with the name of a group, as in "has a dot"; empty: nothing.
+std::string fault_of_light_group(const std::string& name);
+
+}  // namespace cistula

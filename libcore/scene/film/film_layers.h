@@ -1,0 +1,48 @@
+// The layers of a film: what is asked for, what a backend fills, and the names that files give.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cistula/model/layers.h"
+#include "scene/film/film_memory.h"
+
+namespace cistula {
+
+/// The groups of layers that a frame is rendered with.
+struct LayerRequest {
+    bool path = false, light = false;  // divisions of the radiance (PathLayer, LightLayer)
+    bool first_hit = false;
+    bool objects = false;     // how many samples of a pixel meet which object first
+    int object_entries = 16;  // in a pixel's table of objects; a film with flag_objects_overflow needs more
+
+    bool any() const { return path || light || first_hit || objects; }
+    bool operator==(const LayerRequest&) const = default;
+};
+
+/// The names of what layers tell apart, by the numbers of the compiled scene.
+struct LayerNames {
+    std::vector<std::string> objects, materials;  // of solids and of materials
+    std::vector<uint32_t> object_materials;       // the material of each solid
+    std::vector<std::string> visible_lights;      // the group of each
+    std::vector<std::string> light_groups;        // each once
+};
+
+/// The layers that a backend fills.
+struct FilmLayers {
+    LayerPlan plan;
+    std::vector<int64_t, DefaultInitAllocator<int64_t>> words;  // plan.words for each pixel
+    double center[3] = {0, 0, 0}, unit_length = 1;  // a FirstHit's position in scene units: center + position * that
+    std::shared_ptr<const LayerNames> names;
+};
+
+/// The plan for the layers of a scene with so many light groups.
+LayerPlan layer_plan(const LayerRequest& request, size_t light_groups);
+
+/// Sets up empty layers of so many pixels, in the scene's frame.
+void begin_layers(FilmLayers& layers, const LayerRequest& request, size_t pixels,
+                  std::shared_ptr<const LayerNames> names);
+
+}  // namespace cistula

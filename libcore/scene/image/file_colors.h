@@ -1,0 +1,32 @@
+// What a picture file says of its colors, and what that makes of its numbers.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "scene/image/color_encoding.h"
+#include "scene/image/color_space.h"
+
+namespace cistula {
+
+/// Attributes of an OpenEXR file. Other formats say nothing.
+struct FileColors {
+    std::string id;  // colorInteropID; empty: none
+    std::optional<Chromaticities> chromaticities;
+    bool is_aces = false;  // acesImageContainerFlag, of SMPTE ST 2065-4
+    bool is_half = false;  // numbers are rounded to halves
+};
+
+/// What the numbers of one file mean.
+struct FileEncoding {
+    ColorSpace space;
+    Curve curve;
+};
+
+/// The encoding that has a name, or, if that is empty, the one that the file says; of a file that says nothing,
+/// linear Rec. 709 for floating-point numbers and sRGB for integers. Throws std::runtime_error for a name or an ID that
+/// is not known, and where a file contradicts itself.
+FileEncoding file_encoding(std::string_view name, const FileColors& colors, bool is_floating);
+
+}  // namespace cistula
