@@ -72,7 +72,7 @@ std::string count_text(uint64_t value) {
     return text;
 }
 
-std::string count_text(double value) {
+std::string float_count_text(double value) {
     return value >= 0 && value < 0x1p64 ? count_text(static_cast<uint64_t>(value)) : number_text(value);
 }
 

@@ -20,7 +20,7 @@ std::string number_text(double value);
 /// An integer with separators: "1,234,567".
 std::string count_text(uint64_t value);
 /// A count of rays that was added up in floating point, cut to a whole number; one beyond 64 bits as number_text.
-std::string count_text(double value);
+std::string float_count_text(double value);
 /// A percentage: "12 %", "0.3 %".
 std::string percent_text(double share);
 /// A setting in words: "1×1", "double, 4×4 samples, depth 8, cutoff 0.002".

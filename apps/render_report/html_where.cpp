@@ -41,7 +41,7 @@ std::string ray_figure(const Shown& shown) {
         legend + "</ul>\n" + stacks_svg(stacks),
         fmt::format("<b>Rays by kind and depth</b>, one sample a pixel: what a frame of depth n traces beyond "
                     "one of depth n − 1. {} rays in all, {} a pixel.",
-                    count_text(sum), number_text(sum / pixels)));
+                    float_count_text(sum), number_text(sum / pixels)));
 }
 
 std::string heat_figure(const Shown& shown) {
@@ -56,9 +56,9 @@ std::string heat_figure(const Shown& shown) {
         image_tag(scene.heat, shown.title + ": the rays of every pixel as colors, dark is few, bright is many") +
             fmt::format("<div class=\"scale\" style=\"background:linear-gradient(90deg,{})\"></div>"
                         "<div class=\"ends\"><span>few</span><span>{} rays</span></div>",
-                        stops, count_text(scene.heat_most)),
+                        stops, float_count_text(scene.heat_most)),
         fmt::format("<b>Cost of a pixel</b>, logarithmic: {} rays in the mean, {} at most, at depth {}.",
-                    number_text(scene.heat_mean), count_text(scene.heat_most), scene.base.depth));
+                    number_text(scene.heat_mean), float_count_text(scene.heat_most), scene.base.depth));
 }
 
 const Entry* entry_with(const Shown& shown, const Setting& setting) {
