@@ -19,7 +19,7 @@ configure = @cmake/configure $(1) $(2) $(CMAKE_ARGS)
 CUDA   ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-quick test-asan test-report fuzz lint check-all bench gpu-check golden docs install uninstall package cuda-toolkit clean
+.PHONY: help render build test test-quick test-asan test-report test-clients fuzz lint check-all bench gpu-check golden docs install uninstall package cuda-toolkit clean
 
 help: ## this list
 	@echo 'make TARGET [PRESET=release|release-all|debug|asan|fuzz|clang] [SETUP=no] [CMAKE_ARGS=...]'
@@ -78,6 +78,21 @@ test-report: ## measure a small report, open it in headless Chromium and look fo
 	@mkdir -p out/report
 	$(BUILD)/bin/render-report scenes/benchmark.json scenes/platonic.json --quick --res 96x54 --scaling -o out/report/small.html
 	tests/report-check out/report/small.html $(wildcard docs/report/*.html) --screenshots out/report
+
+# Pythons of build/clients, filled by pip from the lists in tests/clients
+define client_pythons
+	@for name in tools blender; do \
+	    [ -x build/clients/$$name/bin/pip ] || python3 -m venv build/clients/$$name && \
+	    build/clients/$$name/bin/pip install -q --disable-pip-version-check -r tests/clients/$$name.txt || exit; \
+	done
+endef
+
+test-clients: ## have OpenEXR's Python, OpenImageIO with OpenColorIO, ffmpeg and Blender read what render writes; Python 3.11; frames into out/clients
+	$(call setup,packages.txt:renderer tests/clients/packages.txt)
+	$(call configure,--renderer $(PRESET))
+	@cmake --build $(BUILD) --target render
+	$(client_pythons)
+	tests/clients/check $(BUILD)/bin build/clients out/clients
 
 bench: ## build the benchmarks and run them; bars and records into out/bench
 	$(call setup,packages.txt bench/packages.txt)
