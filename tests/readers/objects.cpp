@@ -1,6 +1,7 @@
 // The elements of "objects" in scene files.
 #include <gtest/gtest.h>
 
+#include "scene/description/light_group.h"
 #include "scene/readers/read_scene.h"
 #include "testing/support/expect_error.h"
 
@@ -99,10 +100,25 @@ TEST(SceneSolids, EdgeLightErrors) {
                  "/edge_lights/group: the name 'key left' has other characters than letters, digits, _ and -");
     EXPECT_WRONG(solid(R"({"count": 1, "group": "glow"})"),
                  "/edge_lights/group: the name 'glow' is that of a layer which every scene has");
+    EXPECT_WRONG(solid(R"({"count": 1, "group": ")" + std::string(55, 'g') + "\"}"),
+                 "/edge_lights/group: the name '" + std::string(40, 'g') + "...' is longer than 54 bytes");
     EXPECT_WRONG(solid(R"({"count": 1, "group": ""})"),
                  "/edge_lights/group: expected a string that is not empty, found an empty string");
     EXPECT_WRONG(solid(R"({"count": 1, "falloff": "inverse-square"})"),
                  "/edge_lights/falloff: inverse-square needs a 'radius' above 0, within which it stays constant");
+}
+
+TEST(SceneSolids, EdgeLightsAreAGroupByTheSolidsName) {
+    EXPECT_EQ(light_group(EdgeLights{}, "left. cube"), "edges_left__cube");
+    EXPECT_EQ(light_group(EdgeLights{}, std::string(48, 'n')), "edges_" + std::string(48, 'n'));
+    EXPECT_EQ(light_group(EdgeLights{}, std::string(49, 'n')), "edges_" + std::string(48, 'n'));
+    EXPECT_EQ(light_group(EdgeLights{}, std::string(47, 'n') + "\u00fc"),
+              "edges_" + std::string(47, 'n'));  // two bytes
+    EXPECT_EQ(light_group(EdgeLights{}, std::string(46, 'n') + "\u00fc"), "edges_" + std::string(46, 'n') + "\u00fc");
+    EdgeLights given;
+    given.group = std::string(54, 'g');
+    EXPECT_EQ(light_group(given, "cube"), given.group);
+    EXPECT_EQ(fault_of_light_group(given.group), "");
 }
 
 TEST(SceneQuads, BecomeTwoTrianglesWithUv) {

@@ -6,7 +6,7 @@ namespace cistula {
 namespace {
 
 constexpr const char* reserved[] = {"ambient", "environment", "glow"};  // layers that every scene has
-constexpr size_t longest = 100;  // characters; names of channels have at most 255
+constexpr size_t longest = 54;  // bytes; with "Combined_" the 63 that Blender reads of a layer's name
 
 /// Whether a character may be in the name of a layer. All of UTF-8 beyond ASCII may.
 bool is_allowed(char c) {
@@ -22,7 +22,10 @@ std::string light_group(const LightDescription& light, size_t i) {
 
 std::string light_group(const EdgeLights& lights, const std::string& solid) {
     if (!lights.group.empty()) return lights.group;
-    std::string name = "edges_" + solid.substr(0, longest);
+    std::string name = "edges_" + solid;
+    size_t end = std::min(name.size(), longest);
+    while (end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;  // whole characters
+    name.resize(end);
     std::replace_if(
         name.begin(), name.end(), [](char c) { return !is_allowed(c); }, '_');
     return name;

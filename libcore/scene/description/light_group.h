@@ -10,7 +10,7 @@ namespace cistula {
 /// The group of the scene's i-th light: as given, or one of its own, "light0".
 std::string light_group(const LightDescription& light, size_t i);
 
-/// The group of the lights on a solid's edges: as given, or "edges_" and the solid's name.
+/// The group of the lights on a solid's edges: as given, or "edges_" and the solid's name, cut where it is too long.
 std::string light_group(const EdgeLights& lights, const std::string& solid);
 
 /// What is wrong with the name of a group, as in "has a dot"; empty: nothing.
