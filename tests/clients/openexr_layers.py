@@ -47,6 +47,8 @@ def check_mattes(checks, name, header, channels):
         known = np.isin(ids, [int(bits, 16) for bits in manifest.values()])
         checks.holds(bool(np.all(known == (coverages > 0)) and np.all(ids[~known] == 0)), f"{name}: {kind}: where an id is, it is of the manifest")
         checks.holds(bool(np.all(np.diff(coverages) <= 0)), f"{name}: {kind}: ranks in order")
+        if "cistula:targetError" in header:
+            continue  # samples have weights
         counts = coverages * samples[..., None]
         checks.near(counts, np.round(counts), 1e-5, f"{name}: {kind}: coverages are numbers of samples")
     covered = {kind: clients.ranks(channels, kind)[1] for kind in CRYPTO}
@@ -67,9 +69,11 @@ def check_positions(checks, name, header, channels):
     # An even grid has no sample in the very middle; the one after it counts.
     side = header["cistula:supersample"]
     middle = 0.5 if side % 2 else 0.5 + 0.5 / side
-    columns, rows = np.meshgrid(np.arange(width), np.arange(height))
-    checks.near((ndc[..., 0] / ndc[..., 3] * width - columns)[seen], middle, 1e-3, f"{name}: worldToNDC takes P to its pixel's column")
-    checks.near((ndc[..., 1] / ndc[..., 3] * height - rows)[seen], middle, 1e-3, f"{name}: and to its row")
+    (left, top), (right, bottom) = header["displayWindow"]
+    (first_column, first_row), _ = header["dataWindow"]
+    columns, rows = np.meshgrid(np.arange(width) + first_column - left, np.arange(height) + first_row - top)
+    checks.near((ndc[..., 0] / ndc[..., 3] * (right - left + 1) - columns)[seen], middle, 1e-3, f"{name}: worldToNDC takes P to its pixel's column")
+    checks.near((ndc[..., 1] / ndc[..., 3] * (bottom - top + 1) - rows)[seen], middle, 1e-3, f"{name}: and to its row")
     depth = (points @ np.asarray(header["worldToCamera"], np.float64))[..., 2]
     checks.near(depth[seen] / channels["Z"][seen], 1, 1e-5, f"{name}: worldToCamera takes P to Z")
 
