@@ -55,9 +55,10 @@ void declare(CLI::App& app, OptionTexts& texts) {
         ->type_name("N");
     app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
     app.add_flag("--strict", texts.strict, "with --bits half: a value over 65504 is an error, and not clamped");
-    app.add_option("--layers,--aov", texts.layers,
+    app.add_option("--layers", texts.layers,
                    "more layers: path, light, data, cryptomatte, or single ones such as diffuse, Z, N")
         ->type_name("LIST");
+    app.add_option("--aov", texts.layers, "as --layers")->group("");  // its name in earlier versions: not in --help
     app.add_option("--z-far", texts.z_far, "with --layers Z: the depth of nothing, a number or inf; 1e10")
         ->type_name("Z");
     app.add_option("--background", texts.background, "opaque, or transparent: alpha is coverage, color premultiplied")
