@@ -401,6 +401,7 @@ TEST(HeaderAttributes, MatricesTakePointsWhereTheCameraSeesThem) {
 TEST(HeaderAttributes, TellImagesApart) {
     FrameSettings settings;
     CameraFrame camera;
+    camera.camera.position = {0, 0, 0};
     camera.camera.forward = {0, 1, 0};
     camera.camera.right = {1, 0, 0};
     camera.camera.up = {0, 0, 1};
