@@ -293,8 +293,8 @@ OutputChannels parse_layers(std::string_view text) {
         for (const Layer& layer : known)
             if (layer.name == name || layer.group == name) *layer.wanted = found = true;
         if (!found)
-            fail_usage(
-                fmt::format("--layers {}: there is no layer '{}'; {}", text, name, suggestion(name, names, "layers")));
+            fail_usage(fmt::format("--layers {}: there is no layer '{}'; {}", text, name,
+                                   nearest_first(name, names, "layers")));
         begin = comma + 1;
     }
     return layers;
