@@ -92,18 +92,18 @@ void Readback::copy(const PixelRecord* records, const BlockList& list, Film& fil
 void Readback::copy_layers(const int64_t* layers, const BlockList& list, Film& film) {
     const auto order = rows_of_records(list.plan());
     const BlockShape shape = list.shape();
-    const size_t words = size_t(film.layers.plan.words), pixel_bytes = words * sizeof(int64_t);
-    if (words == 0) return;
-    copy_blocks(
-        reinterpret_cast<const std::byte*>(layers), pixel_bytes, list,
-        [&](const std::byte* bytes, int first, int count) {
-            for (int i = 0; i < count; ++i) {
-                const std::byte* from = bytes + size_t(i) * size_t(shape.pixels()) * pixel_bytes;
-                for_each_pixel(order, shape, list.places()[size_t(first + i)], film, [&](size_t pixel, size_t record) {
-                    std::memcpy(film.layers.words.data() + pixel * words, from + record * pixel_bytes, pixel_bytes);
+    const size_t pixel_bytes = size_t(film.layers.plan.words) * sizeof(int64_t);
+    if (pixel_bytes == 0) return;
+    copy_blocks(reinterpret_cast<const std::byte*>(layers), pixel_bytes, list,
+                [&](const std::byte* bytes, int first, int count) {
+                    for (int i = 0; i < count; ++i) {
+                        const std::byte* from = bytes + size_t(i) * size_t(shape.pixels()) * pixel_bytes;
+                        for_each_pixel(order, shape, list.places()[size_t(first + i)], film,
+                                       [&](size_t pixel, size_t record) {
+                                           std::memcpy(film.layers.of(pixel), from + record * pixel_bytes, pixel_bytes);
+                                       });
+                    }
                 });
-            }
-        });
 }
 
 }  // namespace cistula

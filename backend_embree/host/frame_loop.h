@@ -133,8 +133,7 @@ class FrameTask {
     }
 
     PixelLayers layers_of(const PixelRecord& pixel) {
-        const size_t index = size_t(&pixel - film_.pixels.data());
-        return {film_.layers.words.data() + index * size_t(film_.layers.plan.words), 1};
+        return {film_.layers.of(size_t(&pixel - film_.pixels.data())), 1};
     }
 
     bool render_adaptive() {

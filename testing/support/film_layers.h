@@ -32,7 +32,7 @@ inline std::string first_fault_of_layers(const Film& film) {
     const int light_layers = common_light_layers + int(layers.names->light_groups.size());
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         const PixelRecord& pixel = film.pixels[i];
-        const int64_t* words = layers.words.data() + i * size_t(plan.words);
+        const int64_t* words = layers.of(i);
         const std::string where = "pixel " + std::to_string(i);
         for (int c = 0; c < 3; ++c) {
             if (sum_of_layers(words, plan.path, path_layer_count, c) != pixel.radiance[c]) return where + ": by path";

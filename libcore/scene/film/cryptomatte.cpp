@@ -74,7 +74,7 @@ class RankedBlock {
   private:
     Ranks ranks_of(size_t pixel) {
         const LayerPlan& plan = film_.layers.plan;
-        const int64_t* table = film_.layers.words.data() + pixel * static_cast<size_t>(plan.words) + plan.objects;
+        const int64_t* table = film_.layers.of(pixel) + plan.objects;
         met_.clear();
         for (int i = 0; i < plan.object_entries && table[i] != 0; ++i) {
             const auto object = static_cast<size_t>(static_cast<uint64_t>(table[i]) >> object_shift);

@@ -36,6 +36,10 @@ struct FilmLayers {
     std::vector<int64_t, DefaultInitAllocator<int64_t>> words;  // plan.words for each pixel
     double center[3] = {0, 0, 0}, unit_length = 1;  // a FirstHit's position in scene units: center + position * that
     std::shared_ptr<const LayerNames> names;
+
+    /// The words of a pixel.
+    int64_t* of(size_t pixel) { return words.data() + pixel * static_cast<size_t>(plan.words); }
+    const int64_t* of(size_t pixel) const { return words.data() + pixel * static_cast<size_t>(plan.words); }
 };
 
 /// The plan for the layers of a scene with so many light groups.

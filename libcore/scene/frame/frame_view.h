@@ -78,7 +78,7 @@ inline void fill_background_layers(Film& film, size_t first, size_t count) {
     const LayerPlan& plan = film.layers.plan;
     const auto put = [&](int place, int layer, size_t pixel) {
         if (place < 0) return;
-        int64_t* to = film.layers.words.data() + pixel * size_t(plan.words) + place + 3 * layer;
+        int64_t* to = film.layers.of(pixel) + place + 3 * layer;
         for (int c = 0; c < 3; ++c) to[c] = film.pixels[pixel].radiance[c];
     };
     if (plan.path < 0 && plan.light < 0) return;
