@@ -7,6 +7,7 @@
 #include <map>
 #include <string_view>
 
+#include "scene/description/light_group.h"
 #include "scene/film/film_picture.h"
 
 namespace cistula {
@@ -74,8 +75,9 @@ std::vector<DivisionSums> division_sums(const LayeredPicture& picture) {
         divisions.push_back(sums_of(name, layers, channels, picture));
     };
     add("path", {path_layer_names, path_layer_names + path_layer_count});
-    constexpr std::string_view light = "Combined_", red = ".R";
-    std::vector<std::string> lights = {"Combined_ambient", "Combined_environment", "Combined_glow"};
+    constexpr std::string_view light = light_layer_prefix, red = ".R";
+    std::vector<std::string> lights;
+    for (const std::string_view layer : common_light_layer_names) lights.push_back(std::string(light).append(layer));
     for (const auto& [name, channel] : channels) {
         if (name.substr(0, light.size()) != light || name.size() < red.size()) continue;
         if (name.substr(name.size() - red.size()) != red) continue;

@@ -5,8 +5,7 @@
 namespace cistula {
 namespace {
 
-constexpr const char* reserved[] = {"ambient", "environment", "glow"};  // layers that every scene has
-constexpr size_t longest = 54;  // bytes; with "Combined_" the 63 that Blender reads of a layer's name
+constexpr size_t longest = 63 - light_layer_prefix.size();  // bytes; Blender reads 63 of a layer's name
 
 /// Whether a character may be in the name of a layer. All of UTF-8 beyond ASCII may.
 bool is_allowed(char c) {
@@ -36,7 +35,7 @@ std::string fault_of_light_group(const std::string& name) {
     if (name.size() > longest) return "is longer than " + std::to_string(longest) + " bytes";
     if (name.find('.') != std::string::npos) return "has a dot, which separates layers from channels";
     if (!std::all_of(name.begin(), name.end(), is_allowed)) return "has other characters than letters, digits, _ and -";
-    for (const char* layer : reserved)
+    for (const std::string_view layer : common_light_layer_names)
         if (name == layer) return "is that of a layer which every scene has";
     return "";
 }

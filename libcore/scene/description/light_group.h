@@ -2,10 +2,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "scene/description/description.h"
 
 namespace cistula {
+
+/// What the names of light layers begin with, before that of a group or of one of these, which every scene has, in the
+/// order of LightLayer.
+inline constexpr std::string_view light_layer_prefix = "Combined_";
+inline constexpr std::string_view common_light_layer_names[] = {"ambient", "environment", "glow"};
 
 /// The group of the scene's i-th light: as given, or one of its own, "light0".
 std::string light_group(const LightDescription& light, size_t i);

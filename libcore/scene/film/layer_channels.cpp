@@ -1,5 +1,7 @@
 #include <cstring>
+#include <iterator>
 
+#include "scene/description/light_group.h"
 #include "scene/film/film_channel.h"
 
 namespace cistula {
@@ -12,8 +14,7 @@ constexpr const char* rgb[] = {"R", "G", "B"};
 void add_sums(std::vector<FilmChannel>& to, const Film& film, const OutputChannels& channels, const FilmColors& colors,
               const std::string& name, int place, bool background) {
     const auto sums = [&film, &colors, place, background](size_t pixel, int c) {
-        const FilmLayers& layers = film.layers;
-        const int64_t* words = layers.words.data() + pixel * static_cast<size_t>(layers.plan.words) + place;
+        const int64_t* words = film.layers.of(pixel) + place;
         int64_t own[3];
         for (int k = 0; k < 3; ++k) own[k] = words[k] - (background ? colors.left_out(film.pixels[pixel], k) : 0);
         return colors.radiance(own, c);
@@ -28,10 +29,7 @@ template <class Value>
 FilmChannel first_hit_channel(const Film& film, std::string name, bool half, Value value) {
     return film_channel(std::move(name), half, [&film, value](size_t pixel) {
         FirstHit hit;
-        std::memcpy(
-            &hit,
-            film.layers.words.data() + pixel * static_cast<size_t>(film.layers.plan.words) + film.layers.plan.first_hit,
-            sizeof hit);
+        std::memcpy(&hit, film.layers.of(pixel) + film.layers.plan.first_hit, sizeof hit);
         return value(hit);
     });
 }
@@ -47,11 +45,13 @@ std::vector<FilmChannel> layer_channels(const Film& film, const OutputChannels& 
                      layer == static_cast<int>(PathLayer::background));
     if (channels.light) {
         int place = layers.plan.light;
-        const auto add = [&](const std::string& name) {
-            add_sums(to, film, channels, colors, "Combined_" + name, place, name == "environment");
+        const auto add = [&](std::string_view name) {
+            const bool background = place == layers.plan.light + 3 * static_cast<int>(LightLayer::environment);
+            add_sums(to, film, channels, colors, std::string(light_layer_prefix).append(name), place, background);
             place += 3;
         };
-        for (const char* name : {"ambient", "environment", "glow"}) add(name);
+        static_assert(std::size(common_light_layer_names) == common_light_layers);
+        for (const std::string_view name : common_light_layer_names) add(name);
         for (const std::string& group : layers.names->light_groups) add(group);
     }
     const char axes[] = "XYZ";
