@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "scene/image/exr_header.h"
+
 namespace cistula {
 namespace {
 
@@ -34,8 +36,6 @@ int lines_per_chunk(Imf::Compression compression) {
     }
 }
 
-}  // namespace
-
 void limit_sizes() {
     static const bool once = [] {
         Imf::Header::setMaxImageSize(static_cast<int>(largest_picture_side), static_cast<int>(largest_picture_side));
@@ -43,6 +43,13 @@ void limit_sizes() {
         return true;
     }();
     (void)once;
+}
+
+}  // namespace
+
+void check_before_opening(const std::string& path) {
+    limit_sizes();
+    check_exr_header(path);
 }
 
 void check_claim(const Imf::Header& header, const std::string& path) {
@@ -85,17 +92,20 @@ void check_sampling(const Imf::InputFile& file, bool is_chroma) {
     const Imf::ChannelList& channels = file.header().channels();
     for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
         const std::string name = channel.name();
-        const int x = channel.channel().xSampling, y = channel.channel().ySampling;
-        const bool may_be_halved = is_chroma && (name == "RY" || name == "BY");
-        if ((x != 1 || y != 1) && !(may_be_halved && x == 2 && y == 2))
-            throw std::runtime_error("channel " + name + " is subsampled; convert it to one value per pixel" +
-                                     (may_be_halved ? ", or one for two by two" : ""));
+        check_sampling(name, channel.channel(), is_chroma && (name == "RY" || name == "BY"));
     }
 }
 
-void check_flat(const Imf::Header& header) {
+void check_sampling(const std::string& name, const Imf::Channel& channel, bool may_be_halved) {
+    const int x = channel.xSampling, y = channel.ySampling;
+    if ((x != 1 || y != 1) && !(may_be_halved && x == 2 && y == 2))
+        throw std::runtime_error("channel " + name + " is subsampled; convert it to one value per pixel" +
+                                 (may_be_halved ? ", or one for two by two" : ""));
+}
+
+void check_flat(const Imf::Header& header, const std::string& subject) {
     if (header.hasType() && Imf::isDeepData(header.type()))
-        throw std::runtime_error("it is deep, with several samples in a pixel; flatten it first");
+        throw std::runtime_error(subject + " is deep, with several samples in a pixel; flatten it first");
 }
 
 }  // namespace cistula

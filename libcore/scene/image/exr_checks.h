@@ -1,6 +1,7 @@
 // What is checked of an OpenEXR file before its pixels are read, for all of its readers. Private to image/.
 #pragma once
 
+#include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 
@@ -30,11 +31,15 @@ auto with_file_errors(const std::string& path, Read read) {
     }
 }
 
-/// Limits picture sizes before the library opens a file, so that a damaged header cannot make it allocate huge arrays.
-void limit_sizes();
+/// What has to be done before the library opens a file, so that a damaged header cannot make it allocate huge arrays:
+/// its limits are set, and check_exr_header.
+void check_before_opening(const std::string& path);
 
-/// Throws for several samples in a pixel.
-void check_flat(const Imf::Header& header);
+/// Throws for several samples in a pixel; the message calls the part `subject`.
+void check_flat(const Imf::Header& header, const std::string& subject = "it");
+
+/// Throws unless a channel has one value per pixel, or, where it `may_be_halved`, one for two by two.
+void check_sampling(const std::string& name, const Imf::Channel& channel, bool may_be_halved = false);
 
 /// Throws unless all channels have one value per pixel; where `is_chroma`, RY and BY may have one for two by two.
 void check_sampling(const Imf::InputFile& file, bool is_chroma = false);

@@ -5,13 +5,9 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
-#include <OpenEXR/ImfPartType.h>
-
-#include <stdexcept>
 
 #include "scene/image/exr_attributes.h"
 #include "scene/image/exr_checks.h"
-#include "scene/image/exr_header.h"
 
 namespace cistula {
 namespace {
@@ -30,9 +26,7 @@ ExrChannel::Type type_of(Imf::PixelType type) {
 ExrPart part_of(const Imf::Header& header) {
     ExrPart part;
     if (header.hasName()) part.name = header.name();
-    if (header.hasType() && Imf::isDeepData(header.type()))
-        throw std::runtime_error((part.name.empty() ? "it" : "part " + part.name) +
-                                 " is deep, with several samples in a pixel; flatten it first");
+    check_flat(header, part.name.empty() ? "it" : "part " + part.name);
     const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
     part.width = data.max.x - data.min.x + 1;
     part.height = data.max.y - data.min.y + 1;
@@ -59,11 +53,10 @@ struct ExrFile::Open {
 };
 
 ExrFile::ExrFile(const std::string& path) : path_(path) {
-    limit_sizes();
     regular_file_size(path);  // a pipe would be waited for
     check_readable(path);
     with_file_errors(path, [&] {
-        check_exr_header(path);
+        check_before_opening(path);
         file_ = std::make_unique<Open>(path);
         for (int i = 0; i < file_->file.parts(); ++i) {
             parts_.push_back(part_of(file_->file.header(i)));
@@ -81,10 +74,7 @@ std::vector<ExrChannel> ExrFile::read(size_t part, const std::vector<size_t>& ch
         std::vector<ExrChannel> read;
         for (const size_t channel : channels) {
             read.push_back(parts_[part].channels[channel]);
-            const Imf::Channel& of_file = header.channels()[read.back().name.c_str()];
-            if (of_file.xSampling != 1 || of_file.ySampling != 1)
-                throw std::runtime_error("channel " + read.back().name +
-                                         " is subsampled; convert it to one value per pixel");
+            check_sampling(read.back().name, header.channels()[read.back().name.c_str()]);
         }
         check_chunks(input);
         const Imath::Box2i data = header.dataWindow();

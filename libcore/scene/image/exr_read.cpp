@@ -12,7 +12,6 @@
 #include "scene/image/exr.h"
 #include "scene/image/exr_attributes.h"
 #include "scene/image/exr_checks.h"
-#include "scene/image/exr_header.h"
 
 namespace cistula {
 namespace {
@@ -34,7 +33,7 @@ void check_whole_numbers(const LayeredPicture::Channel& channel) {
 }
 
 LayeredPicture read_layers(const std::string& path) {
-    check_exr_header(path);
+    check_before_opening(path);
     check_single_and_flat(path);
     Imf::InputFile file(path.c_str());
     check_sampling(file);
@@ -67,16 +66,14 @@ LayeredPicture read_layers(const std::string& path) {
 }  // namespace
 
 LayeredPicture read_exr(const std::string& path) {
-    limit_sizes();
     check_readable(path);
     return with_file_errors(path, [&] { return read_layers(path); });
 }
 
 bool exr_is_complete(const std::string& path) {
-    limit_sizes();
     errno = 0;
     try {
-        check_exr_header(path);
+        check_before_opening(path);
         Imf::InputFile file(path.c_str());
         check_chunks(file);
         if (file.header().hasTileDescription()) read_layers(path);

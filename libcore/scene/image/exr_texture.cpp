@@ -12,7 +12,6 @@
 #include "scene/image/exr.h"
 #include "scene/image/exr_checks.h"
 #include "scene/image/exr_chroma.h"
-#include "scene/image/exr_header.h"
 #include "scene/image/file_colors.h"
 
 namespace cistula {
@@ -57,7 +56,7 @@ FileColors colors_of(const Imf::Header& header) {
 }
 
 ColorPicture read_colors(const std::string& path, const SizeProblem& size_problem, FileColors& colors) {
-    check_exr_header(path);
+    check_before_opening(path);
     check_flat(Imf::MultiPartInputFile(path.c_str()).header(0));
     Imf::InputFile file(path.c_str());
     const Imf::Header& header = file.header();
@@ -104,7 +103,6 @@ ColorPicture read_colors(const std::string& path, const SizeProblem& size_proble
 }  // namespace
 
 ColorPicture read_exr_texture(const std::string& path, const SizeProblem& size_problem, FileColors* colors) {
-    limit_sizes();
     check_readable(path);
     FileColors own;
     return with_file_errors(path, [&] { return read_colors(path, size_problem, colors ? *colors : own); });
