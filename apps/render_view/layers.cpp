@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "scene/base/suggest.h"
+#include "scene/base/lower_case.h"
 
 namespace cistula {
 namespace {
@@ -19,19 +19,19 @@ std::string_view after_dot(std::string_view name) {
 
 /// Whether a layer's name is that of Cryptomatte's ids and coverages: CryptoObject00, crypto_asset01.
 bool is_cryptomatte(std::string_view name) {
-    const std::string last = lower_case(after_dot(name));
+    const std::string last = lower_case(std::string(after_dot(name)));
     const auto is_digit = [](char letter) { return letter >= '0' && letter <= '9'; };
     return last.find("crypto") != last.npos && is_digit(last.back()) && is_digit(last[last.size() - 2]);
 }
 
 bool is_normal(std::string_view name) {
-    const std::string last = lower_case(after_dot(name));
+    const std::string last = lower_case(std::string(after_dot(name)));
     return last == "n" || last.find("normal") != last.npos;
 }
 
 /// The kind of a channel that is a layer of its own. `component`: what follows its last dot.
 LayerKind kind_of_one(std::string_view name, std::string_view component, ExrChannel::Type type) {
-    const std::string last = lower_case(after_dot(name));
+    const std::string last = lower_case(std::string(after_dot(name)));
     const auto ends = [&](std::string_view end) {
         return name.size() >= end.size() && name.substr(name.size() - end.size()) == end;
     };
@@ -98,7 +98,7 @@ class Group {
         std::vector<size_t> found;
         for (const char component : components) {
             const auto channel = std::find_if(channels_.begin(), channels_.end(), [&](size_t i) {
-                return lower_case(after_dot(part_.channels[i].name)) == std::string_view(&component, 1);
+                return lower_case(std::string(after_dot(part_.channels[i].name))) == std::string_view(&component, 1);
             });
             if (channel == channels_.end()) return {};
             found.push_back(*channel);

@@ -10,6 +10,8 @@
 #include <memory>
 #include <system_error>
 
+#include "scene/base/lower_case.h"
+
 namespace cistula {
 namespace {
 
@@ -124,10 +126,7 @@ std::string read_file_start(const std::string& path, size_t count) {
 }
 
 std::string lower_extension(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return extension;
+    return lower_case(std::filesystem::path(path).extension().string());
 }
 
 }  // namespace cistula

@@ -5,19 +5,21 @@
 
 #include <fmt/format.h>
 
+#include "scene/base/lower_case.h"
+
 namespace cistula {
 namespace {
 
 constexpr size_t longest_compared = 64;  // distances take time quadratic in the length
 
-}  // namespace
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& letter : lower)
-        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-    return lower;
+/// The edit distance, but less where only case differs or the candidate goes on after the name.
+size_t distance_to(std::string_view candidate, std::string_view name) {
+    if (lower_case(std::string(name)) == lower_case(std::string(candidate))) return 0;
+    if (name.size() >= 3 && candidate.starts_with(name)) return 1;
+    return edit_distance(name, candidate);
 }
+
+}  // namespace
 
 size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
@@ -34,17 +36,6 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     }
     return above[b.size()];
 }
-
-namespace {
-
-/// The edit distance, but less where only case differs or the candidate goes on after the name.
-size_t distance_to(std::string_view candidate, std::string_view name) {
-    if (lower_case(name) == lower_case(candidate)) return 0;
-    if (name.size() >= 3 && candidate.starts_with(name)) return 1;
-    return edit_distance(name, candidate);
-}
-
-}  // namespace
 
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known, std::string_view plural) {
     if (known.empty()) return fmt::format("there are no {}", plural);
@@ -72,9 +63,9 @@ std::string nearest_first(std::string_view name, const std::vector<std::string_v
     if (known.empty()) return fmt::format("there are no {}", plural);
     constexpr size_t most_listed = 64;
     std::vector<std::pair<double, std::string_view>> by_distance;  // as a share of the longer name
-    const std::string wanted = lower_case(name.substr(0, longest_compared));
+    const std::string wanted = lower_case(std::string(name.substr(0, longest_compared)));
     for (const std::string_view candidate : known) {
-        const std::string other = lower_case(candidate.substr(0, longest_compared));
+        const std::string other = lower_case(std::string(candidate.substr(0, longest_compared)));
         const auto longer = static_cast<double>(std::max({wanted.size(), other.size(), size_t{1}}));
         by_distance.emplace_back(static_cast<double>(edit_distance(wanted, other)) / longer, candidate);
     }

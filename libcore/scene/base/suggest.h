@@ -10,9 +10,6 @@
 
 namespace cistula {
 
-/// The text with A to Z in lower case.
-std::string lower_case(std::string_view text);
-
 /// Optimal string alignment distance: the least number of insertions, deletions, substitutions and swaps of neighboring
 /// bytes that turn a into b.
 size_t edit_distance(std::string_view a, std::string_view b);
