@@ -62,9 +62,8 @@ DeviceChoice parse_devices(const std::string& text, Backend backend) {
                                text, backend_name(backend)));
     if (text == "all") return {true, {}};
     DeviceChoice choice{false, {}};
-    for (size_t begin = 0; begin <= text.size();) {
-        const size_t comma = std::min(text.find(',', begin), text.size());
-        const auto index = whole_number<int>(std::string_view(text).substr(begin, comma - begin));
+    for (const std::string_view part : parts_at_commas(text)) {
+        const auto index = whole_number<int>(part);
         if (!index || *index < 0)
             fail_usage(
                 fmt::format("--device {}: must be numbers of GPUs, as in 0 or 0,2, or all; render "
@@ -73,7 +72,6 @@ DeviceChoice parse_devices(const std::string& text, Backend backend) {
         if (std::find(choice.indices.begin(), choice.indices.end(), *index) != choice.indices.end())
             fail_usage(fmt::format("--device {}: names GPU {} twice; once is enough", text, *index));
         choice.indices.push_back(*index);
-        begin = comma + 1;
     }
     return choice;
 }

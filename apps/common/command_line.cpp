@@ -6,7 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -56,6 +58,23 @@ int integer_option(const char* option, const std::string& text, int low, int hig
     if (!value || *value < low || *value > high)
         fail_usage(fmt::format("{} {}: must be a whole number from {} to {}", option, text, low, high));
     return *value;
+}
+
+double number_option(const char* option, const std::string& text, double low, double high, const char* what) {
+    const std::optional<double> value = whole_number<double>(text);
+    if (!value || !std::isfinite(*value) || *value < low || *value > high)
+        fail_usage(fmt::format("{} {}: must be {}", option, text, what));
+    return *value;
+}
+
+std::vector<std::string_view> parts_at_commas(std::string_view text) {
+    std::vector<std::string_view> parts;
+    for (size_t begin = 0; begin <= text.size();) {
+        const size_t comma = std::min(text.find(',', begin), text.size());
+        parts.push_back(text.substr(begin, comma - begin));
+        begin = comma + 1;
+    }
+    return parts;
 }
 
 void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names) {

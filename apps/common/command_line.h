@@ -30,6 +30,13 @@ std::optional<T> whole_number(std::string_view text) {
 /// The text of an option as an integer. Throws Error (usage): "OPTION TEXT: must be a whole number from LOW to HIGH".
 int integer_option(const char* option, const std::string& text, int low, int high);
 
+/// The text of an option as a finite number. Throws Error (usage): "OPTION TEXT: must be WHAT", of which `what` tells
+/// the limits.
+double number_option(const char* option, const std::string& text, double low, double high, const char* what);
+
+/// The parts of a list with commas between; a text without commas is one.
+std::vector<std::string_view> parts_at_commas(std::string_view text);
+
 /// Throws Error (usage) for an unknown choice: "OPTION TEXT: must be a or b; did you mean 'a'?".
 [[noreturn]] void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names);
 

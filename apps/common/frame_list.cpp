@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 
+#include "apps/common/command_line.h"
 #include "scene/base/error.h"
 
 namespace cistula {
@@ -108,19 +109,17 @@ FrameList first_frames(int count) {
 FrameList parse_frames(std::string_view text) {
     FrameList frames;
     std::vector<bool> seen(largest_frame + 1);
-    size_t written = 0, begin = 0;
-    while (true) {
-        const size_t comma = text.find(',', begin);
-        const Range range = parse_range(text, text.substr(begin, comma == text.npos ? text.npos : comma - begin));
+    size_t written = 0;
+    for (const std::string_view part : parts_at_commas(text)) {
+        const Range range = parse_range(text, part);
         for (int64_t frame = range.first; frame <= range.last; frame += range.step) {
             if (++written > most_frames) fail(text, fmt::format("more than {} frames", most_frames));
             const auto index = static_cast<size_t>(frame);
             if (!seen[index]) frames.push_back(static_cast<int>(frame));
             seen[index] = true;
         }
-        if (comma == text.npos) return frames;
-        begin = comma + 1;
     }
+    return frames;
 }
 
 std::string format_frames(const FrameList& frames, size_t begin) {

@@ -50,7 +50,7 @@ void refuse_exclusions(const OptionTexts& texts) {
          "the CPU follows the rays, and every backend gives the same bits"},
         {"--pixel", texts.pixel, "--intersector", texts.intersector != defaults.intersector,
          "the rays of the exact image are followed"},
-        {"--layers", texts.layers, "--intersector", texts.intersector != defaults.intersector && texts.layers != "",
+        {"--layers", texts.layers, "--intersector", texts.intersector != defaults.intersector,
          "they are parts of the exact image"},
         {"--target-error", texts.target_error, "--supersample", !texts.supersample.empty(),
          "pixels get as many samples as they need"},

@@ -286,16 +286,13 @@ OutputChannels parse_layers(std::string_view text) {
         known.push_back({path_layer_names[layer], "path", &layers.path[layer]});
     std::vector<std::string_view> names = {"path", "data", "cryptomatte"};
     for (const Layer& layer : known) names.push_back(layer.name);
-    for (size_t begin = 0; begin <= text.size();) {
-        const size_t comma = std::min(text.find(',', begin), text.size());
-        const std::string_view name = text.substr(begin, comma - begin);
+    for (const std::string_view name : parts_at_commas(text)) {
         bool found = false;
         for (const Layer& layer : known)
             if (layer.name == name || layer.group == name) *layer.wanted = found = true;
         if (!found)
             fail_usage(fmt::format("--layers {}: there is no layer '{}'; {}", text, name,
                                    nearest_first(name, names, "layers")));
-        begin = comma + 1;
     }
     return layers;
 }

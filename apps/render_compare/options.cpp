@@ -44,13 +44,6 @@ void declare(CLI::App& app, Texts& texts) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
-double number_option(const char* option, const std::string& text, double high, const char* what) {
-    const std::optional<double> value = whole_number<double>(text);
-    if (!value || !std::isfinite(*value) || *value < 0 || *value > high)
-        fail_usage(fmt::format("{} {}: must be {}", option, text, what));
-    return *value;
-}
-
 void refuse(bool given, const char* option, const char* why) {
     if (given) fail_usage(fmt::format("{}: {}", option, why));
 }
@@ -85,12 +78,12 @@ void check_images(const Texts& texts, CompareOptions& options) {
     if (texts.fail.empty())
         refuse(!texts.failpercent.empty(), "--failpercent", "needs to know when a pixel fails; add --fail E");
     constexpr const char* amount = "a number, 0 or above, in the units of the channels";
-    if (!texts.fail.empty()) options.thresholds.fail = number_option("--fail", texts.fail, INFINITY, amount);
+    if (!texts.fail.empty()) options.thresholds.fail = number_option("--fail", texts.fail, 0, INFINITY, amount);
     if (!texts.hardfail.empty())
-        options.thresholds.hardfail = number_option("--hardfail", texts.hardfail, INFINITY, amount);
+        options.thresholds.hardfail = number_option("--hardfail", texts.hardfail, 0, INFINITY, amount);
     if (!texts.failpercent.empty())
         options.thresholds.failpercent =
-            number_option("--failpercent", texts.failpercent, 100, "a number from 0 to 100, as in 0.5");
+            number_option("--failpercent", texts.failpercent, 0, 100, "a number from 0 to 100, as in 0.5");
     options.a = texts.a;
     options.b = texts.b;
     options.diff = texts.diff;

@@ -17,15 +17,9 @@ const Layer* find(const std::vector<Layer>& layers, std::string_view name) {
 }
 
 /// The text's names; a layer whose own name has commas is one.
-std::vector<std::string> names_in(const std::vector<Layer>& layers, const std::string& text) {
+std::vector<std::string_view> names_in(const std::vector<Layer>& layers, std::string_view text) {
     if (find(layers, text)) return {text};
-    std::vector<std::string> names;
-    for (size_t begin = 0; begin <= text.size();) {
-        const size_t comma = std::min(text.find(',', begin), text.size());
-        names.push_back(text.substr(begin, comma - begin));
-        begin = comma + 1;
-    }
-    return names;
+    return parts_at_commas(text);
 }
 
 }  // namespace
@@ -35,7 +29,7 @@ std::vector<Layer> chosen_layers(const std::vector<Layer>& layers, const std::ve
     if (texts.empty()) return {default_layer(layers)};
     std::vector<Layer> chosen;
     for (const std::string& text : texts)
-        for (const std::string& name : names_in(layers, text)) {
+        for (const std::string_view name : names_in(layers, text)) {
             const Layer* layer = find(layers, name);
             if (!layer) {
                 std::vector<std::string_view> names;
