@@ -7,8 +7,13 @@
 
 namespace cistula {
 
+/// The budget with which a tree is traced again that had more than most_branches.
+CISTULA_INLINE int64_t larger_budget(int64_t budget) {
+    return 4 * max_or_second(budget, int64_t(1));
+}
+
 /// Renders sample `slot` of a pixel into `record` and returns its path hash. If its tree has more than most_branches,
-/// it is traced again with four times the budget, and so on; the ledger contains what that drops. `gradual`:
+/// it is traced again with a larger budget, and so on; the ledger contains what that drops. `gradual`:
 /// shades_gradually(scene), computed once. task.work is the thread's own.
 template <class E, class Intersector, class Stack>
 CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task, int slot, bool gradual,
@@ -17,7 +22,7 @@ CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task
     using Hashing = HashingStack<Stack, Real>;
     const uint32_t before = task.work.rays.total();
     TreeSettings settings = task.frame.tree;
-    for (;; settings.budget = 4 * max_or_second(settings.budget, int64_t(1))) {
+    for (;; settings.budget = larger_budget(settings.budget)) {
         begin_pixel(record);
         PathHash hash;
         Hashing stack(task.stack, hash, Real(task.frame.lattice.significant));
@@ -56,7 +61,7 @@ CISTULA_INLINE void add_layers(const PixelTask<E, Intersector, Stack>& task, int
     TreeSettings settings = task.frame.tree;
     while (!trace_layers(task, settings, slot, weight) && !task.stack.stopped()) {
         trace_layers(task, settings, slot, -weight);  // takes back what it added
-        settings.budget = 4 * max_or_second(settings.budget, int64_t(1));
+        settings.budget = larger_budget(settings.budget);
     }
 }
 
