@@ -7,6 +7,7 @@
 #include "scene/base/error.h"
 #include "scene/image/exr.h"
 #include "testing/support/golden.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 namespace fs = std::filesystem;
@@ -55,7 +56,7 @@ void write_and_compare(const fs::path& file, const nlohmann::ordered_json& recor
 
 void make(const fs::path& folder, const std::string& name) {
     fmt::print("{}\n", name);
-    const SceneDescription scene = read_scene(std::string(CISTULA_SOURCE_DIR) + "/scenes/" + name + ".json");
+    const SceneDescription scene = test::shipped_scene(name);
     const Film single = golden::render_brute<float>(scene), twice = golden::render_brute<double>(scene);
     if (single.flags || twice.flags) throw Error(ExitCode::failed, name + ": the render raised a flag");
     const LayeredPicture in_float = to_layers(single, golden::channels());
@@ -101,7 +102,7 @@ int main(int count, char** arguments) {
     }
     try {
         std::vector<std::string> names(arguments + 2, arguments + count);
-        if (names.empty()) names = golden::scene_names(std::string(CISTULA_SOURCE_DIR) + "/scenes");
+        if (names.empty()) names = golden::scene_names(test::scene_folder);
         for (const std::string& name : names) make(arguments[1], name);
     } catch (const Error& error) {
         std::cerr << "make_golden: " << error.what() << "\n";

@@ -251,7 +251,7 @@ Exit codes: 0 done, 1 the image cannot be trusted, 2 command line or scene, 3 fi
     return app.help();
 }
 
-PixelPlace parse_pixel(std::string_view text) {
+ChosenPixel parse_pixel(std::string_view text) {
     const size_t comma = text.find(',');
     if (comma != text.npos) {
         const auto x = whole_number<int>(text.substr(0, comma)), y = whole_number<int>(text.substr(comma + 1));
@@ -320,7 +320,7 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)
         fail_usage(fmt::format("--crop {}x{}+{}+{}: leaves the frame, which is {}x{}", crop.width, crop.height, crop.x,
                                crop.y, settings.full_width, settings.full_height));
-    const PixelPlace& pixel = options.pixel;
+    const ChosenPixel& pixel = options.pixel;
     if (options.action == Action::pixel && (pixel.x >= settings.full_width || pixel.y >= settings.full_height))
         fail_usage(fmt::format("--pixel {},{}: is outside of the frame, which is {}x{}; its last pixel is {},{}",
                                pixel.x, pixel.y, settings.full_width, settings.full_height, settings.full_width - 1,

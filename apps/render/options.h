@@ -15,7 +15,7 @@
 
 namespace cistula {
 
-struct PixelPlace {
+struct ChosenPixel {
     int x = 0, y = 0;  // from the top left of the full frame
 };
 
@@ -32,7 +32,7 @@ struct RenderOptions : FilmOptions {
     DeviceChoice devices;  // for the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
-    PixelPlace pixel;  // for Action::pixel
+    ChosenPixel pixel;  // for Action::pixel
     std::string json;  // for Action::pixel: a file, "-" or empty
     std::optional<int> supersample, depth;
     std::optional<double> cutoff, target_error;
@@ -51,7 +51,7 @@ RenderOptions parse_options(int argc, const char* const* argv);
 std::string help_text();
 
 /// Parses "X,Y". Throws Error (usage).
-PixelPlace parse_pixel(std::string_view text);
+ChosenPixel parse_pixel(std::string_view text);
 
 /// Parses a list of layers and groups of layers (docs/programs.md). Throws Error (usage) with the nearest name for an
 /// unknown one.

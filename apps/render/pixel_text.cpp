@@ -15,18 +15,18 @@ constexpr double least_weight = 1.0 / 512;
 constexpr size_t most_lights = 6;    // of light lines at one surface, unless all are asked for
 constexpr size_t most_samples = 64;  // of sample lines, unless all are asked for
 
-std::string number(double value) {
+std::string short_number(double value) {
     return fmt::format("{:.4g}", value == 0 ? 0.0 : value);  // avoids -0
 }
 
 /// A color as text: a single number if all channels are equal.
 std::string color(const glm::dvec3& c) {
-    if (c.x == c.y && c.y == c.z) return number(c.x);
-    return fmt::format("{} {} {}", number(c.x), number(c.y), number(c.z));
+    if (c.x == c.y && c.y == c.z) return short_number(c.x);
+    return fmt::format("{} {} {}", short_number(c.x), short_number(c.y), short_number(c.z));
 }
 
 std::string point(const glm::dvec3& p) {
-    return fmt::format("({}, {}, {})", number(p.x), number(p.y), number(p.z));
+    return fmt::format("({}, {}, {})", short_number(p.x), short_number(p.y), short_number(p.z));
 }
 
 double largest(const glm::dvec3& c) {
@@ -111,8 +111,8 @@ class TreeText {
                 return fmt::format("{}sees the background, adds {}", absorbed, radiance(branch.adds));
             case BranchEnd::light:
                 return fmt::format("{}sees {}, distance {}, adds {}", absorbed,
-                                   called(report_.names.visible_lights[branch.visible_light]), number(branch.distance),
-                                   radiance(branch.adds));
+                                   called(report_.names.visible_lights[branch.visible_light]),
+                                   short_number(branch.distance), radiance(branch.adds));
             case BranchEnd::pruned:
                 return fmt::format("too faint to follow, could add {} at most", radiance(branch.ledger));
             case BranchEnd::cut:
@@ -151,9 +151,9 @@ class TreeText {
         const size_t shown_faces = verbose_ ? branch.passed.size() : std::min<size_t>(branch.passed.size(), 8);
         for (size_t i = 0; i < shown_faces; ++i) {
             const FacePassed& passed = branch.passed[i];
-            line(branch.depth + 1,
-                 fmt::format("{} {}, distance {}: nothing to shade, {}", passes(passed), face(passed),
-                             number(passed.distance), passed.inside ? "inside what takes precedence" : "being clear"));
+            line(branch.depth + 1, fmt::format("{} {}, distance {}: nothing to shade, {}", passes(passed), face(passed),
+                                               short_number(passed.distance),
+                                               passed.inside ? "inside what takes precedence" : "being clear"));
         }
         if (shown_faces < branch.passed.size())
             line(branch.depth + 1,
@@ -165,16 +165,16 @@ class TreeText {
     void write_surface(const PixelBranch& branch) {
         const PixelSurface& s = branch.surface;
         const int depth = branch.depth + 1;
-        line(depth,
-             fmt::format("meets {}{}, at {}, distance {}", face(s), side(s), point(s.point), number(branch.distance)));
+        line(depth, fmt::format("meets {}{}, at {}, distance {}", face(s), side(s), point(s.point),
+                                short_number(branch.distance)));
         for (const FaceMet& also : s.also)
             line(depth, fmt::format("in the same place {} {}", passes(also), face(also)));
         line(depth, fmt::format("normal {}, {:.1f} degrees from the ray; material {}, color {}", point(s.normal),
                                 degrees_of(s.cosine), called(report_.names.materials[s.material]), color(s.color)));
         write_media(depth, s);
         std::vector<std::string> shares;
-        if (s.local > 0) shares.push_back("local " + number(s.local));
-        if (s.mirrored > 0) shares.push_back("mirrored " + number(s.mirrored));
+        if (s.local > 0) shares.push_back("local " + short_number(s.local));
+        if (s.mirrored > 0) shares.push_back("mirrored " + short_number(s.mirrored));
         if (largest(s.through) > 0) shares.push_back("transmitted " + color(s.through));
         line(depth, fmt::format("shares: {}", shares.empty() ? "none" : fmt::format("{}", fmt::join(shares, ", "))));
         if (s.local > 0) write_lights(depth, s);
@@ -194,12 +194,12 @@ class TreeText {
         }
         std::string text = fmt::format("{} -> {}", media(s.before), media(s.beyond));
         if (s.index_before != s.index_beyond)
-            text += fmt::format(", index {} -> {}", number(s.index_before), number(s.index_beyond));
+            text += fmt::format(", index {} -> {}", short_number(s.index_before), short_number(s.index_beyond));
         if (s.total)
             text += ": total reflection";
         else if (s.bends)
             text += fmt::format(": bends to {:.1f} degrees", degrees_of(s.bent_cosine));
-        if (s.fresnel > 0 && !s.total) text += fmt::format("; Fresnel mirrors {}", number(s.fresnel));
+        if (s.fresnel > 0 && !s.total) text += fmt::format("; Fresnel mirrors {}", short_number(s.fresnel));
         line(depth, text);
     }
 

@@ -11,13 +11,6 @@
 namespace cistula::report {
 namespace {
 
-std::string text_of(const Json& json, const char* key) {
-    const auto found = json.find(key);
-    if (found == json.end()) return "";
-    if (found->is_string()) return found->get<std::string>();
-    return found->is_null() ? "" : found->dump();
-}
-
 std::string list_text(const Json& list) {
     return list.is_array() ? fmt::format("{}", fmt::join(list.get<std::vector<std::string>>(), ", ")) : "";
 }

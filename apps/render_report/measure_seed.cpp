@@ -23,11 +23,6 @@ bool parse_name(const std::string& name, SeedTable& table, SeedRow& row) {
     return std::sscanf(rest.c_str(), "/grid:%d", &row.grid) == 1;
 }
 
-std::string text_of(const Json& context, const char* key) {
-    const auto found = context.find(key);
-    return found != context.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 }  // namespace
 
 SeedTable read_seed_table(const std::string& file) {

@@ -1,11 +1,21 @@
 // Conversion between the parts of a record and JSON; the members' names are the keys, in their order.
 #pragma once
 
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 namespace cistula::report {
 
 using Json = nlohmann::ordered_json;
+
+/// A member as text; empty where it lacks or is null.
+inline std::string text_of(const Json& json, const char* key) {
+    const auto found = json.find(key);
+    if (found == json.end()) return "";
+    if (found->is_string()) return found->get<std::string>();
+    return found->is_null() ? "" : found->dump();
+}
 
 }  // namespace cistula::report
 

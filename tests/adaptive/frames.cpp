@@ -13,12 +13,11 @@
 #include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
 namespace {
-
-const std::filesystem::path scenes = std::string(CISTULA_SOURCE_DIR) + "/scenes";
 
 FrameSettings small(const SceneDescription& scene, int width = 96, int height = 54) {
     FrameSettings settings;
@@ -59,7 +58,7 @@ void expect_same_on_all_paths(const SceneDescription& scene, FrameSettings setti
 TEST(Adaptive, IsTheSameOnAllIntersectorsTilesAndCrops) {
     for (const char* name : {"benchmark", "glass"})
         for (const double target : {0.1, 0.01}) {
-            const SceneDescription scene = read_scene(scenes / (std::string(name) + ".json"));
+            const SceneDescription scene = test::shipped_scene(name);
             FrameSettings settings = small(scene, 32, 18);
             settings.target_error = target;
             expect_same_on_all_paths<float>(scene, settings, name);
@@ -107,7 +106,7 @@ void expect_same_with_mask(const SceneDescription& scene, const std::string& wha
 }
 
 TEST(Adaptive, IsTheSameWithFewerEffects) {
-    const SceneDescription mirrored = *without_effect(read_scene(scenes / "benchmark.json"), effect_transmission);
+    const SceneDescription mirrored = *without_effect(test::shipped_scene("benchmark"), effect_transmission);
     const SceneDescription opaque = *without_effect(mirrored, effect_reflection);
     expect_same_with_mask<float, mirrors>(mirrored, "mirrors");
     expect_same_with_mask<double, mirrors>(mirrored, "mirrors");
@@ -172,7 +171,7 @@ TEST(Adaptive, IsWithinItsTargetOfTheWholeLattice) {
           // were over when only a cell's own corners were asked.
           Case{"hard/huge", 160, 90, {0, 55, 160, 15}, 160}, Case{"hard/far-camera", 160, 90, {0, 60, 160, 20}, 160},
           Case{"hard/critical-angle", 160, 90, {0, 70, 160, 10}, 160}}) {
-        const SceneDescription scene = read_scene(scenes / (std::string(one.name) + ".json"));
+        const SceneDescription scene = test::shipped_scene(one.name);
         const auto renderer = make_embree_renderer<float>(test::compile<float>(scene));
         FrameSettings settings = small(scene, one.width, one.height);
         settings.depth = scene.depth;
@@ -203,7 +202,7 @@ TEST(Adaptive, OnePixelOfEachBlockIsCheckedAndTakesAllSamples) {
     EXPECT_EQ(checked, 32 * 32);
     EXPECT_GT(places.size(), 230u);  // of 256; evenly spread, 251 are expected
 
-    const SceneDescription scene = read_scene(scenes / "platonic.json");
+    const SceneDescription scene = test::shipped_scene("platonic");
     FrameSettings settings = small(scene, 128, 72);
     settings.target_error = 0.01;
     FrameSettings whole = settings;
@@ -225,7 +224,7 @@ TEST(Adaptive, OnePixelOfEachBlockIsCheckedAndTakesAllSamples) {
 }
 
 TEST(Adaptive, TreesWithoutEndAreGivenUpAndTheLedgerSaysSo) {
-    const SceneDescription scene = read_scene(scenes / "hard/furnace.json");
+    const SceneDescription scene = test::shipped_scene("hard/furnace");
     FrameSettings settings = small(scene, 24, 14);
     settings.depth = largest_depth;
     settings.target_error = 0.01;

@@ -14,12 +14,11 @@
 #include "testing/generated_scene.h"
 #include "testing/support/contact_search.h"
 #include "testing/support/golden.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
 namespace {
-
-const std::string source = CISTULA_SOURCE_DIR;
 
 /// A frame as a device renders it: where pixels have several samples, threads share them.
 template <class Real, class E, class Scene, class Intersector>
@@ -100,8 +99,8 @@ TYPED_TEST_SUITE(DevicePathOnHost, Reals);
 
 TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
     int plain_loops = 0;
-    for (const std::string& name : golden::scene_names(source + "/scenes")) {
-        const SceneDescription scene = read_scene(source + "/scenes/" + name + ".json");
+    for (const std::string& name : golden::scene_names(test::scene_folder)) {
+        const SceneDescription scene = test::shipped_scene(name);
         FrameSettings settings = golden::settings_for(scene);
         settings.set_size(64, 36);
         settings.cutoff = 0;
@@ -113,7 +112,7 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
         check<TypeParam>(name + " with a cutoff", scene, settings);
     }
     // The camera in a solid, whose rays begin in a medium.
-    SceneDescription scene = read_scene(source + "/scenes/benchmark.json");
+    SceneDescription scene = test::shipped_scene("benchmark");
     scene.camera = CameraDescription();
     for (const ObjectDescription& object : scene.objects)
         if (const auto* solid = std::get_if<SolidObject>(&object.shape)) scene.camera.position = solid->center;
@@ -122,7 +121,7 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
     check<TypeParam>("benchmark from within", scene, settings);
     EXPECT_GT(plain_loops, 0);
     // Nothing that a ledger would be for.
-    scene = read_scene(source + "/scenes/benchmark.json");
+    scene = test::shipped_scene("benchmark");
     for (const Effect effect : {effect_transmission, effect_reflection}) scene = without_effect(scene, effect).value();
     settings = golden::settings_for(scene);
     settings.set_size(64, 36);
@@ -136,7 +135,7 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfEveryGoldenScene) {
 TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfGeneratedScenes) {
     int plain_loops = 0;
     for (uint64_t seed = 2; seed < generated_scene_count; seed += 6) {
-        const SceneDescription scene = generated_scene(seed, source + "/scenes");
+        const SceneDescription scene = generated_scene(seed, test::scene_folder);
         plain_loops += check<TypeParam>("seed " + std::to_string(seed), scene, generated_settings(scene));
     }
     EXPECT_GT(plain_loops, 0);

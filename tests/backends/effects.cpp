@@ -11,16 +11,13 @@
 #include "testing/generated_scene.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
 namespace {
 
 const std::string source = CISTULA_SOURCE_DIR;
-
-SceneDescription load(const std::string& name) {
-    return read_scene(source + "/scenes/" + name + ".json");
-}
 
 template <class Real>
 class EffectTest : public ::testing::Test {
@@ -37,7 +34,7 @@ class EffectTest : public ::testing::Test {
     }
 };
 
-FrameSettings small_frame(const SceneDescription& scene) {
+FrameSettings shallow_frame(const SceneDescription& scene) {
     FrameSettings settings = golden::settings_for(scene);
     settings.set_size(160, 90);
     settings.depth = std::min(scene.depth, 8);
@@ -53,7 +50,7 @@ TYPED_TEST(EffectTest, NoSceneTellsAllEffectsFromThoseItNeeds) {
         for (const auto& entry : std::filesystem::directory_iterator(source + folder)) {
             if (entry.path().extension() != ".json") continue;
             const SceneDescription scene = read_scene(entry.path().string());
-            this->compare(scene, small_frame(scene), entry.path().filename().string());
+            this->compare(scene, shallow_frame(scene), entry.path().filename().string());
             ++scenes;
         }
     EXPECT_GE(scenes, 20);
@@ -62,7 +59,7 @@ TYPED_TEST(EffectTest, NoSceneTellsAllEffectsFromThoseItNeeds) {
 TYPED_TEST(EffectTest, NoGeneratedSceneDoes) {
     std::set<uint32_t> ran;
     for (uint64_t seed = 0; seed < generated_scene_count; ++seed) {
-        const SceneDescription scene = generated_scene(seed, source + "/scenes");
+        const SceneDescription scene = generated_scene(seed, test::scene_folder);
         ran.insert(this->compare(scene, generated_settings(scene), "generated scene " + std::to_string(seed)));
     }
     EXPECT_GE(ran.size(), 3u);
@@ -74,7 +71,7 @@ TYPED_TEST(EffectTest, NorDoGeneratedScenesOfFewerEffects) {
     std::map<uint32_t, int> ran;
     for (uint64_t seed = 0; seed < generated_scene_count; ++seed) {
         const uint32_t mask = effect_masks[seed % uint64_t(effect_mask_count - 1)];
-        SceneDescription scene = generated_scene(seed, source + "/scenes");
+        SceneDescription scene = generated_scene(seed, test::scene_folder);
         for (int bit = 0; bit < effect_count; ++bit) {
             if ((mask >> bit & 1u) != 0) continue;
             if (const auto less = without_effect(scene, 1u << bit)) scene = *less;
@@ -87,18 +84,20 @@ TYPED_TEST(EffectTest, NorDoGeneratedScenesOfFewerEffects) {
 
 /// The benchmark's scene, less and less of it, then more: each mask of the table has one that runs it.
 TYPED_TEST(EffectTest, EveryMaskRuns) {
-    const SceneDescription benchmark = load("benchmark");
+    const SceneDescription benchmark = test::shipped_scene("benchmark");
     const SceneDescription reflecting = without_effect(benchmark, effect_transmission).value();
     const SceneDescription lit = without_effect(reflecting, effect_reflection).value();
-    const std::vector<SceneDescription> scenes = {lit, reflecting, benchmark, load("platonic"), load("glass")};
+    const std::vector<SceneDescription> scenes = {lit, reflecting, benchmark, test::shipped_scene("platonic"),
+                                                  test::shipped_scene("glass")};
     ASSERT_EQ(scenes.size(), size_t(effect_mask_count));
     for (size_t i = 0; i < scenes.size(); ++i)
-        EXPECT_EQ(this->compare(scenes[i], small_frame(scenes[i]), "scene " + std::to_string(i)), effect_masks[i]) << i;
+        EXPECT_EQ(this->compare(scenes[i], shallow_frame(scenes[i]), "scene " + std::to_string(i)), effect_masks[i])
+            << i;
 }
 
 /// Where no ray bends a line is searched for lights once; with all effects, anew from every face that it passes.
 TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
-    SceneDescription scene = load("benchmark");
+    SceneDescription scene = test::shipped_scene("benchmark");
     const int glass = test::add_material(scene, 0.1, 0.8);
     for (const double y : {-1.0, 0.5, 1.0}) {
         TrianglesObject window;
@@ -106,7 +105,7 @@ TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
         window.triangles = {{0, 1, 2}, {0, 2, 3}};
         test::add_object(scene, window, glass);
     }
-    const FrameSettings settings = small_frame(scene);
+    const FrameSettings settings = shallow_frame(scene);
     const auto hash = [&] {
         const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
         return film_hash(golden::render_with(*renderer, scene, settings));
@@ -119,18 +118,18 @@ TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
 }
 
 TYPED_TEST(EffectTest, ACameraInASolidCallsForInsides) {
-    SceneDescription scene = without_effect(load("benchmark"), effect_transmission).value();
+    SceneDescription scene = without_effect(test::shipped_scene("benchmark"), effect_transmission).value();
     scene.camera.position_path.reset();
     scene.camera.target_path.reset();
     scene.camera.target = {0, 0, 0};
     scene.camera.position = {-2.5, 2.5, 2};  // the octahedron's center
     EXPECT_FALSE(compile_scene<TypeParam>(scene)->effects & effect_insides);
-    EXPECT_TRUE(this->compare(scene, small_frame(scene), "inside") & effect_insides);
+    EXPECT_TRUE(this->compare(scene, shallow_frame(scene), "inside") & effect_insides);
 }
 
 TYPED_TEST(EffectTest, WithoutShadowsNothingIsDarker) {
-    const SceneDescription scene = load("benchmark");
-    FrameSettings settings = small_frame(scene);
+    const SceneDescription scene = test::shipped_scene("benchmark");
+    FrameSettings settings = shallow_frame(scene);
     const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
     const Film shadowed = golden::render_with(*renderer, scene, settings);
     settings.unshadowed = true;
@@ -147,7 +146,7 @@ TYPED_TEST(EffectTest, WithoutShadowsNothingIsDarker) {
 
 TEST(WithoutEffect, TheSceneNoLongerCallsForIt) {
     for (const char* name : {"benchmark", "platonic", "glass", "mesh", "seed", "infinity"}) {
-        const SceneDescription scene = load(name);
+        const SceneDescription scene = test::shipped_scene(name);
         for (const EffectReason& reason : explain_effects(scene)) {
             if (!reason.needed) continue;
             const auto less = without_effect(scene, reason.effect);
@@ -166,7 +165,7 @@ TEST(WithoutEffect, TheSceneNoLongerCallsForIt) {
 }
 
 TEST(WithoutEffect, LeavesNoEmptyScene) {
-    SceneDescription scene = load("benchmark");
+    SceneDescription scene = test::shipped_scene("benchmark");
     scene.objects.pop_back();
     EXPECT_FALSE(without_effect(scene, effect_solids));
     EXPECT_TRUE(without_effect(scene, effect_triangles));

@@ -19,13 +19,12 @@
 #include "scene/frame/frame_view.h"
 #include "testing/generated_scene.h"
 #include "testing/reference_renderers.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 using glm::dvec3;
 
 namespace {
-
-const std::string files = std::string(CISTULA_SOURCE_DIR) + "/scenes";
 
 // ---- what a description holds, found in the description and not where it was made
 
@@ -335,7 +334,7 @@ void check_coverage(const std::string& folder) {
 }
 
 TEST(GeneratedScenes, HoldAllThatADescriptionCan) {
-    check_coverage(files);
+    check_coverage(test::scene_folder);
 }
 
 TEST(GeneratedScenes, HoldTheSameWithoutFiles) {
@@ -400,7 +399,7 @@ TYPED_TEST(GeneratedImages, AreEqualBitForBitByEveryIntersector) {
     using Real = TypeParam;
     uint64_t rays = 0, scenes = 0, seen = 0;
     for (uint64_t seed = 0; seed < generated_scene_count; seed += step()) {
-        const SceneDescription scene = generated_scene(seed, files);
+        const SceneDescription scene = generated_scene(seed, test::scene_folder);
         const std::shared_ptr<const CompiledScene<Real>> plain = compile_scene<Real>(scene);
         std::shared_ptr<CompiledScene<Real>> treed = compile_scene<Real>(scene);
         build_primitive_tree(*treed, 1);

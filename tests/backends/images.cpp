@@ -19,16 +19,11 @@
 #include "testing/generated_mesh.h"
 #include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
 namespace {
-
-const std::string source = CISTULA_SOURCE_DIR;
-
-SceneDescription load(const std::string& name) {
-    return read_scene(source + "/scenes/" + name + ".json");
-}
 
 FrameSettings small_frame(const SceneDescription& scene, int depth = 0) {
     FrameSettings settings = golden::settings_for(scene);
@@ -114,7 +109,7 @@ using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(Images, Reals);
 
 TYPED_TEST(Images, ThreadsAndTilesChangeNothing) {
-    const SceneDescription scene = load("platonic");
+    const SceneDescription scene = test::shipped_scene("platonic");
     FrameSettings settings = small_frame(scene);
     const std::string expected = film_hash(render<TypeParam>(scene, settings));
     for (const size_t threads : {1, 2, 7}) {
@@ -127,7 +122,7 @@ TYPED_TEST(Images, ThreadsAndTilesChangeNothing) {
 }
 
 TYPED_TEST(Images, InstructionSetsAndTreesChangeNothing) {
-    const SceneDescription scene = load("mesh");
+    const SceneDescription scene = test::shipped_scene("mesh");
     const FrameSettings settings = small_frame(scene, 4);
     const std::string expected = film_hash(render<TypeParam>(scene, settings));
     for (const InstructionSet& isa : {InstructionSet{"isa=sse2", true, 4}, InstructionSet{"isa=avx2", has_avx2(), 8},
@@ -155,7 +150,7 @@ TYPED_TEST(Images, InstructionSetsAndTreesChangeNothing) {
 
 TYPED_TEST(Images, ATreeAndThePlainLoopAgree) {
     for (const char* name : {"benchmark", "glass"}) {
-        const SceneDescription scene = load(name);
+        const SceneDescription scene = test::shipped_scene(name);
         EmbreeOptions tree;
         tree.always_tree = true;
         const FrameSettings settings = small_frame(scene);
@@ -166,7 +161,7 @@ TYPED_TEST(Images, ATreeAndThePlainLoopAgree) {
 
 TYPED_TEST(Images, EffectsThatAreNotUsedChangeNothing) {
     for (const char* name : {"benchmark", "platonic", "infinity"}) {
-        const SceneDescription scene = load(name);
+        const SceneDescription scene = test::shipped_scene(name);
         FrameSettings settings = small_frame(scene, 4);
         const std::string expected = film_hash(render<TypeParam>(scene, settings));
         for (const uint32_t mask : effect_masks) {
@@ -177,7 +172,7 @@ TYPED_TEST(Images, EffectsThatAreNotUsedChangeNothing) {
 }
 
 TYPED_TEST(Images, TheOrderOfLightsChangesNothing) {
-    SceneDescription scene = load("benchmark");
+    SceneDescription scene = test::shipped_scene("benchmark");
     scene.lights.push_back(scene.lights[0]);
     scene.lights.back().position = {0.3, -4, 7};
     const FrameSettings settings = small_frame(scene);
@@ -188,7 +183,7 @@ TYPED_TEST(Images, TheOrderOfLightsChangesNothing) {
 
 TYPED_TEST(Images, ACropIsThatPartOfTheFrame) {
     for (const char* name : {"glass", "platonic"}) {  // mirrors show lights in the latter
-        const SceneDescription scene = load(name);
+        const SceneDescription scene = test::shipped_scene(name);
         FrameSettings settings = small_frame(scene);
         const Film whole = render<TypeParam>(scene, settings);
         settings.crop = {41, 23, 30, 20};
@@ -206,7 +201,7 @@ TYPED_TEST(Images, ACropIsThatPartOfTheFrame) {
 
 /// A solid of index 1 that mirrors and tints nothing is not there, for convex solids and for meshes.
 TYPED_TEST(Images, IndexOneIsInvisible) {
-    SceneDescription scene = load("glass");
+    SceneDescription scene = test::shipped_scene("glass");
     scene.frame = FrameOfReference{{0, 0, 1}, -4, 64.0};
     const FrameSettings settings = small_frame(scene, 5);
     const Film without = render<TypeParam>(scene, settings);
@@ -252,7 +247,7 @@ TYPED_TEST(Images, IndexOneIsInvisible) {
 
 /// Whatever other code left in the control registers of the calling thread and of the workers.
 TYPED_TEST(Images, ControlRegistersChangeNothing) {
-    SceneDescription scene = load("mesh");
+    SceneDescription scene = test::shipped_scene("mesh");
     scene.frame = FrameOfReference{{0.1, -0.3, 0.7}, -4, 64.0};  // so that moving the camera to the frame rounds
     const FrameSettings settings = small_frame(scene, 4);
     auto compiled = compile_scene<TypeParam>(scene), treed = compile_scene<TypeParam>(scene);
@@ -294,7 +289,7 @@ TYPED_TEST(Images, ControlRegistersChangeNothing) {
 /// rounding sends past an edge on the other side.
 TYPED_TEST(Images, PlanesAndTrianglesShowTheSame) {
     for (const char* name : {"benchmark", "glass"}) {
-        SceneDescription scene = load(name);
+        SceneDescription scene = test::shipped_scene(name);
         const FrameSettings settings = small_frame(scene);
         const Film planes = render<TypeParam>(scene, settings);
         for (ObjectDescription& object : scene.objects)
@@ -315,7 +310,7 @@ TYPED_TEST(Images, PlanesAndTrianglesShowTheSame) {
 
 TYPED_TEST(Images, TruncationStaysWithinTheLedger) {
     for (const char* name : {"benchmark", "platonic", "glass", "infinity"}) {
-        const SceneDescription scene = load(name);
+        const SceneDescription scene = test::shipped_scene(name);
         const Film reference = render<TypeParam>(scene, small_frame(scene, 24));
         for (const int depth : {1, 2, 4, 8}) {
             double used = 0;

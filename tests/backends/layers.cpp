@@ -8,12 +8,11 @@
 #include "testing/support/film_layers.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
 namespace {
-
-const std::string scenes = std::string(CISTULA_SOURCE_DIR) + "/scenes";
 
 Film rendered(Renderer& renderer, const SceneDescription& scene, const FrameSettings& settings) {
     Film film;
@@ -47,8 +46,8 @@ using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(Layers, Reals);
 
 TYPED_TEST(Layers, OfAllScenesAddUp) {
-    for (const std::string& name : golden::scene_names(scenes)) {
-        const SceneDescription scene = read_scene(scenes + "/" + name + ".json");
+    for (const std::string& name : golden::scene_names(test::scene_folder)) {
+        const SceneDescription scene = test::shipped_scene(name);
         FrameSettings settings = golden::settings_for(scene);
         settings.set_size(64, 40);
         this->check(scene, settings);
@@ -57,15 +56,15 @@ TYPED_TEST(Layers, OfAllScenesAddUp) {
 
 TYPED_TEST(Layers, OfGeneratedScenesAddUp) {
     for (uint64_t seed = 7; seed < generated_scene_count; seed += generated_scene_count / 50) {
-        const SceneDescription scene = generated_scene(seed, scenes);
+        const SceneDescription scene = generated_scene(seed, test::scene_folder);
         this->check(scene, generated_settings(scene));
     }
 }
 
 TYPED_TEST(Layers, OfAdaptiveFramesAddUp) {
-    std::vector<SceneDescription> all = {read_scene(scenes + "/glass.json"), read_scene(scenes + "/platonic.json")};
+    std::vector<SceneDescription> all = {test::shipped_scene("glass"), test::shipped_scene("platonic")};
     for (uint64_t seed = 4; seed < generated_scene_count; seed += generated_scene_count / 6)
-        all.push_back(generated_scene(seed, scenes));
+        all.push_back(generated_scene(seed, test::scene_folder));
     for (const SceneDescription& scene : all) {
         FrameSettings settings = golden::settings_for(scene);
         settings.set_size(24, 14);
@@ -77,7 +76,7 @@ TYPED_TEST(Layers, OfAdaptiveFramesAddUp) {
 
 /// Twice as much light of a group adds what its layer holds.
 TYPED_TEST(Layers, OfALightAreWhatMoreOfItAdds) {
-    SceneDescription scene = read_scene(scenes + "/platonic.json");
+    SceneDescription scene = test::shipped_scene("platonic");
     FrameSettings settings = golden::settings_for(scene);
     settings.set_size(64, 36);
     settings.layers.light = true;
@@ -108,7 +107,7 @@ TYPED_TEST(Layers, OfALightAreWhatMoreOfItAdds) {
 
 /// A tree that is dropped and traced again with a larger budget enters its layers once.
 TYPED_TEST(Layers, OfTreesWithoutEndAddUp) {
-    const SceneDescription scene = read_scene(scenes + "/hard/furnace.json");
+    const SceneDescription scene = test::shipped_scene("hard/furnace");
     FrameSettings settings = golden::settings_for(scene);
     settings.set_size(12, 8);
     settings.depth = 1024;

@@ -7,13 +7,12 @@
 #include "testing/generated_scene.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 using glm::dvec3;
 
 namespace {
-
-const std::filesystem::path scenes = std::string(CISTULA_SOURCE_DIR) + "/scenes";
 
 /// A frame of the same view of at most so many pixels a side.
 FrameSettings smaller(FrameSettings settings, int width, int height) {
@@ -94,7 +93,7 @@ class Ledger : public ::testing::Test {
 TEST_F(Ledger, HoldsInGeneratedScenes) {
     constexpr uint64_t count = 60;
     for (uint64_t seed = 0; seed < count; ++seed) {
-        const SceneDescription scene = generated_scene(seed, scenes.string());
+        const SceneDescription scene = generated_scene(seed, test::scene_folder);
         const FrameSettings settings = smaller(generated_settings(scene), 24, 18);
         const std::string name = test::numbered("generated scene ", seed);
         if (seed % 2 == 0)
@@ -110,8 +109,8 @@ TEST_F(Ledger, HoldsInGeneratedScenes) {
 
 TEST_F(Ledger, HoldsInAllScenes) {
     int scene_count = 0;
-    for (const std::string& name : golden::scene_names(scenes)) {
-        const SceneDescription scene = read_scene((scenes / (name + ".json")).string());
+    for (const std::string& name : golden::scene_names(test::scene_folder)) {
+        const SceneDescription scene = test::shipped_scene(name);
         const FrameSettings settings = smaller(golden::settings_for(scene), 32, 18);
         check<float>(name, scene, settings);
         check<double>(name, scene, settings);
@@ -125,7 +124,7 @@ TEST_F(Ledger, HoldsInAllScenes) {
 
 /// The lights that make the bound are seen by few of the rays that are cut, yet what is missing is a fair part of it.
 TEST_F(Ledger, IsTightEnoughToBeUsed) {
-    const SceneDescription scene = read_scene((scenes / "infinity.json").string());
+    const SceneDescription scene = test::shipped_scene("infinity");
     const FrameSettings settings = smaller(golden::settings_for(scene), 160, 90);
     const auto renderer = make_embree_renderer<float>(compile_scene<float>(scene));
     const Film reference = golden::render_with(*renderer, scene, truncated(settings, 64, 0));

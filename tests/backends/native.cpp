@@ -13,13 +13,12 @@
 #include "testing/support/expect_error.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 using glm::dvec3;
 
 namespace {
-
-const std::filesystem::path scenes = std::string(CISTULA_SOURCE_DIR) + "/scenes";
 
 bool is_hard(const std::string& name) {
     return name.rfind("hard/", 0) == 0;
@@ -81,9 +80,9 @@ TYPED_TEST_SUITE(Native, Reals);
 /// another way may it change. Nor is there another tree where no edge is near.
 TYPED_TEST(Native, DiffersFromExactOnlyNearEdges) {
     constexpr double visible = 0.5 / 255;
-    for (const std::string& name : golden::scene_names(scenes)) {
+    for (const std::string& name : golden::scene_names(test::scene_folder)) {
         if (is_hard(name)) continue;
-        const SceneDescription scene = read_scene((scenes / (name + ".json")).string());
+        const SceneDescription scene = test::shipped_scene(name);
         const Pair films = render_both<TypeParam>(scene, frame_of(scene, 240, 135));
         EXPECT_EQ(films.native.flags, 0u) << name;
         const std::vector<double> apart = differences(films);
@@ -112,9 +111,9 @@ TYPED_TEST(Native, DiffersFromExactOnlyNearEdges) {
 /// Rays that slip into or out of a solid at an edge find other things, but no way to go on for ever: each crossing is
 /// beyond the last, and the tree's depth is what it was.
 TYPED_TEST(Native, HardScenesEnd) {
-    for (const std::string& name : golden::scene_names(scenes)) {
+    for (const std::string& name : golden::scene_names(test::scene_folder)) {
         if (!is_hard(name)) continue;
-        const SceneDescription scene = read_scene((scenes / (name + ".json")).string());
+        const SceneDescription scene = test::shipped_scene(name);
         const Pair films = render_both<TypeParam>(scene, frame_of(scene, 96, 54));
         EXPECT_EQ(films.native.flags, 0u) << name;
         EXPECT_LT(films.native.rays.total(), 2 * films.exact.rays.total()) << name;

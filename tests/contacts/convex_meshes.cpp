@@ -79,14 +79,14 @@ std::string wedge() {
 }
 
 /// What a body is made of, where it is and how it is turned.
-struct Place {
+struct BoxPlace {
     const char* name;
     dvec3 rotation;
     dvec3 center;
 };
 
 /// A floor of tiles and a wall, a light in front and one above.
-SceneDescription room() {
+SceneDescription lit_room() {
     SceneDescription scene;
     scene.film.width = 96, scene.film.height = 72;
     scene.depth = 8;
@@ -119,7 +119,7 @@ class ConvexMeshes : public testing::Test {
   protected:
     const ScratchDirectory scratch_;
 
-    MeshObject mesh(const std::string& text, const Place& place, double scale, bool keep_triangles = false) const {
+    MeshObject mesh(const std::string& text, const BoxPlace& place, double scale, bool keep_triangles = false) const {
         const std::string name = scratch_.file("body.ply");
         put_bytes(name, text);
         MeshObject object;
@@ -133,7 +133,7 @@ class ConvexMeshes : public testing::Test {
 
     /// The film of the room with a body of one of its materials; whether the body is given by planes.
     static Film film(const std::variant<SolidObject, TrianglesObject, MeshObject>& body, int material, bool by_planes) {
-        SceneDescription scene = room();
+        SceneDescription scene = lit_room();
         test::add_object(scene, body, material);
         const auto compiled = test::compile<Real>(scene);
         EXPECT_EQ(compiled->solids.back().kind == SolidKind::convex, by_planes);
@@ -143,13 +143,13 @@ class ConvexMeshes : public testing::Test {
 using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(ConvexMeshes, Reals);
 
-const Place places[] = {{"on the floor", dvec3(0), {0, 0, -1 + 0.57735026918962584}},
-                        {"in the air", {31, 47, 11}, {0.1, 0.2, 0.3}},
-                        {"through the floor", {20, 0, 40}, {0, 0, -1}}};
+const BoxPlace box_places[] = {{"on the floor", dvec3(0), {0, 0, -1 + 0.57735026918962584}},
+                               {"in the air", {31, 47, 11}, {0.1, 0.2, 0.3}},
+                               {"through the floor", {20, 0, 40}, {0, 0, -1}}};
 
 TYPED_TEST(ConvexMeshes, LookLikeTheSolidsThatAreBuiltIn) {
     for (const PlatonicSolid kind : {PlatonicSolid::cube, PlatonicSolid::icosahedron, PlatonicSolid::tetrahedron})
-        for (const Place& place : places)
+        for (const BoxPlace& place : box_places)
             for (int material = 0; material < 3; ++material) {
                 SolidObject solid;
                 solid.solid = kind;
@@ -165,7 +165,7 @@ TYPED_TEST(ConvexMeshes, LookLikeTheSolidsThatAreBuiltIn) {
 
 TYPED_TEST(ConvexMeshes, LookLikeTheirTriangles) {
     for (const auto& [name, text] : {std::pair("frustum", frustum()), std::pair("wedge", wedge())})
-        for (const Place& place : {Place{"raised", dvec3(0), {0, 0, 0.125}}, places[1], places[2]})
+        for (const BoxPlace& place : {BoxPlace{"raised", dvec3(0), {0, 0, 0.125}}, box_places[1], box_places[2]})
             for (int material = 0; material < 3; ++material) {
                 const Film triangles = this->film(this->mesh(text, place, 1, true), material, false);
                 const Film film = this->film(this->mesh(text, place, 1), material, true);
@@ -177,7 +177,7 @@ TYPED_TEST(ConvexMeshes, LookLikeTheirTriangles) {
 
 /// A cube whose numbers are exact has the planes of the solid, bit for bit, and so all else.
 TYPED_TEST(ConvexMeshes, AnExactCubeIsTheSolid) {
-    SceneDescription scene = room();
+    SceneDescription scene = lit_room();
     SolidObject solid;
     solid.solid = PlatonicSolid::cube;
     solid.radius = std::sqrt(3.0) / 2;

@@ -29,7 +29,7 @@ Shape room() {
     return {{{-1, -1, -0.2}, {1, 1, 0}},    {{-1, -1, 1}, {1, 1, 1.2}},       {{-1, -1, -0.2}, {-0.8, 1, 1.2}},
             {{0.8, -1, -0.2}, {1, 1, 1.2}}, {{-1, -1, -0.2}, {1, -0.8, 1.2}}, {{-1, 0.8, -0.2}, {1, 1, 1.2}}};
 }
-const Arrangement arrangements[] = {
+const Arrangement mesh_arrangements[] = {
     {"an L on a floor",
      [](ContactScene& s, Random& r, const auto&) {
          add_floor(s, paper);
@@ -109,7 +109,7 @@ using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(MeshContacts, Reals);
 
 TYPED_TEST(MeshContacts, HaveFewFaults) {
-    const ContactCounts all = walk_all<TypeParam>(arrangements, BodyKind::mesh);
+    const ContactCounts all = walk_all<TypeParam>(mesh_arrangements, BodyKind::mesh);
     EXPECT_GT(all.lines, 2000000u);
     EXPECT_GT(all.shadows, 500000u);
     EXPECT_LE(all.faults(), 30u);

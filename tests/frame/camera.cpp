@@ -11,7 +11,7 @@ namespace {
 using glm::dvec3;
 using test::Random;
 
-Camera looking(const dvec3& position, const dvec3& forward, double tan_half_width = 1) {
+Camera camera_looking(const dvec3& position, const dvec3& forward, double tan_half_width = 1) {
     const dvec3 right = normalized(cross(forward, dvec3(0.1, 0.2, 1))), up = cross(right, forward);
     return {position, forward, right, up, tan_half_width};
 }
@@ -60,7 +60,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
         for (int i = 0; i < 2000; ++i) {
             FrameView frame;
             const dvec3 forward = random.direction();
-            frame.camera = looking(forward * -distance, forward, max_or_second(4 / distance, 0.01));
+            frame.camera = camera_looking(forward * -distance, forward, max_or_second(4 / distance, 0.01));
             frame.is_far = is_far(frame.camera, double(scene.extent));
             frame.width = frame.height = 100;
             frame.camera_sides[0].media.add(3, 1);
@@ -94,7 +94,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
     EXPECT_GT(past, 500);
     // Looking away.
     FrameView frame;
-    frame.camera = looking({0, -10, 0}, {0, -1, 0});
+    frame.camera = camera_looking({0, -10, 0}, {0, -1, 0});
     frame.is_far = true;
     frame.width = frame.height = 10;
     Ray<Real> ray;

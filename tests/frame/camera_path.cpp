@@ -4,16 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "testing/support/expect_near.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {
 namespace {
 
 using samples::expect_error;
-
-void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-15) {
-    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(a[axis], b[axis], tolerance);
-}
+using test::expect_near;
 
 TEST(CameraPath, AFixedCameraLooksAtItsTarget) {
     CameraDescription description;

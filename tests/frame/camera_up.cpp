@@ -7,14 +7,13 @@
 #include "scene/description/camera_path.h"
 #include "scene/description/camera_turns.h"
 #include "scene/readers/read_scene.h"
+#include "testing/support/expect_near.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {
 namespace {
 
-void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-15) {
-    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(a[axis], b[axis], tolerance) << "axis " << axis;
-}
+using test::expect_near;
 
 void expect_orthonormal(const Camera& camera) {
     for (const auto& axis : {camera.forward, camera.right, camera.up}) EXPECT_NEAR(length(axis), 1, 1e-15);

@@ -11,12 +11,11 @@
 #include "testing/support/camera.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
 namespace {
-
-const std::string source = CISTULA_SOURCE_DIR;
 
 struct Share {
     size_t left_out = 0, background = 0, all = 0;
@@ -96,11 +95,10 @@ TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
         settings.max_samples = 32;
         expect_sound(*scene, view, camera_at(description.camera, 0), settings, what + ", adaptive", share);
     };
-    for (const std::string& name : golden::scene_names(source + "/scenes"))
-        check(read_scene(source + "/scenes/" + name + ".json"), name);
+    for (const std::string& name : golden::scene_names(test::scene_folder)) check(test::shipped_scene(name), name);
     for (uint64_t seed = 0; seed < generated_scene_count; seed += 4)
-        check(generated_scene(seed, source + "/scenes"), "seed " + std::to_string(seed));
-    SceneDescription with_lights = read_scene(source + "/scenes/benchmark.json");
+        check(generated_scene(seed, test::scene_folder), "seed " + std::to_string(seed));
+    SceneDescription with_lights = test::shipped_scene("benchmark");
     for (const int more : {10, 90}) {  // with an outline each, then one for all
         test::add_visible_lights(with_lights, more);
         check(with_lights, std::to_string(with_lights.lights.size()) + " lights");
@@ -110,7 +108,7 @@ TYPED_TEST(Cover, LeavesOutBackgroundOnly) {
 }
 
 TYPED_TEST(Cover, IsTightAroundConvexThings) {
-    const SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    const SceneDescription description = test::shipped_scene("benchmark");
     const auto scene = compile_scene<TypeParam>(description);
     build_primitive_tree(*scene);
     FrameSettings settings;
@@ -123,7 +121,7 @@ TYPED_TEST(Cover, IsTightAroundConvexThings) {
 }
 
 TYPED_TEST(Cover, ManyHullsHaveOneOutline) {
-    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    SceneDescription description = test::shipped_scene("benchmark");
     for (const int light_count : {10, 100}) {
         description.lights.clear();
         test::add_visible_lights(description, light_count);
@@ -134,7 +132,7 @@ TYPED_TEST(Cover, ManyHullsHaveOneOutline) {
 }
 
 TYPED_TEST(Cover, CoversAllAroundACameraWithinAHull) {
-    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    SceneDescription description = test::shipped_scene("benchmark");
     description.camera = CameraDescription();
     description.camera.position = {-2.5, 2.5, 2};
     description.camera.target = {1, 2, 3};
@@ -144,7 +142,7 @@ TYPED_TEST(Cover, CoversAllAroundACameraWithinAHull) {
 }
 
 TYPED_TEST(Cover, IsEmptyWhereAllIsBehindTheCamera) {
-    SceneDescription description = read_scene(source + "/scenes/benchmark.json");
+    SceneDescription description = test::shipped_scene("benchmark");
     description.camera = CameraDescription();
     description.camera.position = {30, 0, 0};
     description.camera.target = {60, 0, 0};

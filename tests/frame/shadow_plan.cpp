@@ -8,12 +8,10 @@
 #include "cistula/traversal/brute.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/constant_scene.h"
-#include "scene/readers/read_scene.h"
+#include "testing/support/shipped_scenes.h"
 
 namespace cistula {
 namespace {
-
-const std::string source = CISTULA_SOURCE_DIR;
 
 template <class Real>
 class ShadowPlans : public ::testing::Test {
@@ -107,7 +105,7 @@ TYPED_TEST(ShadowPlans, ChangeNoShareInTheScenes) {
     int loaded = 0;
     for (const char* name :
          {"benchmark", "platonic", "infinity", "seed", "hard/lights-on-edges", "hard/tiny-beside-unit"}) {
-        if (!this->load(read_scene(source + "/scenes/" + name + ".json"))) continue;
+        if (!this->load(test::shipped_scene(name))) continue;
         ++loaded;
         EXPECT_GT(this->compare_rays(random, 100000), 5000) << name;
     }
@@ -122,7 +120,7 @@ TYPED_TEST(ShadowPlans, ChangeNoShareInCrowds) {
                                     PlatonicSolid::icosahedron};
     int loaded = 0, compared = 0;
     for (int n = 0; n < 60; ++n) {
-        SceneDescription scene = read_scene(source + "/scenes/benchmark.json");
+        SceneDescription scene = test::shipped_scene("benchmark");
         const int material = scene.objects[0].material;
         scene.objects.resize(0);
         for (int i = 0; i < 5; ++i) {
@@ -150,7 +148,7 @@ TYPED_TEST(ShadowPlans, ChangeNoShareInCrowds) {
 }
 
 TYPED_TEST(ShadowPlans, LeaveOutMostOfWhatThereIs) {
-    ASSERT_TRUE(this->load(read_scene(source + "/scenes/benchmark.json")));
+    ASSERT_TRUE(this->load(test::shipped_scene("benchmark")));
     int near = 0;
     for (uint32_t l = 0; l < this->lights(); ++l) {
         EXPECT_EQ(this->plan().beyond[l], 7u) << "both lights are outside of all three solids";

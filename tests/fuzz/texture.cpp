@@ -29,7 +29,8 @@ std::string extension_of(const std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;
     static const ScratchDirectory scratch;
-    const std::string bytes(reinterpret_cast<const char*>(data), size), path = scratch.file("a" + extension_of(bytes));
+    const std::string bytes(reinterpret_cast<const char*>(data), size);
+    const std::string path = scratch.file(std::string("a").append(extension_of(bytes)));
     put_bytes(path, bytes);
     constexpr uint64_t limit = 32'000'000;
     static std::unique_ptr<TextureReader> reader;  // with its child process, which takes a while to start

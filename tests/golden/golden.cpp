@@ -6,6 +6,7 @@
 #include "scene/image/exr.h"
 #include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
@@ -16,7 +17,7 @@ const std::string source = CISTULA_SOURCE_DIR;
 class Golden : public ::testing::TestWithParam<std::string> {
   protected:
     std::string folder() const { return source + "/golden/" + GetParam(); }
-    SceneDescription scene() const { return read_scene(source + "/scenes/" + GetParam() + ".json"); }
+    SceneDescription scene() const { return test::shipped_scene(GetParam()); }
     nlohmann::json record() const { return nlohmann::json::parse(std::ifstream(folder() + "/golden.json")); }
 
     template <class Real>
@@ -88,7 +89,7 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& scene) {
 
 /// Only those that begin with this.
 std::vector<std::string> names(const std::string& beginning) {
-    std::vector<std::string> names = golden::scene_names(source + "/scenes");
+    std::vector<std::string> names = golden::scene_names(test::scene_folder);
     std::erase_if(names, [&](const std::string& name) { return name.rfind(beginning, 0) != 0; });
     return names;
 }

@@ -3,13 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "testing/support/golden.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
 namespace {
 
 SceneDescription load(const std::string& name) {
-    return read_scene(std::string(CISTULA_SOURCE_DIR) + "/scenes/hard/" + name + ".json");
+    return test::shipped_scene("hard/" + name);
 }
 
 bool begins(const std::string& text, const char* with) {

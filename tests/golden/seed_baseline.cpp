@@ -7,6 +7,7 @@
 #include "scene/image/srgb_codes.h"
 #include "testing/support/golden.h"
 #include "testing/support/scratch_directory.h"
+#include "testing/support/shipped_scenes.h"
 
 namespace cistula {
 namespace {
@@ -47,7 +48,7 @@ Difference compare(const ColorPicture& a, const ColorPicture& b) {
 }
 
 SceneDescription benchmark_scene() {
-    return read_scene(CISTULA_SOURCE_DIR "/scenes/benchmark.json");
+    return test::shipped_scene("benchmark");
 }
 
 template <int depth>

@@ -22,11 +22,13 @@
 #include "testing/support/expect_error.h"
 #include "testing/support/file_size_limit.h"
 #include "testing/support/scratch_directory.h"
+#include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+using test::infinity;
+using test::nan;
 
 /// Noise in every bit: NaN, infinities and subnormals among the floats; halves hold values that halves can hold.
 LayeredPicture noise(int width, int height, uint32_t seed) {
@@ -92,7 +94,6 @@ TEST(Exr, SpecialValues) {
     LayeredPicture picture;
     picture.width = picture.display_width = 5;
     picture.height = picture.display_height = 1;
-    const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<float> values = {infinity, -infinity, 0x1p-149f, -0.0f, nan};
     picture.channels = {{"h", true, {1 + 0x1p-11f, 65519, 65520, 0x1p-24f, nan}}, {"x", false, values}};
     write_exr(scratch.file("a.exr"), picture);

@@ -9,7 +9,7 @@ namespace cistula {
 namespace {
 
 constexpr Chromaticities rec709 = {0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
-constexpr Chromaticities ap1 = {0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+constexpr Chromaticities ap1_chromaticities = {0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
 constexpr Chromaticities pal = {0.64f, 0.33f, 0.29f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};  // ITU-R BT.470
 constexpr Chromaticities nonsense = {};
 
@@ -41,18 +41,18 @@ TEST(FileColors, AFileThatSaysNothingIsLinearOrSrgb) {
 
 TEST(FileColors, IdsAndChromaticitiesSayTheSpace) {
     EXPECT_EQ(found({.id = "lin_ap1_scene"}), acescg);
-    EXPECT_EQ(found({.chromaticities = ap1}), acescg);
-    EXPECT_EQ(found({.id = "lin_ap1_scene", .chromaticities = ap1}), acescg);
-    EXPECT_EQ(found({.id = "unknown", .chromaticities = ap1}), acescg);
+    EXPECT_EQ(found({.chromaticities = ap1_chromaticities}), acescg);
+    EXPECT_EQ(found({.id = "lin_ap1_scene", .chromaticities = ap1_chromaticities}), acescg);
+    EXPECT_EQ(found({.id = "unknown", .chromaticities = ap1_chromaticities}), acescg);
     EXPECT_EQ(found({.id = "lin_rec709_scene", .chromaticities = rec709}), own);
     EXPECT_EQ(found({.chromaticities = pal}), Found("", 0.5));
     EXPECT_EQ(file_encoding("", {.chromaticities = pal}, true).space.green[0], static_cast<double>(0.29f));
-    EXPECT_EQ(found({.id = "srgb_ap1_scene", .chromaticities = ap1}),
+    EXPECT_EQ(found({.id = "srgb_ap1_scene", .chromaticities = ap1_chromaticities}),
               Found("lin_ap1_scene", elementary::srgb_to_linear(0.5)));
     EXPECT_EQ(found({.is_aces = true}).first, "lin_ap0_scene");
     EXPECT_EQ(found({.id = "lin_ap0_scene", .is_aces = true}).first, "lin_ap0_scene");
     // Numbers that are no color are converted in no way.
-    EXPECT_EQ(found({.id = "data", .chromaticities = ap1}), own);
+    EXPECT_EQ(found({.id = "data", .chromaticities = ap1_chromaticities}), own);
 }
 
 TEST(FileColors, WhatIsNotKnownOrContradictsItselfIsRefused) {

@@ -13,11 +13,12 @@
 #include <string_view>
 
 #include "cistula/numerics/fixed_sum.h"
+#include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+using test::infinity;
 
 Film film_of(int samples, int exponent, const std::vector<PixelRecord>& pixels) {
     Film film;

@@ -9,12 +9,13 @@
 
 #include "scene/image/bloom.h"
 #include "scene/image/srgb_codes.h"
+#include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+using test::infinity;
+using test::nan;
 
 bool same_bits(const ColorPicture& a, const ColorPicture& b) {
     return a.texels.size() == b.texels.size() &&

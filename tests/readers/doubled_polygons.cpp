@@ -7,11 +7,14 @@
 
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/mesh_file.h"
+#include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {
+
+using test::read_whole_mesh;
 
 using Polygons = std::vector<std::vector<uint32_t>>;
 
@@ -20,14 +23,6 @@ std::vector<bool> doubled(const std::vector<glm::dvec3>& vertices, const Polygon
 }
 
 const std::vector<glm::dvec3> corners = {{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {0, 2, 0}, {2, -0.0, 0}};
-
-/// Reads a mesh that no warning is due for.
-std::vector<MeshPart> read_whole(const MeshObject& object, const std::string& place) {
-    std::vector<std::string> warnings;
-    std::vector<MeshPart> parts = read_mesh(object, place, warnings);
-    EXPECT_EQ(warnings, std::vector<std::string>());
-    return parts;
-}
 
 TEST(DoubledPolygons, RotationDirectionAndVertexNumbersDoNotMatter) {
     for (size_t turn = 0; turn < 5; ++turn) {
@@ -76,12 +71,12 @@ TEST(DoubledPolygons, ATwoSidedBoxIsABoxAgain) {
     object.file = scratch.file("box.obj");
     samples::add_object(scene, object);
     put_bytes(object.file, box_obj(false, false));
-    const auto once = read_whole(object, "/objects/0");
+    const auto once = read_whole_mesh(object, "/objects/0");
     EXPECT_EQ(once[0].mesh.doubled_polygons, 0u);
     for (const bool front : {false, true})
         for (const bool back : {false, true}) {
             put_bytes(object.file, box_obj(front, back));
-            const auto parts = read_whole(object, "/objects/0");
+            const auto parts = read_whole_mesh(object, "/objects/0");
             const uint32_t copies = 6u * front + 6u * back;
             ASSERT_EQ(parts.size(), 1u);
             EXPECT_EQ(parts[0].mesh.doubled_polygons, copies);
@@ -108,7 +103,7 @@ TEST(DoubledPolygons, PartsThatOneMaterialJoinsAddTheirs) {
     object.file = scratch.file("box.obj");
     put_bytes(object.file, obj);
     samples::add_object(scene, object);
-    ASSERT_EQ(read_whole(object, "/objects/0").size(), 2u);
+    ASSERT_EQ(read_whole_mesh(object, "/objects/0").size(), 2u);
     const auto compiled = compile_scene<float>(scene);
     ASSERT_EQ(compiled->solids.size(), 1u);
     EXPECT_NE(compiled->solids[0].kind, SolidKind::sheet);

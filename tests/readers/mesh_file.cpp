@@ -11,6 +11,7 @@
 #include "scene/compile/mesh_topology.h"
 #include "scene/readers/polygon.h"
 #include "testing/generated_mesh.h"
+#include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 
@@ -19,6 +20,7 @@ namespace {
 
 using glm::dvec3;
 using samples::expect_error;
+using test::read_whole_mesh;
 
 /// An OBJ of a cube from 0 to 1 by quads, its faces in two groups of three.
 const std::string cube_obj =
@@ -42,14 +44,6 @@ MeshObject mesh_of(const std::string& file) {
     return object;
 }
 
-/// Reads a mesh that no warning is due for.
-std::vector<MeshPart> read_whole(const MeshObject& object, const std::string& place) {
-    std::vector<std::string> warnings;
-    std::vector<MeshPart> parts = read_mesh(object, place, warnings);
-    EXPECT_EQ(warnings, std::vector<std::string>());
-    return parts;
-}
-
 TEST(MeshFile, PlyTrianglesArePlaced) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("t.ply"), tetrahedron_ply);
@@ -57,7 +51,7 @@ TEST(MeshFile, PlyTrianglesArePlaced) {
     object.scale = 2;
     object.rotation = {0, 0, 90};
     object.center = {10, 20, 30};
-    const auto parts = read_whole(object, "/objects/0");
+    const auto parts = read_whole_mesh(object, "/objects/0");
     ASSERT_EQ(parts.size(), 1u);
     EXPECT_FALSE(parts[0].material);
     EXPECT_EQ(parts[0].mesh.vertices.size(), 4u);
@@ -80,7 +74,7 @@ TEST(MeshFile, BinaryPlyToo) {
     bytes.push_back(3);
     bytes.append(reinterpret_cast<const char*>(indices), sizeof(indices));
     put_bytes(scratch.file("t.ply"), bytes);
-    const auto parts = read_whole(mesh_of(scratch.file("t.ply")), "here");
+    const auto parts = read_whole_mesh(mesh_of(scratch.file("t.ply")), "here");
     ASSERT_EQ(parts.size(), 1u);
     ASSERT_EQ(parts[0].mesh.triangles.size(), 1u);
     EXPECT_EQ(parts[0].mesh.vertices[parts[0].mesh.triangles[0][1]], dvec3(1.5, 0, 0));
@@ -106,7 +100,7 @@ TEST(MeshFile, VerticesThatAreNearStayApart) {
     put_bytes(scratch.file("t.ply"), ply);
     put_bytes(scratch.file("t.obj"), obj);
     for (const char* name : {"t.ply", "t.obj"}) {
-        const auto parts = read_whole(mesh_of(scratch.file(name)), "/objects/0");
+        const auto parts = read_whole_mesh(mesh_of(scratch.file(name)), "/objects/0");
         ASSERT_EQ(parts.size(), 1u);
         const MeshTopology topology = find_topology(parts[0].mesh);
         EXPECT_TRUE(topology.closed) << name;
@@ -118,7 +112,7 @@ TEST(MeshFile, ObjGroupsBringTheirMaterials) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("cube.obj"), cube_obj);
     put_bytes(scratch.file("cube.mtl"), cube_mtl);
-    const auto parts = read_whole(mesh_of(scratch.file("cube.obj")), "here");
+    const auto parts = read_whole_mesh(mesh_of(scratch.file("cube.obj")), "here");
     ASSERT_EQ(parts.size(), 2u);
     for (const auto& part : parts) EXPECT_EQ(part.mesh.triangles.size(), 6u);
     const auto& red = parts[0].material->name == "red" ? *parts[0].material : *parts[1].material;
@@ -145,7 +139,7 @@ TEST(MeshFile, TrIsTransmission) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("cube.obj"), cube_obj);
     put_bytes(scratch.file("cube.mtl"), "newmtl red\nTr 0.25\nillum 1\nKs 1 1 1\nnewmtl glass\nKd 1 1 1\nillum 0\n");
-    for (const auto& part : read_whole(mesh_of(scratch.file("cube.obj")), "here")) {
+    for (const auto& part : read_whole_mesh(mesh_of(scratch.file("cube.obj")), "here")) {
         const bool red = part.material->name == "red";
         EXPECT_EQ(part.material->transmission, red ? 0.25 : 0);
         EXPECT_EQ(part.material->specular, 0);

@@ -46,13 +46,13 @@ std::vector<PolygonMesh> read_quietly(const std::string& obj) {
     return meshes;
 }
 
-void expect_refused(const std::string& obj, const std::string& text) {
+void expect_obj_refused(const std::string& obj, const std::string& text) {
     SCOPED_TRACE(obj);
     expect_error([&] { ObjFolder().read(obj); }, ExitCode::file, text);
 }
 
 /// Positions of the corners of all faces.
-std::vector<dvec3> corners(const std::vector<PolygonMesh>& meshes) {
+std::vector<dvec3> corner_positions(const std::vector<PolygonMesh>& meshes) {
     std::vector<dvec3> all;
     for (const PolygonMesh& mesh : meshes)
         for (const uint32_t corner : mesh.corners) all.push_back(mesh.vertices[corner]);
@@ -65,18 +65,18 @@ TEST(ObjFile, NumbersAreTheNearestDoubles) {
     const auto meshes =
         read_quietly("v .5 5. 1e3\nv +.25 -2.E-1 0.1\nv 9007199254740993 5e-324 1.7976931348623157e308\nf 1 2 3\n");
     EXPECT_EQ(
-        corners(meshes),
+        corner_positions(meshes),
         (std::vector<dvec3>{{0.5, 5, 1000}, {0.25, -0.2, 0.1}, {9007199254740992.0, 5e-324, 1.7976931348623157e308}}));
-    EXPECT_TRUE(std::isnan(corners(read_quietly("v nan 0 0\nf 1 1 1\n"))[0].x));
-    expect_refused("v 1,5 0 0\n", "a.obj:1: expected a number, found '1,5'");
-    expect_refused(square + "v 1 0\n", "a.obj:5: v needs more numbers than 2");
-    expect_refused("v 1e400 0 0\n", "a.obj:1: expected a number, found '1e400'");
+    EXPECT_TRUE(std::isnan(corner_positions(read_quietly("v nan 0 0\nf 1 1 1\n"))[0].x));
+    expect_obj_refused("v 1,5 0 0\n", "a.obj:1: expected a number, found '1,5'");
+    expect_obj_refused(square + "v 1 0\n", "a.obj:5: v needs more numbers than 2");
+    expect_obj_refused("v 1e400 0 0\n", "a.obj:1: expected a number, found '1e400'");
 }
 
 TEST(ObjFile, WeightsAndColorsOfVerticesAreNoPositions) {
-    EXPECT_EQ(corners(read_quietly("v 0 0 0 2\nv 2 0 0 0.5\nv 2 2 0 1 0 0\nv 0 2 0 1 1 0 0\nf 1 2 3 4\n")),
+    EXPECT_EQ(corner_positions(read_quietly("v 0 0 0 2\nv 2 0 0 0.5\nv 2 2 0 1 0 0\nv 0 2 0 1 1 0 0\nf 1 2 3 4\n")),
               whole_square);
-    expect_refused("v 0 0 0 x\n", "a.obj:1: expected a number, found 'x'");
+    expect_obj_refused("v 0 0 0 x\n", "a.obj:1: expected a number, found 'x'");
 }
 
 TEST(ObjFile, EncodingsLineEndsIndentationAndContinuation) {
@@ -109,26 +109,26 @@ TEST(ObjFile, EncodingsLineEndsIndentationAndContinuation) {
 }
 
 TEST(ObjFile, IndicesCountForwardAndBackward) {
-    EXPECT_EQ(corners(read_quietly(square + "f -4 -3 -2 -1\nv 9 9 9\n")), whole_square);
-    EXPECT_EQ(corners(read_quietly("f 1 2 3 4\n" + square)), whole_square) << "faces may come first";
-    EXPECT_EQ(corners(read_quietly(square + "vn 0 0 1\nf 1//1 2//-1 3//1 4//1\n")), whole_square);
-    expect_refused(square + "f 1 2 5\n", "a.obj:5: a face names vertex 5, but there are 4");
-    expect_refused(square + "f 1 2 99999999999\n", "a.obj:5: a face names vertex 99999999999, but there are 4");
-    expect_refused(square + "f 1 2 4294967297\n", "a.obj:5: a face names vertex 4294967297, but there are 4");
-    expect_refused(square + "f 1 2 -5\n", "a.obj:5: a face names vertex -5, but only 4 came before");
-    expect_refused(square + "f 1 2 0\n",
-                   "a.obj:5: expected the number of a vertex, from 1 or from -1 backward, found '0'");
-    expect_refused(square + "f 1 2 3.0\n", "a.obj:5: expected the number of a vertex");
-    expect_refused(square + "f 1/1 2/1 3/1\n", "a.obj:5: a face names texture coordinate 1, but there are 0");
-    expect_refused(square + "f 1//x 2 3\n", "a.obj:5: expected the number of a normal, found 'x'");
-    expect_refused(square + "f 1 2\n", "a.obj:5: a face needs at least 3 corners, found 2");
+    EXPECT_EQ(corner_positions(read_quietly(square + "f -4 -3 -2 -1\nv 9 9 9\n")), whole_square);
+    EXPECT_EQ(corner_positions(read_quietly("f 1 2 3 4\n" + square)), whole_square) << "faces may come first";
+    EXPECT_EQ(corner_positions(read_quietly(square + "vn 0 0 1\nf 1//1 2//-1 3//1 4//1\n")), whole_square);
+    expect_obj_refused(square + "f 1 2 5\n", "a.obj:5: a face names vertex 5, but there are 4");
+    expect_obj_refused(square + "f 1 2 99999999999\n", "a.obj:5: a face names vertex 99999999999, but there are 4");
+    expect_obj_refused(square + "f 1 2 4294967297\n", "a.obj:5: a face names vertex 4294967297, but there are 4");
+    expect_obj_refused(square + "f 1 2 -5\n", "a.obj:5: a face names vertex -5, but only 4 came before");
+    expect_obj_refused(square + "f 1 2 0\n",
+                       "a.obj:5: expected the number of a vertex, from 1 or from -1 backward, found '0'");
+    expect_obj_refused(square + "f 1 2 3.0\n", "a.obj:5: expected the number of a vertex");
+    expect_obj_refused(square + "f 1/1 2/1 3/1\n", "a.obj:5: a face names texture coordinate 1, but there are 0");
+    expect_obj_refused(square + "f 1//x 2 3\n", "a.obj:5: expected the number of a normal, found 'x'");
+    expect_obj_refused(square + "f 1 2\n", "a.obj:5: a face needs at least 3 corners, found 2");
 }
 
 TEST(ObjFile, TextureCoordinatesBelongToCorners) {
     const auto meshes = read_quietly(square + "vt 0.5\nvt 1 0.25\nvt 0 1 0\nf 1/1 2/2/7 3/-1\nf 1 3 4\n");
     EXPECT_EQ(meshes.at(0).uvs, (std::vector<dvec2>{{0.5, 0}, {1, 0.25}, {0, 1}, {0, 0}, {0, 0}, {0, 0}}));
     EXPECT_TRUE(read_quietly(square + "vt 0 0\nf 1 2 3\n").at(0).uvs.empty());
-    expect_refused("vt nan 0\n", "a.obj:1: a texture coordinate is not finite");
+    expect_obj_refused("vt nan 0\n", "a.obj:1: a texture coordinate is not finite");
 }
 
 TEST(ObjFile, ObjectsGroupsAndMaterialsBeginParts) {

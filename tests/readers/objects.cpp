@@ -8,7 +8,7 @@
 namespace cistula {
 namespace {
 
-SceneDescription read(const std::string& objects) {
+SceneDescription read_objects(const std::string& objects) {
     return read_scene_text(
         "{\"textures\": {\"t\": {\"checker\": [0, 1]}}, \"materials\": {\"glass\": {}, \"tiles\": "
         "{\"texture\": \"t\"}}, \"objects\": [" +
@@ -16,19 +16,20 @@ SceneDescription read(const std::string& objects) {
         "a.json", "dir");
 }
 
-#define EXPECT_WRONG(object, message) \
-    EXPECT_ERROR(read(object), ExitCode::usage, std::string("a.json: /objects/0") + message)
+#define EXPECT_WRONG_OBJECT(object, message) \
+    EXPECT_ERROR(read_objects(object), ExitCode::usage, std::string("a.json: /objects/0") + message)
 
 template <class Shape>
 Shape shape_of(const std::string& object) {
-    return std::get<Shape>(read(object).objects.at(0).shape);
+    return std::get<Shape>(read_objects(object).objects.at(0).shape);
 }
 
 TEST(SceneSolids, EveryKeyArrives) {
-    const ObjectDescription object = read(R"({"name": "gem", "solid": "icosahedron", "center": [1, 2, 3], "radius": 4,
+    const ObjectDescription object =
+        read_objects(R"({"name": "gem", "solid": "icosahedron", "center": [1, 2, 3], "radius": 4,
         "rotate": [5, 6, 7], "material": "glass", "edge_lights": {"count": 8, "color": [1, 2, 3], "glow": 9,
         "radius": 0.5, "falloff": "inverse-square"}})")
-                                         .objects.at(0);
+            .objects.at(0);
     EXPECT_EQ(object.name, "gem");
     EXPECT_EQ(object.material, 0);
     EXPECT_EQ(object.place, "/objects/0");
@@ -55,57 +56,59 @@ TEST(SceneSolids, AllFiveByName) {
 }
 
 TEST(SceneSolids, Errors) {
-    EXPECT_WRONG(R"({"solid": "octahedrom", "material": "glass"})",
-                 "/solid: unknown value 'octahedrom'; did you mean 'octahedron'?");
-    EXPECT_WRONG(
+    EXPECT_WRONG_OBJECT(R"({"solid": "octahedrom", "material": "glass"})",
+                        "/solid: unknown value 'octahedrom'; did you mean 'octahedron'?");
+    EXPECT_WRONG_OBJECT(
         R"({"solid": "sphere", "material": "glass"})",
         "/solid: unknown value 'sphere'; known values: tetrahedron, cube, octahedron, dodecahedron, icosahedron");
-    EXPECT_WRONG(R"({"solid": 8, "material": "glass"})",
-                 "/solid: expected one of tetrahedron, cube, octahedron, dodecahedron, icosahedron, found 8");
-    EXPECT_WRONG(R"({"solid": "cube", "radius": 0, "material": "glass"})",
-                 "/radius: expected a number from 1e-30 to 1e30, found 0");
-    EXPECT_WRONG(R"({"solid": "cube", "center": [1, 2], "material": "glass"})",
-                 "/center: expected [x, y, z], each from -1e30 to 1e30, found an array of 2");
-    EXPECT_WRONG(R"({"solid": "cube", "center": [1, 2, null], "material": "glass"})",
-                 "/center/2: expected a number from -1e30 to 1e30, found null");
-    EXPECT_WRONG(R"({"solid": "cube", "rotate": 30, "material": "glass"})",
-                 "/rotate: expected [x, y, z], each from -1000000 to 1000000, found 30");
-    EXPECT_WRONG(R"({"solid": "cube"})", ": missing key 'material': expected a string that is not empty");
-    EXPECT_WRONG(R"({"solid": "cube", "material": "glas"})",
-                 "/material: unknown material 'glas'; did you mean 'glass'?");
-    EXPECT_WRONG(R"({"solid": "cube", "material": "adamant"})",
-                 "/material: unknown material 'adamant'; known materials: glass, tiles");
-    EXPECT_WRONG(
+    EXPECT_WRONG_OBJECT(R"({"solid": 8, "material": "glass"})",
+                        "/solid: expected one of tetrahedron, cube, octahedron, dodecahedron, icosahedron, found 8");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "radius": 0, "material": "glass"})",
+                        "/radius: expected a number from 1e-30 to 1e30, found 0");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "center": [1, 2], "material": "glass"})",
+                        "/center: expected [x, y, z], each from -1e30 to 1e30, found an array of 2");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "center": [1, 2, null], "material": "glass"})",
+                        "/center/2: expected a number from -1e30 to 1e30, found null");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "rotate": 30, "material": "glass"})",
+                        "/rotate: expected [x, y, z], each from -1000000 to 1000000, found 30");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube"})", ": missing key 'material': expected a string that is not empty");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "material": "glas"})",
+                        "/material: unknown material 'glas'; did you mean 'glass'?");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "material": "adamant"})",
+                        "/material: unknown material 'adamant'; known materials: glass, tiles");
+    EXPECT_WRONG_OBJECT(
         R"({"solid": "cube", "material": "tiles"})",
         "/material: the material 'tiles' has a texture, but a solid has no uv for it; use triangles with 'uvs' or a "
         "mesh");
-    EXPECT_WRONG(R"({"solid": "cube", "material": "glass", "scale": 2})",
-                 "/scale: unknown key; known keys: name, solid, center, radius, rotate, material, edge_lights");
-    EXPECT_WRONG(R"({"solid": "cube", "material": "glass", "name": ""})",
-                 "/name: expected a string that is not empty, found an empty string");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "material": "glass", "scale": 2})",
+                        "/scale: unknown key; known keys: name, solid, center, radius, rotate, material, edge_lights");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "material": "glass", "name": ""})",
+                        "/name: expected a string that is not empty, found an empty string");
 }
 
 TEST(SceneSolids, EdgeLightErrors) {
     const auto solid = [](const std::string& lights) {
         return R"({"solid": "cube", "material": "glass", "edge_lights": )" + lights + "}";
     };
-    EXPECT_WRONG(solid("6"), "/edge_lights: expected an object, found 6");
-    EXPECT_WRONG(solid("{}"), "/edge_lights: missing key 'count': expected a whole number from 0 to 1000");
-    EXPECT_WRONG(solid(R"({"count": 1001})"), "/edge_lights/count: expected a whole number from 0 to 1000, found 1001");
-    EXPECT_WRONG(solid(R"({"count": 1, "position": [0, 0, 0]})"),
-                 "/edge_lights/position: unknown key; known keys: count, color, glow, radius, falloff, group");
-    EXPECT_WRONG(solid(R"({"count": 1, "group": "key.left"})"),
-                 "/edge_lights/group: the name 'key.left' has a dot, which separates layers from channels");
-    EXPECT_WRONG(solid(R"({"count": 1, "group": "key left"})"),
-                 "/edge_lights/group: the name 'key left' has other characters than letters, digits, _ and -");
-    EXPECT_WRONG(solid(R"({"count": 1, "group": "glow"})"),
-                 "/edge_lights/group: the name 'glow' is that of a layer which every scene has");
-    EXPECT_WRONG(solid(R"({"count": 1, "group": ")" + std::string(55, 'g') + "\"}"),
-                 "/edge_lights/group: the name '" + std::string(40, 'g') + "...' is longer than 54 bytes");
-    EXPECT_WRONG(solid(R"({"count": 1, "group": ""})"),
-                 "/edge_lights/group: expected a string that is not empty, found an empty string");
-    EXPECT_WRONG(solid(R"({"count": 1, "falloff": "inverse-square"})"),
-                 "/edge_lights/falloff: inverse-square needs a 'radius' above 0, within which it stays constant");
+    EXPECT_WRONG_OBJECT(solid("6"), "/edge_lights: expected an object, found 6");
+    EXPECT_WRONG_OBJECT(solid("{}"), "/edge_lights: missing key 'count': expected a whole number from 0 to 1000");
+    EXPECT_WRONG_OBJECT(solid(R"({"count": 1001})"),
+                        "/edge_lights/count: expected a whole number from 0 to 1000, found 1001");
+    EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "position": [0, 0, 0]})"),
+                        "/edge_lights/position: unknown key; known keys: count, color, glow, radius, falloff, group");
+    EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "group": "key.left"})"),
+                        "/edge_lights/group: the name 'key.left' has a dot, which separates layers from channels");
+    EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "group": "key left"})"),
+                        "/edge_lights/group: the name 'key left' has other characters than letters, digits, _ and -");
+    EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "group": "glow"})"),
+                        "/edge_lights/group: the name 'glow' is that of a layer which every scene has");
+    EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "group": ")" + std::string(55, 'g') + "\"}"),
+                        "/edge_lights/group: the name '" + std::string(40, 'g') + "...' is longer than 54 bytes");
+    EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "group": ""})"),
+                        "/edge_lights/group: expected a string that is not empty, found an empty string");
+    EXPECT_WRONG_OBJECT(
+        solid(R"({"count": 1, "falloff": "inverse-square"})"),
+        "/edge_lights/falloff: inverse-square needs a 'radius' above 0, within which it stays constant");
 }
 
 TEST(SceneSolids, EdgeLightsAreAGroupByTheSolidsName) {
@@ -131,28 +134,31 @@ TEST(SceneQuads, BecomeTwoTrianglesWithUv) {
 
 TEST(SceneQuads, MustBePlanarAndConvexAtAnyScale) {
     const auto quad = [](const std::string& corners) { return R"({"material": "glass", "quad": )" + corners + "}"; };
-    EXPECT_NO_THROW(read(quad("[[0, 0, 0], [1, 0, 0], [1, 1, 1e-7], [0, 1, 0]]")));
-    EXPECT_NO_THROW(read(quad("[[0, 0, 0], [1e29, 0, 0], [1e29, 1e29, 0], [0, 1e29, 0]]")));
-    EXPECT_NO_THROW(read(quad("[[0, 0, 0], [1e-20, 0, 0], [1e-20, 1e-20, 0], [0, 1e-20, 0]]")));
-    EXPECT_NO_THROW(read(quad("[[0, 0, 0], [0, 0, 2], [1, 0, 3], [5, 0, 0]]")));
-    EXPECT_WRONG(quad("[[0, 0, 0], [4, 0, 0], [4, 3, 2.5], [0, 3, 0]]"),
-                 "/quad: the quad is not planar: its diagonals pass at 0.2 of their length, at most 1e-06 is allowed");
-    EXPECT_WRONG(quad("[[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]"),
-                 "/quad: the quad has no area or crosses itself; give the corners in order around it");
-    EXPECT_WRONG(quad("[[0, 0, 0], [4, 0, 0], [1, 1, 0], [0, 4, 0]]"),
-                 "/quad: the quad is not convex at corner 2; give the corners in order around it");
-    EXPECT_WRONG(quad("[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]"),
-                 "/quad: the quad has no area or crosses itself; give the corners in order around it");
-    EXPECT_WRONG(quad("[[0, 0, 0], [2, 2, 0], [3, 0, 0], [0, 1, 0]]"),
-                 "/quad: the quad is not convex at corner 0; give the corners in order around it");
-    EXPECT_WRONG(quad("[[1, 1, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1]]"), "/quad: the four corners of the quad coincide");
-    EXPECT_WRONG(quad("[[0, 0, 0], [1, 0, 0], [1, 1, 0]]"),
-                 "/quad: expected an array of four points [x, y, z], found an array of 3");
-    EXPECT_WRONG(quad("[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1]]"),
-                 "/quad/3: expected [x, y, z], each from -1e30 to 1e30, found an array of 2");
-    EXPECT_WRONG(R"({"quad": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "material": "glass", "center": [0, 0, 0]})",
-                 "/center: unknown key; known keys: name, quad, material");
-    EXPECT_WRONG(R"({"quad": []})", ": missing key 'material': expected a string that is not empty");
+    EXPECT_NO_THROW(read_objects(quad("[[0, 0, 0], [1, 0, 0], [1, 1, 1e-7], [0, 1, 0]]")));
+    EXPECT_NO_THROW(read_objects(quad("[[0, 0, 0], [1e29, 0, 0], [1e29, 1e29, 0], [0, 1e29, 0]]")));
+    EXPECT_NO_THROW(read_objects(quad("[[0, 0, 0], [1e-20, 0, 0], [1e-20, 1e-20, 0], [0, 1e-20, 0]]")));
+    EXPECT_NO_THROW(read_objects(quad("[[0, 0, 0], [0, 0, 2], [1, 0, 3], [5, 0, 0]]")));
+    EXPECT_WRONG_OBJECT(
+        quad("[[0, 0, 0], [4, 0, 0], [4, 3, 2.5], [0, 3, 0]]"),
+        "/quad: the quad is not planar: its diagonals pass at 0.2 of their length, at most 1e-06 is allowed");
+    EXPECT_WRONG_OBJECT(quad("[[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]"),
+                        "/quad: the quad has no area or crosses itself; give the corners in order around it");
+    EXPECT_WRONG_OBJECT(quad("[[0, 0, 0], [4, 0, 0], [1, 1, 0], [0, 4, 0]]"),
+                        "/quad: the quad is not convex at corner 2; give the corners in order around it");
+    EXPECT_WRONG_OBJECT(quad("[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]"),
+                        "/quad: the quad has no area or crosses itself; give the corners in order around it");
+    EXPECT_WRONG_OBJECT(quad("[[0, 0, 0], [2, 2, 0], [3, 0, 0], [0, 1, 0]]"),
+                        "/quad: the quad is not convex at corner 0; give the corners in order around it");
+    EXPECT_WRONG_OBJECT(quad("[[1, 1, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1]]"),
+                        "/quad: the four corners of the quad coincide");
+    EXPECT_WRONG_OBJECT(quad("[[0, 0, 0], [1, 0, 0], [1, 1, 0]]"),
+                        "/quad: expected an array of four points [x, y, z], found an array of 3");
+    EXPECT_WRONG_OBJECT(quad("[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1]]"),
+                        "/quad/3: expected [x, y, z], each from -1e30 to 1e30, found an array of 2");
+    EXPECT_WRONG_OBJECT(
+        R"({"quad": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "material": "glass", "center": [0, 0, 0]})",
+        "/center: unknown key; known keys: name, quad, material");
+    EXPECT_WRONG_OBJECT(R"({"quad": []})", ": missing key 'material': expected a string that is not empty");
 }
 
 TEST(SceneTriangles, Arrive) {
@@ -173,32 +179,35 @@ TEST(SceneTriangles, Errors) {
                "}}";
     };
     const std::string three = "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
-    EXPECT_WRONG(list("[[0, 0, 0]]", "[[0, 0, 0]]"),
-                 "/triangles/vertices: expected an array of at least three points [x, y, z], found an array of 1");
-    EXPECT_WRONG(list("[[0, 0, 0], [1, 0, 0], 5]", "[[0, 0, 0]]"),
-                 "/triangles/vertices/2: expected [x, y, z], each from -1e30 to 1e30, found 5");
-    EXPECT_WRONG(list(three, "[]"),
-                 "/triangles/indices: expected an array of at least one triangle [i, j, k], found an empty array");
-    EXPECT_WRONG(list(three, "[[0, 1]]"),
-                 "/triangles/indices/0: expected three indices of vertices [i, j, k], found an array of 2");
-    EXPECT_WRONG(list(three, "[[0, 1, 2], [0, 1, 3]]"),
-                 "/triangles/indices/1/2: expected a whole number from 0 to 2, found 3");
-    EXPECT_WRONG(list(three, "[[0, 1, -1]]"), "/triangles/indices/0/2: expected a whole number from 0 to 2, found -1");
-    EXPECT_WRONG(list(three, "[[0, 1, 0.5]]"),
-                 "/triangles/indices/0/2: expected a whole number from 0 to 2, found 0.5");
-    EXPECT_WRONG(list(three, "[[0, 1, 2]]", R"(, "uvs": [[0, 0]])"),
-                 "/triangles/uvs: expected an array of 3 pairs [u, v], one a vertex, found an array of 1");
-    EXPECT_WRONG(list(three, "[[0, 1, 2]]", R"(, "uvs": [[0, 0], [0, 0], [0, 1e7]])"),
-                 "/triangles/uvs/2/1: expected a number from -1000000 to 1000000, found 10000000");
-    EXPECT_WRONG(list(three, "[[0, 1, 2]]", R"(, "uv": [])"), "/triangles/uv: unknown key; did you mean 'uvs'?");
-    EXPECT_WRONG(R"({"material": "glass", "triangles": {"vertices": []}})", "/triangles: missing key 'indices'");
-    EXPECT_WRONG(R"({"material": "tiles", "triangles": {"vertices": )" + three + R"(, "indices": [[0, 1, 2]]}})",
-                 "/material: the material 'tiles' has a texture, but the triangles have no 'uvs'");
+    EXPECT_WRONG_OBJECT(
+        list("[[0, 0, 0]]", "[[0, 0, 0]]"),
+        "/triangles/vertices: expected an array of at least three points [x, y, z], found an array of 1");
+    EXPECT_WRONG_OBJECT(list("[[0, 0, 0], [1, 0, 0], 5]", "[[0, 0, 0]]"),
+                        "/triangles/vertices/2: expected [x, y, z], each from -1e30 to 1e30, found 5");
+    EXPECT_WRONG_OBJECT(
+        list(three, "[]"),
+        "/triangles/indices: expected an array of at least one triangle [i, j, k], found an empty array");
+    EXPECT_WRONG_OBJECT(list(three, "[[0, 1]]"),
+                        "/triangles/indices/0: expected three indices of vertices [i, j, k], found an array of 2");
+    EXPECT_WRONG_OBJECT(list(three, "[[0, 1, 2], [0, 1, 3]]"),
+                        "/triangles/indices/1/2: expected a whole number from 0 to 2, found 3");
+    EXPECT_WRONG_OBJECT(list(three, "[[0, 1, -1]]"),
+                        "/triangles/indices/0/2: expected a whole number from 0 to 2, found -1");
+    EXPECT_WRONG_OBJECT(list(three, "[[0, 1, 0.5]]"),
+                        "/triangles/indices/0/2: expected a whole number from 0 to 2, found 0.5");
+    EXPECT_WRONG_OBJECT(list(three, "[[0, 1, 2]]", R"(, "uvs": [[0, 0]])"),
+                        "/triangles/uvs: expected an array of 3 pairs [u, v], one a vertex, found an array of 1");
+    EXPECT_WRONG_OBJECT(list(three, "[[0, 1, 2]]", R"(, "uvs": [[0, 0], [0, 0], [0, 1e7]])"),
+                        "/triangles/uvs/2/1: expected a number from -1000000 to 1000000, found 10000000");
+    EXPECT_WRONG_OBJECT(list(three, "[[0, 1, 2]]", R"(, "uv": [])"), "/triangles/uv: unknown key; did you mean 'uvs'?");
+    EXPECT_WRONG_OBJECT(R"({"material": "glass", "triangles": {"vertices": []}})", "/triangles: missing key 'indices'");
+    EXPECT_WRONG_OBJECT(R"({"material": "tiles", "triangles": {"vertices": )" + three + R"(, "indices": [[0, 1, 2]]}})",
+                        "/material: the material 'tiles' has a texture, but the triangles have no 'uvs'");
 }
 
 TEST(SceneMeshes, EveryKeyArrives) {
     const ObjectDescription object =
-        read(
+        read_objects(
             R"({"name": "n", "mesh": "a.ply", "center": [1, 2, 3], "scale": 4, "rotate": [5, 6, 7],
                 "keep_triangles": true, "material": "tiles"})")
             .objects.at(0);
@@ -210,18 +219,18 @@ TEST(SceneMeshes, EveryKeyArrives) {
     EXPECT_EQ(mesh.rotation, glm::dvec3(5, 6, 7));
     EXPECT_TRUE(mesh.keep_triangles);
     EXPECT_FALSE(shape_of<MeshObject>(R"({"mesh": "a.ply"})").keep_triangles);
-    EXPECT_EQ(read(R"({"mesh": "a.ply"})").objects.at(0).material, -1);
-    EXPECT_WRONG(R"({"mesh": "a.ply", "scale": -1})", "/scale: expected a number from 1e-30 to 1e30, found -1");
-    EXPECT_WRONG(R"({"mesh": 1})", "/mesh: expected a string that is not empty, found 1");
+    EXPECT_EQ(read_objects(R"({"mesh": "a.ply"})").objects.at(0).material, -1);
+    EXPECT_WRONG_OBJECT(R"({"mesh": "a.ply", "scale": -1})", "/scale: expected a number from 1e-30 to 1e30, found -1");
+    EXPECT_WRONG_OBJECT(R"({"mesh": 1})", "/mesh: expected a string that is not empty, found 1");
 }
 
 TEST(SceneObjects, HaveOneForm) {
-    EXPECT_WRONG("3", ": expected an object, found 3");
-    EXPECT_WRONG("{}", ": expected one of the keys 'solid', 'quad', 'triangles' and 'mesh'");
-    EXPECT_WRONG(R"({"soild": "cube", "material": "glass"})", "/soild: unknown key; did you mean 'solid'?");
-    EXPECT_WRONG(R"({"solid": "cube", "mesh": "a.ply"})",
-                 ": expected one of 'solid', 'quad', 'triangles' and 'mesh', found both 'solid' and 'mesh'");
-    EXPECT_ERROR(read(R"({"mesh": "a"}, {"mesh": "b"}, {"solid": "cube", "center": 0, "material": "glass"})"),
+    EXPECT_WRONG_OBJECT("3", ": expected an object, found 3");
+    EXPECT_WRONG_OBJECT("{}", ": expected one of the keys 'solid', 'quad', 'triangles' and 'mesh'");
+    EXPECT_WRONG_OBJECT(R"({"soild": "cube", "material": "glass"})", "/soild: unknown key; did you mean 'solid'?");
+    EXPECT_WRONG_OBJECT(R"({"solid": "cube", "mesh": "a.ply"})",
+                        ": expected one of 'solid', 'quad', 'triangles' and 'mesh', found both 'solid' and 'mesh'");
+    EXPECT_ERROR(read_objects(R"({"mesh": "a"}, {"mesh": "b"}, {"solid": "cube", "center": 0, "material": "glass"})"),
                  ExitCode::usage, "a.json: /objects/2/center: expected [x, y, z], each from -1e30 to 1e30, found 0");
 }
 
@@ -239,7 +248,7 @@ TEST(SceneObjects, HaveDifferentNames) {
 }
 
 TEST(SceneObjects, KeepTheOrderOfTheFile) {
-    const auto objects = read(R"({"mesh": "z"}, {"mesh": "a"}, {"mesh": "m"})").objects;
+    const auto objects = read_objects(R"({"mesh": "z"}, {"mesh": "a"}, {"mesh": "m"})").objects;
     std::string order;
     for (const auto& object : objects) order += std::get<MeshObject>(object.shape).file + object.place + " ";
     EXPECT_EQ(order, "dir/z/objects/0 dir/a/objects/1 dir/m/objects/2 ");

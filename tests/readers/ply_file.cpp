@@ -25,7 +25,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
-void expect_refused(const std::string& bytes, const std::string& text) {
+void expect_ply_refused(const std::string& bytes, const std::string& text) {
     SCOPED_TRACE(bytes.substr(0, 300));
     expect_error([&] { read_ply(bytes, "a.ply"); }, ExitCode::file, text);
 }
@@ -38,7 +38,7 @@ void expect_triangle(const PolygonMesh& mesh) {
 
 /// A value as a type has it, in a file's order of bytes.
 template <class T>
-std::string bytes_of(T value, bool big_endian) {
+std::string binary(T value, bool big_endian) {
     std::string bytes(sizeof(T), '\0');
     std::memcpy(bytes.data(), &value, sizeof(T));
     return big_endian ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
@@ -78,22 +78,22 @@ void check_types(const std::string& coordinate, const std::string& size, const s
             "int v\nend_header\n",
             big ? "big" : "little", coordinate, size, index, coordinate, coordinate, coordinate, size, index);
         for (int i = 0; i < 2; ++i)
-            bytes += bytes_of<Coordinate>(5, big) + bytes_of<Size>(1, big) + bytes_of<Index>(100, big);
+            bytes += binary<Coordinate>(5, big) + binary<Size>(1, big) + binary<Index>(100, big);
         for (const int p : {0, 2, 4}) {
             bytes += 'r';
-            bytes += bytes_of(Coordinate(p), big) + bytes_of(Coordinate(1), big);
-            bytes += '\x01' + bytes_of(0.5, big) + bytes_of(Coordinate(p + 1), big);
+            bytes += binary(Coordinate(p), big) + binary(Coordinate(1), big);
+            bytes += '\x01' + binary(0.5, big) + binary(Coordinate(p + 1), big);
         }
-        bytes += bytes_of(int16_t(-1), big) + bytes_of<Size>(3, big);
-        for (const int i : {2, 0, 1}) bytes += bytes_of(Index(i), big);
-        bytes += bytes_of(1.5f, big) + bytes_of(int32_t(9), big);
+        bytes += binary(int16_t(-1), big) + binary<Size>(3, big);
+        for (const int i : {2, 0, 1}) bytes += binary(Index(i), big);
+        bytes += binary(1.5f, big) + binary(int32_t(9), big);
         const PolygonMesh mesh = read_ply(bytes, "a.ply");
         EXPECT_EQ(mesh.vertices, (std::vector<dvec3>{{0, 1, 1}, {2, 1, 3}, {4, 1, 5}}));
         EXPECT_EQ(mesh.corners, (std::vector<uint32_t>{2, 0, 1}));
         // However much of the data is missing, it is missed.
         const size_t data = bytes.find("end_header\n") + 11;
         for (size_t length = data; length < bytes.size(); ++length)
-            expect_refused(bytes.substr(0, length), "cut short");
+            expect_ply_refused(bytes.substr(0, length), "cut short");
     }
 }
 
@@ -129,12 +129,12 @@ TEST(PlyFile, NumbersAreRoundedOnceToTheirType) {
     EXPECT_TRUE(std::isnan(first("float", "nan")));
     EXPECT_EQ(first("float", "-inf"), -INFINITY);
     EXPECT_EQ(first("uchar", "2e2"), 200);
-    expect_refused(replaced(triangle, "\n2 0 0", "\n1e39 0 0"), "a.ply:11: '1e39' is more than a float holds");
-    expect_refused(replaced(triangle, "\n2 0 0", "\n1e400 0 0"), "a.ply:11: expected a number, found '1e400'");
-    expect_refused(replaced(triangle, "\n2 0 0", "\n0x2 0 0"), "a.ply:11: expected a number, found '0x2'");
-    expect_refused(replaced(triangle, "3 0 1 2", "3 0 1 1.5"),
-                   "a.ply:13: expected a whole number from -2147483648 to 2147483647, found '1.5'");
-    expect_refused(replaced(triangle, "3 0 1 2", "nan 0 1 2"), "a.ply:13: expected a whole number from 0 to 255");
+    expect_ply_refused(replaced(triangle, "\n2 0 0", "\n1e39 0 0"), "a.ply:11: '1e39' is more than a float holds");
+    expect_ply_refused(replaced(triangle, "\n2 0 0", "\n1e400 0 0"), "a.ply:11: expected a number, found '1e400'");
+    expect_ply_refused(replaced(triangle, "\n2 0 0", "\n0x2 0 0"), "a.ply:11: expected a number, found '0x2'");
+    expect_ply_refused(replaced(triangle, "3 0 1 2", "3 0 1 1.5"),
+                       "a.ply:13: expected a whole number from -2147483648 to 2147483647, found '1.5'");
+    expect_ply_refused(replaced(triangle, "3 0 1 2", "nan 0 1 2"), "a.ply:13: expected a whole number from 0 to 255");
 }
 
 TEST(PlyFile, StripsBeginAgainBehindMinusOne) {
@@ -153,22 +153,22 @@ TEST(PlyFile, TextureCoordinatesOfVerticesAndOfCorners) {
         text = replaced(replaced(replaced(text, "\n0 0 0", "\n0 0 0 0 1"), "\n2 0 0", "\n2 0 0 .5 .25"), "\n0 2 0",
                         "\n0 2 0 1 0");
         EXPECT_EQ(read_ply(text, "a.ply").uvs, (std::vector<glm::dvec2>{{0, 1}, {0.5, 0.25}, {1, 0}}));
-        expect_refused(replaced(text, ".25", "inf"), "a.ply:13: a texture coordinate is not finite");
+        expect_ply_refused(replaced(text, ".25", "inf"), "a.ply:13: a texture coordinate is not finite");
     }
     std::string text = replaced(triangle, indices, indices + "property list uchar float texcoord\n");
     EXPECT_EQ(read_ply(replaced(text, "3 0 1 2", "3 0 1 2 6 0 0 1 0 0 1"), "a.ply").corner_uvs,
               (std::vector<glm::dvec2>{{0, 0}, {1, 0}, {0, 1}}));
     EXPECT_TRUE(read_ply(replaced(text, "3 0 1 2", "3 0 1 2 0"), "a.ply").corner_uvs.empty());
-    expect_refused(replaced(text, "3 0 1 2", "3 0 1 2 4 0 0 1 0"), "a.ply:14: 4 values of texcoord for 3 corners");
+    expect_ply_refused(replaced(text, "3 0 1 2", "3 0 1 2 4 0 0 1 0"), "a.ply:14: 4 values of texcoord for 3 corners");
 }
 
 TEST(PlyFile, WrongHeadersAreNamedByLine) {
     const auto refused = [](const std::string& from, const std::string& to, const std::string& text) {
         ASSERT_NE(triangle.find(from), std::string::npos) << from;
-        expect_refused(replaced(triangle, from, to), text);
+        expect_ply_refused(replaced(triangle, from, to), text);
     };
-    expect_refused("", "a.ply:0: is not PLY");
-    expect_refused("solid\n", "a.ply:1: is not PLY");
+    expect_ply_refused("", "a.ply:0: is not PLY");
+    expect_ply_refused("solid\n", "a.ply:1: is not PLY");
     refused("ascii 1.0", "ascii 2.0", "a.ply:2: expected one line");
     refused("ascii", "text", "a.ply:2: expected ascii, binary_little_endian or binary_big_endian, found 'text'");
     refused("format ascii 1.0\n", "", "a.ply:8: the header has no format line");
@@ -187,12 +187,12 @@ TEST(PlyFile, WrongHeadersAreNamedByLine) {
     refused("uchar int", "uchar float", "a.ply:7: element face has no list vertex_indices of an integer type");
     refused("list uchar int", "int", "a.ply:7: element face has no list vertex_indices");
     refused("end_header\n", "ende\n", "a.ply:9: 'ende' is not PLY; a header has format, comment");
-    expect_refused(triangle.substr(0, triangle.find("end_header") + 5), "a.ply:9: the file ends in its header");
+    expect_ply_refused(triangle.substr(0, triangle.find("end_header") + 5), "a.ply:9: the file ends in its header");
 }
 
 TEST(PlyFile, WrongRowsAreNamedByLine) {
     const auto refused = [](const std::string& from, const std::string& to, const std::string& text) {
-        expect_refused(replaced(triangle, from, to), text);
+        expect_ply_refused(replaced(triangle, from, to), text);
     };
     refused("\n2 0 0", "\n2 0", "a.ply:11: element 'vertex' needs more than the 2 values of its line");
     refused("\n2 0 0", "\n2 0 0 7", "a.ply:11: found 4 values; expected 3");
@@ -200,8 +200,8 @@ TEST(PlyFile, WrongRowsAreNamedByLine) {
             "a.ply:13: the list 'vertex_indices' says that it has 4 values, but 3 are left on its line");
     refused("3 0 1 2", "3 0 1 3", "a.ply:13: names vertex 3, but there are 3, numbered from 0");
     refused("3 0 1 2", "3 0 1 -1", "a.ply:13: names vertex -1");
-    expect_refused(replaced(replaced(triangle, "list uchar", "list char"), "3 0 1 2", "-1 0 1 2"),
-                   "says that it has -1 values");
+    expect_ply_refused(replaced(replaced(triangle, "list uchar", "list char"), "3 0 1 2", "-1 0 1 2"),
+                       "says that it has -1 values");
     refused("element vertex 3", "element vertex 4", "a.ply:13: found 4 values; expected 3");
     refused("element face 1", "element face 2", "a.ply:13: the file ends before the element does: it is cut short");
     refused("3 0 1 2\n", "", "a.ply:7: 1 of these take at least 2 bytes each, but");
@@ -213,11 +213,12 @@ TEST(PlyFile, SizesThatTheFileCannotHoldAreRefusedAtOnce) {
             for (const std::string count : {"4000000000", "18446744073709551615"}) {
                 const std::string text = replaced(replaced(triangle, "ascii", format), "float", "char");
                 const size_t at = text.find(element) + element.size();
-                expect_refused(text.substr(0, at) + count + text.substr(at + 1), count + " of these take at least ");
+                expect_ply_refused(text.substr(0, at) + count + text.substr(at + 1),
+                                   count + " of these take at least ");
             }
     std::string bytes = "ply\nformat binary_big_endian 1.0\nelement vertex 0\n" + xyz +
                         "element face 1\nproperty list uint char vertex_indices\nend_header\n\xff\xff\xff\xff\x01";
-    expect_refused(
+    expect_ply_refused(
         bytes,
         "a.ply: byte 166: the list 'vertex_indices' says that it has 4294967295 values, but 1 are left in the file");
     // Rows of nothing take no time.

@@ -9,23 +9,15 @@
 #include <sstream>
 
 #include "scene/readers/read_text_input.h"
-#include "testing/support/expect_error.h"
+#include "testing/support/read_text.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {
 
-SceneDescription read(const std::string& text) {
-    return read_scene_text(text, "a.json", "");
-}
-
-/// A scene with these keys beside the one that it must have.
-SceneDescription with(const std::string& keys) {
-    return read("{\"objects\": [], " + keys + "}");
-}
-
-#define EXPECT_WRONG(statement, message) EXPECT_ERROR(statement, ExitCode::usage, message)
+using test::json_scene;
+using test::scene_with;
 
 TEST(SceneFile, UnreadableFilesAreFileErrors) {
     const ScratchDirectory scratch;
@@ -61,82 +53,86 @@ TEST(SceneFile, StandardInputIsRead) {
 }
 
 TEST(SceneFile, FormatIsToldByTheFirstCharacter) {
-    EXPECT_FALSE(read(" \n\t{\"objects\": []}").from_text_input);
-    EXPECT_FALSE(read("\xEF\xBB\xBF{\"objects\": []}").from_text_input);
-    EXPECT_TRUE(read("\n" + text_input_template()).from_text_input);
-    EXPECT_WRONG(read(" \n"), "a.json: the scene is empty; expected JSON or the text of --print-template");
-    EXPECT_WRONG(read("// mine\n{}"),
+    EXPECT_FALSE(json_scene(" \n\t{\"objects\": []}").from_text_input);
+    EXPECT_FALSE(json_scene("\xEF\xBB\xBF{\"objects\": []}").from_text_input);
+    EXPECT_TRUE(json_scene("\n" + text_input_template()).from_text_input);
+    EXPECT_WRONG(json_scene(" \n"), "a.json: the scene is empty; expected JSON or the text of --print-template");
+    EXPECT_WRONG(json_scene("// mine\n{}"),
                  "a.json: a JSON scene begins with '{', found '/'; comments may stand anywhere after it");
-    EXPECT_WRONG(read("[]"), "a.json: a JSON scene begins with '{', found '['; comments may stand anywhere after it");
+    EXPECT_WRONG(json_scene("[]"),
+                 "a.json: a JSON scene begins with '{', found '['; comments may stand anywhere after it");
 }
 
 TEST(SceneKeys, UnknownOnesNameTheNearest) {
-    EXPECT_WRONG(with("\"dept\": 1"), "a.json: /dept: unknown key; did you mean 'depth'?");
-    EXPECT_WRONG(with("\"film\": {\"widht\": 1}"), "a.json: /film/widht: unknown key; did you mean 'width'?");
+    EXPECT_WRONG(scene_with("\"dept\": 1"), "a.json: /dept: unknown key; did you mean 'depth'?");
+    EXPECT_WRONG(scene_with("\"film\": {\"widht\": 1}"), "a.json: /film/widht: unknown key; did you mean 'width'?");
     EXPECT_WRONG(
-        with("\"film\": {\"quality\": 1}"),
+        scene_with("\"film\": {\"quality\": 1}"),
         "a.json: /film/quality: unknown key; known keys: width, height, frames, supersample, frames_per_second, "
         "owner, comments");
     EXPECT_WRONG(
-        with("\"a/b~\\n\": 1"),
+        scene_with("\"a/b~\\n\": 1"),
         "a.json: /a~1b~0\\n: unknown key; known keys: $schema, film, depth, cutoff, ambient, background, camera, "
         "textures, materials, objects, lights, frame");
-    EXPECT_WRONG(read("{}"), "a.json: /: missing key 'objects'");
+    EXPECT_WRONG(json_scene("{}"), "a.json: /: missing key 'objects'");
 }
 
 TEST(SceneKeys, TypesAreChecked) {
-    EXPECT_WRONG(with("\"depth\": \"4\""), "a.json: /depth: expected a whole number from 1 to 1024, found '4'");
-    EXPECT_WRONG(with("\"depth\": 1.5"), "a.json: /depth: expected a whole number from 1 to 1024, found 1.5");
-    EXPECT_WRONG(with("\"depth\": null"), "a.json: /depth: expected a whole number from 1 to 1024, found null");
-    EXPECT_WRONG(with("\"depth\": 99999999999999999999"),
+    EXPECT_WRONG(scene_with("\"depth\": \"4\""), "a.json: /depth: expected a whole number from 1 to 1024, found '4'");
+    EXPECT_WRONG(scene_with("\"depth\": 1.5"), "a.json: /depth: expected a whole number from 1 to 1024, found 1.5");
+    EXPECT_WRONG(scene_with("\"depth\": null"), "a.json: /depth: expected a whole number from 1 to 1024, found null");
+    EXPECT_WRONG(scene_with("\"depth\": 99999999999999999999"),
                  "a.json: /depth: expected a whole number from 1 to 1024, found 1e20");
-    EXPECT_WRONG(with("\"cutoff\": true"), "a.json: /cutoff: expected a number from 0 to 1e30, found true");
-    EXPECT_WRONG(with("\"film\": 3"), "a.json: /film: expected an object, found 3");
-    EXPECT_WRONG(with("\"lights\": {}"), "a.json: /lights: expected an array of lights, found an empty object");
-    EXPECT_WRONG(read("{\"objects\": 1}"), "a.json: /objects: expected an array of objects, found 1");
-    EXPECT_WRONG(with("\"materials\": []"),
+    EXPECT_WRONG(scene_with("\"cutoff\": true"), "a.json: /cutoff: expected a number from 0 to 1e30, found true");
+    EXPECT_WRONG(scene_with("\"film\": 3"), "a.json: /film: expected an object, found 3");
+    EXPECT_WRONG(scene_with("\"lights\": {}"), "a.json: /lights: expected an array of lights, found an empty object");
+    EXPECT_WRONG(json_scene("{\"objects\": 1}"), "a.json: /objects: expected an array of objects, found 1");
+    EXPECT_WRONG(scene_with("\"materials\": []"),
                  "a.json: /materials: expected an object of materials by name, found an empty array");
-    EXPECT_WRONG(with("\"materials\": {\"\": {}}"), "a.json: /materials/: a material's name is not empty");
-    EXPECT_WRONG(with("\"$schema\": 1"), "a.json: /$schema: expected a string that is not empty, found 1");
-    EXPECT_WRONG(with("\"$schema\": \"\""),
+    EXPECT_WRONG(scene_with("\"materials\": {\"\": {}}"), "a.json: /materials/: a material's name is not empty");
+    EXPECT_WRONG(scene_with("\"$schema\": 1"), "a.json: /$schema: expected a string that is not empty, found 1");
+    EXPECT_WRONG(scene_with("\"$schema\": \"\""),
                  "a.json: /$schema: expected a string that is not empty, found an empty string");
-    EXPECT_EQ(with("\"depth\": 1e1").depth, 10);
+    EXPECT_EQ(scene_with("\"depth\": 1e1").depth, 10);
 }
 
 TEST(SceneKeys, RangesOfFilmAndTopLevel) {
     for (const char* key : {"width", "height"}) {
         for (const char* wrong : {"0", "65537"})
             EXPECT_WRONG(
-                with("\"film\": {\"" + std::string(key) + "\": " + wrong + "}"),
+                scene_with("\"film\": {\"" + std::string(key) + "\": " + wrong + "}"),
                 "a.json: /film/" + std::string(key) + ": expected a whole number from 1 to 65536, found " + wrong);
-        EXPECT_NO_THROW(with("\"film\": {\"" + std::string(key) + "\": 65536}"));
+        EXPECT_NO_THROW(scene_with("\"film\": {\"" + std::string(key) + "\": 65536}"));
     }
-    EXPECT_WRONG(with("\"film\": {\"frames\": 0}"),
+    EXPECT_WRONG(scene_with("\"film\": {\"frames\": 0}"),
                  "a.json: /film/frames: expected a whole number from 1 to 1000000, found 0");
-    EXPECT_WRONG(with("\"film\": {\"supersample\": 65}"),
+    EXPECT_WRONG(scene_with("\"film\": {\"supersample\": 65}"),
                  "a.json: /film/supersample: expected a whole number from 1 to 64, found 65");
-    EXPECT_WRONG(with("\"depth\": 1025"), "a.json: /depth: expected a whole number from 1 to 1024, found 1025");
-    EXPECT_WRONG(with("\"cutoff\": -1e-9"), "a.json: /cutoff: expected a number from 0 to 1e30, found -1e-09");
-    EXPECT_EQ(with("\"depth\": 1024").depth, 1024);
+    EXPECT_WRONG(scene_with("\"depth\": 1025"), "a.json: /depth: expected a whole number from 1 to 1024, found 1025");
+    EXPECT_WRONG(scene_with("\"cutoff\": -1e-9"), "a.json: /cutoff: expected a number from 0 to 1e30, found -1e-09");
+    EXPECT_EQ(scene_with("\"depth\": 1024").depth, 1024);
 }
 
 TEST(SceneKeys, ColorsAreOneNumberOrThree) {
-    EXPECT_EQ(with("\"background\": 0.25").background, glm::dvec3(0.25));
-    EXPECT_EQ(with("\"background\": [0.1, 2, 3]").background, glm::dvec3(0.1, 2, 3));
+    EXPECT_EQ(scene_with("\"background\": 0.25").background, glm::dvec3(0.25));
+    EXPECT_EQ(scene_with("\"background\": [0.1, 2, 3]").background, glm::dvec3(0.1, 2, 3));
     EXPECT_WRONG(
-        with("\"ambient\": [1, 2]"),
+        scene_with("\"ambient\": [1, 2]"),
         "a.json: /ambient: expected a color: a number or [red, green, blue], each from 0 to 1e30, found an array of 2");
-    EXPECT_WRONG(with("\"ambient\": -1"),
+    EXPECT_WRONG(scene_with("\"ambient\": -1"),
                  "a.json: /ambient: expected a color: a number or [red, green, blue], each from 0 to 1e30, found -1");
-    EXPECT_WRONG(with("\"ambient\": [1, -2, 1]"), "a.json: /ambient/1: expected a number from 0 to 1e30, found -2");
-    EXPECT_WRONG(with("\"ambient\": [1, 1, \"x\"]"), "a.json: /ambient/2: expected a number from 0 to 1e30, found 'x'");
-    EXPECT_FALSE(std::signbit(with("\"background\": -0.0").background.x));
+    EXPECT_WRONG(scene_with("\"ambient\": [1, -2, 1]"),
+                 "a.json: /ambient/1: expected a number from 0 to 1e30, found -2");
+    EXPECT_WRONG(scene_with("\"ambient\": [1, 1, \"x\"]"),
+                 "a.json: /ambient/2: expected a number from 0 to 1e30, found 'x'");
+    EXPECT_FALSE(std::signbit(scene_with("\"background\": -0.0").background.x));
 }
 
 TEST(SceneCamera, FixedAndOnPaths) {
-    const CameraDescription fixed = with(R"("camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0],
+    const CameraDescription fixed =
+        scene_with(R"("camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0],
         "fov": 90, "time_step": 0.5})")
-                                        .camera;
+            .camera;
     EXPECT_EQ(fixed.position, glm::dvec3(1, 2, 3));
     EXPECT_EQ(fixed.target, glm::dvec3(4, 5, 6));
     EXPECT_EQ(fixed.up, glm::dvec3(0, 1, 0));
@@ -145,7 +141,7 @@ TEST(SceneCamera, FixedAndOnPaths) {
     EXPECT_FALSE(fixed.position_path || fixed.target_path);
 
     const CameraDescription moved =
-        with(R"("camera": {"path": {"target": {"r0": 1, "z0": 2, "phi0": 3, "Ar": 4, "Az": 5,
+        scene_with(R"("camera": {"path": {"target": {"r0": 1, "z0": 2, "phi0": 3, "Ar": 4, "Az": 5,
         "wr": 6, "wz": 7, "wphi": 8, "pr": 9, "pz": 10}}, "position": [1, 2, 3]})")
             .camera;
     EXPECT_EQ(moved.position, glm::dvec3(1, 2, 3));
@@ -156,29 +152,30 @@ TEST(SceneCamera, FixedAndOnPaths) {
 }
 
 TEST(SceneCamera, Errors) {
-    EXPECT_WRONG(with(R"("camera": {"fov": 0})"), "a.json: /camera/fov: expected a number above 0, under 180, found 0");
-    EXPECT_WRONG(with(R"("camera": {"fov": 180})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"fov": 0})"),
+                 "a.json: /camera/fov: expected a number above 0, under 180, found 0");
+    EXPECT_WRONG(scene_with(R"("camera": {"fov": 180})"),
                  "a.json: /camera/fov: expected a number above 0, under 180, found 180");
-    EXPECT_WRONG(with(R"("camera": {"up": [0, 0, 0]})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"up": [0, 0, 0]})"),
                  "a.json: /camera/up: expected a direction other than [0, 0, 0]");
-    EXPECT_WRONG(with(R"("camera": {"position": [1, 1, 1], "target": [1, 1, 1]})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"position": [1, 1, 1], "target": [1, 1, 1]})"),
                  "a.json: /camera/target: the camera's position and target coincide; move one of them");
-    EXPECT_WRONG(with(R"("camera": {"position": [1, 1, 1], "path": {"position": {}}})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"position": [1, 1, 1], "path": {"position": {}}})"),
                  "a.json: /camera/position: the path gives the position already; leave out one of the two");
-    EXPECT_WRONG(with(R"("camera": {"target": [1, 1, 1], "path": {"target": {}}})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"target": [1, 1, 1], "path": {"target": {}}})"),
                  "a.json: /camera/target: the path gives the target already; leave out one of the two");
-    EXPECT_WRONG(with(R"("camera": {"path": {}})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"path": {}})"),
                  "a.json: /camera/path: expected a path for 'position', for 'target' or for both");
-    EXPECT_WRONG(with(R"("camera": {"path": {"position": {"R0": 1}}})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"path": {"position": {"R0": 1}}})"),
                  "a.json: /camera/path/position/R0: unknown key; did you mean 'r0'?");
-    EXPECT_WRONG(with(R"("camera": {"path": {"position": {"phi0": 1e7}}})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"path": {"position": {"phi0": 1e7}}})"),
                  "a.json: /camera/path/position/phi0: expected a number from -1000000 to 1000000, found 10000000");
-    EXPECT_WRONG(with(R"("camera": {"position": [0, 1e31, 0]})"),
+    EXPECT_WRONG(scene_with(R"("camera": {"position": [0, 1e31, 0]})"),
                  "a.json: /camera/position/1: expected a number from -1e30 to 1e30, found 1e31");
 }
 
 TEST(SceneTextures, FilesAndCheckers) {
-    const auto textures = with(R"("textures": {"z": {"file": "a.exr", "filter": "nearest", "repeat": [2, 3]},
+    const auto textures = scene_with(R"("textures": {"z": {"file": "a.exr", "filter": "nearest", "repeat": [2, 3]},
         "a": {"checker": [0.5, [1, 0, 0]], "repeat": [5, 4]}})")
                               .textures;
     ASSERT_EQ(textures.size(), 2u);
@@ -192,11 +189,11 @@ TEST(SceneTextures, FilesAndCheckers) {
     EXPECT_EQ(textures[1].checker[1], glm::dvec3(1, 0, 0));
     EXPECT_EQ(textures[1].repeat, glm::dvec2(5, 4));
     EXPECT_FALSE(textures[1].bilinear);
-    EXPECT_TRUE(with(R"("textures": {"a": {"file": "a.exr", "filter": "bilinear"}})").textures[0].bilinear);
+    EXPECT_TRUE(scene_with(R"("textures": {"a": {"file": "a.exr", "filter": "bilinear"}})").textures[0].bilinear);
 }
 
 TEST(SceneTextures, Errors) {
-    const auto wrong = [](const std::string& texture) { with("\"textures\": {\"t\": " + texture + "}"); };
+    const auto wrong = [](const std::string& texture) { scene_with("\"textures\": {\"t\": " + texture + "}"); };
     EXPECT_WRONG(wrong("{}"), "a.json: /textures/t: expected one of the keys 'file' and 'checker'");
     EXPECT_WRONG(wrong("3"), "a.json: /textures/t: expected an object, found 3");
     EXPECT_WRONG(wrong(R"({"chequer": [0, 1]})"), "a.json: /textures/t/chequer: unknown key; did you mean 'checker'?");
@@ -225,7 +222,8 @@ TEST(SceneTextures, Errors) {
 }
 
 TEST(SceneMaterials, EveryKeyArrives) {
-    const SceneDescription scene = with(R"("materials": {"m": {"color": [0.1, 0.2, 0.3], "texture": "t", "ambient": 0.4,
+    const SceneDescription scene =
+        scene_with(R"("materials": {"m": {"color": [0.1, 0.2, 0.3], "texture": "t", "ambient": 0.4,
         "diffuse": 0.5, "specular": 0.6, "specular_color": [0.7, 0.8, 0.9], "exponent": 11, "reflection": 0.12,
         "transmission": 0.13, "tint": [0.14, 0.15, 0.16], "index": 1.7, "absorption": [18, 19, 20], "fresnel": true}},
         "textures": {"s": {"checker": [0, 1]}, "t": {"checker": [0, 1]}})");
@@ -243,7 +241,7 @@ TEST(SceneMaterials, EveryKeyArrives) {
 
 TEST(SceneMaterials, Errors) {
     const auto wrong = [](const std::string& keys) {
-        with("\"textures\": {\"marble\": {\"file\": \"a\"}}, \"materials\": {\"m\": {" + keys + "}}");
+        scene_with("\"textures\": {\"marble\": {\"file\": \"a\"}}, \"materials\": {\"m\": {" + keys + "}}");
     };
     const std::string m = "a.json: /materials/m";
     EXPECT_WRONG(wrong(R"("colour": 1)"), m + "/colour: unknown key; did you mean 'color'?");
@@ -263,12 +261,12 @@ TEST(SceneMaterials, Errors) {
                      m + "/" + key + "/2: expected a number from 0 to 1e30, found 1e31");
     EXPECT_WRONG(wrong(R"("texture": "marbel")"), m + "/texture: unknown texture 'marbel'; did you mean 'marble'?");
     EXPECT_WRONG(wrong(R"("texture": 3)"), m + "/texture: expected the name of a texture, found 3");
-    EXPECT_WRONG(with(R"("materials": {"m": {"texture": "t"}})"),
+    EXPECT_WRONG(scene_with(R"("materials": {"m": {"texture": "t"}})"),
                  m + "/texture: unknown texture 't'; there are no textures");
 }
 
 TEST(SceneLights, EveryKeyArrives) {
-    const auto lights = with(R"("lights": [{"position": [1, 2, 3]}, {"position": [4, 5, 6], "color": [1, 2, 3],
+    const auto lights = scene_with(R"("lights": [{"position": [1, 2, 3]}, {"position": [4, 5, 6], "color": [1, 2, 3],
         "glow": 7, "radius": 0.5, "falloff": "inverse-square"}])")
                             .lights;
     ASSERT_EQ(lights.size(), 2u);
@@ -282,7 +280,7 @@ TEST(SceneLights, EveryKeyArrives) {
 }
 
 TEST(SceneLights, Errors) {
-    const auto wrong = [](const std::string& keys) { with("\"lights\": [{" + keys + "}]"); };
+    const auto wrong = [](const std::string& keys) { scene_with("\"lights\": [{" + keys + "}]"); };
     EXPECT_WRONG(wrong(""), "a.json: /lights/0: missing key 'position': expected [x, y, z], each from -1e30 to 1e30");
     EXPECT_WRONG(wrong(R"("position": [0, 0, 0], "falloff": "inverse-square")"),
                  "a.json: /lights/0/falloff: inverse-square needs a 'radius' above 0, within which it stays constant");
@@ -297,16 +295,16 @@ TEST(SceneLights, Errors) {
 }
 
 TEST(SceneFrame, IsPinned) {
-    const auto frame = with(R"("frame": {"center": [1, 2, 3], "scale": -4, "bound": 8})").frame;
+    const auto frame = scene_with(R"("frame": {"center": [1, 2, 3], "scale": -4, "bound": 8})").frame;
     ASSERT_TRUE(frame);
     EXPECT_EQ(frame->center, glm::dvec3(1, 2, 3));
     EXPECT_EQ(frame->scale, -4);
     EXPECT_EQ(frame->bound, 8);
-    EXPECT_FALSE(with(R"("frame": {"center": [1, 2, 3], "scale": 0})").frame->bound);
-    EXPECT_FALSE(with("\"depth\": 1").frame);
-    EXPECT_WRONG(with(R"("frame": {"center": [0, 0, 0]})"),
+    EXPECT_FALSE(scene_with(R"("frame": {"center": [1, 2, 3], "scale": 0})").frame->bound);
+    EXPECT_FALSE(scene_with("\"depth\": 1").frame);
+    EXPECT_WRONG(scene_with(R"("frame": {"center": [0, 0, 0]})"),
                  "a.json: /frame: missing key 'scale': expected a whole number from -150 to 150");
-    EXPECT_WRONG(with(R"("frame": {"center": [0, 0, 0], "scale": 0, "bound": 0})"),
+    EXPECT_WRONG(scene_with(R"("frame": {"center": [0, 0, 0], "scale": 0, "bound": 0})"),
                  "a.json: /frame/bound: expected a number above 0, to 1e30, found 0");
 }
 

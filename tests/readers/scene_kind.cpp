@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::literals;
 
-SceneDescription read(const std::string& text) {
+SceneDescription read_unnamed(const std::string& text) {
     return read_scene_text(text, "a", "");
 }
 
@@ -68,28 +68,29 @@ TEST(SceneKind, OtherFilesAreNamedForWhatTheyAre) {
     };
     for (const auto& [bytes, name] : files) {
         try {
-            read(bytes);
+            read_unnamed(bytes);
             ADD_FAILURE() << "no error: " << name;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ExitCode::usage);
             EXPECT_TRUE(std::string(error.what()).starts_with("a: is "s + name + "; ")) << error.what();
         }
     }
-    EXPECT_ERROR(read(utf16("{}", false, true)), ExitCode::usage, "a: is UTF-16; save it as UTF-8");
-    EXPECT_ERROR(read("o teapot\n"), ExitCode::usage,
+    EXPECT_ERROR(read_unnamed(utf16("{}", false, true)), ExitCode::usage, "a: is UTF-16; save it as UTF-8");
+    EXPECT_ERROR(read_unnamed("o teapot\n"), ExitCode::usage,
                  "a: is an OBJ mesh; a scene names meshes in its \"objects\", as {\"mesh\": \"FILE\"}");
-    EXPECT_ERROR(read("<svg>"), ExitCode::usage,
+    EXPECT_ERROR(read_unnamed("<svg>"), ExitCode::usage,
                  "a: is an XML document; expected JSON, which begins with '{', or the text input, which begins with "
                  "the number of frames");
-    EXPECT_ERROR(read("Dear all,\n"), ExitCode::usage,
+    EXPECT_ERROR(read_unnamed("Dear all,\n"), ExitCode::usage,
                  "a:1: expected number of frames, a whole number from 1 to 1000000, found 'Dear'");
 }
 
 TEST(SceneKind, MarksAndLineEndsDoNotMatter) {
     const std::string mark = "\xef\xbb\xbf";
-    EXPECT_FALSE(read(mark + "\r\n{\"objects\": []}\r\n").from_text_input);
-    EXPECT_TRUE(read(mark + text_input_template()).from_text_input);
-    EXPECT_ERROR(read(mark), ExitCode::usage, "a: the scene is empty; expected JSON or the text of --print-template");
+    EXPECT_FALSE(read_unnamed(mark + "\r\n{\"objects\": []}\r\n").from_text_input);
+    EXPECT_TRUE(read_unnamed(mark + text_input_template()).from_text_input);
+    EXPECT_ERROR(read_unnamed(mark), ExitCode::usage,
+                 "a: the scene is empty; expected JSON or the text of --print-template");
 }
 
 /// Input that repeats a text without an end.
@@ -153,17 +154,17 @@ TEST(SceneKind, DepthOfNestingIsLimited) {
     const auto nested = [](size_t levels) {
         return "{\"objects\": [], \"$comment\": [" + std::string(levels - 2, '[') + std::string(levels - 2, ']') + "]}";
     };
-    EXPECT_ERROR(read(nested(64)), ExitCode::usage,
+    EXPECT_ERROR(read_unnamed(nested(64)), ExitCode::usage,
                  "a: /$comment: expected a string or an array of strings, found an array of 1");
     for (const size_t levels : {size_t{65}, size_t{1000000}}) {
         std::string place = "a: /$comment";
         for (int i = 0; i < 63; ++i) place += "/0";
-        EXPECT_ERROR(read(nested(levels)), ExitCode::usage,
+        EXPECT_ERROR(read_unnamed(nested(levels)), ExitCode::usage,
                      place + ": more than 64 levels deep; a scene has 6 at most");
     }
     std::string objects = "{";
     for (int i = 0; i < 100000; ++i) objects += "\"a\":{";
-    EXPECT_THROW(read(objects), Error);
+    EXPECT_THROW(read_unnamed(objects), Error);
 }
 
 TEST(SceneKind, LongNumbersNamesAndStringsMakeShortMessages) {
@@ -186,7 +187,7 @@ TEST(SceneKind, LongNumbersNamesAndStringsMakeShortMessages) {
     };
     for (const std::string& text : huge) {
         try {
-            read(text);
+            read_unnamed(text);
             ADD_FAILURE() << text.substr(0, 40);
         } catch (const Error& error) {
             EXPECT_LT(std::string(error.what()).size(), 400u) << error.what();
@@ -198,7 +199,7 @@ TEST(SceneKind, ManyNamesTakeTimeInProportion) {
     std::string text = "{\"objects\": [], \"materials\": {";
     for (int i = 0; i < 50000; ++i) text += "\"m" + std::to_string(i) + "\": {},";
     text.back() = '}';
-    EXPECT_EQ(read(text + "}").materials.size(), 50000u);
+    EXPECT_EQ(read_unnamed(text + "}").materials.size(), 50000u);
 }
 
 }  // namespace

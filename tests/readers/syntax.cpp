@@ -7,43 +7,35 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/read_scene.h"
 #include "scene/readers/read_text_input.h"
-#include "testing/support/expect_error.h"
+#include "testing/support/read_text.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
 namespace {
 
-SceneDescription read(const std::string& text) {
-    return read_scene_text(text, "a.json", "");
-}
-
-/// A scene with these keys beside the one that it must have.
-SceneDescription with(const std::string& keys) {
-    return read("{\"objects\": [], " + keys + "}");
-}
-
-#define EXPECT_WRONG(statement, message) EXPECT_ERROR(statement, ExitCode::usage, message)
+using test::json_scene;
+using test::scene_with;
 
 TEST(SceneSyntax, ErrorsHaveLineAndColumn) {
-    EXPECT_WRONG(read("{\n  \"depth\": 4,\n  depth: 4\n}"),
+    EXPECT_WRONG(json_scene("{\n  \"depth\": 4,\n  depth: 4\n}"),
                  "a.json:3:3: syntax error while parsing object key - invalid literal; last read: '4,<U+000A>  d'; "
                  "expected string literal");
-    EXPECT_WRONG(read("{\"objects\": [],}"),
+    EXPECT_WRONG(json_scene("{\"objects\": [],}"),
                  "a.json:1:16: syntax error while parsing object key - unexpected '}'; expected string literal");
-    EXPECT_WRONG(read("{\"objects\": []\n"),
+    EXPECT_WRONG(json_scene("{\"objects\": []\n"),
                  "a.json:2:1: syntax error while parsing object - unexpected end of input; expected '}'");
-    EXPECT_WRONG(read("{\"objects\": []} x"),
+    EXPECT_WRONG(json_scene("{\"objects\": []} x"),
                  "a.json:1:17: syntax error while parsing value - invalid literal; last read: '\"objects\": []} x'; "
                  "expected end of input");
-    EXPECT_WRONG(read("{\"objects\": [\n1e999]}"), "a.json:2:5: number overflow parsing '1e999'");
-    EXPECT_WRONG(with("\"depth\": NaN"),
+    EXPECT_WRONG(json_scene("{\"objects\": [\n1e999]}"), "a.json:2:5: number overflow parsing '1e999'");
+    EXPECT_WRONG(scene_with("\"depth\": NaN"),
                  "a.json:1:26: syntax error while parsing value - invalid literal; last read: '\"depth\": N'");
 }
 
 TEST(SceneSyntax, LongTokensAreCut) {
     try {
-        read("{\"" + std::string(100000, 'x'));
+        json_scene("{\"" + std::string(100000, 'x'));
         ADD_FAILURE();
     } catch (const Error& error) {
         EXPECT_LT(std::string(error.what()).size(), 200u);
@@ -52,15 +44,15 @@ TEST(SceneSyntax, LongTokensAreCut) {
 }
 
 TEST(SceneSyntax, DuplicateKeysAreErrors) {
-    EXPECT_WRONG(with("\"depth\": 1, \"depth\": 2"), "a.json: /depth: duplicate key; give it once");
-    EXPECT_WRONG(with("\"film\": {\"width\": 1, \"height\": 1, \"width\": 1}"),
+    EXPECT_WRONG(scene_with("\"depth\": 1, \"depth\": 2"), "a.json: /depth: duplicate key; give it once");
+    EXPECT_WRONG(scene_with("\"film\": {\"width\": 1, \"height\": 1, \"width\": 1}"),
                  "a.json: /film/width: duplicate key; give it once");
-    EXPECT_WRONG(read("{\"objects\": [{}, {\"a\": 1, \"a\": 1}]}"),
+    EXPECT_WRONG(json_scene("{\"objects\": [{}, {\"a\": 1, \"a\": 1}]}"),
                  "a.json: /objects/1/a: duplicate key; give it once");
 }
 
 TEST(SceneSyntax, CommentsAreAllowed) {
-    EXPECT_EQ(read("{ // one\n /* two\n */ \"objects\": [] /* three */ } // four").depth, 4);
+    EXPECT_EQ(json_scene("{ // one\n /* two\n */ \"objects\": [] /* three */ } // four").depth, 4);
 }
 
 TEST(SceneSyntax, AnyObjectMayHoldAComment) {
@@ -79,32 +71,33 @@ TEST(SceneSyntax, AnyObjectMayHoldAComment) {
     const auto dump_with = [&](const std::string& comment) {
         std::string scene;
         for (const char c : text) scene += c == '%' ? comment : std::string(1, c);
-        return SceneDump::of(read(scene));
+        return SceneDump::of(json_scene(scene));
     };
     const std::string bare = dump_with("");
     EXPECT_EQ(dump_with("\"$comment\": \"one line\", "), bare);
     EXPECT_EQ(dump_with("\"$comment\": [\"two\", \"lines\"], "), bare);
-    EXPECT_WRONG(with("\"$comment\": 3"), "a.json: /$comment: expected a string or an array of strings, found 3");
-    EXPECT_WRONG(with("\"materials\": {\"$comment\": {}}"),
+    EXPECT_WRONG(scene_with("\"$comment\": 3"), "a.json: /$comment: expected a string or an array of strings, found 3");
+    EXPECT_WRONG(scene_with("\"materials\": {\"$comment\": {}}"),
                  "a.json: /materials/$comment: expected a string or an array of strings, found an empty object");
-    EXPECT_WRONG(with("\"film\": {\"$comment\": [\"a\", 1]}"),
+    EXPECT_WRONG(scene_with("\"film\": {\"$comment\": [\"a\", 1]}"),
                  "a.json: /film/$comment: expected a string or an array of strings, found an array of 2");
-    EXPECT_WRONG(with("\"$comment\": \"a\", \"$comment\": \"b\""), "a.json: /$comment: duplicate key; give it once");
+    EXPECT_WRONG(scene_with("\"$comment\": \"a\", \"$comment\": \"b\""),
+                 "a.json: /$comment: duplicate key; give it once");
 }
 
 TEST(SceneSyntax, CommentsLeaveTheHash) {
     const std::string scene = R"("objects": [{"solid": "cube", "material": "m"}], "materials": {"m": {}}})";
-    EXPECT_EQ(compile_scene<float>(read("{\"$comment\": \"a cube\", " + scene))->hash,
-              compile_scene<float>(read("{" + scene))->hash);
+    EXPECT_EQ(compile_scene<float>(json_scene("{\"$comment\": \"a cube\", " + scene))->hash,
+              compile_scene<float>(json_scene("{" + scene))->hash);
 }
 
 TEST(SceneSyntax, DeepNestingIsRefusedWithItsPlace) {
     const std::string deep = std::string(200000, '[') + std::string(200000, ']');
     std::string places;
     for (int i = 0; i < 63; ++i) places += "/0";
-    EXPECT_WRONG(with("\"depth\": " + deep),
+    EXPECT_WRONG(scene_with("\"depth\": " + deep),
                  "a.json: /depth" + places + ": more than 64 levels deep; a scene has 6 at most");
-    EXPECT_WRONG(with("\"depth\": [[3]]"),
+    EXPECT_WRONG(scene_with("\"depth\": [[3]]"),
                  "a.json: /depth: expected a whole number from 1 to 1024, found an array of 1");
 }
 
@@ -129,7 +122,7 @@ TEST(SceneSyntax, MangledTextsAreReadOrRefusedOnOneLine) {
                     text[at] = alphabet[below(alphabet.size())];
             }
             try {
-                read(text);
+                json_scene(text);
             } catch (const Error& error) {
                 const std::string message = error.what();
                 EXPECT_EQ(error.code(), ExitCode::usage);

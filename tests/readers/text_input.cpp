@@ -17,7 +17,7 @@
 namespace cistula {
 namespace {
 
-SceneDescription read(const std::string& text) {
+SceneDescription read_input(const std::string& text) {
     return read_scene_text(text, "input.txt", "");
 }
 
@@ -29,10 +29,11 @@ std::string changed(const std::string& from, const std::string& to) {
     return text.replace(at, from.size(), to);
 }
 
-#define EXPECT_WRONG(text, message) EXPECT_ERROR(read(text), ExitCode::usage, std::string("input.txt:") + message)
+#define EXPECT_WRONG_INPUT(text, message) \
+    EXPECT_ERROR(read_input(text), ExitCode::usage, std::string("input.txt:") + message)
 
 TEST(TextInput, TemplateIsReadWhole) {
-    const SceneDescription scene = read(text_input_template());
+    const SceneDescription scene = read_input(text_input_template());
     EXPECT_TRUE(scene.from_text_input);
     EXPECT_EQ(scene.source, "input.txt");
     EXPECT_EQ(scene.film.frames, 300);
@@ -60,15 +61,15 @@ TEST(TextInput, TemplateIsReadWhole) {
 }
 
 TEST(TextInput, TheExampleIsTheTemplateForTheRepository) {
-    const SceneDescription scene = read(bytes_of((source_root() / "scenes/input.txt").string()));
+    const SceneDescription scene = read_input(bytes_of((source_root() / "scenes/input.txt").string()));
     EXPECT_TRUE(std::filesystem::exists(source_root() / scene.textures.at(0).file));
     EXPECT_EQ(scene.film.output, "out/frames/frame%d.out");
     const std::string same = changed("floor.data\nframes/", "scenes/floor.data\nout/frames/");
-    EXPECT_EQ(SceneDump::of(scene), SceneDump::of(read(same)));
+    EXPECT_EQ(SceneDump::of(scene), SceneDump::of(read_input(same)));
 }
 
 TEST(TextInput, SolidsFloorAndLights) {
-    const SceneDescription scene = read(text_input_template());
+    const SceneDescription scene = read_input(text_input_template());
     ASSERT_EQ(scene.objects.size(), 4u);
     const auto& dodecahedron = std::get<SolidObject>(scene.objects[1].shape);
     EXPECT_EQ(dodecahedron.solid, PlatonicSolid::dodecahedron);
@@ -94,7 +95,7 @@ TEST(TextInput, SolidsFloorAndLights) {
     EXPECT_EQ(quad.uvs[1], glm::dvec2(1, 0));
     ASSERT_EQ(scene.lights.size(), 2u);
     EXPECT_EQ(scene.lights[1].position, glm::dvec3(5, 0, 4));
-    const LightDescription red = read(changed("-4 4 3 1 1 1", "-4 4 3 1 0 0")).lights.at(0);
+    const LightDescription red = read_input(changed("-4 4 3 1 1 1", "-4 4 3 1 0 0")).lights.at(0);
     EXPECT_EQ(red.color, glm::dvec3(1, 0, 0));
     EXPECT_EQ(red.glow, glm::dvec3(1));
     EXPECT_EQ(red.radius, 0.1);
@@ -105,7 +106,7 @@ TEST(TextInput, EqualsTheJsonSceneButForItsCamera) {
     SceneDescription json = read_scene((source_root() / "scenes/seed.json").string());
     EXPECT_EQ(std::filesystem::path(json.textures.at(0).file), source_root() / "scenes/floor.data");
     json.textures[0].file = "floor.data";
-    const SceneDescription text = read(text_input_template());
+    const SceneDescription text = read_input(text_input_template());
     json.camera = text.camera;
     EXPECT_EQ(SceneDump::of(text), SceneDump::of(json));
 }
@@ -133,7 +134,7 @@ TEST(TextInput, TheFilmOfTheJsonSceneKeepsItsSolidsInThePicture) {
 TEST(TextInput, TenthNumberIsTheLightsOnEachEdge) {
     const std::string line = "1.732 0.1 0.6";
     const auto lights = [&](const std::string& more, size_t object = 1) {
-        return std::get<SolidObject>(read(changed(line, line + more)).objects.at(object).shape).edge_lights;
+        return std::get<SolidObject>(read_input(changed(line, line + more)).objects.at(object).shape).edge_lights;
     };
     EXPECT_EQ(lights("").count, 0);
     EXPECT_EQ(lights(" 6").count, 6);
@@ -148,77 +149,81 @@ TEST(TextInput, TenthNumberIsTheLightsOnEachEdge) {
     EXPECT_EQ(lights(" 1").radius, 0.1);
 
     std::string all = std::regex_replace(text_input_template(), std::regex("0\\.6\n"), "0.6 2\n");
-    EXPECT_EQ(std::get<SolidObject>(read(all).objects.at(2).shape).edge_lights.count, 2);
-    EXPECT_EQ(read(all).lights.size(), 2u);
+    EXPECT_EQ(std::get<SolidObject>(read_input(all).objects.at(2).shape).edge_lights.count, 2);
+    EXPECT_EQ(read_input(all).lights.size(), 2u);
 }
 
 TEST(TextInput, AnyWhiteSpaceSeparates) {
-    const std::string expected = SceneDump::of(read(text_input_template()));
+    const std::string expected = SceneDump::of(read_input(text_input_template()));
     for (const char* white : {" ", "\t", "\r\n", "\n\n", "\n  "}) {
         const std::string text = std::regex_replace(text_input_template(), std::regex("\n"), white);
-        EXPECT_EQ(SceneDump::of(read(text)), expected);
+        EXPECT_EQ(SceneDump::of(read_input(text)), expected);
         const std::string every = std::regex_replace(text_input_template(), std::regex("[ \n]"), white);
-        EXPECT_EQ(SceneDump::of(read(every)), expected);
+        EXPECT_EQ(SceneDump::of(read_input(every)), expected);
     }
 }
 
 TEST(TextInput, NumbersAsPeopleWriteThem) {
-    EXPECT_EQ(read(changed("1280 720 120", "+1280 720. 1.2e2")).film.height, 720);
+    EXPECT_EQ(read_input(changed("1280 720 120", "+1280 720. 1.2e2")).film.height, 720);
     for (const char* wrong : {"nan", "inf", "0x10", "1e999", "1,5", "--1", "+-1", "12a", "1e", "."})
-        EXPECT_WRONG(changed("6.0", wrong),
-                     "5: expected camera r0, a number from -1e30 to 1e30, found '" + std::string(wrong) + "'");
+        EXPECT_WRONG_INPUT(changed("6.0", wrong),
+                           "5: expected camera r0, a number from -1e30 to 1e30, found '" + std::string(wrong) + "'");
 }
 
 TEST(TextInput, WrongValuesNameWhatIsExpected) {
-    EXPECT_WRONG(changed("300", "many"),
-                 "1: expected number of frames, a whole number from 1 to 1000000, found 'many'");
-    EXPECT_WRONG(changed("300", "0"), "1: expected number of frames, a whole number from 1 to 1000000, found '0'");
-    EXPECT_WRONG(changed("300", "2.5"), "1: expected number of frames, a whole number from 1 to 1000000, found '2.5'");
-    EXPECT_WRONG(changed("frame%d.out", "frame.out"),
-                 "3: expected an output pattern with one %d, found 'frames/frame.out'");
+    EXPECT_WRONG_INPUT(changed("300", "many"),
+                       "1: expected number of frames, a whole number from 1 to 1000000, found 'many'");
+    EXPECT_WRONG_INPUT(changed("300", "0"),
+                       "1: expected number of frames, a whole number from 1 to 1000000, found '0'");
+    EXPECT_WRONG_INPUT(changed("300", "2.5"),
+                       "1: expected number of frames, a whole number from 1 to 1000000, found '2.5'");
+    EXPECT_WRONG_INPUT(changed("frame%d.out", "frame.out"),
+                       "3: expected an output pattern with one %d, found 'frames/frame.out'");
     for (const char* pattern : {"%d%d", "%s%d", "%n", "%", "%4d", "%%d", "%00d", "%0d"})
-        EXPECT_WRONG(changed("frames/frame%d.out", pattern),
-                     "3: expected an output pattern with one %d, found '" + std::string(pattern) + "'");
-    EXPECT_EQ(read(changed("%d", "%04d")).film.output, "frames/frame%04d.out");
-    EXPECT_WRONG(changed("1280", "0"), "4: expected picture width, a whole number from 1 to 65536, found '0'");
-    EXPECT_WRONG(changed("720", "x"), "4: expected picture height, a whole number from 1 to 65536, found 'x'");
-    EXPECT_WRONG(changed("720 120", "720 180"),
-                 "4: expected horizontal field of view, a number above 0, under 180, found '180'");
-    EXPECT_WRONG(changed("3.1415926", "pi"), "6: expected target phi0, a number from -1000000 to 1000000, found 'pi'");
-    EXPECT_WRONG(changed("-2.5 2.5 2 ", "-2.5 2.5 high "),
-                 "7: expected octahedron center z, a number from -1e30 to 1e30, found 'high'");
-    EXPECT_WRONG(changed("0.3216", "-0.3216"),
-                 "8: expected dodecahedron color green, a number from 0 to 1e30, found '-0.3216'");
-    EXPECT_WRONG(changed("2.118", "0"), "9: expected icosahedron radius, a number from 1e-30 to 1e30, found '0'");
-    EXPECT_WRONG(changed("2.118 0.1", "2.118 1.1"),
-                 "9: expected icosahedron reflection, a number from 0 to 1, found '1.1'");
-    EXPECT_WRONG(changed("2.118 0.1 0.6", "2.118 0.1 60%"),
-                 "9: expected icosahedron transmission, a number from 0 to 1, found '60%'");
-    EXPECT_WRONG(changed("2.25 0.1 0.6", "2.25 0.5 0.6"),
-                 "7: octahedron reflection + transmission is 1.1; expected at most 1");
-    EXPECT_WRONG(changed("2.25 0.1 0.6", "2.25 0.1 0.6 -1"),
-                 "7: expected octahedron lights on each edge, a whole number from 0 to 1000, found '-1'");
-    EXPECT_WRONG(changed("2.25 0.1 0.6", "2.25 0.1 0.6 6 6"),
-                 "7: expected 9 or 10 numbers for the octahedron, found 11");
-    EXPECT_WRONG(changed("5 -5 0\n", "5 y 0\n"),
-                 "10: expected floor corner 1 y, a number from -1e30 to 1e30, found 'y'");
-    EXPECT_WRONG(
+        EXPECT_WRONG_INPUT(changed("frames/frame%d.out", pattern),
+                           "3: expected an output pattern with one %d, found '" + std::string(pattern) + "'");
+    EXPECT_EQ(read_input(changed("%d", "%04d")).film.output, "frames/frame%04d.out");
+    EXPECT_WRONG_INPUT(changed("1280", "0"), "4: expected picture width, a whole number from 1 to 65536, found '0'");
+    EXPECT_WRONG_INPUT(changed("720", "x"), "4: expected picture height, a whole number from 1 to 65536, found 'x'");
+    EXPECT_WRONG_INPUT(changed("720 120", "720 180"),
+                       "4: expected horizontal field of view, a number above 0, under 180, found '180'");
+    EXPECT_WRONG_INPUT(changed("3.1415926", "pi"),
+                       "6: expected target phi0, a number from -1000000 to 1000000, found 'pi'");
+    EXPECT_WRONG_INPUT(changed("-2.5 2.5 2 ", "-2.5 2.5 high "),
+                       "7: expected octahedron center z, a number from -1e30 to 1e30, found 'high'");
+    EXPECT_WRONG_INPUT(changed("0.3216", "-0.3216"),
+                       "8: expected dodecahedron color green, a number from 0 to 1e30, found '-0.3216'");
+    EXPECT_WRONG_INPUT(changed("2.118", "0"), "9: expected icosahedron radius, a number from 1e-30 to 1e30, found '0'");
+    EXPECT_WRONG_INPUT(changed("2.118 0.1", "2.118 1.1"),
+                       "9: expected icosahedron reflection, a number from 0 to 1, found '1.1'");
+    EXPECT_WRONG_INPUT(changed("2.118 0.1 0.6", "2.118 0.1 60%"),
+                       "9: expected icosahedron transmission, a number from 0 to 1, found '60%'");
+    EXPECT_WRONG_INPUT(changed("2.25 0.1 0.6", "2.25 0.5 0.6"),
+                       "7: octahedron reflection + transmission is 1.1; expected at most 1");
+    EXPECT_WRONG_INPUT(changed("2.25 0.1 0.6", "2.25 0.1 0.6 -1"),
+                       "7: expected octahedron lights on each edge, a whole number from 0 to 1000, found '-1'");
+    EXPECT_WRONG_INPUT(changed("2.25 0.1 0.6", "2.25 0.1 0.6 6 6"),
+                       "7: expected 9 or 10 numbers for the octahedron, found 11");
+    EXPECT_WRONG_INPUT(changed("5 -5 0\n", "5 y 0\n"),
+                       "10: expected floor corner 1 y, a number from -1e30 to 1e30, found 'y'");
+    EXPECT_WRONG_INPUT(
         changed("\n5 5 0", "\n5 5 1"),
         "13: floor: the quad is not planar: its diagonals pass at 0.035 of their length, at most 1e-06 is allowed");
-    EXPECT_WRONG(changed("\n2\n", "\n-2\n"),
-                 "14: expected number of lights, a whole number from 0 to 100000, found '-2'");
-    EXPECT_WRONG(changed("-4 4 3 1", "-4 4 3 red"),
-                 "15: expected light 1 color red, a number from 0 to 1e30, found 'red'");
-    EXPECT_WRONG(changed("5 0 4 1", "5 - 4 1"),
-                 "16: expected light 2 position y, a number from -1e30 to 1e30, found '-'");
-    EXPECT_WRONG(changed("\n4 3", "\n0 3"), "17: expected depth, a whole number from 1 to 1024, found '0'");
-    EXPECT_WRONG(changed("\n4 3", "\n4 65"), "17: expected supersampling k, a whole number from 1 to 64, found '65'");
+    EXPECT_WRONG_INPUT(changed("\n2\n", "\n-2\n"),
+                       "14: expected number of lights, a whole number from 0 to 100000, found '-2'");
+    EXPECT_WRONG_INPUT(changed("-4 4 3 1", "-4 4 3 red"),
+                       "15: expected light 1 color red, a number from 0 to 1e30, found 'red'");
+    EXPECT_WRONG_INPUT(changed("5 0 4 1", "5 - 4 1"),
+                       "16: expected light 2 position y, a number from -1e30 to 1e30, found '-'");
+    EXPECT_WRONG_INPUT(changed("\n4 3", "\n0 3"), "17: expected depth, a whole number from 1 to 1024, found '0'");
+    EXPECT_WRONG_INPUT(changed("\n4 3", "\n4 65"),
+                       "17: expected supersampling k, a whole number from 1 to 64, found '65'");
 }
 
 TEST(TextInput, TrailingTextIsAnError) {
-    EXPECT_WRONG(text_input_template() + "\n1", "19: expected the end of the input, found '1'");
-    EXPECT_WRONG(text_input_template() + std::string(100, 'x'),
-                 "18: expected the end of the input, found '" + std::string(40, 'x') + "...'");
+    EXPECT_WRONG_INPUT(text_input_template() + "\n1", "19: expected the end of the input, found '1'");
+    EXPECT_WRONG_INPUT(text_input_template() + std::string(100, 'x'),
+                       "18: expected the end of the input, found '" + std::string(40, 'x') + "...'");
 }
 
 TEST(TextInput, EveryShorterInputSaysWhatIsMissing) {
@@ -229,7 +234,7 @@ TEST(TextInput, EveryShorterInputSaysWhatIsMissing) {
         const size_t start = text.find_last_of(" \n", end) + 1;  // npos + 1 is 0
         if (start == 0) break;
         try {
-            read(text.substr(0, start));
+            read_input(text.substr(0, start));
             ADD_FAILURE() << "read without its last " << words + 1 << " words";
         } catch (const Error& error) {
             const std::string message = error.what();
@@ -242,13 +247,13 @@ TEST(TextInput, EveryShorterInputSaysWhatIsMissing) {
         end = text.find_last_not_of(" \n", start - 1);
     }
     EXPECT_EQ(words, 79u);  // all but the first
-    EXPECT_WRONG("300 ", "1: expected the floor's texture file, found the end of the input");
-    EXPECT_WRONG(text.substr(0, text.find("\n4 3") + 3),
-                 "17: expected supersampling k, a whole number from 1 to 64, found the end of the input");
+    EXPECT_WRONG_INPUT("300 ", "1: expected the floor's texture file, found the end of the input");
+    EXPECT_WRONG_INPUT(text.substr(0, text.find("\n4 3") + 3),
+                       "17: expected supersampling k, a whole number from 1 to 64, found the end of the input");
 }
 
 TEST(TextInput, MessagesAreOneLine) {
-    EXPECT_WRONG("300 a \x01%", "1: expected an output pattern with one %d, found '\\x01%'");
+    EXPECT_WRONG_INPUT("300 a \x01%", "1: expected an output pattern with one %d, found '\\x01%'");
 }
 
 /// The order of the assignment, with another number on each place.
@@ -298,14 +303,16 @@ TEST(TextInput, TheOrderOfTheAssignmentIsToldByTheSecondLine) {
     EXPECT_EQ(scene.depth, 6);
     EXPECT_EQ(scene.film.supersample, 2);
     // A place for the number that is written wrongly tells the order too.
-    EXPECT_WRONG(changed_assignment("%d", "%5d"), "2: expected an output pattern with one %d, found 'out/%5d.data'");
-    EXPECT_WRONG(changed_assignment("%d", "%d%d"), "2: expected an output pattern with one %d, found 'out/%d%d.data'");
-    EXPECT_WRONG(changed_assignment("%d", "100%"), "3: expected an output pattern with one %d, found '64'");
-    EXPECT_EQ(read(changed("floor.data", "100%.data")).textures[0].file, "100%.data");
+    EXPECT_WRONG_INPUT(changed_assignment("%d", "%5d"),
+                       "2: expected an output pattern with one %d, found 'out/%5d.data'");
+    EXPECT_WRONG_INPUT(changed_assignment("%d", "%d%d"),
+                       "2: expected an output pattern with one %d, found 'out/%d%d.data'");
+    EXPECT_WRONG_INPUT(changed_assignment("%d", "100%"), "3: expected an output pattern with one %d, found '64'");
+    EXPECT_EQ(read_input(changed("floor.data", "100%.data")).textures[0].file, "100%.data");
 }
 
 TEST(TextInput, InTheOrderOfTheAssignmentTimeRunsOnceAround) {
-    const SceneDescription scene = read(in_order_of_assignment);
+    const SceneDescription scene = read_input(in_order_of_assignment);
     for (int frame = 0; frame <= 6; ++frame) {
         const double t = 2 * 3.14159265358979323846 * frame / 6;
         const CameraFrame at = camera_at(scene.camera, frame);
@@ -323,11 +330,11 @@ TEST(TextInput, InTheOrderOfTheAssignmentTimeRunsOnceAround) {
 }
 
 TEST(TextInput, InTheOrderOfTheAssignmentErrorsNameTheFloorsParts) {
-    EXPECT_WRONG(changed_assignment(" wood.data", ""), "9: expected the floor's texture file, found '0.8'");
-    EXPECT_WRONG(changed_assignment("0.8 0.9 0.7 0.4", "0.8 0.9 0.7 1.4"),
-                 "9: expected floor reflection, a number from 0 to 1, found '1.4'");
-    EXPECT_WRONG(changed_assignment("0.8 0.9", "0.8 blue"),
-                 "9: expected floor tint green, a number from 0 to 1e30, found 'blue'");
+    EXPECT_WRONG_INPUT(changed_assignment(" wood.data", ""), "9: expected the floor's texture file, found '0.8'");
+    EXPECT_WRONG_INPUT(changed_assignment("0.8 0.9 0.7 0.4", "0.8 0.9 0.7 1.4"),
+                       "9: expected floor reflection, a number from 0 to 1, found '1.4'");
+    EXPECT_WRONG_INPUT(changed_assignment("0.8 0.9", "0.8 blue"),
+                       "9: expected floor tint green, a number from 0 to 1e30, found 'blue'");
 }
 
 }  // namespace

@@ -7,16 +7,14 @@
 #include "cistula/lights/visible_light.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/constant_scene.h"
-#include "scene/readers/read_scene.h"
+#include "testing/support/shipped_scenes.h"
 
 namespace cistula {
 namespace {
 
-const std::string source = CISTULA_SOURCE_DIR;
-
 /// benchmark.json with `count` lights of a radius on every edge, its solids `size` times as large.
 SceneDescription edge_lit(int count, double radius, double size = 1) {
-    SceneDescription scene = read_scene(source + "/scenes/benchmark.json");
+    SceneDescription scene = test::shipped_scene("benchmark");
     for (ObjectDescription& object : scene.objects)
         if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
             solid->radius *= size;
@@ -126,7 +124,7 @@ TYPED_TEST(EdgeLights, AreFoundByAllThatMeetThem) {
     }
     this->compare(edge_lit(3, 0.02, 2.5), 200000);  // solids through one another
     for (const char* name : {"platonic", "infinity", "glass", "hard/lights-on-edges", "hard/tiny-beside-unit"}) {
-        const SceneDescription scene = read_scene(source + "/scenes/" + name + ".json");
+        const SceneDescription scene = test::shipped_scene(name);
         if (compile_scene<TypeParam>(scene)->visible_lights.empty()) continue;
         this->compare(scene, 100000);
     }
@@ -147,7 +145,7 @@ TYPED_TEST(EdgeLights, LeaveOtherLightsToTheTree) {
 }
 
 TYPED_TEST(EdgeLights, AFewAreInNoTree) {
-    SceneDescription scene = read_scene(source + "/scenes/benchmark.json");
+    SceneDescription scene = test::shipped_scene("benchmark");
     for (LightDescription& light : scene.lights) light.radius = 0.5;
     ASSERT_TRUE(compile_scene<TypeParam>(scene)->visible_light_tree.empty());
     const Seen seen = this->compare(scene, 100000);

@@ -17,7 +17,11 @@ std::string first_characters(std::string_view text, size_t most);
 
 /// A name or word from a file in single quotes, for messages: on one line, cut after 40 characters.
 std::string quoted(std::string_view word);
-inline std::string quoted(const std::string& word) {  // std::quoted would match strings better than the one above
+// Without these std::quoted would match strings better where <iomanip> is included.
+inline std::string quoted(const std::string& word) {
+    return quoted(std::string_view(word));
+}
+inline std::string quoted(std::string& word) {
     return quoted(std::string_view(word));
 }
 

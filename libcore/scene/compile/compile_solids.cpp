@@ -12,7 +12,7 @@ namespace {
 constexpr double coplanar = 1e-12;
 constexpr double on_face = 1e-9;  // of the solid's size: far above the rounding of a vertex's distance from its planes
 
-bool close(const glm::dvec3& a, const glm::dvec3& b) {
+bool are_close(const glm::dvec3& a, const glm::dvec3& b) {
     return magnitude(a.x - b.x) <= coplanar && magnitude(a.y - b.y) <= coplanar && magnitude(a.z - b.z) <= coplanar;
 }
 
@@ -30,7 +30,7 @@ std::vector<std::vector<PlanePair*>> merge_normals(std::vector<PlanePair*>& pair
         bool found = false;
         for (size_t d = window; d < directions.size() && !found; ++d) {
             const glm::dvec3 normal = directions[d][0]->normal;
-            const bool same = close(normal, pair->normal), opposite = close(normal, -pair->normal);
+            const bool same = are_close(normal, pair->normal), opposite = are_close(normal, -pair->normal);
             if (!same && !opposite) continue;
             found = true;
             if (same) {

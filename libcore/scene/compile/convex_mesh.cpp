@@ -31,9 +31,10 @@ struct Facet {
     std::vector<uint32_t> corners;  // of all its triangles
 };
 
-class Search {
+class ConvexSearch {
   public:
-    Search(const MeshSource& mesh, const MeshTopology& topology, const SceneNormalization& normalization, double unit)
+    ConvexSearch(const MeshSource& mesh, const MeshTopology& topology, const SceneNormalization& normalization,
+                 double unit)
         : unit_(unit) {
         const std::vector<uint32_t> welded = weld(mesh.vertices);
         std::vector<uint32_t> number(mesh.vertices.size(), no_vertex);
@@ -236,7 +237,7 @@ std::optional<ConvexSolid> convex_mesh(const SceneSource& source, uint32_t numbe
     if (solid.mesh.triangles.size() > most_convex_triangles) return std::nullopt;
     const MeshTopology topology = find_topology(solid.mesh);
     if (!topology.closed) return std::nullopt;
-    std::optional<ConvexSolid> convex = Search(solid.mesh, topology, normalization, unit).run();
+    std::optional<ConvexSolid> convex = ConvexSearch(solid.mesh, topology, normalization, unit).run();
     if (convex) convex->solid = number;
     return convex;
 }

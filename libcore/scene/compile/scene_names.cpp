@@ -6,13 +6,13 @@
 namespace cistula {
 namespace {
 
-bool any(const glm::dvec3& color) {
+bool shines(const glm::dvec3& color) {
     return color.x > 0 || color.y > 0 || color.z > 0;
 }
 
 void add_light(SceneNames& names, const std::string& name, const std::string& place, const glm::dvec3& color,
                double radius) {
-    if (any(color)) names.lights.push_back({name, place});
+    if (shines(color)) names.lights.push_back({name, place});
     if (radius > 0) names.visible_lights.push_back({name, place});
 }
 

@@ -18,7 +18,7 @@ constexpr double margin = 0x1p-9;
 /// Solids with more slabs are replaced by bounding balls, since corners are found by trying all triples of planes.
 constexpr uint32_t most_slabs = 16;
 /// Iterations of the search for a separating axis; bodies not separated by then count as near.
-constexpr int most_steps = 64;
+constexpr int most_axis_steps = 64;
 
 /// The convex hull of balls of equal radius around some points.
 struct Body {
@@ -36,7 +36,7 @@ struct Body {
 /// origin).
 bool apart(const Body& a, const Body& b) {
     dvec3 between = b.points[0] - a.points[0];
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < most_axis_steps; ++step) {
         const double distance = length(between);
         if (!(distance > margin)) return false;
         const dvec3 axis = between / distance;

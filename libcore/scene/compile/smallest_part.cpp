@@ -22,9 +22,9 @@ bool apart(const Box& a, const Box& b, double range) {
     return false;
 }
 
-class Search {
+class SmallestPartSearch {
   public:
-    explicit Search(const SceneSource& source)
+    explicit SmallestPartSearch(const SceneSource& source)
         : source_(source),
           normalization_(find_normalization(source)),
           extent_(normalization_.extent),
@@ -122,7 +122,7 @@ class Search {
 }  // namespace
 
 SmallestPart smallest_part(const SceneSource& source) {
-    return Search(source).run();
+    return SmallestPartSearch(source).run();
 }
 
 SmallestPart smallest_part(const SceneDescription& description) {

@@ -13,7 +13,7 @@ namespace {
 
 using glm::dvec3;
 
-struct Plane {
+struct FacePlane {
     dvec3 normal;
     double offset;
     double apart;  // how far from the plane rays start
@@ -29,7 +29,7 @@ class FacesAtCamera {
           camera_(camera),
           unit_(double(RealTraits<Real>::unit) * double(scene.extent)) {}
 
-    std::vector<Plane> find() {
+    std::vector<FacePlane> find() {
         std::vector<bool> near(scene_.solids.size());
         for (size_t i = 0; i < scene_.solids.size(); ++i) near[i] = may_touch(scene_.hulls[i]);
         for (const uint32_t i : scene_.convex)
@@ -70,7 +70,7 @@ class FacesAtCamera {
     void look_at_solid(uint32_t index) {
         const Solid& solid = scene_.solids[index];
         const dvec3 size = camera_size() + dvec3(square_root(double(solid.padded_square)));
-        std::vector<Plane> at_camera;
+        std::vector<FacePlane> at_camera;
         for (const SolidPlane& plane : solid_planes(view_, solid)) {
             const double outside = dot(plane.normal, camera_) - plane.offset;
             const double rounding =
@@ -79,7 +79,7 @@ class FacesAtCamera {
             if (outside >= -touching * rounding)
                 at_camera.push_back({plane.normal, plane.offset, apart * max_or_second(unit_, rounding)});
         }
-        for (const Plane& plane : at_camera) add(plane);
+        for (const FacePlane& plane : at_camera) add(plane);
     }
 
     void look_at_triangles(const Cluster<Real>& cluster) {
@@ -101,9 +101,9 @@ class FacesAtCamera {
     }
 
     /// Adds a plane that is not yet among them, in either direction.
-    void add(const Plane& plane) {
+    void add(const FacePlane& plane) {
         if (planes_.size() == FrameView::most_planes) return;
-        for (const Plane& known : planes_) {
+        for (const FacePlane& known : planes_) {
             const dvec3 across = cross(known.normal, plane.normal);
             if (dot(across, across) < same_direction) return;
         }
@@ -115,7 +115,7 @@ class FacesAtCamera {
     const SceneView<Real> view_;
     const dvec3 camera_;
     const double unit_;  // u M
-    std::vector<Plane> planes_;
+    std::vector<FacePlane> planes_;
 };
 
 }  // namespace
@@ -123,7 +123,7 @@ class FacesAtCamera {
 template <class Real>
 void set_camera_sides(const CompiledScene<Real>& scene, FrameView& frame) {
     const dvec3 camera = frame.camera.position;
-    std::vector<Plane> planes;
+    std::vector<FacePlane> planes;
     if (!frame.is_far) planes = FacesAtCamera<Real>(scene, camera).find();
     frame.camera_planes = int(planes.size());
     for (size_t i = 0; i < planes.size(); ++i) frame.camera_normals[i] = planes[i].normal;

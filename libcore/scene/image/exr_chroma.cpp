@@ -34,7 +34,7 @@ void reconstruct(ColorPicture& picture, int channel) {
         for (size_t x = 0; x < width; ++x) reconstruct(texels + x, width, y, height, channel);
 }
 
-dvec3 rgb(const glm::vec3& chroma, const dvec3& weights) {
+dvec3 rgb_of(const glm::vec3& chroma, const dvec3& weights) {
     const double luminance = chroma[1];
     if (chroma[0] == 0 && chroma[2] == 0) return dvec3(luminance);
     const double red = (chroma[0] + 1.0) * luminance, blue = (chroma[2] + 1.0) * luminance;
@@ -92,7 +92,7 @@ void limit_saturation(ColorPicture& picture, const dvec3& weights) {
 void colors_from_chroma(ColorPicture& picture, const bool (&is_halved)[3], const dvec3& weights) {
     for (const int channel : {0, 2})
         if (is_halved[channel]) reconstruct(picture, channel);
-    for (glm::vec3& texel : picture.texels) texel = glm::vec3(rgb(texel, weights));
+    for (glm::vec3& texel : picture.texels) texel = glm::vec3(rgb_of(texel, weights));
     if (is_halved[0] || is_halved[2]) limit_saturation(picture, weights);
 }
 

@@ -53,7 +53,7 @@ void send_part(ReplyKind kind, const void* from, size_t size) {
     send(from, size);
 }
 
-void fail(const std::string& reason) {
+void send_failure(const std::string& reason) {
     send_part(ReplyKind::failed, reason.data(), std::min<size_t>(reason.size(), largest_reply_part));
 }
 
@@ -101,7 +101,7 @@ class Answer {
 
     bool begin(int64_t width, int64_t height, uint32_t channels, OiioSamples type) {
         if (const std::string problem = size_problem(width, height); !problem.empty()) {
-            fail(problem);
+            send_failure(problem);
             return false;
         }
         const ReplySize size = {static_cast<uint32_t>(width), static_cast<uint32_t>(height), channels,
@@ -138,7 +138,7 @@ OiioHost host_of(Answer& answer, uint64_t left) {
             [](void* self, const void* from, size_t texels) noexcept {
                 static_cast<const Answer*>(self)->samples(from, texels);
             },
-            [](void*, const char* reason) noexcept { fail(reason); }};
+            [](void*, const char* reason) noexcept { send_failure(reason); }};
 }
 
 void answer_exr(const std::string& path, Answer& answer) {
@@ -150,7 +150,7 @@ void answer_exr(const std::string& path, Answer& answer) {
     } catch (const std::exception& error) {
         const std::string_view message = error.what();
         const std::string before = path + ": cannot read: ";  // which the other process says, too
-        return fail(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
+        return send_failure(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
     }
     answer.colors(colors);
     if (answer.begin(picture.width, picture.height, 3, OiioSamples::float32))
@@ -193,13 +193,13 @@ void answer_one() {
     std::string path(request.path_size, '\0');
     receive(path.data(), path.size());
     const std::string missing = request.is_exr ? "" : load_oiio();
-    if (!missing.empty()) return fail(missing);
+    if (!missing.empty()) return send_failure(missing);
     const pid_t self = getpid(), child = fork();
     if (child == 0) {
         end_with(self);
         answer_and_end(path, request);
     }
-    if (child < 0) return fail("no process can be started to decode it");
+    if (child < 0) return send_failure("no process can be started to decode it");
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }

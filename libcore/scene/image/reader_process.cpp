@@ -21,7 +21,7 @@
 namespace cistula {
 namespace {
 
-std::string text_of(int error_number) {
+std::string error_text(int error_number) {
     return std::generic_category().message(error_number);
 }
 
@@ -82,7 +82,7 @@ std::string what_ended(int status, const std::string& program) {
 ReaderProcess::ReaderProcess() : program_(reader_path()) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-        throw std::runtime_error(program_ + " cannot be started: " + text_of(errno));
+        throw std::runtime_error(program_ + " cannot be started: " + error_text(errno));
     socket_ = ends[0];
     const SpawnSettings settings(ends[1]);
     char* const arguments[] = {program_.data(), const_cast<char*>(reader_protocol), nullptr};
@@ -91,7 +91,7 @@ ReaderProcess::ReaderProcess() : program_(reader_path()) {
     close(ends[1]);
     if (failure == 0) return;
     close(socket_);
-    throw std::runtime_error(program_ + " cannot be started: " + text_of(failure));
+    throw std::runtime_error(program_ + " cannot be started: " + error_text(failure));
 }
 
 ReaderProcess::~ReaderProcess() {

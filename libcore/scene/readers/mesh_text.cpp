@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "scene/base/blanks.h"
+
 namespace cistula {
 namespace {
-
-constexpr std::string_view blanks = " \t\v\f\r\n";
 
 void append_utf8(std::string& text, uint32_t code) {
     const auto add = [&text](uint32_t byte) { text += static_cast<char>(byte); };

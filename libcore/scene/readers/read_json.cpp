@@ -9,14 +9,12 @@
 #include "scene/description/light_group.h"
 #include "scene/image/color_encoding.h"
 #include "scene/readers/json_reader.h"
+#include "scene/readers/scene_keys.h"
 
 namespace cistula {
 namespace {
 
 using NameIndices = std::unordered_map<std::string, int>;
-
-// Tolerance for shares that should add up to 1 but exceed it a little when written in decimal.
-constexpr double share_slack = 1e-6;
 
 /// A whole number of frames per second, or a fraction of two.
 void read_rate(const JsonValue& value, FilmDescription& film) {

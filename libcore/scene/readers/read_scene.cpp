@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/base/blanks.h"
 #include "scene/base/decimal.h"
 #include "scene/base/error.h"
 #include "scene/readers/read_json.h"
@@ -20,7 +21,6 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 constexpr size_t start_bytes = 4096;  // that tell what a file is
-constexpr std::string_view blanks = " \t\r\n\v\f";
 
 std::string_view without_mark(std::string_view text) {
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
@@ -61,7 +61,7 @@ std::string read_all(std::istream& stream, const std::string& name) {
                                              name, largest_scene_bytes >> 20));
 }
 
-std::string read_file(const std::string& path) {
+std::string read_scene_file(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         throw Error(ExitCode::file, fmt::format("{}: is a folder; expected a scene file", path));
@@ -78,7 +78,7 @@ std::string read_file(const std::string& path) {
 
 SceneDescription read_scene(const std::string& path) {
     if (path == "-") return read_scene_text(read_all(std::cin, "standard input"), path, "");
-    return read_scene_text(read_file(path), path, std::filesystem::path(path).parent_path().string());
+    return read_scene_text(read_scene_file(path), path, std::filesystem::path(path).parent_path().string());
 }
 
 SceneDescription read_scene_text(const std::string& text, const std::string& source_name, const std::string& base_dir) {

@@ -8,6 +8,7 @@
 #include "scene/base/shown_text.h"
 #include "scene/readers/quad.h"
 #include "scene/readers/read_json.h"
+#include "scene/readers/scene_keys.h"
 #include "scene/readers/text_tokens.h"
 
 namespace cistula {
@@ -19,7 +20,6 @@ constexpr double phong_exponent = 110;
 constexpr double glass_index = 1.5;
 constexpr double floor_reflection = 0.5;
 constexpr double visible_radius = 0.1;  // such programs return white for a ray that passes a light closer than this
-constexpr double share_slack = 1e-6;
 constexpr const char* texture_file = "the floor's texture file";
 constexpr double full_turn = 2 * 3.14159265358979323846;
 constexpr Range light_count{0, 100000};

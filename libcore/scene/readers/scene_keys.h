@@ -54,6 +54,9 @@ extern const KeyTable scene_keys, film_keys, camera_keys, path_keys, cylindrical
     texture_checker_keys, material_keys, solid_keys, edge_lights_keys, quad_keys, triangles_keys, triangle_list_keys,
     mesh_keys, light_keys, frame_keys;
 
+/// How much shares may add up to beyond 1, as decimals do.
+inline constexpr double share_slack = 1e-6;
+
 /// A key that every object of a scene may have besides those of its table: a string or an array of strings, ignored.
 inline constexpr std::string_view comment_key = "$comment";
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/base/blanks.h"
 #include "scene/base/decimal.h"
 #include "scene/base/shown_text.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 using namespace std::literals;
 
-constexpr std::string_view blanks = " \t\r\n\v\f";
 constexpr std::string_view wanted =
     "expected JSON, which begins with '{', or the text input, which begins with the number of frames";
 constexpr std::string_view of_mesh = R"(a scene names meshes in its "objects", as {"mesh": "FILE"})";

@@ -14,17 +14,12 @@
 #include "testing/support/golden.h"
 #include "testing/support/gpu.h"
 #include "testing/support/scene.h"
+#include "testing/support/shipped_scenes.h"
 #include "testing/support/stopping.h"
 
 using namespace cistula;
 
 namespace {
-
-const std::string source = CISTULA_SOURCE_DIR;
-
-SceneDescription scene_of(const std::string& name) {
-    return read_scene(source + "/scenes/" + name + ".json");
-}
 
 /// Neither mirrored nor transparent: no ray is sent on, and there is nothing for a ledger.
 SceneDescription dull(const SceneDescription& scene) {
@@ -74,8 +69,8 @@ TYPED_TEST_SUITE(Cuda, Reals);
 
 TYPED_TEST(Cuda, GoldenScenesAreEqual) {
     CISTULA_NEEDS_GPU();
-    for (const std::string& name : golden::scene_names(source + "/scenes")) {
-        const SceneDescription scene = scene_of(name);
+    for (const std::string& name : golden::scene_names(test::scene_folder)) {
+        const SceneDescription scene = test::shipped_scene(name);
         const FrameSettings settings = golden::settings_for(scene);
         EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << name;
     }
@@ -83,11 +78,11 @@ TYPED_TEST(Cuda, GoldenScenesAreEqual) {
 
 TYPED_TEST(Cuda, AdaptiveFramesAreEqual) {
     CISTULA_NEEDS_GPU();
-    std::vector<SceneDescription> all = {scene_of("benchmark"), dull(scene_of("benchmark")),
-                                         without_effect(scene_of("benchmark"), effect_transmission).value(),
-                                         scene_of("glass"), scene_of("mesh")};
+    std::vector<SceneDescription> all = {test::shipped_scene("benchmark"), dull(test::shipped_scene("benchmark")),
+                                         without_effect(test::shipped_scene("benchmark"), effect_transmission).value(),
+                                         test::shipped_scene("glass"), test::shipped_scene("mesh")};
     for (uint64_t seed = 3; seed < generated_scene_count; seed += 31)
-        all.push_back(generated_scene(seed, source + "/scenes"));
+        all.push_back(generated_scene(seed, test::scene_folder));
     for (const SceneDescription& scene : all) {
         FrameSettings settings = golden::settings_for(scene);
         settings.full_width = 100;  // no multiple of a tile
@@ -125,7 +120,7 @@ TYPED_TEST(Cuda, ScenesWithContactsAreEqualWhateverThePath) {
 TYPED_TEST(Cuda, GeneratedScenesAreEqualWhateverThePath) {
     CISTULA_NEEDS_GPU();
     for (uint64_t seed = 5; seed < generated_scene_count; seed += 16) {
-        const SceneDescription scene = generated_scene(seed, source + "/scenes");
+        const SceneDescription scene = generated_scene(seed, test::scene_folder);
         FrameSettings settings = generated_settings(scene);
         const Image expected = this->expected(scene, settings);
         for (const bool always_tree : {false, true}) {
@@ -142,7 +137,7 @@ TYPED_TEST(Cuda, GeneratedScenesAreEqualWhateverThePath) {
 TYPED_TEST(Cuda, AFrameInPartsIsTheSame) {
     CISTULA_NEEDS_GPU();
     for (const char* name : {"benchmark", "glass", "platonic"}) {  // mirrors show lights in the last
-        const SceneDescription scene = scene_of(name);
+        const SceneDescription scene = test::shipped_scene(name);
         const FrameSettings settings = golden::settings_for(scene);
         CudaOptions options;
         options.memory_limit = size_t{4} << 20;
@@ -164,7 +159,7 @@ TYPED_TEST(Cuda, AFrameInPartsIsTheSame) {
 
 TYPED_TEST(Cuda, ACropIsTheSame) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = scene_of("platonic");
+    const SceneDescription scene = test::shipped_scene("platonic");
     FrameSettings settings = golden::settings_for(scene);
     for (const PixelRect crop : {PixelRect{37, 21, 101, 59}, {0, 179, 320, 1}, {319, 0, 1, 180}, {160, 90, 1, 1}}) {
         settings.crop = crop;
@@ -175,7 +170,7 @@ TYPED_TEST(Cuda, ACropIsTheSame) {
 
 TYPED_TEST(Cuda, SeveralSharesOfOneFrameAreTheSame) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = scene_of("platonic");
+    const SceneDescription scene = test::shipped_scene("platonic");
     const FrameSettings settings = golden::settings_for(scene);
     const Image expected = this->expected(scene, settings);
     // One GPU may have several shares, so the interleaving is tested where there is only one.
@@ -196,7 +191,7 @@ TYPED_TEST(Cuda, SeveralSharesOfOneFrameAreTheSame) {
 
 TYPED_TEST(Cuda, WhatWasAnnouncedNeverShows) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = scene_of("seed");
+    const SceneDescription scene = test::shipped_scene("seed");
     FrameSettings settings = golden::settings_for(scene), other = settings;
     other.depth = 2;
     const auto renderer = this->gpu(scene);
@@ -221,7 +216,7 @@ TYPED_TEST(Cuda, WhatWasAnnouncedNeverShows) {
 
 TYPED_TEST(Cuda, StopsInTheMiddleAndGoesOnAfterwards) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = scene_of("benchmark");
+    const SceneDescription scene = test::shipped_scene("benchmark");
     FrameSettings large = golden::settings_for(scene);
     large.set_size(1920, 1080);
     large.supersample = 8;
@@ -278,7 +273,7 @@ TYPED_TEST(Cuda, StopsWithinAnEndlessFrame) {
     };
     const std::vector<Case> cases = {{}, {4}, {1, 1e-6}, {1, 0, {0, 0}}};  // the third is adaptive
     // By a tree, and by a plain loop.
-    for (const SceneDescription& scene : {scene_of("hard/furnace"), test::room_of_mirrors()})
+    for (const SceneDescription& scene : {test::shipped_scene("hard/furnace"), test::room_of_mirrors()})
         for (const Case& one : cases) {
             CudaOptions options;
             options.devices = one.devices;
@@ -305,7 +300,7 @@ TYPED_TEST(Cuda, GoesAwayWithAFrameUnderWay) {
 
 TYPED_TEST(Cuda, RefusesDevicesThatAreNotThere) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = scene_of("benchmark");
+    const SceneDescription scene = test::shipped_scene("benchmark");
     const std::string last = std::to_string(list_cuda_devices().size() - 1);
     for (const int index : {4096, -1}) {
         CudaOptions options;
@@ -317,7 +312,7 @@ TYPED_TEST(Cuda, RefusesDevicesThatAreNotThere) {
 
 TYPED_TEST(Cuda, FramesLeaveNothingOfTheOneBefore) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = scene_of("benchmark");
+    const SceneDescription scene = test::shipped_scene("benchmark");
     FrameSettings settings = golden::settings_for(scene);
     settings.crop = {3, 5, settings.full_width - 10, settings.full_height - 13};  // the last strip is not whole
     const auto renderer = this->gpu(scene);
@@ -334,7 +329,7 @@ TYPED_TEST(Cuda, FramesLeaveNothingOfTheOneBefore) {
 
 TYPED_TEST(Cuda, ManyVisibleLightsAreEqual) {
     CISTULA_NEEDS_GPU();
-    SceneDescription scene = scene_of("benchmark");
+    SceneDescription scene = test::shipped_scene("benchmark");
     const FrameSettings settings = golden::settings_for(scene);
     for (const int light_count : {10, 90}) {  // blocks know what they show by an outline of each, or know nothing
         test::add_visible_lights(scene, light_count);
@@ -344,7 +339,7 @@ TYPED_TEST(Cuda, ManyVisibleLightsAreEqual) {
 
 TYPED_TEST(Cuda, BackgroundAloneTakesNoKernel) {
     CISTULA_NEEDS_GPU();
-    SceneDescription scene = scene_of("benchmark");
+    SceneDescription scene = test::shipped_scene("benchmark");
     scene.background = {0.25, 0.5, 0.125};
     const auto renderer = this->gpu(scene);
     FrameSettings settings = golden::settings_for(scene);
@@ -362,10 +357,11 @@ TYPED_TEST(Cuda, BackgroundAloneTakesNoKernel) {
 TYPED_TEST(Cuda, LargeFramesAreEqual) {
     CISTULA_NEEDS_GPU();
     // Their warps take every other two pixels; the widths leave the last block whole, even and odd.
-    FrameSettings settings = golden::settings_for(scene_of("benchmark"));
-    SceneDescription lit = scene_of("benchmark");
+    FrameSettings settings = golden::settings_for(test::shipped_scene("benchmark"));
+    SceneDescription lit = test::shipped_scene("benchmark");
     test::add_edge_lights(lit, 2);
-    for (const SceneDescription& scene : {scene_of("benchmark"), dull(scene_of("benchmark")), lit})
+    for (const SceneDescription& scene :
+         {test::shipped_scene("benchmark"), dull(test::shipped_scene("benchmark")), lit})
         for (const int width : {1040, 1030, 1029}) {
             settings.set_size(width, 516);
             EXPECT_EQ(render(*this->gpu(scene), scene, settings), this->expected(scene, settings)) << width;
@@ -374,7 +370,7 @@ TYPED_TEST(Cuda, LargeFramesAreEqual) {
 
 TYPED_TEST(Cuda, FramesWithoutALedgerAreEqual) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = dull(scene_of("benchmark"));
+    const SceneDescription scene = dull(test::shipped_scene("benchmark"));
     CudaOptions options;
     options.memory_limit = size_t{1} << 20;
     for (const int k : {1, 2, 3}) {
@@ -398,7 +394,7 @@ TYPED_TEST(Cuda, FramesWithoutALedgerAreEqual) {
 
 TYPED_TEST(Cuda, SharesOfAPixelsSamplesAddUp) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = scene_of("platonic");
+    const SceneDescription scene = test::shipped_scene("platonic");
     for (const int k : {2, 3, 5}) {
         FrameSettings settings = golden::settings_for(scene);
         settings.supersample = k;
@@ -409,7 +405,7 @@ TYPED_TEST(Cuda, SharesOfAPixelsSamplesAddUp) {
 
 TYPED_TEST(Cuda, SaysWhereTheTimeWent) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = scene_of("benchmark");
+    const SceneDescription scene = test::shipped_scene("benchmark");
     const auto renderer = this->gpu(scene);
     render(*renderer, scene, golden::settings_for(scene));
     EXPECT_GT(renderer->times().kernel, 0);

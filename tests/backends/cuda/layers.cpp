@@ -8,12 +8,11 @@
 #include "testing/support/film_layers.h"
 #include "testing/support/golden.h"
 #include "testing/support/gpu.h"
+#include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
 
 namespace {
-
-const std::string scenes = std::string(CISTULA_SOURCE_DIR) + "/scenes";
 
 template <class Real>
 class CudaLayers : public ::testing::Test {
@@ -44,8 +43,8 @@ TYPED_TEST_SUITE(CudaLayers, Reals);
 
 TYPED_TEST(CudaLayers, OfAllScenesAreThoseOfTheCpu) {
     CISTULA_NEEDS_GPU();
-    for (const std::string& name : golden::scene_names(scenes)) {
-        const SceneDescription scene = read_scene(scenes + "/" + name + ".json");
+    for (const std::string& name : golden::scene_names(test::scene_folder)) {
+        const SceneDescription scene = test::shipped_scene(name);
         this->check(scene, golden::settings_for(scene));
     }
 }
@@ -53,16 +52,17 @@ TYPED_TEST(CudaLayers, OfAllScenesAreThoseOfTheCpu) {
 TYPED_TEST(CudaLayers, OfGeneratedScenesAreThoseOfTheCpu) {
     CISTULA_NEEDS_GPU();
     for (uint64_t seed = 0; seed < generated_scene_count; seed += 2) {
-        const SceneDescription scene = generated_scene(seed, scenes);
+        const SceneDescription scene = generated_scene(seed, test::scene_folder);
         this->check(scene, generated_settings(scene));
     }
 }
 
 TYPED_TEST(CudaLayers, OfAdaptiveFramesAreThoseOfTheCpu) {
     CISTULA_NEEDS_GPU();
-    std::vector<SceneDescription> all = {read_scene(scenes + "/glass.json"), read_scene(scenes + "/platonic.json"),
-                                         read_scene(scenes + "/hard/furnace.json")};
-    for (uint64_t seed = 1; seed < generated_scene_count; seed += 20) all.push_back(generated_scene(seed, scenes));
+    std::vector<SceneDescription> all = {test::shipped_scene("glass"), test::shipped_scene("platonic"),
+                                         test::shipped_scene("hard/furnace")};
+    for (uint64_t seed = 1; seed < generated_scene_count; seed += 20)
+        all.push_back(generated_scene(seed, test::scene_folder));
     for (const SceneDescription& scene : all) {
         FrameSettings settings = golden::settings_for(scene);
         settings.set_size(70, 41);  // no multiple of a tile
@@ -74,7 +74,7 @@ TYPED_TEST(CudaLayers, OfAdaptiveFramesAreThoseOfTheCpu) {
 
 TYPED_TEST(CudaLayers, OfFramesInPartsAreThoseOfTheCpu) {
     CISTULA_NEEDS_GPU();
-    const SceneDescription scene = read_scene(scenes + "/platonic.json");
+    const SceneDescription scene = test::shipped_scene("platonic");
     FrameSettings settings = golden::settings_for(scene);
     settings.set_size(203, 151);
     settings.crop = {3, 5, 190, 140};
