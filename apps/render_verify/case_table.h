@@ -1,22 +1,18 @@
 // All cases of the program. A group is one header, group_NAME.h, with `namespace cistula::verify::NAME { using Cases =
 // CaseList<...>; }`; a case is a struct in a header of its own (case.h says what it holds) and a name in that list.
-// CMake finds the groups and compiles each once a precision for the host, and where there is nvcc for devices.
+// CMake finds the groups and compiles each for the host, and where there is nvcc for devices.
 #pragma once
-
-#include "backend_embree/embree/embree_api.h"
 
 #include <vector>
 
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/device_run.h"
+#include "apps/render_verify/host_intersectors.h"
 #include "apps/render_verify/plan.h"
 #include "apps/render_verify/setup.h"
 #include "apps/render_verify/stage.h"
 
 namespace cistula::verify {
-
-/// Ways to find hits on the host. `plain`: tests every primitive and nothing else; the reference of compared cases.
-enum class HostPath { embree, bvh, brute, plain };
 
 /// A case of rays in one precision.
 template <class Real>

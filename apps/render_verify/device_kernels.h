@@ -9,6 +9,22 @@
 
 namespace cistula::verify {
 
+/// The traversal of devices, in functions that kernels call: compiled into each, it would take most of ptxas's time.
+template <class Real>
+struct CalledTraversal {
+    using Media = InteriorList;
+    using Scene = SceneView<Real>;
+    const SceneView<Real>& scene;
+
+    CISTULA_HD __noinline__ Hit<Real> closest(const Ray<Real>& ray) const {
+        return BvhIntersector<Real>{scene}.closest(ray);
+    }
+    template <class E>
+    CISTULA_HD __noinline__ Throughput<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        return BvhIntersector<Real>{scene}.template transmittance<E>(shadow);
+    }
+};
+
 template <class Case, class Real>
 __global__ void __launch_bounds__(device_block)
     tally_rays(const __grid_constant__ Setup<Real> setup, const Case functor, uint64_t place, uint64_t count,
@@ -17,7 +33,7 @@ __global__ void __launch_bounds__(device_block)
     Tally tally;
     for (uint64_t i = thread; i < count; i += device_threads) {
         tally.place = place + i;
-        functor(setup, BvhIntersector<Real>{setup.scene}, i, tally);
+        functor(setup, CalledTraversal<Real>{setup.scene}, i, tally);
     }
     out[thread] = tally;
 }
@@ -27,7 +43,7 @@ __global__ void __launch_bounds__(device_block) word_rays(const __grid_constant_
                                                           uint64_t first, uint64_t count, uint64_t* out) {
     const uint64_t thread = uint64_t(blockIdx.x) * blockDim.x + threadIdx.x;
     for (uint64_t i = thread; i < count; i += device_threads)
-        out[i] = functor.fingerprint(setup, BvhIntersector<Real>{setup.scene}, first + i);
+        out[i] = functor.fingerprint(setup, CalledTraversal<Real>{setup.scene}, first + i);
 }
 
 template <class Case>

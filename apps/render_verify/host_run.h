@@ -1,4 +1,4 @@
-// Cases on the host: a functor run over TBB on each of the host's intersectors. Included by the generated group_*.cpp
+// Cases on the host: a functor run over TBB on one of the host's intersectors. Included by the generated group_*.cpp
 // only.
 #pragma once
 
@@ -9,40 +9,10 @@
 #include <cstring>
 
 #include "apps/render_verify/case_table.h"
-#include "backend_embree/embree/embree_intersector.h"
-#include "backend_embree/host/frame_loop.h"
+#include "apps/render_verify/host_intersectors.h"
+#include "scene/base/default_rounding.h"
 
 namespace cistula::verify {
-
-/// The reference intersector: every primitive's exact test, without any culling.
-template <class Real>
-struct PlainIntersector {
-    using Media = InteriorList;
-    using Scene = SceneView<Real>;
-    const Scene& scene;
-
-    Hit<Real> closest(const Ray<Real>& ray) const {
-        Hit<Real> best;
-        if (!is_finite(ray)) return best;
-        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
-        for (uint32_t p = 0; p < scene.convex.size + scene.clusters.size; ++p)
-            closest_primitive(scene, p, ray, triangle_ray, best);
-        return best;
-    }
-};
-
-/// Calls body(intersector) with the intersector of this path.
-template <class Real, class Body>
-void with_intersector(HostPath path, const SceneView<Real>& scene, RTCScene tree, const Body& body) {
-    switch (path) {
-        case HostPath::embree:
-            return body(EmbreeIntersector<Real>{scene, tree});
-        case HostPath::bvh:
-            return body(BvhIntersector<Real>{scene});
-        default:
-            return body(BruteIntersector<Real>{scene});
-    }
-}
 
 template <class Case>
 Case functor_of(const std::byte* bytes) {
@@ -56,7 +26,7 @@ Tally tally_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& se
                     uint64_t count) {
     const Case functor = functor_of<Case>(bytes);
     Tally all;
-    with_intersector(path, setup.scene, tree, [&](const auto& intersector) {
+    with_intersector<Real>(path, setup.scene, tree, [&](const CalledIntersector<Real>& intersector) {
         all = tbb::parallel_reduce(
             tbb::blocked_range<uint64_t>(0, count, 64), Tally(),
             [&](const auto& range, Tally tally) {
@@ -79,17 +49,13 @@ template <class Case, class Real>
 void words_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& setup, RTCScene tree, uint64_t first,
                    uint64_t count, uint64_t* out) {
     const Case functor = functor_of<Case>(bytes);
-    const auto fill = [&](const auto& intersector) {
+    with_intersector<Real>(path, setup.scene, tree, [&](const CalledIntersector<Real>& intersector) {
         tbb::parallel_for(tbb::blocked_range<uint64_t>(0, count, 64), [&](const auto& range) {
             use_default_rounding();
             for (uint64_t i = range.begin(); i != range.end(); ++i)
                 out[i] = functor.fingerprint(setup, intersector, first + i);
         });
-    };
-    if (path == HostPath::plain)
-        fill(PlainIntersector<Real>{setup.scene});
-    else
-        with_intersector(path, setup.scene, tree, fill);
+    });
 }
 
 template <class Case, class Real>
