@@ -62,8 +62,8 @@ fuzz: ## search for inputs that break a reader: TARGET=ply SECONDS=60 (the targe
 
 lint: ## check the format of all sources, and libcore/scene, apps/common and apps/render by clang-tidy
 	$(call setup,packages.txt tests/lint-packages.txt)
-	$(call configure,$(PRESET))
-	tests/lint $(BUILD)
+	$(call configure,clang)
+	tests/lint build/clang
 
 check-all: lint ## before a release: lint, all tests, the quick tests under sanitizers and by clang, ten seconds of fuzzing each reader
 	@$(MAKE) --no-print-directory test

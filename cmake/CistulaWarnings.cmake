@@ -1,9 +1,15 @@
 # Warnings for Cistula's own sources; never exported.
 option(CISTULA_WARNINGS_AS_ERRORS "Stop at the first warning" OFF)
 
+# Where several sources are compiled as one, a local name may be that of another source's.
+set(_shadow -Wshadow)
+if(CMAKE_UNITY_BUILD)
+    set(_shadow $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local>)
+endif()
+
 add_library(cistula_warnings INTERFACE)
 target_compile_options(cistula_warnings INTERFACE
-    "$<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wshadow;-Wnon-virtual-dtor;-Wno-missing-field-initializers>"
+    "$<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;${_shadow};-Wnon-virtual-dtor;-Wno-missing-field-initializers>"
     "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra>")
 if(CISTULA_WARNINGS_AS_ERRORS)
     target_compile_options(cistula_warnings INTERFACE
