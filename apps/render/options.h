@@ -33,7 +33,7 @@ struct RenderOptions : FilmOptions {
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
     ChosenPixel pixel;  // for Action::pixel
-    std::string json;  // for Action::pixel: a file, "-" or empty
+    std::string json;   // for Action::pixel: a file, "-" or empty
     std::optional<int> supersample, depth;
     std::optional<double> cutoff, target_error;
     std::optional<int> max_samples;         // for a target error
