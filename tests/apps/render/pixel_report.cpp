@@ -105,8 +105,8 @@ void expect_follows_the_model(const SampleTree& sample, const Film& film, double
 }
 
 /// Pixels all over a frame, the same in every run.
-std::vector<PixelPlace> places(int width, int height, int count) {
-    std::vector<PixelPlace> list = {{0, 0}, {width - 1, height - 1}, {width / 2, height / 2}};
+std::vector<ChosenPixel> places(int width, int height, int count) {
+    std::vector<ChosenPixel> list = {{0, 0}, {width - 1, height - 1}, {width / 2, height / 2}};
     uint32_t state = 12345;
     const auto below = [&](int limit) {
         state = state * 1664525u + 1013904223u;
@@ -133,7 +133,7 @@ TYPED_TEST(PixelTrees, AreTheFilmsPixels) {
         Film film;
         RenderProgress progress;
         ASSERT_TRUE(make_embree_renderer<Real>(compiled)->render(camera, settings, film, progress));
-        for (const PixelPlace& place : places(settings.full_width, settings.full_height, 40)) {
+        for (const ChosenPixel& place : places(settings.full_width, settings.full_height, 40)) {
             SCOPED_TRACE(fmt::format("pixel {},{}", place.x, place.y));
             const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, place.x, place.y);
             ASSERT_EQ(tree.samples.size(), 1u);
@@ -177,7 +177,7 @@ TYPED_TEST(PixelTrees, AddUpWithACutoffAndSamples) {
     settings.supersample = 3;
     settings.cutoff = 0.02;
     size_t pruned = 0;
-    for (const PixelPlace& place : places(settings.full_width, settings.full_height, 60)) {
+    for (const ChosenPixel& place : places(settings.full_width, settings.full_height, 60)) {
         const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, place.x, place.y);
         ASSERT_EQ(tree.samples.size(), 9u);
         FixedColor sum{};
@@ -278,7 +278,7 @@ TEST_F(PixelReports, ShowTheImagesValues) {
             if (channel.name == name) return channel.values[i];
         throw std::runtime_error("no channel " + name);
     };
-    for (const PixelPlace& place : places(40, 24, 12)) {
+    for (const ChosenPixel& place : places(40, 24, 12)) {
         const json tree =
             report({"s.json", "-f", "2", "--precision", "double", "--pixel", fmt::format("{},{}", place.x, place.y)});
         const size_t i = static_cast<size_t>(place.y) * 40 + static_cast<size_t>(place.x);
