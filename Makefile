@@ -32,7 +32,7 @@ render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
 	@mkdir -p out
 	$(BUILD)/bin/render $(SCENE) --backend embree -o out/$(NAME).exr --preview out/$(NAME).png
 
-build: ## build everything: libraries, programs, tests, benchmarks
+build: ## build libraries, programs and tests
 	$(call setup,packages.txt)
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD)
@@ -65,8 +65,9 @@ lint: ## check the format of all sources, and libcore/scene, apps/common and app
 	$(call configure,clang)
 	tests/lint build/clang
 
-check-all: lint ## before a release: lint, all tests, the quick tests under sanitizers and by clang, ten seconds of fuzzing each reader
+check-all: lint ## before a release: lint, all tests, the benchmarks built, the quick tests under sanitizers and by clang, ten seconds of fuzzing each reader
 	@$(MAKE) --no-print-directory test
+	@cmake --build $(BUILD) --target benchmarks
 	@$(MAKE) --no-print-directory test-quick PRESET=asan CMAKE_ARGS='$(CMAKE_ARGS) -DCISTULA_WITH_CUDA=OFF'
 	@$(MAKE) --no-print-directory test-quick PRESET=clang
 	@$(MAKE) --no-print-directory fuzz SECONDS=10
@@ -97,7 +98,7 @@ test-clients: ## have OpenEXR's Python, OpenImageIO with OpenColorIO, ffmpeg and
 bench: ## build the benchmarks and run them; bars and records into out/bench
 	$(call setup,packages.txt bench/packages.txt)
 	$(call configure,$(PRESET))
-	@cmake --build $(BUILD)
+	@cmake --build $(BUILD) --target render benchmarks
 	bench/run $(BUILD)
 
 # For the GPUs of this machine, where nothing else is asked for: no driver then compiles kernels at every start.

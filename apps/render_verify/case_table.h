@@ -1,6 +1,6 @@
 // All cases of the program. A group is one header, group_NAME.h, with `namespace cistula::verify::NAME { using Cases =
 // CaseList<...>; }`; a case is a struct in a header of its own (case.h says what it holds) and a name in that list.
-// CMake finds the groups and compiles each for the host, and where there is nvcc for devices.
+// CMake finds the groups (sources.cmake) and compiles them for the host, and where there is nvcc for devices.
 #pragma once
 
 #include <vector>

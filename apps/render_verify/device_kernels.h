@@ -1,4 +1,4 @@
-// Kernels of cases; each thread takes every 2^16th ray. Included by the generated group_*.cu only.
+// Kernels of cases; each thread takes every 2^16th ray. Included by device_cases.cu.in only.
 #pragma once
 
 #include <cstring>

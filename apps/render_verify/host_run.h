@@ -1,5 +1,4 @@
-// Cases on the host: a functor run over TBB on one of the host's intersectors. Included by the generated group_*.cpp
-// only.
+// Cases on the host: a functor run over TBB on one of the host's intersectors. Included by case_table.cpp.in only.
 #pragma once
 
 #include <tbb/blocked_range.h>

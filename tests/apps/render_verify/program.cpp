@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -54,13 +55,15 @@ struct Witnessed : Made<Witnessed> {
     static constexpr Bound bound = no_failures("rays");
     static constexpr bool needs_witness = true;
 };
+/// One ray differs when it is asked of for the third time: by the tree of our own, after the plain loop and Embree.
 struct Compared : Made<Compared> {
     static constexpr const char* name = "made/compared";
     static constexpr Bound bound = no_failures("rays");
     static constexpr bool compared = true;
+    static inline std::atomic<int> asked = 0;
     template <class Real, class Intersector>
     uint64_t fingerprint(const Setup<Real>&, const Intersector&, uint64_t i) const {
-        return i == 7 && std::is_same_v<Intersector, BvhIntersector<Real>> ? 1 : 0;
+        return i == 7 && ++asked == 3 ? 1 : 0;
     }
 };
 /// A cube beside one that is 2^-20 of its size, and a cube alone.
