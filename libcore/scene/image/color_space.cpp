@@ -102,6 +102,11 @@ dmat3 color_matrix(const ColorSpace& from, const ColorSpace& to) {
     return glm::inverse(xyz_from(to)) * adaptation(from.white, to.white) * xyz_from(from);
 }
 
+dmat3 profile_colorants(const ColorSpace& space) {
+    constexpr double d50[2] = {0.9642 / (0.9642 + 1 + 0.8249), 1 / (0.9642 + 1 + 0.8249)};  // ICC.1:2022, 7.2.16
+    return adaptation(space.white, d50) * xyz_from(space);
+}
+
 dvec3 luminance_weights(const ColorSpace& space) {
     const dmat3 xyz = xyz_from(space);
     return {xyz[0][1], xyz[1][1], xyz[2][1]};

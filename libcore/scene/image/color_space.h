@@ -36,6 +36,9 @@ ColorSpace color_space_of(const Chromaticities& chromaticities);
 /// in ICC.1), and to RGB. The rows of the result add up to 1, to within rounding: white stays white.
 glm::dmat3 color_matrix(const ColorSpace& from, const ColorSpace& to);
 
+/// XYZ of red, green and blue by column, adapted to D50 as ICC profiles give them; they add up to D50, Y = 1.
+glm::dmat3 profile_colorants(const ColorSpace& space);
+
 /// Shares of red, green and blue in the luminance Y of a color; they add up to 1, to within rounding.
 glm::dvec3 luminance_weights(const ColorSpace& space);
 

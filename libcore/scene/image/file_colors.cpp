@@ -46,6 +46,8 @@ FileEncoding file_encoding(std::string_view name, const FileColors& colors, bool
             fmt::format("its colorspace {} is not known; {}", quoted(name),
                         suggestion(name, {color_encoding_names.begin(), color_encoding_names.end()}, "values")));
     }
+    if (!colors.profile.empty())
+        refuse(fmt::format("its color profile {} is none of the encodings known here", quoted(colors.profile)));
     std::string_view id = colors.id == "unknown" ? std::string_view() : colors.id;
     if (colors.is_aces) {
         constexpr std::string_view aces = "lin_ap0_scene";

@@ -10,9 +10,10 @@
 
 namespace cistula {
 
-/// Attributes of an OpenEXR file. Other formats say nothing.
+/// Attributes of an OpenEXR file, or what a profile or a gamma of another file means.
 struct FileColors {
-    std::string id;  // colorInteropID; empty: none
+    std::string id;       // colorInteropID, or a name of color_encodings; empty: none
+    std::string profile;  // name of an ICC profile, or a gamma, that is none of them; empty: none
     std::optional<Chromaticities> chromaticities;
     bool is_aces = false;  // acesImageContainerFlag, of SMPTE ST 2065-4
     bool is_half = false;  // numbers are rounded to halves
@@ -25,8 +26,8 @@ struct FileEncoding {
 };
 
 /// The encoding that has a name, or, if that is empty, the one that the file says; of a file that says nothing,
-/// linear Rec. 709 for floating-point numbers and sRGB for integers. Throws std::runtime_error for a name or an ID that
-/// is not known, and where a file contradicts itself.
+/// linear Rec. 709 for floating-point numbers and sRGB for integers. Throws std::runtime_error for a name, an ID or a
+/// profile that is not known, and where a file contradicts itself.
 FileEncoding file_encoding(std::string_view name, const FileColors& colors, bool is_floating);
 
 }  // namespace cistula

@@ -19,6 +19,7 @@
 #include "scene/base/file_bytes.h"
 #include "scene/image/exr.h"
 #include "scene/image/file_colors.h"
+#include "scene/image/icc_profile.h"
 #include "scene/image/picture_oiio.h"
 #include "scene/image/reader_wire.h"
 #include "scene/image/texture_limits.h"
@@ -94,8 +95,9 @@ class Answer {
         reply.has_chromaticities = colors.chromaticities.has_value();
         reply.is_aces = colors.is_aces;
         reply.is_half = colors.is_half;
+        reply.names_profile = !colors.profile.empty();
         std::string bytes(reinterpret_cast<const char*>(&reply), sizeof reply);
-        bytes.append(colors.id, 0, largest_reply_id);
+        bytes.append(colors.profile.empty() ? colors.id : colors.profile, 0, largest_reply_id);
         send_part(ReplyKind::colors, bytes.data(), bytes.size());
     }
 
@@ -131,7 +133,15 @@ class Answer {
 };
 
 OiioHost host_of(Answer& answer, uint64_t left) {
-    return {&answer, left,
+    return {&answer,
+            left,
+            [](void* self, const OiioColors& colors) noexcept {
+                const std::string_view profile(static_cast<const char*>(colors.profile), colors.profile_bytes);
+                if (colors.profile)
+                    static_cast<const Answer*>(self)->colors(colors_of_profile(profile));
+                else if (colors.gamma > 0)
+                    static_cast<const Answer*>(self)->colors(colors_of_gamma(colors.gamma));
+            },
             [](void* self, int64_t width, int64_t height, uint32_t channels, OiioSamples type) noexcept {
                 return static_cast<Answer*>(self)->begin(width, height, channels, type);
             },

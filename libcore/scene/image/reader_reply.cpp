@@ -33,8 +33,9 @@ FileColors receive_colors(const Receive& receive, uint32_t bytes) {
     if (bytes < sizeof reply || bytes - sizeof reply > largest_reply_id) fail_broken();
     receive(&reply, sizeof reply);
     FileColors colors;
-    colors.id.resize(bytes - sizeof reply);
-    receive(colors.id.data(), colors.id.size());
+    std::string& text = reply.names_profile != 0 ? colors.profile : colors.id;
+    text.resize(bytes - sizeof reply);
+    receive(text.data(), text.size());
     if (reply.has_chromaticities != 0) colors.chromaticities = std::to_array(reply.chromaticities);
     colors.is_aces = reply.is_aces != 0;
     colors.is_half = reply.is_half != 0;

@@ -7,7 +7,7 @@
 namespace cistula {
 
 /// The program's only argument; it changes whenever this header does.
-inline constexpr const char* reader_protocol = "cistula-pictures-2 " CISTULA_VERSION;
+inline constexpr const char* reader_protocol = "cistula-pictures-3 " CISTULA_VERSION;
 
 inline constexpr int reader_socket = 3;           // the program's descriptor of its end
 inline constexpr int reader_wrong_protocol = 64;  // the program's exit code for another argument
@@ -27,7 +27,7 @@ enum class ReplyKind : uint32_t {
     size = 1,  // a ReplySize
     samples,   // whole texels, row-major from the top left
     failed,    // the reason, without the file's name
-    colors,    // a ReplyColors, and then the id
+    colors,    // a ReplyColors, and then the id or the profile's name
 };
 
 /// Begins each part of an answer.
@@ -47,6 +47,7 @@ struct ReplySize {
 struct ReplyColors {
     float chromaticities[8];
     uint32_t has_chromaticities, is_aces, is_half;
+    uint32_t names_profile;  // 1: the text is FileColors::profile; 0: FileColors::id
 };
 inline constexpr uint32_t largest_reply_id = 255;
 

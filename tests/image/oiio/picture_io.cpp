@@ -9,17 +9,27 @@
 #include "scene/image/exr.h"
 #include "scene/image/raw_picture.h"
 #include "testing/support/expect_error.h"
+#include "testing/support/icc_profiles.h"
 #include "testing/support/scratch_directory.h"
 #include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {
 
+/// `profile`: ICC, or empty.
 template <class T>
-void write_image(const std::string& path, int width, int channels, OIIO::TypeDesc type, const std::vector<T>& samples) {
+void write_image(const std::string& path, int width, int channels, OIIO::TypeDesc type, const std::vector<T>& samples,
+                 const std::string& profile = "", float gamma = 0) {
     const int height = static_cast<int>(samples.size()) / width / channels;
     OIIO::ImageSpec spec(width, height, channels, type);
     spec["oiio:UnassociatedAlpha"] = 1;
+    if (!profile.empty())
+        spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
+                       profile.data());
+    if (gamma > 0) {
+        spec.attribute("oiio:ColorSpace", "GammaCorrected");
+        spec.attribute("oiio:Gamma", gamma);
+    }
     const auto output = OIIO::ImageOutput::create(path);
     ASSERT_TRUE(output) << OIIO::geterror();
     ASSERT_TRUE(output->open(path, spec)) << output->geterror();
@@ -44,6 +54,45 @@ TEST(Textures, EightBitsAreDecoded) {
                                                           decoded(200, 100, 50)}))
             << name;
     }
+}
+
+/// Profiles in files are read; a texture's encoding comes before them, and what they are not known for is an error.
+TEST(Textures, ProfilesAreRead) {
+    const ScratchDirectory scratch;
+    const auto texel = [&](const char* name, const std::string& profile, const char* encoding = "") {
+        const std::string path = scratch.file(name);
+        write_image<uint8_t>(path, 8, 3, OIIO::TypeDesc::UINT8, std::vector<uint8_t>(8 * 8 * 3, 128), profile);
+        return read_texture(path, encoding).texels.at(0).x;
+    };
+    const auto profile = [](const char* space, uint32_t gamma) {
+        return test::icc_profile("RGB ", test::matrix_tags(*find_color_space(space), test::gamma_curve(gamma), "Mine"));
+    };
+    for (const char* name : {"a.png", "a.tif", "a.jpg"}) {
+        EXPECT_NEAR(texel(name, ""), 0.215861f, 1e-6f) << name;
+        EXPECT_NEAR(texel(name, profile("lin_rec709_scene", 256)), 128 / 255.0f, 1e-6f) << name;
+        EXPECT_NEAR(texel(name, profile("lin_adobergb_scene", 563)), 0.219638f, 1e-6f) << name;
+        const std::string other = profile("lin_p3d65_scene", 700);
+        EXPECT_EQ(texel(name, other, "srgb"), texel(name, "")) << name;
+        try {
+            texel(name, other);
+            ADD_FAILURE() << name;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("its color profile 'Mine' is none of the encodings known here"),
+                      std::string::npos)
+                << error.what();
+        }
+    }
+}
+
+TEST(Textures, GammasOfPngAreRead) {
+    const ScratchDirectory scratch;
+    const auto texel = [&](float gamma) {
+        write_image<uint8_t>(scratch.file("a.png"), 1, 3, OIIO::TypeDesc::UINT8, {128, 128, 128}, "", gamma);
+        return read_texture(scratch.file("a.png")).texels.at(0).x;
+    };
+    EXPECT_NEAR(texel(1.0f), 128 / 255.0f, 1e-6f);
+    EXPECT_NEAR(texel(1.8f), 0.289205f, 1e-6f);
+    EXPECT_EQ(texel(2.2f), decoded(128, 0, 0).x);
 }
 
 TEST(Textures, AlphaChangesNoColor) {
