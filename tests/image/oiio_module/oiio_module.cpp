@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "scene/image/picture_io.h"
+#include "scene/image/picture_oiio_module.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/render_program.h"
 #include "testing/support/srgb_codes.h"
@@ -116,7 +117,7 @@ TEST_F(MovedProgram, SaysWhatIsWrongWithTheModule) {
     ASSERT_NE(other, "");
     std::filesystem::remove(prefix_.file("lib/" + module_name));
     std::filesystem::copy_file(other, prefix_.file("lib/" + module_name));
-    expect_failure(start + prefix_.file("lib/" + module_name) + ": undefined symbol: cistula_oiio_module_3");
+    expect_failure(start + prefix_.file("lib/" + module_name) + ": undefined symbol: " + oiio_module_entry);
 }
 
 TEST_F(MovedProgram, SaysWhatIsWrongWithTheReader) {
