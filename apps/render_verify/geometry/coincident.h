@@ -23,7 +23,7 @@ struct Coincident {
             for (uint32_t k = 0; k < copies / solids; ++k) sheet.triangles.push_back({0, 1, 2});
             for (uint32_t k = 0; k < solids; ++k) add_object(scene, sheet);
             plan.add(solids == 1 ? "one sheet" : "a thousand sheets", scene, Coincident{solids}, sheet.vertices,
-                     plan.rays(2000, 10));
+                     plan.rays(2000, 40));
         }
     }
 
