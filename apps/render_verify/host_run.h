@@ -58,25 +58,36 @@ void words_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& set
 }
 
 template <class Case, class Real>
-void fill_entry(CaseEntry& entry) {
-    entry.info = case_info<Case>();
-    static_assert(RayCase<Case> != ImageCase<Case>, "a case has either plan() or render()");
-    if constexpr (RayCase<Case>) entry.plan = [](Plan& plan) { Case::plan(plan); };
-    if constexpr (ImageCase<Case>) entry.render = [](Stage& stage, Tally& tally) { Case::render(stage, tally); };
+RayMethods<Real> methods_of() {
+    RayMethods<Real> methods;
     if constexpr (ComparedCase<Case>)
-        entry.methods<Real>().words = &words_on_host<Case, Real>;
+        methods.words = &words_on_host<Case, Real>;
     else if constexpr (RayCase<Case>)
-        entry.methods<Real>().tally = &tally_on_host<Case, Real>;
+        methods.tally = &tally_on_host<Case, Real>;
+    return methods;
 }
 
-/// Adds the cases of a list; the second precision completes the entries that the first one made, from `first` on.
-template <class Real, class... Cases>
-void fill_entries(CaseList<Cases...>, const std::vector<DeviceMethods<Real>>& device, size_t first,
-                  std::vector<CaseEntry>& entries) {
-    if (entries.size() < first + sizeof...(Cases)) entries.resize(first + sizeof...(Cases));
-    [[maybe_unused]] size_t next = first;
-    (fill_entry<Cases, Real>(entries[next++]), ...);
-    for (size_t i = 0; i < device.size(); ++i) entries[first + i].methods<Real>().device = device[i];
+/// A case, without its launchers on devices.
+template <class Case>
+CaseEntry entry_of() {
+    static_assert(RayCase<Case> != ImageCase<Case>, "a case has either plan() or render()");
+    CaseEntry entry;
+    entry.info = case_info<Case>();
+    if constexpr (RayCase<Case>) entry.plan = [](Plan& plan) { Case::plan(plan); };
+    if constexpr (ImageCase<Case>) entry.render = [](Stage& stage, Tally& tally) { Case::render(stage, tally); };
+    entry.in_float = methods_of<Case, float>();
+    entry.in_double = methods_of<Case, double>();
+    return entry;
+}
+
+/// Adds the cases of a list, with their launchers on devices in its order; empty: there are none.
+template <class... Cases>
+void add_entries(CaseList<Cases...>, const std::vector<DeviceMethods<float>>& device_float,
+                 const std::vector<DeviceMethods<double>>& device_double, std::vector<CaseEntry>& entries) {
+    const size_t first = entries.size();
+    (entries.push_back(entry_of<Cases>()), ...);
+    for (size_t i = 0; i < device_float.size(); ++i) entries[first + i].in_float.device = device_float[i];
+    for (size_t i = 0; i < device_double.size(); ++i) entries[first + i].in_double.device = device_double[i];
 }
 
 }  // namespace cistula::verify

@@ -92,14 +92,6 @@ struct Images {
     }
 };
 
-template <class Case>
-CaseEntry entry_of() {
-    CaseEntry entry;
-    fill_entry<Case, float>(entry);
-    fill_entry<Case, double>(entry);
-    return entry;
-}
-
 /// The exit code of a run over one case, and its record.
 template <class Case>
 int code_of(nlohmann::json* record = nullptr, Arguments more = {}) {
