@@ -8,14 +8,9 @@
 #include <vector>
 
 #include "scene/image/color_encoding.h"
+#include "testing/support/byte_order.h"
 
 namespace cistula::test {
-
-inline std::string big_endian(uint32_t number, int bytes) {
-    std::string text;
-    for (int i = bytes; i-- > 0;) text += static_cast<char>(number >> (8 * i) & 0xff);
-    return text;
-}
 
 /// s15Fixed16Number.
 inline std::string fixed_number(double value) {

@@ -1,9 +1,9 @@
 // Matrices between color spaces, against those that standards print.
 #include "scene/image/color_space.h"
+#include "testing/support/special_values.h"
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <stdexcept>
 
 #include <glm/matrix.hpp>
@@ -85,7 +85,7 @@ TEST(ColorSpaces, ChromaticitiesAreThoseOfAKnownSpaceOrAnother) {
 
 TEST(ColorSpaces, NonsenseIsNoSpace) {
     const Chromaticities good = stored(space("lin_rec709_scene"));
-    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    using test::infinity, test::nan;
     for (const float wrong : {nan, infinity, -infinity, 1e30f, -20.0f})
         for (size_t i = 0; i < 8; ++i) {
             Chromaticities c = good;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "scene/image/bloom.h"
 #include "scene/image/srgb_codes.h"

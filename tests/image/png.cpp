@@ -1,11 +1,10 @@
 // What is in the PNGs: the very codes, as libpng reads them.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "scene/image/png.h"
 #include "scene/image/srgb_codes.h"
 #include "testing/support/png_pixels.h"
+#include "testing/support/special_values.h"
 #include "testing/support/srgb_codes.h"
 
 namespace cistula {
@@ -20,7 +19,7 @@ std::vector<uint8_t> decoded(const std::string& png, uint32_t width, uint32_t he
 }
 
 TEST(Png, HoldsTheNearestCodes) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    using test::infinity, test::nan;
     const ColorPicture picture{
         2, 2, {{0, 0.5f, 1}, {-1, 100, nan}, {0.2158605f, 0.001f, 0.9f}, {infinity, -infinity, 1e-42f}}};
     const std::string png = encode_png(picture);

@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "cistula/numerics/elementary.h"
 #include "scene/image/srgb_codes.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
+#include "testing/support/special_values.h"
 #include "testing/support/srgb_codes.h"
 
 namespace cistula {
@@ -41,7 +41,7 @@ TEST(RawPicture, ReadsTopRowFirstAndDropsAlpha) {
 TEST(RawPicture, WritesTheExactBytes) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("frame0.out");
-    const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    using test::infinity, test::nan;
     const ColorPicture picture{1, 3, {{0, 0.5f, 1}, {-1, 7, 0.2158605f}, {nan, infinity, -infinity}}};
     write_raw_picture(path, picture);
     EXPECT_EQ(bytes_of(path), bytes_from({1, 0, 0, 0, 3, 0, 0, 0, 0, 188, 255, 255, 0, 255, 128, 255, 0, 255, 0, 255}));

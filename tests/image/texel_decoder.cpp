@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "cistula/numerics/elementary.h"
+#include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
@@ -35,7 +35,7 @@ TEST(TexelDecoder, CodesAreDividedByTheLargest) {
 }
 
 TEST(TexelDecoder, FloatsOfTheOwnSpaceStayTheSameBits) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    using test::infinity, test::nan;
     const std::vector<float> numbers = {0.1f, -0.0f, 1e-45f, 3.4e38f, -7, infinity};
     const auto found = texels("lin_rec709_scene", numbers);
     for (size_t i = 0; i < numbers.size(); ++i) {

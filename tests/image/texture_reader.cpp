@@ -7,13 +7,13 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <limits>
 #include <thread>
 
 #include "scene/image/exr.h"
 #include "scene/image/raw_picture.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
+#include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
@@ -103,7 +103,7 @@ TEST(TextureReader, OnlyFilesAreRead) {
 TEST(TextureReader, ValuesThatAreNoRadianceAreClampedAndCounted) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("a.exr");
-    const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    using test::infinity, test::nan;
     LayeredPicture layers;
     layers.width = layers.display_width = layers.height = layers.display_height = 2;
     layers.channels = {{"R", false, {0, -0.0f, infinity, 3}},

@@ -1,11 +1,10 @@
 // Textures of `render`: their limit, their warnings, and the one line that is said of a bad one.
 #include <sys/stat.h>
 
-#include <limits>
-
 #include "scene/image/exr.h"
 #include "scene/image/raw_picture.h"
 #include "testing/support/render_program.h"
+#include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
@@ -57,7 +56,7 @@ TEST_F(Textures, TheLimitIsAnOption) {
 }
 
 TEST_F(Textures, ClampedTexelsAreOneWarningOrAnError) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    using test::infinity, test::nan;
     write_texture("t.exr", {1, -1, nan, infinity});
     put_scene(R"({"file": "t.exr"})");
     const ProgramResult result = run({"t.json", "-o", "a.exr", "--progress", "none"});

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "apps/common/backends.h"
@@ -14,6 +13,7 @@
 #include "scene/image/exr.h"
 #include "testing/support/gpu.h"
 #include "testing/support/run_program.h"
+#include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 using Arguments = std::vector<std::string>;
 using Channel = LayeredPicture::Channel;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+using test::infinity;
 const std::string source = CISTULA_SOURCE_DIR;
 
 float float_of(uint32_t bits) {

@@ -5,19 +5,19 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "apps/render_view/id_colors.h"
 #include "scene/image/color_space.h"
 #include "scene/image/srgb_codes.h"
+#include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
 
 using Codes = std::vector<std::array<int, 3>>;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+using test::infinity;
+using test::nan;
 
 std::array<int, 3> code(const glm::vec3& color) {
     return {srgb8_from_linear(color[0]), srgb8_from_linear(color[1]), srgb8_from_linear(color[2])};

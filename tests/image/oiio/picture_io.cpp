@@ -11,6 +11,7 @@
 #include "testing/support/expect_error.h"
 #include "testing/support/icc_profiles.h"
 #include "testing/support/scratch_directory.h"
+#include "testing/support/special_values.h"
 #include "testing/support/srgb_codes.h"
 
 namespace cistula {
@@ -204,7 +205,7 @@ TEST(Textures, TexelsAreFiniteAndNotNegative) {
 TEST(Preview, ExactBytesAndOneFile) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("a.png");
-    const float nan = std::numeric_limits<float>::quiet_NaN();
+    using test::nan;
     ColorPicture picture{3, 1, {{0, 0.5f, 1}, {-1, 100, nan}, {0.2158605f, 0.001f, 0.9f}}};
     write_preview(path, picture);
     const auto input = OIIO::ImageInput::open(path);
