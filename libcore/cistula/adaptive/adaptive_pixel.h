@@ -16,8 +16,8 @@ CISTULA_INLINE int64_t larger_budget(int64_t budget) {
 /// it is traced again with a larger budget, and so on; the ledger contains what that drops. `gradual`:
 /// shades_gradually(scene), computed once. task.work is the thread's own.
 template <class E, class Intersector, class Stack>
-CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task, int slot, bool gradual,
-                                    PixelRecord& record) {
+CISTULA_HOST_NOINLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task, int slot, bool gradual,
+                                           PixelRecord& record) {
     using Real = typename PixelTask<E, Intersector, Stack>::Real;
     using Hashing = HashingStack<Stack, Real>;
     const uint32_t before = task.work.rays.total();
@@ -39,8 +39,8 @@ CISTULA_INLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task
 /// Enters sample `slot` into the pixel's layers as if it represented `weight` samples of the lattice, by tracing it
 /// again. E: with fills_layers. False if its tree has more than most_branches.
 template <class E, class Intersector, class Stack>
-CISTULA_INLINE bool trace_layers(const PixelTask<E, Intersector, Stack>& task, const TreeSettings& settings, int slot,
-                                 int weight) {
+CISTULA_NOINLINE bool trace_layers(const PixelTask<E, Intersector, Stack>& task, const TreeSettings& settings, int slot,
+                                   int weight) {
     using Real = typename PixelTask<E, Intersector, Stack>::Real;
     using Limited = HashingStack<Stack, Real>;
     PathHash unused;
