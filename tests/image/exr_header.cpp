@@ -1,4 +1,5 @@
-// Headers of EXR files that claim more than the file has are refused before the library takes memory for it.
+// Headers of EXR files that claim more than the file has, or that the library reads as something else than they say,
+// are refused before the library takes memory for them.
 #include "scene/image/exr_header.h"
 
 #include <gtest/gtest.h>
@@ -34,14 +35,21 @@ class ExrHeader : public ::testing::Test {
         put_bytes(folder_.file("a.exr"), number(20000630) + number(2 | flags) + attributes);
         check_exr_header(folder_.file("a.exr"));
     }
-    void expect_refused(const std::string& attributes, const std::string& what, int flags = 0) {
+    void expect_message(const std::string& attributes, const std::string& message, int flags = 0) {
         try {
             check(attributes, flags);
-            ADD_FAILURE() << "not refused: " << what;
+            ADD_FAILURE() << "not refused: " << message;
         } catch (const std::runtime_error& error) {
-            EXPECT_EQ(std::string(error.what()),
-                      "its header says that it has " + what + ", more than its bytes can hold; it is damaged");
+            EXPECT_EQ(std::string(error.what()), message);
         }
+    }
+    void expect_refused(const std::string& attributes, const std::string& what, int flags = 0) {
+        expect_message(attributes,
+                       "its header says that it has " + what + ", more than its bytes can hold; it is damaged", flags);
+    }
+    void expect_wrong_size(const std::string& attributes, const std::string& name, const std::string& type) {
+        expect_message(attributes, "the attribute '" + name + "' of its header does not have the size of its type, '" +
+                                       type + "'; it is damaged");
     }
 
     ScratchDirectory folder_;
@@ -61,6 +69,29 @@ TEST_F(ExrHeader, PartsOfAttributesLieInThem) {
     EXPECT_NO_THROW(check(attribute("p", "preview", number(1) + number(1) + "rgba")));
     expect_refused(attribute("p", "preview", number(40000) + number(40000) + "rgba"), "a preview too large");
     expect_refused(attribute("m", "idmanifest", number(2'000'000'000) + "x"), "a manifest too large");
+}
+
+/// The library reads a value by its type and goes on behind it. What this check reads must be what the library reads.
+TEST_F(ExrHeader, SizesAreThoseOfTypes) {
+    EXPECT_NO_THROW(check(attribute("a", "int", number(1))));
+    for (const char* type : {"int", "float", "double", "v2f", "m44f", "chromaticities", "compression", "tiledesc"})
+        for (const size_t size : {0u, 3u, 200u})
+            expect_wrong_size(attribute("a", type, std::string(size, '\1')), "a", type);
+    EXPECT_NO_THROW(check(attribute("a", "floatvector", number(1) + number(2))));
+    expect_wrong_size(attribute("a", "floatvector", number(1) + "ab"), "a", "floatvector");
+    expect_wrong_size(attribute("a", "stringvector", number(2) + "ab" + "c"), "a", "stringvector");
+    expect_wrong_size(attribute("p", "preview", number(1) + number(1) + "rgbarest"), "p", "preview");
+}
+
+/// The library reads channels up to an empty name.
+TEST_F(ExrHeader, ChannelsFillTheirAttribute) {
+    const std::string channel = word("A") + number(2) + number(0) + number(1) + number(1), end(1, '\0');
+    EXPECT_NO_THROW(check(attribute("channels", "chlist", channel + end)));
+    EXPECT_NO_THROW(check(attribute("channels", "chlist", end)));
+    for (const std::string& channels :
+         {channel + end + "rest", channel, std::string(), channel + "B", channel + "B" + end,
+          channel + word("B") + number(2), channel + std::string(300, 'B') + end})
+        expect_wrong_size(attribute("channels", "chlist", channels), "channels", "chlist");
 }
 
 /// Each chunk has eight bytes in a table.

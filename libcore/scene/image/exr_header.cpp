@@ -5,8 +5,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "scene/base/shown_text.h"
 
@@ -55,6 +57,33 @@ class HeaderBytes {
     throw std::runtime_error("its header says that it has " + what + ", more than its bytes can hold; it is damaged");
 }
 
+/// The bytes of a value of each type that has a size of its own. The library reads so many, whatever the size that the
+/// file says.
+const std::map<std::string_view, int32_t> fixed_sizes = {{"box2i", 16},
+                                                         {"box2f", 16},
+                                                         {"chromaticities", 32},
+                                                         {"compression", 1},
+                                                         {"deepImageState", 1},
+                                                         {"double", 8},
+                                                         {"envmap", 1},
+                                                         {"float", 4},
+                                                         {"int", 4},
+                                                         {"keycode", 28},
+                                                         {"lineOrder", 1},
+                                                         {"m33d", 72},
+                                                         {"m33f", 36},
+                                                         {"m44d", 128},
+                                                         {"m44f", 64},
+                                                         {"rational", 8},
+                                                         {"tiledesc", 9},
+                                                         {"timecode", 8},
+                                                         {"v2d", 16},
+                                                         {"v2f", 8},
+                                                         {"v2i", 8},
+                                                         {"v3d", 24},
+                                                         {"v3f", 12},
+                                                         {"v3i", 12}};
+
 /// One header: its attributes up to an empty name.
 class HeaderCheck {
   public:
@@ -73,6 +102,8 @@ class HeaderCheck {
                 fail("an attribute " + quoted(std::string_view(*name)) + " of " +
                      std::to_string(static_cast<uint32_t>(size)) + " bytes");
             const int64_t end = bytes_.place() + size;
+            const auto fixed = fixed_sizes.find(*type);
+            if (fixed != fixed_sizes.end() && size != fixed->second) fail_size(*name, *type);
             look_at(*name, *type, end);
             bytes_.go_to(end);
         }
@@ -81,18 +112,43 @@ class HeaderCheck {
     }
 
   private:
-    /// Reads what the library takes memory by.
+    [[noreturn]] static void fail_size(const std::string& name, const std::string& type) {
+        throw std::runtime_error("the attribute " + quoted(std::string_view(name)) +
+                                 " of its header does not have the size of its type, " +
+                                 quoted(std::string_view(type)) + "; it is damaged");
+    }
+
+    /// Channels up to an empty name: the library stops there, whatever the size that the file says. False where they do
+    /// not end at `end`.
+    bool channels_end_at(int64_t end) {
+        constexpr int64_t bytes_after_name = 16;
+        while (bytes_.place() < end) {
+            const std::optional<std::string> channel = bytes_.name();
+            if (!channel) return false;
+            if (channel->empty()) return bytes_.place() == end;
+            bytes_.go_to(bytes_.place() + bytes_after_name);
+        }
+        return false;
+    }
+
+    /// Reads what the library takes memory by, and what it reads by another size than the attribute's own.
     void look_at(const std::string& name, const std::string& type, int64_t end) {
-        if (type == "stringvector") {
+        if (type == "chlist") {
+            if (!channels_end_at(end)) fail_size(name, type);
+        } else if (type == "floatvector") {
+            if ((end - bytes_.place()) % 4 != 0) fail_size(name, type);
+        } else if (type == "stringvector") {
             while (bytes_.place() + 4 <= end) {
                 const int32_t size = bytes_.whole();
                 if (size < 0 || bytes_.place() + size > end)
                     fail("a text too long in " + quoted(std::string_view(name)));
                 bytes_.go_to(bytes_.place() + size);
             }
+            if (bytes_.place() != end) fail_size(name, type);
         } else if (type == "preview") {
             const int64_t width = bytes_.number(), height = bytes_.number();
             if (width != 0 && height > (end - bytes_.place()) / 4 / width) fail("a preview too large");
+            if (bytes_.place() + 4 * width * height != end) fail_size(name, type);
         } else if (type == "idmanifest") {
             if (bytes_.number() / 2048 > static_cast<uint32_t>(end - bytes_.place())) fail("a manifest too large");
         } else if (name == "dataWindow" && type == "box2i") {
