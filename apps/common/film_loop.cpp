@@ -32,8 +32,8 @@ Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
     return attributes;
 }
 
-/// The picture that a frame's file must match, without values: its windows, channels and attributes.
-LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
+/// The files of a frame, without values: their windows, channels and attributes.
+std::vector<FrameFile> expected_files(const FilmJob& job, const CameraFrame& camera) {
     Film one;
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
     one.pixels.assign(1, PixelRecord());
@@ -47,26 +47,38 @@ LayeredPicture expected_picture(const FilmJob& job, const CameraFrame& camera) {
     picture.display_width = job.settings.full_width;
     picture.display_height = job.settings.full_height;
     picture.attributes.merge(attributes_of(job, camera));
-    return picture;
+    return frame_files(std::move(picture), job.options.split, job.output, camera.frame);
 }
 
-bool is_finished(const FilmJob& job, const CameraFrame& camera) {
-    const std::string path = job.output.for_frame(camera.frame);
-    const std::string preview = job.preview.for_frame(camera.frame);
+/// Whether a file is complete, and of this frame.
+bool is_finished(const FrameFile& file) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error) || !exr_is_complete(path)) return false;
-    if (!preview.empty() && !std::filesystem::exists(preview, error)) return false;
+    if (!std::filesystem::is_regular_file(file.path, error) || !exr_is_complete(file.path)) return false;
     try {
-        return is_same_image(read_exr(path), expected_picture(job, camera));
+        const std::vector<PicturePart> parts = read_exr_parts(file.path);
+        return std::equal(parts.begin(), parts.end(), file.parts.begin(), file.parts.end(),
+                          [&](const PicturePart& part, const PicturePart& expected) {
+                              return (parts.size() == 1 || part.name == expected.name) &&
+                                     is_same_image(part.picture, expected.picture);
+                          });
     } catch (const Error&) {
         return false;  // not an EXR of this frame: rendered again
     }
+}
+
+bool is_finished(const FilmJob& job, const CameraFrame& camera) {
+    const std::string preview = job.preview.for_frame(camera.frame);
+    std::error_code error;
+    if (!preview.empty() && !std::filesystem::exists(preview, error)) return false;
+    const std::vector<FrameFile> files = expected_files(job, camera);
+    return std::all_of(files.rbegin(), files.rend(), [](const FrameFile& file) { return is_finished(file); });
 }
 
 /// Throws Error if a frame cannot be written.
 void probe_outputs(const FilmJob& job, int frame) {
     const AtomicFile image(job.output.for_frame(frame));
     if (!job.preview.text().empty()) const AtomicFile preview(job.preview.for_frame(frame));
+    for (const std::string& layer : layers_with_files(job)) const AtomicFile own(job.output.for_layer(frame, layer));
 }
 
 /// Finished frames that are looked at for the one to announce to the renderer, before it renders the one before.
@@ -166,6 +178,14 @@ WriterLimits writer_limits(const FilmOptions& options) {
     return limits;
 }
 
+std::vector<std::string> layers_with_files(const FilmJob& job) {
+    std::vector<std::string> layers;
+    if (job.options.split != Split::files) return layers;
+    for (const FrameFile& file : expected_files(job, camera_at(job.scene.camera, job.frames.front())))
+        if (file.parts.front().name != main_part) layers.push_back(file.parts.front().name);
+    return layers;
+}
+
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
     const FilmOptions& options = job.options;
     std::set<std::string> notes;  // printed so far
@@ -214,11 +234,13 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
                             fmt::format("{}: frame {} cannot be trusted and is not written: {}", job.scene.source,
                                         camera.frame, describe_flags(finished.film.flags)));
             }
-            finished.path = job.output.for_frame(camera.frame);
+            finished.image = job.output;
+            finished.split = options.split;
             finished.preview = job.preview.for_frame(camera.frame);
             finished.view = options.view;
             finished.attributes = attributes_of(job, camera);
-            finished.stats = stats_of(finished.film, camera.frame, finished.path, seconds, renderer.times());
+            finished.stats =
+                stats_of(finished.film, camera.frame, job.output.for_frame(camera.frame), seconds, renderer.times());
             finished.settings = job.settings;
             finished.strict = options.strict;
             if (options.verbose)

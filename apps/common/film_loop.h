@@ -34,6 +34,9 @@ struct FilmJob {
     std::function<std::string(const std::vector<int>&)> look_ahead = {};
 };
 
+/// The layers that have files of their own.
+std::vector<std::string> layers_with_files(const FilmJob& job);
+
 /// Number of frames whose cameras and file names are looked at together before the first of them is rendered.
 inline constexpr size_t stretch_length = 1000;
 

@@ -7,6 +7,7 @@
 #include "apps/common/status_line.h"
 #include "scene/film/film_picture.h"
 #include "scene/film/renderer.h"
+#include "scene/film/split_picture.h"
 #include "scene/image/picture_view.h"
 
 namespace cistula {
@@ -16,8 +17,9 @@ struct FilmOptions {
     Intersection intersection = Intersection::exact;
     Precision precision = Precision::single_;
     OutputChannels channels;
-    PictureView view;   // of previews
-    std::string stats;  // file for times and counts, as given; empty: none
+    Split split = Split::none;  // of the layers
+    PictureView view;           // of previews
+    std::string stats;          // file for times and counts, as given; empty: none
     bool resume = false, quiet = false, verbose = false;
     bool strict = false;  // values that the file's type does not hold are an error
     ProgressStyle progress = ProgressStyle::automatic;

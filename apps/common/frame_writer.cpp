@@ -156,7 +156,8 @@ void FrameWriter::give_film_back(Task& task, size_t bytes_of_layers) {
 void FrameWriter::write(Task& task) {
     FinishedFrame& frame = task.frame;
     FrameStats& stats = frame.stats;
-    const bool raw = file_kind(frame.path) == FileKind::raw;
+    const std::string path = frame.image.for_frame(stats.frame);
+    const bool raw = file_kind(path) == FileKind::raw;
     LayeredPicture layers;
     ColorPicture color, preview;
     if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
@@ -169,7 +170,7 @@ void FrameWriter::write(Task& task) {
         if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
     });
     if (frame.strict && stats.clamped != 0)
-        throw Error(ExitCode::failed, fmt::format("{}: not written: {}", frame.path, over_largest_half(stats.clamped)));
+        throw Error(ExitCode::failed, fmt::format("{}: not written: {}", path, over_largest_half(stats.clamped)));
     if (measure_) {
         stats.hash = film_hash(frame.film);
         stats.pruned = ledger_totals(frame.film, &PixelRecord::pruned);
@@ -179,10 +180,9 @@ void FrameWriter::write(Task& task) {
     stats.write_seconds = seconds_of([&] {
         // The preview is written first: if the image is complete, --resume can rely on both.
         if (!frame.preview.empty()) write_preview(frame.preview, preview);
-        if (raw)
-            write_raw_picture(frame.path, color);
-        else
-            write_exr(frame.path, layers);
+        if (raw) return write_raw_picture(path, color);
+        for (const FrameFile& file : frame_files(std::move(layers), frame.split, frame.image, stats.frame))
+            write_exr(file.path, file.parts);
     });
 }
 

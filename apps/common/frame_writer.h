@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "apps/common/frame_files.h"
 #include "apps/common/header_attributes.h"
 #include "apps/common/stats.h"
 #include "scene/film/film.h"
@@ -25,7 +26,9 @@ namespace cistula {
 struct FinishedFrame {
     Film film;
     Attributes attributes;
-    std::string path, preview;  // empty preview: none
+    OutputName image;           // the frame number is that of `stats`
+    std::string preview;        // empty: none
+    Split split = Split::none;  // of the image's layers
     PictureView view;           // of the preview
     FrameStats stats;           // the writer adds what depends on the film
     FrameSettings settings;

@@ -75,6 +75,19 @@ std::string OutputName::for_frame(int frame) const {
     return has_pattern() ? fmt::format("{}{:0{}d}{}", prefix_, frame, digits_, suffix_) : prefix_;
 }
 
+std::string OutputName::for_layer(int frame, const std::string& layer) const {
+    if (has_pattern() && suffix_.find('/') == std::string::npos) {
+        OutputName name = *this;
+        const char before = prefix_.empty() ? '/' : prefix_.back();
+        const bool separates = std::string_view("._- ").find(before) != std::string_view::npos;
+        if (!separates && before != '/') name.prefix_ += '.';
+        name.prefix_ += layer + (separates ? before : '.');
+        return name.for_frame(frame);
+    }
+    const std::string path = for_frame(frame), extension = fs::path(path).extension().string();
+    return path.substr(0, path.size() - extension.size()) + '.' + layer + extension;
+}
+
 FileKind file_kind(const std::string& path) {
     const std::string extension = lower_extension(path);
     if (extension == ".exr") return FileKind::exr;
@@ -120,9 +133,10 @@ std::vector<int> frames_named_in(const std::string& path, const FrameList& frame
 }
 
 void require_different_files(RunFiles others, const OutputName& image, const OutputName& preview,
-                             const std::vector<int>& frames) {
+                             const std::vector<int>& frames, const std::vector<std::string>& layers) {
     for (const int frame : frames) {
         others.writes(image.for_frame(frame), "an image");
+        for (const std::string& layer : layers) others.writes(image.for_layer(frame, layer), "a layer's image");
         others.writes(preview.for_frame(frame), "a preview");
     }
 }

@@ -23,6 +23,10 @@ class OutputName {
 
     bool has_pattern() const { return digits_ >= 0; }
     std::string for_frame(int frame) const;
+
+    /// The name of a file that a layer has for itself: the layer stands before the frame number or the extension, as in
+    /// beauty.diffuse.0001.exr and beauty.diffuse.exr.
+    std::string for_layer(int frame, const std::string& layer) const;
     const std::string& text() const { return text_; }
 
   private:
@@ -57,8 +61,9 @@ void make_directories(const OutputName& name, const std::vector<int>& frames);
 /// Creates the directory of a single file if it is missing. Throws Error (file) if that fails.
 void make_directory_of(const std::string& path);
 
-/// Throws Error (usage) if two files are one: `others`, the images and previews of these frames.
+/// Throws Error (usage) if two files are one: `others`, the images and previews of these frames, and the files of
+/// layers that have their own.
 void require_different_files(RunFiles others, const OutputName& image, const OutputName& preview,
-                             const std::vector<int>& frames);
+                             const std::vector<int>& frames, const std::vector<std::string>& layers = {});
 
 }  // namespace cistula

@@ -73,6 +73,7 @@ void refuse_exclusions(const OptionTexts& texts) {
          "is for --pixel X,Y; of a render, --stats FILE.json tells the times"},
         {"--max-samples", texts.max_samples, !texts.target_error.empty(),
          "is for --target-error E; a grid's are --supersample's"},
+        {"--split", texts.split == defaults.split ? "" : texts.split, !texts.layers.empty(), "is for --layers LIST"},
         {"--z-far", texts.z_far, !texts.layers.empty(), "is for --layers Z"},
         {"--dwa-level", texts.dwa_level, texts.compression.substr(0, 3) == "dwa", "is for --compression dwaa and dwab"},
     };

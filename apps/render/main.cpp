@@ -82,13 +82,14 @@ Prepared prepare(SceneSource source, const RenderOptions& options, const CudaOpt
 struct Outputs {
     OutputName image, preview;
     FrameList frames;
+    std::vector<std::string> layers;  // that have files of their own
 };
 
 /// Checks the names of these frames against all others, creates their directories, and finds their cameras. Returns
 /// where the picture turns at once.
 std::string look_ahead(const Outputs& outputs, const RenderOptions& options, const SceneDescription& scene,
                        const RunFiles& others, const std::vector<int>& frames) {
-    require_different_files(others, outputs.image, outputs.preview, frames);
+    require_different_files(others, outputs.image, outputs.preview, frames, outputs.layers);
     make_directories(outputs.image, frames);
     if (!options.preview.empty()) make_directories(outputs.preview, frames);
     return camera_turns(scene.camera, frames);
@@ -123,14 +124,22 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
     return outputs;
 }
 
+/// Checks the names of the first frames, and of all that may be those of `others`: `paths`, the scene and the stats.
+void check_names(const RenderOptions& options, const RunFiles& others, std::vector<std::string> paths,
+                 const Outputs& outputs) {
+    paths.insert(paths.end(), {options.scene, options.stats});
+    const auto check = [&](const std::vector<int>& frames) {
+        require_different_files(others, outputs.image, outputs.preview, frames, outputs.layers);
+    };
+    for (const std::string& path : paths) check(frames_named_in(path, outputs.frames));
+    check(outputs.frames.part(0, stretch_length));
+}
+
 /// Checks the files to be written against all others, makes the directories of the first frames, and finds their
 /// cameras.
 void prepare_files(const RenderOptions& options, const SceneDescription& scene, const RunFiles& others,
                    const std::vector<std::string>& read, const Outputs& outputs) {
-    std::vector<std::string> paths = read;
-    paths.insert(paths.end(), {options.scene, options.stats});
-    for (const std::string& path : paths)
-        require_different_files(others, outputs.image, outputs.preview, frames_named_in(path, outputs.frames));
+    check_names(options, others, read, outputs);
     const std::string turns = look_ahead(outputs, options, scene, others, outputs.frames.part(0, stretch_length));
     if (!turns.empty()) print_warnings({turns}, options);
     if (options.stats.empty()) return;
@@ -189,7 +198,7 @@ void render_scene(RenderOptions options) {
 
     const FrameSettings settings = frame_settings(options, scene);
     advise_on_memory(options, settings);
-    const Outputs outputs = plan_outputs(options, scene);
+    Outputs outputs = plan_outputs(options, scene);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
 
@@ -201,7 +210,8 @@ void render_scene(RenderOptions options) {
         RunFiles others;
         others.reads_scene(options.scene, source.files);
         others.writes(options.stats, "--stats");
-        prepare_files(options, scene, others, source.files, outputs);
+        const std::vector<std::string> read = source.files;
+        prepare_files(options, scene, others, read, outputs);
         stats.compile_seconds += seconds_of([&] { choose_precision(options, source); });
         const Prepared prepared = options.precision == Precision::double_
                                       ? prepare<double>(std::move(source), options, devices.options, stats)
@@ -227,6 +237,8 @@ void render_scene(RenderOptions options) {
                              stats.scene_hash));
         FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
         job.layer_names = prepared.layer_names;
+        outputs.layers = layers_with_files(job);
+        if (!outputs.layers.empty()) check_names(options, others, read, outputs);
         if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
         job.look_ahead = [&](const std::vector<int>& frames) {
             return look_ahead(outputs, options, scene, others, frames);

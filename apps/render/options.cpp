@@ -59,6 +59,9 @@ void declare(CLI::App& app, OptionTexts& texts) {
                    "more layers: path, light, data, cryptomatte, or single ones such as diffuse, Z, N")
         ->type_name("LIST");
     app.add_option("--aov", texts.layers, "as --layers")->group("");  // its name in earlier versions: not in --help
+    app.add_option("--split", texts.split,
+                   "layers go into: none, the beauty's part of the file; parts of their own; or files of their own")
+        ->type_name("NAME");
     app.add_option("--z-far", texts.z_far, "with --layers Z: the depth of nothing, a number or inf; 1e10")
         ->type_name("Z");
     app.add_option("--background", texts.background, "opaque, or transparent: alpha is coverage, color premultiplied")
@@ -169,6 +172,8 @@ RenderOptions checked(const OptionTexts& texts) {
                                                         {"piz", Compression::piz},
                                                         {"dwaa", Compression::dwaa},
                                                         {"dwab", Compression::dwab}});
+    options.split = chosen<Split>("--split", texts.split,
+                                  {{"none", Split::none}, {"parts", Split::parts}, {"files", Split::files}});
     if (!texts.z_far.empty()) options.channels.z_far = parse_z_far(texts.z_far);
     if (!texts.dwa_level.empty()) options.channels.dwa_level = parse_dwa_level(texts.dwa_level);
     if (!texts.supersample.empty())

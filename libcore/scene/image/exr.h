@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "scene/image/picture.h"
 
@@ -19,6 +20,9 @@ struct FileColors;
 /// ("compression", "version", ...).
 void write_exr(const std::string& path, const LayeredPicture& picture);
 
+/// Writes a file of several parts, or of one as above; their names and attributes are in their own headers.
+void write_exr(const std::string& path, const std::vector<PicturePart>& parts);
+
 /// Sets the number of OpenEXR's own threads, shared by all files of the process: they compress what callers of
 /// write_exr write, a few for each file. 0, the default: every caller compresses by itself. Not while a file is written
 /// or read.
@@ -27,6 +31,9 @@ void set_exr_threads(int threads);
 /// Reads all channels as floats, in the order of the file (by name), with the attributes of the types that write_exr
 /// writes; float attributes become doubles. Scan line and tiled files of one part. Throws Error(ExitCode::file).
 LayeredPicture read_exr(const std::string& path);
+
+/// Reads files of one or several parts, in the order of the file.
+std::vector<PicturePart> read_exr_parts(const std::string& path);
 
 /// True for an OpenEXR file in which every chunk of pixels is present; false for anything else, also if there is no
 /// file.

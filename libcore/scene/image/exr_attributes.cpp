@@ -16,8 +16,9 @@ ExrAttributes read_attributes(const Imf::Header& header) {
     ExrAttributes attributes;
     for (auto entry = header.begin(); entry != header.end(); ++entry) {
         const std::string name = entry.name();
-        // Every file has these.
+        // Every file has these, and every part.
         if (name == "pixelAspectRatio" || (name == "screenWindowWidth" && header.screenWindowWidth() == 1)) continue;
+        if (name == "name" || name == "type" || name == "chunkCount") continue;
         const Imf::Attribute& attribute = entry.attribute();
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
             attributes[name] = text->value();

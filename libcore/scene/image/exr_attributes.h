@@ -9,7 +9,8 @@ namespace cistula {
 
 using ExrAttributes = decltype(LayeredPicture::attributes);
 
-/// The attributes of the types that write_exr writes; float attributes become doubles.
+/// The attributes of the types that write_exr writes, but for those that make a part of a file; float attributes become
+/// doubles.
 ExrAttributes read_attributes(const Imf::Header& header);
 
 }  // namespace cistula

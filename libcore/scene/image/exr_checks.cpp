@@ -2,6 +2,7 @@
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfPartType.h>
 
@@ -88,8 +89,8 @@ void check_chunks(File& file) {
 template void check_chunks(Imf::InputFile& file);
 template void check_chunks(Imf::InputPart& file);
 
-void check_sampling(const Imf::InputFile& file, bool is_chroma) {
-    const Imf::ChannelList& channels = file.header().channels();
+void check_sampling(const Imf::Header& header, bool is_chroma) {
+    const Imf::ChannelList& channels = header.channels();
     for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
         const std::string name = channel.name();
         check_sampling(name, channel.channel(), is_chroma && (name == "RY" || name == "BY"));

@@ -3,7 +3,6 @@
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
 
 #include <cerrno>
 #include <exception>
@@ -42,7 +41,7 @@ void check_flat(const Imf::Header& header, const std::string& subject = "it");
 void check_sampling(const std::string& name, const Imf::Channel& channel, bool may_be_halved = false);
 
 /// Throws unless all channels have one value per pixel; where `is_chroma`, RY and BY may have one for two by two.
-void check_sampling(const Imf::InputFile& file, bool is_chroma = false);
+void check_sampling(const Imf::Header& header, bool is_chroma = false);
 
 /// Throws for a header that says more pixels than a file of its size can hold, before memory is taken for them.
 void check_claim(const Imf::Header& header, const std::string& path);

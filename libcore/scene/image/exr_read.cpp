@@ -1,7 +1,7 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 
 #include <algorithm>
@@ -16,14 +16,6 @@
 namespace cistula {
 namespace {
 
-/// Throws for what a LayeredPicture does not hold: further parts, and several samples in a pixel.
-void check_single_and_flat(const std::string& path) {
-    const Imf::MultiPartInputFile file(path.c_str());
-    if (file.parts() != 1)
-        throw std::runtime_error("it has " + std::to_string(file.parts()) + " parts; give a file of one part");
-    check_flat(file.header(0));
-}
-
 /// Throws for whole numbers that floats do not tell apart.
 void check_whole_numbers(const LayeredPicture::Channel& channel) {
     const auto is_large = [](float value) { return value >= 0x1p24f; };
@@ -32,14 +24,11 @@ void check_whole_numbers(const LayeredPicture::Channel& channel) {
                                  " has whole numbers of 2^24 or more, which are not told apart here");
 }
 
-LayeredPicture read_layers(const std::string& path) {
-    check_before_opening(path);
-    check_single_and_flat(path);
-    Imf::InputFile file(path.c_str());
-    check_sampling(file);
-    check_claim(file.header(), path);
-    check_chunks(file);
+LayeredPicture read_part(Imf::InputPart& file, const std::string& path) {
     const Imf::Header& header = file.header();
+    check_sampling(header);
+    check_claim(header, path);
+    check_chunks(file);
     const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
     LayeredPicture picture;
     picture.width = data.max.x - data.min.x + 1;
@@ -65,18 +54,48 @@ LayeredPicture read_layers(const std::string& path) {
 
 }  // namespace
 
+std::vector<PicturePart> read_exr_parts(const std::string& path) {
+    check_readable(path);
+    return with_file_errors(path, [&] {
+        check_before_opening(path);
+        Imf::MultiPartInputFile file(path.c_str());
+        std::vector<PicturePart> parts;
+        for (int i = 0; i < file.parts(); ++i) {
+            const Imf::Header& header = file.header(i);
+            parts.push_back({header.hasName() ? header.name() : "", {}});
+            check_flat(header, file.parts() == 1 ? "it" : "part " + parts.back().name);
+            Imf::InputPart part(file, i);
+            parts.back().picture = read_part(part, path);
+        }
+        return parts;
+    });
+}
+
 LayeredPicture read_exr(const std::string& path) {
     check_readable(path);
-    return with_file_errors(path, [&] { return read_layers(path); });
+    return with_file_errors(path, [&] {
+        check_before_opening(path);
+        Imf::MultiPartInputFile file(path.c_str());
+        if (file.parts() != 1)
+            throw std::runtime_error("it has " + std::to_string(file.parts()) + " parts; give a file of one part");
+        check_flat(file.header(0));
+        Imf::InputPart part(file, 0);
+        LayeredPicture picture = read_part(part, path);
+        if (file.header(0).hasName()) picture.attributes["name"] = file.header(0).name();
+        return picture;
+    });
 }
 
 bool exr_is_complete(const std::string& path) {
     errno = 0;
     try {
         check_before_opening(path);
-        Imf::InputFile file(path.c_str());
-        check_chunks(file);
-        if (file.header().hasTileDescription()) read_layers(path);
+        Imf::MultiPartInputFile file(path.c_str());
+        for (int i = 0; i < file.parts(); ++i) {
+            Imf::InputPart part(file, i);
+            check_chunks(part);
+            if (part.header().hasTileDescription()) read_part(part, path);
+        }
         return true;
     } catch (const std::exception&) {
         if (errno == ENOMEM) throw std::bad_alloc();

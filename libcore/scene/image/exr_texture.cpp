@@ -68,7 +68,7 @@ ColorPicture read_colors(const std::string& path, const SizeProblem& size_proble
     }
     const std::vector<const char*> names = color_channels(header.channels());
     const bool is_chroma = names.size() == 3 && names[0] == std::string_view("RY");
-    check_sampling(file, is_chroma);
+    check_sampling(file.header(), is_chroma);
     check_claim(file.header(), path);
     check_chunks(file);
     colors = colors_of(header);

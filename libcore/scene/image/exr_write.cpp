@@ -7,7 +7,10 @@
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
@@ -174,23 +177,55 @@ Imf::Header header_of(const LayeredPicture& picture) {
     return header;
 }
 
-void write_pixels(Imf::OStream& stream, const LayeredPicture& picture) {
-    const Imf::Header header = header_of(picture);
-    const Imath::Box2i& window = header.dataWindow();
-    std::vector<std::vector<half>> halves(picture.channels.size());
-    Imf::FrameBuffer buffer;
-    for (size_t i = 0; i < picture.channels.size(); ++i) {
-        const LayeredPicture::Channel& channel = picture.channels[i];
-        if (channel.half) {
-            halves[i].assign(channel.values.begin(), channel.values.end());
-            buffer.insert(channel.name, Imf::Slice::Make(Imf::HALF, halves[i].data(), window));
-        } else {
-            buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
+/// A frame buffer of a picture's channels, with what it points at.
+class Pixels {
+  public:
+    Pixels(const LayeredPicture& picture, const Imath::Box2i& window) : halves_(picture.channels.size()) {
+        for (size_t i = 0; i < picture.channels.size(); ++i) {
+            const LayeredPicture::Channel& channel = picture.channels[i];
+            if (channel.half) {
+                halves_[i].assign(channel.values.begin(), channel.values.end());
+                buffer_.insert(channel.name, Imf::Slice::Make(Imf::HALF, halves_[i].data(), window));
+            } else {
+                buffer_.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
+            }
         }
     }
-    Imf::OutputFile file(stream, header, std::min(Imf::globalThreadCount(), most_threads_of_a_file));
-    file.setFrameBuffer(buffer);
-    file.writePixels(picture.height);
+    const Imf::FrameBuffer& buffer() const { return buffer_; }
+
+  private:
+    std::vector<std::vector<half>> halves_;
+    Imf::FrameBuffer buffer_;
+};
+
+/// A part to be written, where it lies.
+struct PartToWrite {
+    std::string name;
+    const LayeredPicture& picture;
+};
+
+void write_pixels(Imf::OStream& stream, const std::vector<PartToWrite>& parts) {
+    const int threads = std::min(Imf::globalThreadCount(), most_threads_of_a_file);
+    const auto write = [](auto& file, const LayeredPicture& picture) {
+        const Pixels pixels(picture, file.header().dataWindow());
+        file.setFrameBuffer(pixels.buffer());
+        file.writePixels(picture.height);
+    };
+    std::vector<Imf::Header> headers;
+    for (const PartToWrite& part : parts) headers.push_back(header_of(part.picture));
+    if (parts.size() == 1) {
+        Imf::OutputFile file(stream, headers.front(), threads);
+        return write(file, parts.front().picture);
+    }
+    for (size_t i = 0; i < parts.size(); ++i) {
+        headers[i].setName(parts[i].name);
+        headers[i].setType(Imf::SCANLINEIMAGE);
+    }
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threads);
+    for (size_t i = 0; i < parts.size(); ++i) {
+        Imf::OutputPart part(file, static_cast<int>(i));
+        write(part, parts[i].picture);
+    }
 }
 
 /// Whether the file is not complete: OpenEXR 3.1 leaves out, without a word, blocks of lines for whose compression it
@@ -200,19 +235,14 @@ bool lacks_chunks(int descriptor) {
     return access(name.c_str(), R_OK) == 0 && !exr_is_complete(name);
 }
 
-}  // namespace
-
-void set_exr_threads(int threads) {
-    Imf::setGlobalThreadCount(threads);
-}
-
-void write_exr(const std::string& path, const LayeredPicture& picture) {
-    check(picture);
+void write_parts(const std::string& path, const std::vector<PartToWrite>& parts) {
+    if (parts.empty()) throw std::invalid_argument("write_exr: a file needs a part");
+    for (const PartToWrite& part : parts) check(part.picture);
     AtomicFile target(path);
     CheckedStream stream(target.descriptor(), path);
     errno = 0;
     try {
-        write_pixels(stream, picture);
+        write_pixels(stream, parts);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& failure) {
@@ -227,6 +257,22 @@ void write_exr(const std::string& path, const LayeredPicture& picture) {
         throw file_error(path, "write", std::string("OpenEXR left out a part of it; is there enough memory?"));
     }
     target.commit();
+}
+
+}  // namespace
+
+void set_exr_threads(int threads) {
+    Imf::setGlobalThreadCount(threads);
+}
+
+void write_exr(const std::string& path, const LayeredPicture& picture) {
+    write_parts(path, {{"", picture}});
+}
+
+void write_exr(const std::string& path, const std::vector<PicturePart>& parts) {
+    std::vector<PartToWrite> all;
+    for (const PicturePart& part : parts) all.push_back({part.name, part.picture});
+    write_parts(path, all);
 }
 
 }  // namespace cistula

@@ -48,4 +48,10 @@ struct LayeredPicture {
     std::map<std::string, std::variant<std::string, int, double, std::vector<float>, Ratio>> attributes;
 };
 
+/// A part of an EXR file. The name tells it apart from other parts; the only part of a file needs none.
+struct PicturePart {
+    std::string name;
+    LayeredPicture picture;
+};
+
 }  // namespace cistula

@@ -40,9 +40,9 @@ class Writers : public testing::Test {
     FinishedFrame frame(int number, int side, const std::string& name = "") const {
         FinishedFrame finished;
         finished.film = noise(side, static_cast<uint64_t>(number));
-        finished.path = path(name.empty() ? std::to_string(number) + ".exr" : name);
+        finished.image = OutputName(path(name.empty() ? std::to_string(number) + ".exr" : name), "-o");
         finished.stats.frame = number;
-        finished.stats.file = finished.path;
+        finished.stats.file = finished.image.for_frame(number);
         return finished;
     }
     std::string path(const std::string& name) const { return folder_.file(name); }

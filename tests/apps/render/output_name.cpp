@@ -46,6 +46,18 @@ TEST(OutputName, EveryFrameHasItsOwnName) {
     }
 }
 
+TEST(OutputName, LayersStandBeforeTheFrameNumberOrTheExtension) {
+    const auto named = [](const char* text) { return OutputName(text, "-o").for_layer(12, "diffuse"); };
+    EXPECT_EQ(named("beauty.####.exr"), "beauty.diffuse.0012.exr");
+    EXPECT_EQ(named("out/beauty_%04d.exr"), "out/beauty_diffuse_0012.exr");
+    EXPECT_EQ(named("beauty%d.exr"), "beauty.diffuse.12.exr");
+    EXPECT_EQ(named("out/####.exr"), "out/diffuse.0012.exr");
+    EXPECT_EQ(named("####.exr"), "diffuse.0012.exr");
+    EXPECT_EQ(named("%02d/beauty.exr"), "12/beauty.diffuse.exr");
+    EXPECT_EQ(named("v1.2/beauty.exr"), "v1.2/beauty.diffuse.exr");
+    EXPECT_EQ(named("beauty.exr"), "beauty.diffuse.exr");
+}
+
 TEST(OutputName, Errors) {
     const auto conversion = [](const std::string& text) {
         return "-o " + text + ": after % only d, as in %d or %04d, or another % for a percent sign";
