@@ -1,4 +1,4 @@
-// ICC profiles, and the gammas of PNG: the encodings that they mean, and names of what is none of them.
+// ICC profiles: the encodings that they mean, and names of what is none of them.
 #include "scene/image/icc_profile.h"
 
 #include <gtest/gtest.h>
@@ -114,14 +114,6 @@ TEST(IccProfile, DamageIsNamed) {
             EXPECT_TRUE(colors.id.empty() != colors.profile.empty()) << i;
             EXPECT_LE(colors.profile.size(), 80u);
         }
-}
-
-TEST(IccProfile, GammasOfPng) {
-    EXPECT_EQ(colors_of_gamma(1).id, "linear");
-    EXPECT_EQ(colors_of_gamma(1.8).id, "g18_rec709_scene");
-    EXPECT_EQ(colors_of_gamma(1 / 0.41667).id, "g24_rec709_scene");
-    EXPECT_EQ(colors_of_gamma(1 / 0.45455).id + colors_of_gamma(1 / 0.45455).profile, "");
-    EXPECT_EQ(colors_of_gamma(3).profile, "gamma 3");
 }
 
 }  // namespace

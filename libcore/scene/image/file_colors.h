@@ -10,10 +10,10 @@
 
 namespace cistula {
 
-/// Attributes of an OpenEXR file, or what a profile or a gamma of another file means.
+/// Attributes of an OpenEXR file, or what a profile or the header of another file means.
 struct FileColors {
     std::string id;       // colorInteropID, or a name of color_encodings; empty: none
-    std::string profile;  // name of an ICC profile, or a gamma, that is none of them; empty: none
+    std::string profile;  // name of an ICC profile, or of something else, that is none of them; empty: none
     std::optional<Chromaticities> chromaticities;
     bool is_aces = false;  // acesImageContainerFlag, of SMPTE ST 2065-4
     bool is_half = false;  // numbers are rounded to halves

@@ -152,19 +152,4 @@ FileColors colors_of_profile(std::string_view bytes) {
     return colors;
 }
 
-FileColors colors_of_gamma(double gamma) {
-    constexpr double tolerance = 0.03;
-    const auto is = [&](double known) { return magnitude(gamma - known) <= tolerance; };
-    FileColors colors;
-    if (is(1))
-        colors.id = "linear";
-    else if (is(1.8))
-        colors.id = "g18_rec709_scene";
-    else if (is(2.4))
-        colors.id = "g24_rec709_scene";
-    else if (!is(2.2))
-        colors.profile = fmt::format("gamma {:.4g}", gamma);
-    return colors;
-}
-
 }  // namespace cistula

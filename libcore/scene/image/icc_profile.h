@@ -1,4 +1,4 @@
-// ICC profiles in pictures, and the gammas of PNG: which color encoding they mean.
+// ICC profiles in pictures: which color encoding they mean.
 #pragma once
 
 #include <string_view>
@@ -12,9 +12,5 @@ namespace cistula {
 /// where they differ by at most 0.002 in light, primaries where their XYZ does. Profiles of gray pictures have curves
 /// alone. Never throws for what the bytes are.
 FileColors colors_of_profile(std::string_view bytes);
-
-/// What the gamma of a PNG without a profile says, where light is number ^ gamma: as `id` linear, 1.8 or 2.4; nothing
-/// for 2.2, by which programs mean sRGB; others as `profile`.
-FileColors colors_of_gamma(double gamma);
 
 }  // namespace cistula

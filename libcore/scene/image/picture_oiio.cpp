@@ -79,17 +79,11 @@ bool read_rows(OIIO::ImageInput& input, const OiioHost& host, int channels, OIIO
     return true;
 }
 
-/// What a file says of its colors. Of gammas only PNG's, which are those of the numbers.
-OiioColors colors_of(const OIIO::ImageSpec& spec, std::string_view format) {
-    OiioColors colors = {};
-    if (const OIIO::ParamValue* profile = spec.find_attribute("ICCProfile");
-        profile && profile->type().basetype == OIIO::TypeDesc::UINT8) {
-        colors.profile = profile->data();
-        colors.profile_bytes = static_cast<size_t>(profile->datasize());
-    } else if (format == "png") {
-        colors.gamma = static_cast<double>(spec.get_float_attribute("oiio:Gamma", 0));
-    }
-    return colors;
+/// Gives the host the file's ICC profile.
+void send_profile(const OIIO::ImageSpec& spec, const OiioHost& host) {
+    const OIIO::ParamValue* profile = spec.find_attribute("ICCProfile");
+    if (profile && profile->type().basetype == OIIO::TypeDesc::UINT8)
+        host.profile(host.self, profile->data(), static_cast<size_t>(profile->datasize()));
 }
 
 bool read_opened(OIIO::ImageInput& input, const char* path, const OiioHost& host) {
@@ -102,7 +96,7 @@ bool read_opened(OIIO::ImageInput& input, const char* path, const OiioHost& host
         return fail(host, std::string("its samples are of type ") + spec.format.c_str() +
                               "; a texture has 8 or 16 bits, half or float");
     const int channels = spec.nchannels < 3 ? 1 : 3;
-    host.colors(host.self, colors_of(spec, input.format_name()));
+    send_profile(spec, host);
     if (!host.begin(host.self, spec.width, spec.height, static_cast<uint32_t>(channels), type)) return false;
     const std::string damage = picture_damage(input.format_name(), path);
     return damage.empty() ? read_rows(input, host, channels, format) : fail(host, damage);
@@ -132,7 +126,7 @@ bool read(const char* path, const OiioHost* host) noexcept {
 }  // namespace
 }  // namespace cistula
 
-extern "C" __attribute__((visibility("default"))) const cistula::OiioModule* cistula_oiio_module_4() {
+extern "C" __attribute__((visibility("default"))) const cistula::OiioModule* cistula_oiio_module_5() {
     static constexpr cistula::OiioModule module = {cistula::read};
     return &module;
 }

@@ -10,20 +10,13 @@ namespace cistula {
 /// Type of a sample; the value is its size in bytes.
 enum class OiioSamples : uint32_t { uint8 = 1, uint16 = 2, float32 = 4 };
 
-/// What a file says of its colors.
-struct OiioColors {
-    const void* profile;  // ICC; null: none
-    size_t profile_bytes;
-    double gamma;  // light = number ^ gamma; 0: none
-};
-
 /// Callbacks of the calling side. Every function gets `self`; reasons are copied before it returns.
 struct OiioHost {
     void* self;
     /// Bytes that the texels of the picture may take, 12 each.
     uint64_t left;
-    /// Receives what the file says of its colors, before `begin`. The profile is the module's.
-    void (*colors)(void* self, const OiioColors& colors) noexcept;
+    /// Receives the file's ICC profile, if it has one, before `begin`. The bytes are the module's.
+    void (*profile)(void* self, const void* bytes, size_t count) noexcept;
     /// Announces a picture. False: the host refuses and knows the reason; the module returns.
     bool (*begin)(void* self, int64_t width, int64_t height, uint32_t channels, OiioSamples type) noexcept;
     /// Takes the next `texels` texels of width * height, row-major from the top left.
@@ -42,6 +35,6 @@ struct OiioModule {
 
 /// The one function that the module exports. Its number changes whenever this header does.
 using OiioModuleEntry = const OiioModule* (*)();
-inline constexpr const char* oiio_module_entry = "cistula_oiio_module_4";
+inline constexpr const char* oiio_module_entry = "cistula_oiio_module_5";
 
 }  // namespace cistula

@@ -22,6 +22,7 @@
 #include "scene/image/icc_profile.h"
 #include "scene/image/picture_oiio.h"
 #include "scene/image/reader_wire.h"
+#include "scene/image/stated_colors.h"
 #include "scene/image/texture_limits.h"
 
 namespace cistula {
@@ -77,7 +78,11 @@ uint64_t address_space() {
 /// One answer.
 class Answer {
   public:
-    explicit Answer(const ReadRequest& request) : request_(request) { allow_seconds_for(0); }
+    /// `stated`: what the picture's header says of its colors.
+    Answer(const ReadRequest& request, std::optional<FileColors> stated)
+        : request_(request), stated_(std::move(stated)) {
+        allow_seconds_for(0);
+    }
 
     /// Why a picture of this size is refused; empty if it is not, and then it may take the time for its size.
     std::string size_problem(int64_t width, int64_t height) const {
@@ -101,7 +106,13 @@ class Answer {
         send_part(ReplyKind::colors, bytes.data(), bytes.size());
     }
 
+    /// Says what a profile says, where the header does not come before it.
+    void profile(std::string_view bytes) const {
+        if (!stated_) colors(colors_of_profile(bytes));
+    }
+
     bool begin(int64_t width, int64_t height, uint32_t channels, OiioSamples type) {
+        if (stated_) colors(*stated_);
         if (const std::string problem = size_problem(width, height); !problem.empty()) {
             send_failure(problem);
             return false;
@@ -129,18 +140,15 @@ class Answer {
     }
 
     const ReadRequest& request_;
+    const std::optional<FileColors> stated_;
     size_t texel_ = 0;
 };
 
 OiioHost host_of(Answer& answer, uint64_t left) {
     return {&answer,
             left,
-            [](void* self, const OiioColors& colors) noexcept {
-                const std::string_view profile(static_cast<const char*>(colors.profile), colors.profile_bytes);
-                if (colors.profile)
-                    static_cast<const Answer*>(self)->colors(colors_of_profile(profile));
-                else if (colors.gamma > 0)
-                    static_cast<const Answer*>(self)->colors(colors_of_gamma(colors.gamma));
+            [](void* self, const void* bytes, size_t count) noexcept {
+                static_cast<Answer*>(self)->profile({static_cast<const char*>(bytes), count});
             },
             [](void* self, int64_t width, int64_t height, uint32_t channels, OiioSamples type) noexcept {
                 return static_cast<Answer*>(self)->begin(width, height, channels, type);
@@ -171,7 +179,7 @@ void answer_exr(const std::string& path, Answer& answer) {
 [[noreturn]] void answer_and_end(const std::string& path, const ReadRequest& request) {
     constexpr uint64_t beside_texels = 1 << 30;
     limit(RLIMIT_AS, address_space() + beside_texels + 2 * request.left);
-    Answer answer(request);
+    Answer answer(request, request.is_exr ? std::nullopt : stated_colors(path));
     if (request.is_exr)
         answer_exr(path, answer);
     else

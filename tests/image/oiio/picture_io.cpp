@@ -8,6 +8,7 @@
 
 #include "scene/image/exr.h"
 #include "scene/image/raw_picture.h"
+#include "testing/support/byte_order.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/icc_profiles.h"
 #include "testing/support/scratch_directory.h"
@@ -94,6 +95,31 @@ TEST(Textures, GammasOfPngAreRead) {
     EXPECT_NEAR(texel(1.0f), 128 / 255.0f, 1e-6f);
     EXPECT_NEAR(texel(1.8f), 0.289205f, 1e-6f);
     EXPECT_EQ(texel(2.2f), decoded(128, 0, 0).x);
+}
+
+/// What the library does not tell is read from the header.
+TEST(Textures, PrimariesOfPngAndRadianceAreRead) {
+    const ScratchDirectory scratch;
+    const std::string png = scratch.file("a.png"), hdr = scratch.file("a.hdr");
+    const auto with_header = [](const std::string& path, size_t at, const std::string& more) {
+        const std::string bytes = bytes_of(path);
+        put_bytes(path, bytes.substr(0, at) + more + bytes.substr(at));
+    };
+    write_image<uint8_t>(png, 1, 3, OIIO::TypeDesc::UINT8, {200, 100, 50});
+    const std::string told = "srgb_p3d65_scene";
+    const glm::vec3 expected = read_texture(png, told).texels.at(0);
+    EXPECT_NE(read_texture(png).texels.at(0), expected);
+    std::string chunk = "cHRM";
+    for (const uint64_t xy : {31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000}) chunk += test::big_endian(xy, 4);
+    constexpr size_t after_size = 33;
+    with_header(png, after_size, test::big_endian(32, 4) + chunk + test::big_endian(0xf1f8'ca57, 4));
+    EXPECT_EQ(read_texture(png).texels.at(0), expected);
+
+    write_image<float>(hdr, 1, 3, OIIO::TypeDesc::FLOAT, {0.5f, 0.25f, 0.75f});
+    const glm::vec3 rec2020 = read_texture(hdr, "lin_rec2020_scene").texels.at(0);
+    EXPECT_NE(read_texture(hdr).texels.at(0), rec2020);
+    with_header(hdr, bytes_of(hdr).find('\n') + 1, "PRIMARIES= 0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290\n");
+    EXPECT_EQ(read_texture(hdr).texels.at(0), rec2020);
 }
 
 TEST(Textures, AlphaChangesNoColor) {
