@@ -4,6 +4,7 @@
 #include <map>
 
 #include "scene/image/exr.h"
+#include "testing/support/expect_error.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {
