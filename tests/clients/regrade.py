@@ -1,23 +1,30 @@
-"""regrade.py FRAME.exr DIMMED.exr: oiiotool dims the lamps of the group `key` in a frame of lamps.json to a quarter.
+"""regrade.py FRAME.exr GROUP FACTOR [REGRADED.exr]: oiiotool multiplies the layer of a light group in a frame.
 
-DIMMED is the same frame rendered with those lamps at a quarter.
+REGRADED is the same frame rendered with that group's lamps so; without it the result is compared with the frame's own layers.
 """
 import pathlib
 import subprocess
 import sys
 import tempfile
 
+import numpy as np
+
 import clients
 
-frame, dimmed = sys.argv[1:]
+frame, group, factor = sys.argv[1], sys.argv[2], float(sys.argv[3])
 oiiotool = pathlib.Path(sys.executable).with_name("oiiotool")
 checks = clients.Checks("oiiotool")
 with tempfile.TemporaryDirectory() as folder:
     made = f"{folder}/regraded.exr"
-    key = "R=Combined_key.R,G=Combined_key.G,B=Combined_key.B"
-    subprocess.run([oiiotool, frame, "--ch", "R,G,B", frame, "--ch", key, "--mulc", "-0.75", "--add", "-o", made], check=True)
+    own = ",".join(f"{c}=Combined_{group}.{c}" for c in "RGB")
+    subprocess.run([oiiotool, frame, "--ch", "R,G,B", frame, "--ch", own, "--mulc", f"{factor - 1}", "--add", "-o", made], check=True)
     regraded = clients.layer(clients.read(made)[1], "")
-wanted = clients.layer(clients.read(dimmed)[1], "")
-# Values up to 2, rounded a few times on the way.
-checks.near(regraded, wanted, 2e-6, "less three quarters of Combined_key it is the frame whose lamps are at a quarter")
+_, channels = clients.read(frame)
+whole = clients.layer(channels, "").astype(np.float64)
+if len(sys.argv) > 4:
+    wanted = clients.layer(clients.read(sys.argv[4])[1], "")
+else:
+    wanted = whole + (factor - 1) * clients.layer(channels, f"Combined_{group}").astype(np.float64)
+# Values are rounded a few times on the way.
+checks.near(regraded, wanted, 1e-6 * whole.max(), f"{pathlib.Path(frame).name}: Combined_{group} times {factor}, and all else as it was")
 checks.finish()
