@@ -237,6 +237,7 @@ void render_scene(RenderOptions options) {
                              stats.scene_hash));
         FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
         job.layer_names = prepared.layer_names;
+        require_light_layers(options.channels, *job.layer_names);
         outputs.layers = layers_with_files(job);
         if (!outputs.layers.empty()) check_names(options, others, read, outputs);
         if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };

@@ -4,7 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "apps/common/command_line.h"
@@ -14,6 +16,7 @@
 #include "cistula/transport/ray_tree.h"
 #include "exclusions.h"
 #include "scene/base/suggest.h"
+#include "scene/description/light_group.h"
 #include "scene/film/frame_settings.h"
 #include "scene/readers/read_scene.h"
 
@@ -291,15 +294,31 @@ OutputChannels parse_layers(std::string_view text) {
         known.push_back({path_layer_names[layer], "path", &layers.path[layer]});
     std::vector<std::string_view> names = {"path", "data", "cryptomatte"};
     for (const Layer& layer : known) names.push_back(layer.name);
+    bool all_lights = false;
     for (const std::string_view name : parts_at_commas(text)) {
         bool found = false;
+        if (name.starts_with(light_layer_prefix)) {
+            layers.light = found = true;
+            layers.light_layers.emplace_back(name.substr(light_layer_prefix.size()));
+        }
+        all_lights |= name == "light";
         for (const Layer& layer : known)
             if (layer.name == name || layer.group == name) *layer.wanted = found = true;
         if (!found)
             fail_usage(fmt::format("--layers {}: there is no layer '{}'; {}", text, name,
                                    nearest_first(name, names, "layers")));
     }
+    if (all_lights) layers.light_layers.clear();
     return layers;
+}
+
+void require_light_layers(const OutputChannels& channels, const LayerNames& names) {
+    std::vector<std::string_view> known(std::begin(common_light_layer_names), std::end(common_light_layer_names));
+    known.insert(known.end(), names.light_groups.begin(), names.light_groups.end());
+    for (const std::string& layer : channels.light_layers)
+        if (std::find(known.begin(), known.end(), layer) == known.end())
+            fail_usage(fmt::format("--layers {}{}: the scene has no such group of lights; {}", light_layer_prefix,
+                                   layer, nearest_first(layer, known, "groups")));
 }
 
 SceneDescription read_scene(const RenderOptions& options) {

@@ -46,6 +46,12 @@ class FilmLayers : public ::testing::Test {
         std::memcpy(&word(plan.first_hit), &hit, sizeof hit);
     }
 
+    std::vector<std::string> light_layers() const {
+        std::vector<std::string> names;
+        for (const auto& channel : to_layers(film_, channels_).channels)
+            if (channel.name.starts_with("Combined_") && channel.name.ends_with(".R")) names.push_back(channel.name);
+        return names;
+    }
     int64_t& word(int i) { return film_.layers.words[static_cast<size_t>(i)]; }
     float value(std::string_view name) const {
         const LayeredPicture picture = to_layers(film_, channels_);
@@ -58,6 +64,14 @@ class FilmLayers : public ::testing::Test {
     Film film_;
     OutputChannels channels_;
 };
+
+TEST_F(FilmLayers, SingleLayersOfLightsAreThoseOfAll) {
+    const float fill = value("Combined_fill.R");
+    EXPECT_EQ(light_layers().size(), 5u);
+    channels_.light_layers = {"fill", "glow"};
+    EXPECT_EQ(light_layers(), (std::vector<std::string>{"Combined_glow.R", "Combined_fill.R"}));
+    EXPECT_EQ(value("Combined_fill.R"), fill);
+}
 
 TEST_F(FilmLayers, DivisionsStandUnderTheirNames) {
     EXPECT_EQ(value("emission.G"), 1.0f / 64);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scene/film/film.h"
 #include "scene/image/color_space.h"
@@ -15,8 +16,9 @@ struct OutputChannels {
         false;  // R G B A, coverage, error.* and N.* in half precision; id, samples, cost and Z are always float
     bool error = false, id = false, samples = false, cost = false, z = false, normal = false, coverage = false;
     bool position = false, uv = false, albedo = false, depth_ray = false, material_id = false;
-    bool path[path_layer_count] = {};  // by PathLayer
-    bool light = false;                // all light layers
+    bool path[path_layer_count] = {};            // by PathLayer
+    bool light = false;                          // light layers: all, or these alone
+    std::vector<std::string> light_layers = {};  // by their names without "Combined_"
     bool object_mattes = false, material_mattes = false, light_mattes = false;
     bool transparent = false;           // samples that meet nothing add nothing to R, G, B and A
     float z_far = 1e10f;                // Z where there is nothing

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <iterator>
 
@@ -46,8 +47,10 @@ std::vector<FilmChannel> layer_channels(const Film& film, const OutputChannels& 
     if (channels.light) {
         int place = layers.plan.light;
         const auto add = [&](std::string_view name) {
+            const std::vector<std::string>& wanted = channels.light_layers;
             const bool background = place == layers.plan.light + 3 * static_cast<int>(LightLayer::environment);
-            add_sums(to, film, channels, colors, std::string(light_layer_prefix).append(name), place, background);
+            if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
+                add_sums(to, film, channels, colors, std::string(light_layer_prefix).append(name), place, background);
             place += 3;
         };
         static_assert(std::size(common_light_layer_names) == common_light_layers);

@@ -322,6 +322,18 @@ TEST(RenderOptions, Layers) {
     const OutputChannels groups = parse_layers("path,cryptomatte,uv");
     EXPECT_TRUE(groups.path[0] && groups.path[path_layer_count - 1] && groups.uv && !groups.light && !groups.z);
     EXPECT_TRUE(groups.object_mattes && groups.material_mattes && groups.light_mattes);
+    const OutputChannels lights = parse_layers("Combined_key,Z,Combined_glow");
+    EXPECT_TRUE(lights.light && lights.z);
+    EXPECT_EQ(lights.light_layers, (std::vector<std::string>{"key", "glow"}));
+    EXPECT_TRUE(parse_layers("Combined_key,light").light_layers.empty());
+    LayerNames known;
+    known.light_groups = {"key", "fill"};
+    require_light_layers(lights, known);
+    known.light_groups = {"keys", "fill"};
+    EXPECT_ERROR(
+        require_light_layers(lights, known), ExitCode::usage,
+        "--layers Combined_key: the scene has no such group of lights; the groups are: keys, ambient, environment, "
+        "glow, fill");
     const OutputChannels data = parse_layers("data");
     EXPECT_TRUE(data.position && data.material_id && data.error && data.coverage && !data.path[0]);
     EXPECT_TRUE(parse_layers("light").light && parse_layers("specular").path[4]);
