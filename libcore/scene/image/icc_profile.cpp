@@ -9,6 +9,7 @@
 
 #include "cistula/numerics/elementary.h"
 #include "cistula/numerics/real.h"
+#include "scene/base/big_endian.h"
 #include "scene/image/color_encoding.h"
 
 namespace cistula {
@@ -26,12 +27,7 @@ class ProfileBytes {
     std::string_view text(size_t at, size_t size) const {
         return at < bytes_.size() ? bytes_.substr(at, size) : std::string_view();
     }
-    uint32_t unsigned_number(size_t at, size_t size) const {
-        uint32_t number = 0;
-        for (size_t i = 0; i < size; ++i)
-            number = number << 8 | (at + i < bytes_.size() ? static_cast<unsigned char>(bytes_[at + i]) : 0u);
-        return number;
-    }
+    uint32_t unsigned_number(size_t at, size_t size) const { return big_endian(bytes_, at, size); }
     /// s15Fixed16Number.
     double fixed(size_t at) const { return static_cast<int32_t>(unsigned_number(at, 4)) / 65536.0; }
 

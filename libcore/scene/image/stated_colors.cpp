@@ -10,17 +10,11 @@
 #include <string_view>
 
 #include "cistula/numerics/portable.h"
+#include "scene/base/big_endian.h"
 #include "scene/image/color_encoding.h"
 
 namespace cistula {
 namespace {
-
-/// A number of four bytes, highest first; 0 beyond the end.
-uint32_t number_at(std::string_view bytes, size_t at) {
-    uint32_t value = 0;
-    for (size_t i = at; i < at + 4; ++i) value = value << 8 | (i < bytes.size() ? static_cast<uint8_t>(bytes[i]) : 0);
-    return value;
-}
 
 /// The chunks of a PNG that say something of its colors; empty: there is none.
 struct PngChunks {
@@ -36,7 +30,7 @@ PngChunks read_chunks(std::istream& file) {
         if (!file.read(head.data(), 8)) break;
         const std::string_view type = std::string_view(head).substr(4);
         if (type == "IDAT" || type == "IEND") break;
-        const uint32_t size = number_at(head, 0);
+        const uint32_t size = big_endian(head, 0);
         std::string* const kept = type == "cICP"   ? &found.cicp
                                   : type == "gAMA" ? &found.gama
                                   : type == "cHRM" ? &found.chrm
@@ -109,11 +103,11 @@ std::optional<FileColors> colors_of_png(std::istream& file) {
     if (chunks.profile) return std::nullopt;
     if (chunks.srgb) return known("srgb");
     FileColors colors;
-    if (const uint32_t gamma = number_at(chunks.gama, 0); gamma != 0) colors = colors_of_gamma(100000.0 / gamma);
+    if (const uint32_t gamma = big_endian(chunks.gama, 0); gamma != 0) colors = colors_of_gamma(100000.0 / gamma);
     if (chunks.chrm.empty()) return colors;
     Chromaticities chromaticities;  // the file has white first
     for (size_t i = 0; i < 8; ++i)
-        chromaticities[i] = static_cast<float>(number_at(chunks.chrm, 4 * ((i + 2) % 8)) / 100000.0);
+        chromaticities[i] = static_cast<float>(big_endian(chunks.chrm, 4 * ((i + 2) % 8)) / 100000.0);
     return with_primaries(std::move(colors), chromaticities);
 }
 
