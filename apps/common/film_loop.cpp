@@ -69,16 +69,18 @@ bool is_finished(const FrameFile& file) {
 bool is_finished(const FilmJob& job, const CameraFrame& camera) {
     const std::string preview = job.preview.for_frame(camera.frame);
     std::error_code error;
+    if (!std::filesystem::is_regular_file(job.output.for_frame(camera.frame), error)) return false;
     if (!preview.empty() && !std::filesystem::exists(preview, error)) return false;
     const std::vector<FrameFile> files = expected_files(job, camera);
     return std::all_of(files.rbegin(), files.rend(), [](const FrameFile& file) { return is_finished(file); });
 }
 
 /// Throws Error if a frame cannot be written.
-void probe_outputs(const FilmJob& job, int frame) {
-    const AtomicFile image(job.output.for_frame(frame));
-    if (!job.preview.text().empty()) const AtomicFile preview(job.preview.for_frame(frame));
-    for (const std::string& layer : layers_with_files(job)) const AtomicFile own(job.output.for_layer(frame, layer));
+void probe_outputs(const FilmJob& job, const CameraFrame& camera) {
+    const AtomicFile image(job.output.for_frame(camera.frame));
+    if (!job.preview.text().empty()) const AtomicFile preview(job.preview.for_frame(camera.frame));
+    if (job.options.split == Split::files)
+        for (const FrameFile& file : expected_files(job, camera)) const AtomicFile own(file.path);
 }
 
 /// Finished frames that are looked at for the one to announce to the renderer, before it renders the one before.
@@ -204,7 +206,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             if (!next) next = frames.next();
             if (!next || progress.stop) break;
             const CameraFrame camera = *next;
-            if (rendered == 0) probe_outputs(job, camera.frame);
+            if (rendered == 0) probe_outputs(job, camera);
             next = frames.next(most_looked_at);
             progress.pixels_done = 0;
             progress.rays = 0;

@@ -124,15 +124,13 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
     return outputs;
 }
 
-/// Checks the names of the first frames, and of all that may be those of `others`: `paths`, the scene and the stats.
+/// Checks the names of all frames that may be those of `others`: `paths`, the scene and the stats.
 void check_names(const RenderOptions& options, const RunFiles& others, std::vector<std::string> paths,
                  const Outputs& outputs) {
     paths.insert(paths.end(), {options.scene, options.stats});
-    const auto check = [&](const std::vector<int>& frames) {
-        require_different_files(others, outputs.image, outputs.preview, frames, outputs.layers);
-    };
-    for (const std::string& path : paths) check(frames_named_in(path, outputs.frames));
-    check(outputs.frames.part(0, stretch_length));
+    for (const std::string& path : paths)
+        require_different_files(others, outputs.image, outputs.preview, frames_named_in(path, outputs.frames),
+                                outputs.layers);
 }
 
 /// Checks the files to be written against all others, makes the directories of the first frames, and finds their
@@ -239,7 +237,11 @@ void render_scene(RenderOptions options) {
         job.layer_names = prepared.layer_names;
         require_light_layers(options.channels, *job.layer_names);
         outputs.layers = layers_with_files(job);
-        if (!outputs.layers.empty()) check_names(options, others, read, outputs);
+        if (!outputs.layers.empty()) {  // their names are known only now
+            check_names(options, others, read, outputs);
+            require_different_files(others, outputs.image, outputs.preview, outputs.frames.part(0, stretch_length),
+                                    outputs.layers);
+        }
         if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
         job.look_ahead = [&](const std::vector<int>& frames) {
             return look_ahead(outputs, options, scene, others, frames);

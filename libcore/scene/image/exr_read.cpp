@@ -24,8 +24,10 @@ void check_whole_numbers(const LayeredPicture::Channel& channel) {
                                  " has whole numbers of 2^24 or more, which are not told apart here");
 }
 
-LayeredPicture read_part(Imf::InputPart& file, const std::string& path) {
-    const Imf::Header& header = file.header();
+LayeredPicture read_part(Imf::MultiPartInputFile& parts, int number, const std::string& path) {
+    const Imf::Header& header = parts.header(number);
+    check_flat(header, parts.parts() == 1 || !header.hasName() ? "it" : "part " + header.name());
+    Imf::InputPart file(parts, number);
     check_sampling(header);
     check_claim(header, path);
     check_chunks(file);
@@ -62,10 +64,7 @@ std::vector<PicturePart> read_exr_parts(const std::string& path) {
         std::vector<PicturePart> parts;
         for (int i = 0; i < file.parts(); ++i) {
             const Imf::Header& header = file.header(i);
-            parts.push_back({header.hasName() ? header.name() : "", {}});
-            check_flat(header, file.parts() == 1 ? "it" : "part " + parts.back().name);
-            Imf::InputPart part(file, i);
-            parts.back().picture = read_part(part, path);
+            parts.push_back({header.hasName() ? header.name() : "", read_part(file, i, path)});
         }
         return parts;
     });
@@ -78,9 +77,7 @@ LayeredPicture read_exr(const std::string& path) {
         Imf::MultiPartInputFile file(path.c_str());
         if (file.parts() != 1)
             throw std::runtime_error("it has " + std::to_string(file.parts()) + " parts; give a file of one part");
-        check_flat(file.header(0));
-        Imf::InputPart part(file, 0);
-        LayeredPicture picture = read_part(part, path);
+        LayeredPicture picture = read_part(file, 0, path);
         if (file.header(0).hasName()) picture.attributes["name"] = file.header(0).name();
         return picture;
     });
@@ -94,7 +91,7 @@ bool exr_is_complete(const std::string& path) {
         for (int i = 0; i < file.parts(); ++i) {
             Imf::InputPart part(file, i);
             check_chunks(part);
-            if (part.header().hasTileDescription()) read_part(part, path);
+            if (part.header().hasTileDescription()) read_part(file, i, path);
         }
         return true;
     } catch (const std::exception&) {
