@@ -15,6 +15,7 @@
 #include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
+#include "apps/common/view_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "explain.h"
 #include "options.h"
@@ -194,6 +195,8 @@ void render_scene(RenderOptions options) {
     stats.read_seconds = seconds_of([&] { scene = read_scene(options); });
     if (explain) return print(explain_table(scene.source, explain_effects(scene)));
 
+    if (const std::string warning = open_config_view(options.view); !warning.empty())
+        print_warnings({warning}, options);
     const FrameSettings settings = frame_settings(options, scene);
     advise_on_memory(options, settings);
     Outputs outputs = plan_outputs(options, scene);

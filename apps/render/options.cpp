@@ -81,7 +81,8 @@ void declare(CLI::App& app, OptionTexts& texts) {
     app.add_option("--exposure", texts.view.exposure, "with --preview: stops by which it is brighter; 0")
         ->type_name("EV");
     app.add_option("--view", texts.view.view,
-                   "with --preview: srgb cuts off above white, filmic tells bright colors apart; srgb")
+                   "with --preview: srgb cuts off above white, filmic tells bright colors apart, or a view of "
+                   "$OCIO; srgb")
         ->type_name("NAME");
     app.add_option("--bloom", texts.view.bloom, "with --preview: how much light above white glows around; 0")
         ->type_name("AMOUNT");

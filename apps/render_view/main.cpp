@@ -3,6 +3,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/output_name.h"
+#include "apps/common/view_options.h"
 #include "layer_choice.h"
 #include "options.h"
 #include "scene/base/file_bytes.h"
@@ -12,11 +13,13 @@
 namespace cistula {
 namespace {
 
-void show(const ViewOptions& options) {
+void show(ViewOptions options) {
     const ExrFile file(options.file);
     const std::vector<Layer> layers = layers_of(file.parts());
     if (layers.empty()) throw file_error(options.file, "show", std::string("it has no channels"));
     if (options.action == ViewAction::list) return print(layer_table(file.parts(), layers));
+    if (const std::string warning = open_config_view(options.view); !warning.empty() && !options.quiet)
+        note(fmt::format("render-view: warning: {}", warning));
     const Sheet sheet =
         make_sheet(file, options.all ? layers : chosen_layers(layers, options.layers, options.file), options);
     make_directory_of(options.output);

@@ -39,7 +39,8 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--exposure", texts.view.exposure, "stops by which colors and scalars are brighter; 0")
         ->type_name("EV");
     app.add_option("--view", texts.view.view,
-                   "of colors: srgb cuts off above white, filmic tells bright colors apart; srgb")
+                   "of colors: srgb cuts off above white, filmic tells bright colors apart, or a view of "
+                   "$OCIO; srgb")
         ->type_name("NAME");
     app.add_option("--bloom", texts.view.bloom, "of colors: how much light above white glows around; 0")
         ->type_name("AMOUNT");

@@ -1,4 +1,4 @@
-// The module that uses OpenImageIO; nothing else links that library.
+// The part that reads pictures of the module that uses OpenImageIO.
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "scene/base/file_bytes.h"
+#include "scene/image/oiio_module.h"
+#include "scene/image/oiio_view.h"
 #include "scene/image/picture_damage.h"
-#include "scene/image/picture_oiio_module.h"
 #include "scene/image/texture_limits.h"
 
 namespace cistula {
@@ -126,7 +127,8 @@ bool read(const char* path, const OiioHost* host) noexcept {
 }  // namespace
 }  // namespace cistula
 
-extern "C" __attribute__((visibility("default"))) const cistula::OiioModule* cistula_oiio_module_5() {
-    static constexpr cistula::OiioModule module = {cistula::read};
+extern "C" __attribute__((visibility("default"))) const cistula::OiioModule* cistula_oiio_module_6() {
+    static constexpr cistula::OiioModule module = {cistula::read, cistula::open_view, cistula::assumed_space,
+                                                   cistula::apply_view, cistula::close_view};
     return &module;
 }

@@ -33,6 +33,7 @@ ColorPicture viewed(ColorPicture linear, const PictureView& view, uint32_t full_
     if (view.bloom > 0) add_bloom(linear, view.bloom, full_height);
     if (view.curve == ViewCurve::filmic)
         for (glm::vec3& texel : linear.texels) texel = filmic_color(texel);
+    if (view.config) view.config->apply(linear);
     return linear;
 }
 

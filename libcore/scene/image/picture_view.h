@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
 
+#include "scene/image/config_view.h"
 #include "scene/image/picture.h"
 
 namespace cistula {
@@ -11,13 +14,16 @@ namespace cistula {
 enum class ViewCurve {
     srgb,    // cut off at 1
     filmic,  // filmic_color
+    config,  // a view of an OpenColorIO config
 };
 
 /// What a PNG shows of linear colors; by default the colors as they are.
 struct PictureView {
     double exposure = 0;  // stops: colors are multiplied by 2^exposure
     ViewCurve curve = ViewCurve::srgb;
-    double bloom = 0;  // how often the light above white is added to what is around it
+    double bloom = 0;                            // how often the light above white is added to what is around it
+    std::string name{};                          // that of the view of a config
+    std::shared_ptr<const ConfigView> config{};  // the view of a config, once it is open
 };
 
 /// A color in [0, 1] that tells bright colors apart. With m, the largest of r, g and b (below 0 they count as 0):

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -20,7 +21,7 @@
 #include "scene/image/exr.h"
 #include "scene/image/file_colors.h"
 #include "scene/image/icc_profile.h"
-#include "scene/image/picture_oiio.h"
+#include "scene/image/oiio_library.h"
 #include "scene/image/reader_wire.h"
 #include "scene/image/stated_colors.h"
 #include "scene/image/texture_limits.h"
@@ -175,16 +176,24 @@ void answer_exr(const std::string& path, Answer& answer) {
         answer.samples(picture.texels.data(), picture.texels.size());
 }
 
-/// Answers within the limits, and ends this process.
-[[noreturn]] void answer_and_end(const std::string& path, const ReadRequest& request) {
+/// Answers within the limits, and ends this process. `oiio`: null for an EXR.
+[[noreturn]] void answer_and_end(const std::string& path, const ReadRequest& request, const OiioModule* oiio) {
     constexpr uint64_t beside_texels = 1 << 30;
     limit(RLIMIT_AS, address_space() + beside_texels + 2 * request.left);
     Answer answer(request, request.is_exr ? std::nullopt : stated_colors(path));
-    if (request.is_exr)
+    if (request.is_exr) {
         answer_exr(path, answer);
-    else
-        oiio_read(path, host_of(answer, request.left));
+    } else {
+        const OiioHost host = host_of(answer, request.left);
+        oiio->read(path.c_str(), &host);
+    }
     _exit(0);
+}
+
+/// The directory of this program, in which the module for OpenImageIO lies.
+std::filesystem::path own_directory() {
+    std::error_code failure;
+    return std::filesystem::read_symlink("/proc/self/exe", failure).parent_path();
 }
 
 /// Ends this process if the one that started it has ended, or ends.
@@ -210,12 +219,16 @@ void answer_one() {
     receive(&request, sizeof request);
     std::string path(request.path_size, '\0');
     receive(path.data(), path.size());
-    const std::string missing = request.is_exr ? "" : load_oiio();
-    if (!missing.empty()) return send_failure(missing);
+    const OiioModule* oiio = nullptr;
+    try {
+        if (!request.is_exr) oiio = &load_oiio(own_directory(), "formats other than EXR and .data");
+    } catch (const std::exception& error) {
+        return send_failure(error.what());
+    }
     const pid_t self = getpid(), child = fork();
     if (child == 0) {
         end_with(self);
-        answer_and_end(path, request);
+        answer_and_end(path, request, oiio);
     }
     if (child < 0) return send_failure("no process can be started to decode it");
     int status = 0;

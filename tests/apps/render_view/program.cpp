@@ -147,8 +147,6 @@ TEST_F(RenderView, SaysHowManyPixelsAreNotFinite) {
 TEST_F(RenderView, RefusesWhatIsNotThere) {
     expect_refused({"a.exr", "--layer", "glos"}, ExitCode::usage,
                    "--layer glos: a.exr has no layer 'glos'; the layers are: gloss, RGB, Z");
-    expect_refused({"a.exr", "--view", "filmik"}, ExitCode::usage,
-                   "--view filmik: there is no such view; the views are: filmic, srgb");
     expect_refused({"b.exr"}, ExitCode::file, "b.exr: cannot read: No such file or directory; check the spelling");
     put_bytes(file("c.exr"), "no picture");
     const ProgramResult result = run({"c.exr"});
@@ -156,6 +154,15 @@ TEST_F(RenderView, RefusesWhatIsNotThere) {
     EXPECT_EQ(result.error.rfind("render-view: c.exr: cannot read: ", 0), 0u) << result.error;
     EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
     EXPECT_FALSE(exists("c.view.png"));
+}
+
+/// Views of configs come after our own, where there is a config.
+TEST_F(RenderView, RefusesUnknownViews) {
+    const ProgramResult result = run({"a.exr", "--view", "filmik"});
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(result.error.rfind("render-view: --view filmik: there is no such view; the views are: filmic, ", 0), 0u)
+        << result.error;
+    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
 }
 
 /// A small file cannot ask for gigabytes by parts of unlike sizes.

@@ -15,8 +15,8 @@ TEST(WithoutOpenImageIO, OtherFormatsAreAClearError) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("x.png");
     const std::string message = path +
-                                ": cannot read: this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF), which reads "
-                                "formats other than EXR and .data; "
+                                ": cannot read: this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF), which "
+                                "formats other than EXR and .data need; "
                                 "`make build` installs it (Debian: libopenimageio-dev) and builds with it";
     put_bytes(path, "anything");
     EXPECT_ERROR(read_texture(path), ExitCode::file, message);
