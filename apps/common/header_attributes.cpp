@@ -28,8 +28,8 @@ bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected
     };
     Attributes settings = picture.attributes;
     for (const char* result : {proven_truncation, checked_pixels, off_pixels}) settings.erase(result);
-    return windows(picture) == windows(expected) && channels(picture) == channels(expected) &&
-           settings == expected.attributes;
+    return windows(picture) == windows(expected) && picture.compression == expected.compression &&
+           channels(picture) == channels(expected) && settings == expected.attributes;
 }
 
 }  // namespace cistula

@@ -10,8 +10,8 @@ namespace cistula {
 /// Adds what is proven and estimated of the image: provenTruncation, checkedPixels and offPixels.
 void add_target_attributes(const TargetReport& report, Attributes& attributes);
 
-/// Whether `picture` is the image that the attributes, windows and channels of `expected` describe. The values of
-/// `expected` are ignored, and so is what add_target_attributes() added to the picture.
+/// Whether `picture` is the image that the attributes, windows, channels and compression of `expected` describe. The
+/// values of `expected` are ignored, and so is what add_target_attributes() added to the picture.
 bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected);
 
 }  // namespace cistula

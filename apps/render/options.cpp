@@ -112,8 +112,8 @@ const ColorSpace* parse_color_space(const std::string& text) {
 float parse_z_far(const std::string& text) {
     if (text == "inf") return std::numeric_limits<float>::infinity();
     const auto value = whole_number<double>(text);
-    if (!value || !(*value > 0) || !(*value <= double(std::numeric_limits<float>::max())))
-        fail_usage(fmt::format("--z-far {}: must be a number above 0, or inf", one_line(text)));
+    if (!value || !(static_cast<float>(*value) > 0) || !(*value <= double(std::numeric_limits<float>::max())))
+        fail_usage(fmt::format("--z-far {}: must be a number above 0 in single precision, or inf", one_line(text)));
     return static_cast<float>(*value);
 }
 
@@ -295,6 +295,11 @@ OutputChannels parse_layers(std::string_view text) {
         known.push_back({path_layer_names[layer], "path", &layers.path[layer]});
     std::vector<std::string_view> names = {"path", "data", "cryptomatte"};
     for (const Layer& layer : known) names.push_back(layer.name);
+    std::vector<std::string> lights;
+    for (const std::string_view name : common_light_layer_names)
+        lights.push_back(std::string(light_layer_prefix).append(name));
+    lights.push_back(std::string(light_layer_prefix).append("GROUP"));  // of the scene, which is not read yet
+    names.insert(names.end(), lights.begin(), lights.end());
     bool all_lights = false;
     for (const std::string_view name : parts_at_commas(text)) {
         bool found = false;

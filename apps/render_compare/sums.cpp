@@ -44,7 +44,7 @@ DivisionSums sums_of(const std::string& name, const std::vector<std::string>& la
                 allowed += half_unit(part.values[pixel], part.half);
             }
             const double off = std::abs(sum - static_cast<double>(whole.values[pixel]));
-            if (off <= allowed + slack * size) continue;  // not a number is off
+            if (std::isfinite(sum) && off <= allowed + slack * size) continue;  // what is not finite is off
             is_off = true;
             if (off <= sums.most) continue;
             sums.most = off;
@@ -84,7 +84,9 @@ std::vector<DivisionSums> division_sums(const LayeredPicture& picture) {
         const std::string layer = name.substr(0, name.size() - red.size());
         if (std::find(lights.begin(), lights.end(), layer) == lights.end()) lights.push_back(layer);
     }
-    add("light", lights);
+    const auto stated = picture.attributes.find(light_layer_count);
+    const int* const count = stated == picture.attributes.end() ? nullptr : std::get_if<int>(&stated->second);
+    if (!count || static_cast<size_t>(*count) == lights.size()) add("light", lights);
     return divisions;
 }
 

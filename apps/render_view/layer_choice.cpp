@@ -22,22 +22,39 @@ std::vector<std::string_view> names_in(const std::vector<Layer>& layers, std::st
     return parts_at_commas(text);
 }
 
+/// What a name asks for that is not a layer's: a channel, or the layers of a Cryptomatte.
+std::vector<Layer> parts_of_layers(const std::vector<ExrPart>& parts, const std::vector<Layer>& layers,
+                                   std::string_view name) {
+    std::vector<Layer> found;
+    for (const Layer& layer : layers) {
+        if (layer.kind == LayerKind::mattes &&
+            layer.name.substr(0, layer.name.find_last_not_of("0123456789") + 1) == name)
+            found.push_back(layer);
+        for (const size_t channel : layer.channels)
+            if (parts[layer.part].channels[channel].name == name)
+                return {{std::string(name), LayerKind::scalar, layer.part, {channel}}};
+    }
+    return found;
+}
+
 }  // namespace
 
-std::vector<Layer> chosen_layers(const std::vector<Layer>& layers, const std::vector<std::string>& texts,
-                                 const std::string& file) {
+std::vector<Layer> chosen_layers(const std::vector<ExrPart>& parts, const std::vector<Layer>& layers,
+                                 const std::vector<std::string>& texts, const std::string& file) {
     if (texts.empty()) return {default_layer(layers)};
     std::vector<Layer> chosen;
     for (const std::string& text : texts)
         for (const std::string_view name : names_in(layers, text)) {
             const Layer* layer = find(layers, name);
-            if (!layer) {
+            const std::vector<Layer> within = layer ? std::vector{*layer} : parts_of_layers(parts, layers, name);
+            if (within.empty()) {
                 std::vector<std::string_view> names;
                 for (const Layer& known : layers) names.push_back(known.name);
                 fail_usage(fmt::format("--layer {}: {} has no layer {}; {}", text, file, quoted(name),
                                        nearest_first(name, names, "layers")));
             }
-            if (!find(chosen, name)) chosen.push_back(*layer);
+            for (const Layer& one : within)
+                if (!find(chosen, one.name)) chosen.push_back(one);
         }
     return chosen;
 }

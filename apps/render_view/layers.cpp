@@ -81,11 +81,14 @@ class Group {
                                          {"xy", LayerKind::vectors},
                                          {"uv", LayerKind::texture}};
         if (is_cryptomatte(name_))
-            if (const auto channels = find(mattes.components); !channels.empty())
+            if (const auto channels = find(letters(mattes.components)); !channels.empty())
                 return Layer{name_, mattes.kind, 0, channels};
+        if (name_.empty())
+            if (const auto channels = find({"ry", "y", "by"}); !channels.empty())
+                return Layer{"YC", LayerKind::chroma, 0, channels};
         for (const ComponentSet& set : sets) {
             if (name_.empty() && set.kind != LayerKind::color) continue;  // Z without a dot is a depth
-            const std::vector<size_t> channels = find(set.components);
+            const std::vector<size_t> channels = find(letters(set.components));
             if (channels.empty()) continue;
             const bool normals = set.components == "xyz" && is_normal(name_);
             return Layer{name_.empty() ? "RGB" : name_, normals ? LayerKind::normals : set.kind, 0, channels};
@@ -93,12 +96,18 @@ class Group {
         return std::nullopt;
     }
 
+    static std::vector<std::string> letters(std::string_view components) {
+        std::vector<std::string> each;
+        for (const char component : components) each.emplace_back(1, component);
+        return each;
+    }
+
     /// The channels of all these components; empty if one is missing.
-    std::vector<size_t> find(std::string_view components) const {
+    std::vector<size_t> find(const std::vector<std::string>& components) const {
         std::vector<size_t> found;
-        for (const char component : components) {
+        for (const std::string& component : components) {
             const auto channel = std::find_if(channels_.begin(), channels_.end(), [&](size_t i) {
-                return lower_case(std::string(after_dot(part_.channels[i].name))) == std::string_view(&component, 1);
+                return lower_case(std::string(after_dot(part_.channels[i].name))) == component;
             });
             if (channel == channels_.end()) return {};
             found.push_back(*channel);
@@ -135,6 +144,8 @@ std::string_view kind_name(LayerKind kind) {
             return "color";
         case LayerKind::luminance:
             return "luminance";
+        case LayerKind::chroma:
+            return "luminance, chroma";
         case LayerKind::ids:
             return "ids";
         case LayerKind::mattes:
@@ -171,7 +182,7 @@ std::vector<Layer> layers_of(const std::vector<ExrPart>& parts) {
 }
 
 const Layer& default_layer(const std::vector<Layer>& layers) {
-    for (const LayerKind kind : {LayerKind::color, LayerKind::luminance})
+    for (const LayerKind kind : {LayerKind::color, LayerKind::chroma, LayerKind::luminance})
         for (const Layer& layer : layers)
             if (layer.kind == kind) return layer;
     return layers.front();

@@ -20,8 +20,8 @@ void show(ViewOptions options) {
     if (options.action == ViewAction::list) return print(layer_table(file.parts(), layers));
     if (const std::string warning = open_config_view(options.view); !warning.empty() && !options.quiet)
         note(fmt::format("render-view: warning: {}", warning));
-    const Sheet sheet =
-        make_sheet(file, options.all ? layers : chosen_layers(layers, options.layers, options.file), options);
+    const Sheet sheet = make_sheet(
+        file, options.all ? layers : chosen_layers(file.parts(), layers, options.layers, options.file), options);
     make_directory_of(options.output);
     write_preview(options.output, sheet.picture);
     if (!options.quiet)

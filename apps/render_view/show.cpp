@@ -8,7 +8,8 @@
 #include <stdexcept>
 
 #include "id_colors.h"
-#include "scene/image/color_space.h"
+#include "scene/image/exr_chroma.h"
+#include "scene/image/file_colors.h"
 #include "scene/image/srgb_codes.h"
 
 namespace cistula {
@@ -39,22 +40,53 @@ float linear_of_code(double share) {
     return srgb8_to_linear(static_cast<uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
 }
 
-/// From the primaries of a part to those of sRGB; nothing if it says none, or these, or what is no color space.
-std::optional<glm::dmat3> to_rec709(const ExrPart& part) {
-    const auto found = part.attributes.find("chromaticities");
-    if (found == part.attributes.end()) return std::nullopt;
-    const auto* xy = std::get_if<std::vector<float>>(&found->second);
-    if (!xy || xy->size() != 8) return std::nullopt;
-    Chromaticities chromaticities;
-    std::copy_n(xy->begin(), chromaticities.size(), chromaticities.begin());
-    const ColorSpace& target = color_spaces().front();
-    try {
-        const ColorSpace space = color_space_of(chromaticities);
-        return space.id == target.id ? std::nullopt : std::optional(color_matrix(space, target));
-    } catch (const std::runtime_error&) {
-        return std::nullopt;
-    }
+/// What a part's header says of its colors.
+FileColors colors_of(const ExrPart& part) {
+    FileColors colors;
+    const auto find = [&]<class Type>(const char* name, const Type&) {
+        const auto found = part.attributes.find(name);
+        return found == part.attributes.end() ? nullptr : std::get_if<Type>(&found->second);
+    };
+    if (const auto* id = find("colorInteropID", std::string())) colors.id = *id;
+    const auto* const flag = find("acesImageContainerFlag", int());
+    colors.is_aces = flag && *flag == 1;
+    const auto* const xy = find("chromaticities", std::vector<float>());
+    if (!xy || xy->size() != Chromaticities().size()) return colors;
+    colors.chromaticities.emplace();
+    std::copy_n(xy->begin(), xy->size(), colors.chromaticities->begin());
+    return colors;
 }
+
+/// From the numbers of a part's colors to linear Rec. 709.
+class ToRec709 {
+  public:
+    explicit ToRec709(const ExrPart& part) {
+        const ColorSpace& target = color_spaces().front();
+        try {
+            const FileEncoding encoding = file_encoding("", colors_of(part), true);
+            curve_ = encoding.curve;
+            if (encoding.space.id != target.id) matrix_ = color_matrix(encoding.space, target);
+        } catch (const std::runtime_error& problem) {
+            const std::string_view text = problem.what();
+            note_ = "numbers as they are, as " + std::string(text.substr(0, text.find(';')));
+        }
+        if (matrix_ || curve_ != &linear_curve) note_ = "from the file's color space to that of sRGB";
+    }
+
+    glm::vec3 operator()(const glm::vec3& color) const {
+        if (curve_ == &linear_curve && !matrix_) return color;
+        glm::dvec3 light;
+        for (int c = 0; c < 3; ++c) light[c] = curve_(static_cast<double>(color[c]));
+        return glm::vec3(matrix_ ? *matrix_ * light : light);
+    }
+    /// What it does, in words; empty: nothing.
+    const std::string& note() const { return note_; }
+
+  private:
+    Curve curve_ = &linear_curve;
+    std::optional<glm::dmat3> matrix_;
+    std::string note_;
+};
 
 /// Fills the picture, one pixel after the other; those with a value that is not finite stay black.
 template <class Texel>
@@ -75,12 +107,28 @@ Range range_of(const ExrChannel& channel, float end = std::numeric_limits<float>
 }
 
 void show_color(ShownLayer& shown, const ExrPart& part, const Channels& channels) {
-    const std::optional<glm::dmat3> matrix = channels.size() == 3 ? to_rec709(part) : std::nullopt;
-    fill(shown.picture, channels, [&](const float* v, size_t) {
-        if (channels.size() == 1) return glm::vec3(v[0]);
-        return matrix ? glm::vec3(*matrix * glm::dvec3(v[0], v[1], v[2])) : glm::vec3(v[0], v[1], v[2]);
-    });
-    if (matrix) shown.values = "from the file's primaries to those of sRGB";
+    const ToRec709 to_rec709(part);
+    if (channels.size() == 1)
+        fill(shown.picture, channels, [&](const float* v, size_t) { return to_rec709(glm::vec3(v[0])); });
+    else
+        fill(shown.picture, channels, [&](const float* v, size_t) { return to_rec709({v[0], v[1], v[2]}); });
+    shown.values = to_rec709.note();
+}
+
+/// RY, Y and BY become R, G and B by the luminance of the file's primaries.
+void show_chroma(ShownLayer& shown, const ExrPart& part, const Channels& channels) {
+    fill(shown.picture, channels, [&](const float* v, size_t) { return glm::vec3(v[0], v[1], v[2]); });
+    const FileColors colors = colors_of(part);
+    ColorSpace space = color_spaces().front();
+    try {
+        if (colors.chromaticities) space = color_space_of(*colors.chromaticities);
+    } catch (const std::runtime_error&) {  // those of no space: ToRec709 says so
+    }
+    const bool is_halved[] = {channels[0]->is_halved, channels[1]->is_halved, channels[2]->is_halved};
+    colors_from_chroma(shown.picture, is_halved, luminance_weights(space));
+    const ToRec709 to_rec709(part);
+    for (glm::vec3& texel : shown.picture.texels) texel = to_rec709(texel);
+    shown.values = to_rec709.note();
 }
 
 void show_ids(ShownLayer& shown, const Channels& channels) {
@@ -178,6 +226,10 @@ ShownLayer show_layer(const Layer& layer, const ExrPart& part, const Channels& c
         case LayerKind::color:
         case LayerKind::luminance:
             show_color(shown, part, channels);
+            shown.picture = viewed(std::move(shown.picture), view, full_height);
+            break;
+        case LayerKind::chroma:
+            show_chroma(shown, part, channels);
             shown.picture = viewed(std::move(shown.picture), view, full_height);
             break;
         case LayerKind::ids:

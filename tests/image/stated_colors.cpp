@@ -44,6 +44,83 @@ class StatedColors : public ::testing::Test {
     const ScratchDirectory folder_;
 };
 
+/// A TIFF of these tags, each with RATIONALs in tenths of thousandths.
+std::string tiff(bool little, const std::vector<std::pair<int, std::vector<int>>>& tags) {
+    const auto number = [&](uint64_t value, int size) {
+        return little ? test::little_endian(value, size) : big_endian(value, size);
+    };
+    std::string entries, values;
+    const size_t first = 8 + 2 + 12 * tags.size() + 4;
+    for (const auto& [tag, list] : tags) {
+        entries += number(static_cast<uint64_t>(tag), 2) + number(5, 2) + number(list.size(), 4) +
+                   number(first + values.size(), 4);
+        for (const int value : list) values += number(static_cast<uint64_t>(value), 4) + number(10000, 4);
+    }
+    return (little ? "II" : "MM") + number(42, 2) + number(8, 4) + number(tags.size(), 2) + entries + number(0, 4) +
+           values;
+}
+
+TEST_F(StatedColors, PrimariesOfTiff) {
+    const std::vector<int> red_green_blue = {7130, 2930, 1650, 8300, 1280, 440}, white = {3217, 3377};
+    for (const bool little : {true, false}) {
+        const auto colors = stated(tiff(little, {{318, white}, {319, red_green_blue}}));
+        ASSERT_TRUE(colors && colors->chromaticities) << little;
+        EXPECT_EQ(*colors->chromaticities,
+                  (Chromaticities{0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.3217f, 0.3377f}));
+        EXPECT_FALSE(stated(tiff(little, {{318, white}})));
+        EXPECT_FALSE(stated(tiff(little, {{318, white}, {319, {1, 2}}})));
+        EXPECT_FALSE(stated(tiff(little, {{318, white}, {319, red_green_blue}, {34675, {1}}})));  // the profile counts
+        EXPECT_EQ(stated(tiff(little, {{319, red_green_blue}}))->profile, "PrimaryChromaticities without a WhitePoint");
+    }
+    const std::string whole = tiff(true, {{318, white}, {319, red_green_blue}});
+    for (size_t size = 0; size < whole.size(); ++size) stated(whole.substr(0, size));  // ends
+}
+
+TEST_F(StatedColors, OfFilmScans) {
+    const auto dpx = [](char transfer) {
+        std::string bytes(2048, '\0');
+        bytes.replace(0, 4, "SDPX");
+        bytes[801] = transfer;
+        return bytes;
+    };
+    EXPECT_FALSE(stated(dpx(0)));
+    EXPECT_FALSE(stated(dpx(4)));
+    EXPECT_FALSE(stated(dpx(char(255))));
+    EXPECT_EQ(stated(dpx(2))->id, "linear");
+    EXPECT_EQ(stated(dpx(3))->profile, "transfer characteristic logarithmic");
+    EXPECT_EQ(stated(dpx(6))->profile, "transfer characteristic ITU-R 709-4");
+    EXPECT_EQ(stated(big_endian(0x802a5fd7, 4))->profile, "Cineon's printing density");
+}
+
+TEST_F(StatedColors, GammaOfTga) {
+    const auto tga = [](uint64_t over, uint64_t under) {
+        using test::little_endian;
+        std::string extension = little_endian(495, 2) + std::string(493, '\0');
+        extension.replace(478, 4, little_endian(over, 2) + little_endian(under, 2));
+        return std::string(30, 'p') + extension + little_endian(30, 4) + little_endian(0, 4) + "TRUEVISION-XFILE." +
+               std::string(1, '\0');
+    };
+    EXPECT_EQ(stated(tga(1, 1))->id, "linear");
+    EXPECT_EQ(stated(tga(22, 10))->id, "");
+    EXPECT_EQ(stated(tga(3, 1))->profile, "gamma 3");
+    EXPECT_FALSE(stated(tga(0, 0)));
+    EXPECT_FALSE(stated("any bytes"));
+}
+
+TEST_F(StatedColors, ProfileOfWebp) {
+    using test::little_endian;
+    const auto riff = [](const std::string& type, const std::string& data) {
+        return type + little_endian(data.size(), 4) + data + std::string(data.size() % 2, '\0');
+    };
+    const auto webp = [&](const std::string& chunks) { return riff("RIFF", "WEBP" + riff("VP8X", "123") + chunks); };
+    EXPECT_FALSE(stated(webp(riff("VP8L", "pixels"))));
+    const std::optional<FileColors> colors = stated(webp(riff("ICCP", "no profile") + riff("VP8L", "pixels")));
+    ASSERT_TRUE(colors);
+    EXPECT_NE(colors->profile, "");
+    EXPECT_EQ(stated("RIFF" + little_endian(99, 4) + "WEBPICCP" + little_endian(0xffffffff, 4))->profile,
+              "an ICC profile of 4294967295 bytes");
+}
+
 TEST_F(StatedColors, GammasOfPng) {
     EXPECT_EQ(of_png(""), "");
     EXPECT_EQ(of_png(gamma(1)), "linear");

@@ -112,16 +112,33 @@ TEST(SceneSolids, EdgeLightErrors) {
 }
 
 TEST(SceneSolids, EdgeLightsAreAGroupByTheSolidsName) {
-    EXPECT_EQ(light_group(EdgeLights{}, "left. cube"), "edges_left__cube");
-    EXPECT_EQ(light_group(EdgeLights{}, std::string(48, 'n')), "edges_" + std::string(48, 'n'));
-    EXPECT_EQ(light_group(EdgeLights{}, std::string(49, 'n')), "edges_" + std::string(48, 'n'));
-    EXPECT_EQ(light_group(EdgeLights{}, std::string(47, 'n') + "\u00fc"),
-              "edges_" + std::string(47, 'n'));  // two bytes
-    EXPECT_EQ(light_group(EdgeLights{}, std::string(46, 'n') + "\u00fc"), "edges_" + std::string(46, 'n') + "\u00fc");
+    const auto group = [](const std::string& solid) {
+        return LightGroups(SceneDescription()).of_edges(EdgeLights{}, solid);
+    };
+    EXPECT_EQ(group("left. cube"), "edges_left__cube");
+    EXPECT_EQ(group(std::string(48, 'n')), "edges_" + std::string(48, 'n'));
+    EXPECT_EQ(group(std::string(49, 'n')), "edges_" + std::string(48, 'n'));
+    EXPECT_EQ(group(std::string(47, 'n') + "\u00fc"), "edges_" + std::string(47, 'n'));  // two bytes
+    EXPECT_EQ(group(std::string(46, 'n') + "\u00fc"), "edges_" + std::string(46, 'n') + "\u00fc");
     EdgeLights given;
     given.group = std::string(54, 'g');
-    EXPECT_EQ(light_group(given, "cube"), given.group);
+    EXPECT_EQ(LightGroups(SceneDescription()).of_edges(given, "cube"), given.group);
     EXPECT_EQ(fault_of_light_group(given.group), "");
+}
+
+TEST(SceneLights, GroupsThatAreNotGivenAreNobodyElses) {
+    SceneDescription scene;
+    scene.lights.resize(3);
+    scene.lights[0].group = "light1";
+    LightGroups groups(scene);
+    EXPECT_EQ(groups.of_light(0), "light1");
+    EXPECT_EQ(groups.of_light(1), "light1_2");
+    EXPECT_EQ(groups.of_light(2), "light2");
+    EXPECT_EQ(groups.of_edges({}, "a b"), "edges_a_b");
+    EXPECT_EQ(groups.of_edges({}, "a_b"), "edges_a_b_2");
+    EXPECT_EQ(groups.of_edges({}, "a.b"), "edges_a_b_3");
+    EXPECT_EQ(groups.of_edges({}, std::string(60, 'n') + '1'), "edges_" + std::string(48, 'n'));
+    EXPECT_EQ(groups.of_edges({}, std::string(60, 'n') + '2'), "edges_" + std::string(46, 'n') + "_2");
 }
 
 TEST(SceneQuads, BecomeTwoTrianglesWithUv) {

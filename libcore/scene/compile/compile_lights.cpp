@@ -16,10 +16,11 @@ dvec3 rounded(const dvec3& v) {
 }
 
 void add_edge_lights(std::vector<NormalizedLight>& lights, const SourceSolid& from, const ConvexSolid& solid,
-                     int convex, const SceneNormalization& normalization) {
+                     int convex, const SceneNormalization& normalization, LightGroups& groups) {
     const SolidObject& object = *from.platonic;
     const EdgeLights& on_edges = object.edge_lights;
-    const std::string group = light_group(on_edges, name_of(from));
+    if (on_edges.count == 0) return;
+    const std::string group = groups.of_edges(on_edges, name_of(from));
     for (const auto& edge : platonic_shape(object.solid).edges) {
         const dvec3 &a = solid.vertices[edge.vertices[0]], &b = solid.vertices[edge.vertices[1]];
         for (int i = 0; i < on_edges.count; ++i) {
@@ -55,16 +56,17 @@ bool near_triangle(const std::array<dvec3, 3>& corner, const dvec3& p, double to
 std::vector<NormalizedLight> normalize_lights(const SceneSource& source, const SceneNormalization& normalization,
                                               const std::vector<ConvexSolid>& convex) {
     std::vector<NormalizedLight> lights;
+    LightGroups groups(*source.description);
     const std::vector<LightDescription>& described = source.description->lights;
     for (size_t i = 0; i < described.size(); ++i) {
         const LightDescription& light = described[i];
         lights.push_back({normalization.point(light.position), light.color, light.glow.value_or(light.color),
-                          light.radius * normalization.factor, light.falloff, light.place, light_group(light, i)});
+                          light.radius * normalization.factor, light.falloff, light.place, groups.of_light(i)});
     }
     for (size_t i = 0; i < convex.size(); ++i) {
         const SourceSolid& solid = source.solids[convex[i].solid];
         if (!solid.platonic) continue;
-        add_edge_lights(lights, solid, convex[i], static_cast<int>(i), normalization);
+        add_edge_lights(lights, solid, convex[i], static_cast<int>(i), normalization, groups);
     }
     // I / r^2 in scene units is I 4^scale / r^2 with r in the frame.
     for (NormalizedLight& light : lights)

@@ -1,6 +1,8 @@
 #include "scene/compile/scene_source.h"
 
 #include <algorithm>
+#include <map>
+#include <unordered_map>
 
 #include "cistula/numerics/vec.h"
 #include "scene/compile/mesh_topology.h"
@@ -99,7 +101,23 @@ bool join_closed(std::vector<MeshPart>& parts) {
     return true;
 }
 
-void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshObject& mesh) {
+/// `name`, or one after a place in the file, "object3", if that is empty.
+std::string given_name(const std::string& name, const std::string& place) {
+    return name.empty() ? "object" + place.substr(place.find_last_of('/') + 1) : name;
+}
+
+/// Material names in use, and the mesh file that each comes from: empty for those of the scene file.
+using MaterialNames = std::map<std::string, std::string>;
+
+/// Puts the object's name before that of a mesh file's material where another material has it, so that mattes tell the
+/// two apart. Materials of one name in one file are one material.
+void make_name_own(MaterialDescription& material, const ObjectDescription& object, const std::string& file,
+                   MaterialNames& names) {
+    while (names.try_emplace(material.name, file).first->second != file)
+        material.name = given_name(object.name, object.place) + "/" + material.name;
+}
+
+void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshObject& mesh, MaterialNames& names) {
     const SceneDescription& scene = *source.description;
     if (!is_finite(mesh.center) || !is_finite(mesh.rotation) || !is_finite(mesh.scale) || mesh.scale == 0)
         throw scene_error(scene, object.place, "the center and rotation must be finite, the scale finite and not 0");
@@ -107,7 +125,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
     if (object.material >= 0 && parts.size() > 1) join_closed(parts);
     for (MeshPart& part : parts) {
         SourceSolid solid;
-        solid.name = parts.size() == 1 ? object.name : object.name + "/" + part.name;
+        solid.name = parts.size() == 1 ? object.name : given_name(object.name, object.place) + "/" + part.name;
         solid.place = object.place;
         solid.mesh = std::move(part.mesh);
         solid.keep_triangles = mesh.keep_triangles;
@@ -117,11 +135,25 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
             check_material(scene, *part.material, object.place);
             solid.material = static_cast<uint32_t>(source.materials.size());
             source.materials.push_back(*part.material);
+            make_name_own(source.materials.back(), object, mesh.file, names);
         } else {
             throw scene_error(scene, object.place,
                               "the mesh brings no material of its own (" + mesh.file + "); name one with \"material\"");
         }
         source.solids.push_back(std::move(solid));
+    }
+}
+
+/// Mattes could not tell apart two solids of one name, be it given, a mesh part's, or one after a place.
+void require_different_names(const SceneSource& source) {
+    std::unordered_map<std::string, const SourceSolid*> first;
+    for (const SourceSolid& solid : source.solids) {
+        const auto [other, is_new] = first.try_emplace(name_of(solid), &solid);
+        if (!is_new && !(solid.name.empty() && other->second->name.empty()))
+            throw scene_error(*source.description, solid.place,
+                              quoted(other->first) + " is the name of " + other->second->place +
+                                  " too: an object without a name is called object and its number, a part of a mesh by "
+                                  "the object's name, / and its own; give each another");
     }
 }
 
@@ -134,8 +166,7 @@ Error scene_error(const SceneDescription& description, const std::string& place,
 }
 
 std::string name_of(const SourceSolid& solid) {
-    if (!solid.name.empty() && solid.name.front() != '/') return solid.name;
-    return "object" + solid.place.substr(solid.place.find_last_of('/') + 1) + solid.name;
+    return given_name(solid.name, solid.place);
 }
 
 SceneSource gather_scene(const SceneDescription& description) {
@@ -153,12 +184,14 @@ SceneSource gather_scene(const SceneDescription& description) {
         check_light(description, light.color, light.glow, light.radius, light.falloff, light.place);
     }
 
+    MaterialNames material_names;
+    for (const MaterialDescription& material : description.materials) material_names[material.name];
     size_t lights = description.lights.size();
     for (const ObjectDescription& object : description.objects) {
         if (object.material >= static_cast<int>(description.materials.size()))
             throw scene_error(description, object.place, "names a material that does not exist");
         if (const auto* mesh = std::get_if<MeshObject>(&object.shape)) {
-            add_mesh(source, object, *mesh);
+            add_mesh(source, object, *mesh, material_names);
             continue;
         }
         if (object.material < 0)
@@ -185,6 +218,7 @@ SceneSource gather_scene(const SceneDescription& description) {
         }
         source.solids.push_back(std::move(solid));
     }
+    require_different_names(source);
     for (const SourceSolid& solid : source.solids) {
         const MaterialDescription& material = source.materials[solid.material];
         if (material.texture < 0) continue;

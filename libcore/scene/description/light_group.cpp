@@ -13,21 +13,41 @@ bool is_allowed(char c) {
            static_cast<unsigned char>(c) >= 0x80;
 }
 
-}  // namespace
-
-std::string light_group(const LightDescription& light, size_t i) {
-    return light.group.empty() ? "light" + std::to_string(i) : light.group;
+/// The longest whole characters of a name that take so many bytes.
+std::string cut(const std::string& name, size_t bytes) {
+    size_t end = std::min(name.size(), bytes);
+    while (end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
+    return name.substr(0, end);
 }
 
-std::string light_group(const EdgeLights& lights, const std::string& solid) {
+}  // namespace
+
+LightGroups::LightGroups(const SceneDescription& scene) : scene_(scene) {
+    for (const LightDescription& light : scene.lights) used_.insert(light.group);
+    for (const ObjectDescription& object : scene.objects)
+        if (const auto* solid = std::get_if<SolidObject>(&object.shape)) used_.insert(solid->edge_lights.group);
+}
+
+std::string LightGroups::own(const std::string& name) {
+    std::string tried = cut(name, longest);
+    for (int number = 2; !used_.insert(tried).second; ++number) {
+        const std::string end = '_' + std::to_string(number);
+        tried = cut(name, longest - end.size()) + end;
+    }
+    return tried;
+}
+
+std::string LightGroups::of_light(size_t i) {
+    const std::string& given = scene_.lights[i].group;
+    return given.empty() ? own("light" + std::to_string(i)) : given;
+}
+
+std::string LightGroups::of_edges(const EdgeLights& lights, const std::string& solid) {
     if (!lights.group.empty()) return lights.group;
     std::string name = "edges_" + solid;
-    size_t end = std::min(name.size(), longest);
-    while (end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;  // whole characters
-    name.resize(end);
     std::replace_if(
         name.begin(), name.end(), [](char c) { return !is_allowed(c); }, '_');
-    return name;
+    return own(name);
 }
 
 std::string fault_of_light_group(const std::string& name) {

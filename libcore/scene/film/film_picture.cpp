@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "scene/base/fnv128.h"
+#include "scene/description/light_group.h"
 #include "scene/film/film_channel.h"
 
 namespace cistula {
@@ -43,8 +45,8 @@ decltype(LayeredPicture::attributes) attributes_of(const OutputChannels& channel
         for (int i = 0; i < 2; ++i) chromaticities.push_back(static_cast<float>(xy[i]));
     decltype(LayeredPicture::attributes) attributes = {{"chromaticities", chromaticities},
                                                        {"colorInteropID", std::string(space.id)}};
-    if (space.id == "lin_ap0_scene" && channels.half && channels.compression == Compression::none)
-        attributes["acesImageContainerFlag"] = 1;
+    if (channels.compression == Compression::dwaa || channels.compression == Compression::dwab)
+        attributes["cistula:dwaLevel"] = static_cast<double>(channels.dwa_level);
     if (channels.transparent) attributes["cistula:background"] = std::string("transparent");
     if (channels.z && channels.z_far != OutputChannels().z_far)
         attributes["cistula:zFar"] = static_cast<double>(channels.z_far);
@@ -104,6 +106,9 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint6
     picture.display_width = film.full_width;
     picture.display_height = film.full_height;
     picture.attributes = attributes_of(channels);
+    if (channels.light)
+        picture.attributes[light_layer_count] =
+            static_cast<int>(std::size(common_light_layer_names) + film.layers.names->light_groups.size());
     for (const auto& [name, text] : cryptomatte_attributes(film, channels)) picture.attributes[name] = text;
     picture.compression = channels.compression;
     picture.dwa_level = channels.dwa_level;
@@ -128,7 +133,19 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint6
         }
     }
     if (clamped) *clamped += over;
+    set_container_flag(picture);
     return picture;
+}
+
+void set_container_flag(LayeredPicture& picture) {
+    picture.attributes.erase("acesImageContainerFlag");
+    const auto id = picture.attributes.find("colorInteropID");
+    const bool is_color = std::all_of(picture.channels.begin(), picture.channels.end(), [](const auto& channel) {
+        return channel.half && channel.name.size() == 1 && std::string("RGBA").find(channel.name) != std::string::npos;
+    });
+    if (is_color && id != picture.attributes.end() && std::get<std::string>(id->second) == "lin_ap0_scene" &&
+        picture.compression == Compression::none)
+        picture.attributes["acesImageContainerFlag"] = 1;
 }
 
 LayerRequest layers_for(const OutputChannels& channels) {

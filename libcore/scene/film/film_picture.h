@@ -34,6 +34,9 @@ inline constexpr const char* path_layer_names[path_layer_count] = {"emission", "
 /// The layers that a film needs for these channels.
 LayerRequest layers_for(const OutputChannels& channels);
 
+/// The attribute that says how many light layers the scene has.
+inline constexpr const char* light_layer_count = "cistula:lightLayers";
+
 /// The largest finite number in half precision.
 inline constexpr float largest_half = 65504;
 
@@ -44,9 +47,14 @@ inline constexpr float largest_half = 65504;
 /// z_far for none. N.X N.Y N.Z: unit normal in world axes, 0 for none. Values of
 /// half channels that are over largest_half become that, and are added to `clamped`; such an error.* is no bound. The
 /// data window is the film's rectangle. Attributes: chromaticities and colorInteropID of the color space;
-/// cistula:background and cistula:zFar where they are not the defaults; acesImageContainerFlag for what SMPTE ST 2065-4
-/// allows.
+/// cistula:background, cistula:zFar and, with dwaa and dwab, cistula:dwaLevel, where they are not the defaults; with
+/// light layers their number in the scene, cistula:lightLayers, of which the file may have some;
+/// acesImageContainerFlag (set_container_flag).
 LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped = nullptr);
+
+/// States that a file of this picture alone is a container of SMPTE ST 2065-4: R, G, B and A alone, in half, of
+/// ACES2065-1, not compressed. Takes the statement away from any other.
+void set_container_flag(LayeredPicture& picture);
 
 /// The mean radiance in the film's rectangle.
 ColorPicture to_color(const Film& film);

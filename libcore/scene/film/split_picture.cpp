@@ -27,27 +27,49 @@ std::map<std::string, LayerAttributes> take_cryptomattes(LayerAttributes& attrib
     return by_name;
 }
 
+/// The name of a Cryptomatte, of one of its layers: without the digits at its end.
+std::string unnumbered(const std::string& layer) {
+    return layer.substr(0, layer.find_last_not_of("0123456789") + 1);
+}
+
+bool is_main_channel(const std::string& channel) {
+    return channel == "R" || channel == "G" || channel == "B" || channel == "A";
+}
+
+/// Whether a channel of a layer is part of a color, whose numbers have a color space.
+bool is_color(const std::string& channel) {
+    return channel.ends_with(".R") || channel.ends_with(".G") || channel.ends_with(".B");
+}
+
 }  // namespace
 
-std::vector<PicturePart> split_by_layer(LayeredPicture picture) {
+std::vector<PicturePart> split_by_layer(LayeredPicture picture, Split split) {
+    const bool parts_of_one = split == Split::parts;
     const std::map<std::string, LayerAttributes> cryptomattes = take_cryptomattes(picture.attributes);
     const auto layer_of = [&](const std::string& channel) {
         const size_t dot = channel.rfind('.');
-        if (dot == std::string::npos) return std::string(main_part);
-        const std::string layer = channel.substr(0, dot);
-        const std::string unnumbered = layer.substr(0, layer.find_last_not_of("0123456789") + 1);
-        return cryptomattes.count(unnumbered) != 0 ? unnumbered : layer;
+        if (dot != std::string::npos) {
+            const std::string layer = channel.substr(0, dot);
+            return !parts_of_one && cryptomattes.count(unnumbered(layer)) != 0 ? unnumbered(layer) : layer;
+        }
+        return parts_of_one && !is_main_channel(channel) ? channel : std::string(main_part);
     };
     std::vector<LayeredPicture::Channel> channels = std::move(picture.channels);
     picture.channels.clear();
     std::vector<PicturePart> parts = {{main_part, picture}};
+    if (parts_of_one)
+        for (const auto& [name, own] : cryptomattes) parts[0].picture.attributes.insert(own.begin(), own.end());
     for (LayeredPicture::Channel& channel : channels) {
         const std::string layer = layer_of(channel.name);
         auto part =
             std::find_if(parts.begin(), parts.end(), [&](const PicturePart& known) { return known.name == layer; });
         if (part == parts.end()) {
             part = parts.insert(part, {layer, picture});
-            if (const auto own = cryptomattes.find(layer); own != cryptomattes.end())
+            if (!is_color(channel.name)) {
+                part->picture.attributes["colorInteropID"] = std::string("data");
+                if (!parts_of_one) part->picture.attributes.erase("chromaticities");  // which parts of a file share
+            }
+            if (const auto own = cryptomattes.find(unnumbered(layer)); own != cryptomattes.end())
                 part->picture.attributes.insert(own->second.begin(), own->second.end());
         }
         part->picture.channels.push_back(std::move(channel));

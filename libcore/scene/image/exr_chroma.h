@@ -1,4 +1,4 @@
-// Luminance and chroma of OpenEXR files. Private to image/.
+// Luminance and chroma of OpenEXR files.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -17,6 +17,7 @@ struct ExrChannel {
 
     std::string name;
     Type type = Type::float_;
+    bool is_halved = false;  // the file has one value for two by two pixels, which all of them get
     std::vector<float> values;
     std::vector<uint32_t> numbers;  // those of a uint channel, exact; its values are rounded
 };

@@ -1,4 +1,5 @@
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
@@ -24,6 +25,27 @@ void check_whole_numbers(const LayeredPicture::Channel& channel) {
                                  " has whole numbers of 2^24 or more, which are not told apart here");
 }
 
+Compression compression_of(Imf::Compression compression) {
+    switch (compression) {
+        case Imf::NO_COMPRESSION:
+            return Compression::none;
+        case Imf::RLE_COMPRESSION:
+            return Compression::rle;
+        case Imf::ZIPS_COMPRESSION:
+            return Compression::zips;
+        case Imf::ZIP_COMPRESSION:
+            return Compression::zip;
+        case Imf::PIZ_COMPRESSION:
+            return Compression::piz;
+        case Imf::DWAA_COMPRESSION:
+            return Compression::dwaa;
+        case Imf::DWAB_COMPRESSION:
+            return Compression::dwab;
+        default:
+            return Compression::other;
+    }
+}
+
 LayeredPicture read_part(Imf::MultiPartInputFile& parts, int number, const std::string& path) {
     const Imf::Header& header = parts.header(number);
     check_flat(header, parts.parts() == 1 || !header.hasName() ? "it" : "part " + header.name());
@@ -40,6 +62,7 @@ LayeredPicture read_part(Imf::MultiPartInputFile& parts, int number, const std::
     picture.display_width = display.max.x - display.min.x + 1;
     picture.display_height = display.max.y - display.min.y + 1;
     picture.attributes = read_attributes(header);
+    picture.compression = compression_of(header.compression());
     for (auto entry = header.channels().begin(); entry != header.channels().end(); ++entry)
         picture.channels.push_back({entry.name(), entry.channel().type == Imf::HALF, {}});
     Imf::FrameBuffer buffer;

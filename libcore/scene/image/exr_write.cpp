@@ -145,6 +145,8 @@ Imf::Compression compression_of(Compression compression) {
             return Imf::PIZ_COMPRESSION;
         case Compression::dwaa:
             return Imf::DWAA_COMPRESSION;
+        case Compression::other:
+            break;
         case Compression::dwab:
             return Imf::DWAB_COMPRESSION;
     }

@@ -27,8 +27,9 @@ struct Ratio {
     bool operator==(const Ratio&) const = default;
 };
 
-/// How the pixels of an EXR file are compressed; dwaa and dwab lose some.
-enum class Compression { none, rle, zips, zip, piz, dwaa, dwab };
+/// How the pixels of an EXR file are compressed; dwaa and dwab lose some. `other`: as in files of other programs; never
+/// written.
+enum class Compression { none, rle, zips, zip, piz, dwaa, dwab, other };
 
 /// The contents of an EXR file: named channels of width x height floats each, row-major from the top left.
 struct LayeredPicture {

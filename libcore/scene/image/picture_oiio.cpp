@@ -87,6 +87,23 @@ void send_profile(const OIIO::ImageSpec& spec, const OiioHost& host) {
         host.profile(host.self, profile->data(), static_cast<size_t>(profile->datasize()));
 }
 
+/// Whether a WebP file has colors that the library multiplies by alpha, in their codes: versions before 2.5 know no
+/// other way. Those of opaque pixels stay what they are.
+bool is_multiplied(OIIO::ImageInput& input) {
+    const OIIO::ImageSpec& spec = input.spec();
+    if (std::string_view(input.format_name()) != "webp" || spec.alpha_channel < 0) return false;
+    if (spec.get_int_attribute("oiio:UnassociatedAlpha") != 0) return false;
+    std::vector<uint8_t> row(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.nchannels));
+    for (int y = 0; y < spec.height; ++y) {
+        if (!input.read_scanline(y, 0, OIIO::TypeDesc::UINT8, row.data()))
+            return false;  // which is said when it is read
+        for (auto at = static_cast<size_t>(spec.alpha_channel); at < row.size();
+             at += static_cast<size_t>(spec.nchannels))
+            if (row[at] != 255) return true;
+    }
+    return false;
+}
+
 bool read_opened(OIIO::ImageInput& input, const char* path, const OiioHost& host) {
     const OIIO::ImageSpec& spec = input.spec();
     if (spec.depth > 1 || spec.deep || spec.nchannels < 1)
@@ -96,6 +113,8 @@ bool read_opened(OIIO::ImageInput& input, const char* path, const OiioHost& host
     if (!sample_type(spec, type, format))
         return fail(host, std::string("its samples are of type ") + spec.format.c_str() +
                               "; a texture has 8 or 16 bits, half or float");
+    if (is_multiplied(input))
+        return fail(host, "its colors are multiplied by their alpha when it is read; save it without alpha, or as PNG");
     const int channels = spec.nchannels < 3 ? 1 : 3;
     send_profile(spec, host);
     if (!host.begin(host.self, spec.width, spec.height, static_cast<uint32_t>(channels), type)) return false;

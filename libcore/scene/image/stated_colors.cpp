@@ -12,6 +12,7 @@
 #include "cistula/numerics/portable.h"
 #include "scene/base/big_endian.h"
 #include "scene/image/color_encoding.h"
+#include "scene/image/header_colors.h"
 
 namespace cistula {
 namespace {
@@ -49,31 +50,19 @@ PngChunks read_chunks(std::istream& file) {
     return found;
 }
 
-FileColors unknown(std::string name) {
-    FileColors colors;
-    colors.profile = std::move(name);
-    return colors;
-}
-
-FileColors known(std::string_view id) {
-    FileColors colors;
-    colors.id = id;
-    return colors;
-}
-
 /// Code points of ITU-T H.273: primaries, curve, matrix, and whether the range is full.
 FileColors colors_of_cicp(std::string_view code) {
     const auto byte = [&](size_t i) { return static_cast<uint8_t>(code[i]); };
     if (byte(2) == 0 && byte(3) == 1) {
         const bool rec709 = byte(0) == 1, p3 = byte(0) == 12, rec2020 = byte(0) == 9;
         constexpr int srgb = 13, linear = 8;
-        if (byte(1) == srgb && rec709) return known("srgb");
-        if (byte(1) == srgb && p3) return known("srgb_p3d65_scene");
-        if (byte(1) == linear && rec709) return known("lin_rec709_scene");
-        if (byte(1) == linear && p3) return known("lin_p3d65_scene");
-        if (byte(1) == linear && rec2020) return known("lin_rec2020_scene");
+        if (byte(1) == srgb && rec709) return known_colors("srgb");
+        if (byte(1) == srgb && p3) return known_colors("srgb_p3d65_scene");
+        if (byte(1) == linear && rec709) return known_colors("lin_rec709_scene");
+        if (byte(1) == linear && p3) return known_colors("lin_p3d65_scene");
+        if (byte(1) == linear && rec2020) return known_colors("lin_rec2020_scene");
     }
-    return unknown(fmt::format("cICP {} {} {} {}", byte(0), byte(1), byte(2), byte(3)));
+    return unknown_colors(fmt::format("cICP {} {} {} {}", byte(0), byte(1), byte(2), byte(3)));
 }
 
 /// Chromaticities together with what a gamma says.
@@ -83,7 +72,7 @@ FileColors with_primaries(FileColors colors, const Chromaticities& chromaticitie
     try {
         space = color_space_of(chromaticities);
     } catch (const std::runtime_error& problem) {
-        return unknown(fmt::format("cHRM: {}", problem.what()));
+        return unknown_colors(fmt::format("cHRM: {}", problem.what()));
     }
     if (space.id == "lin_rec709_scene") return colors;
     // What is taken for sRGB's curve in other primaries is Adobe RGB's in its own.
@@ -91,8 +80,8 @@ FileColors with_primaries(FileColors colors, const Chromaticities& chromaticitie
                         : space.id == "lin_adobergb_scene" ? find_color_encoding("g22_adobergb_scene")->curve
                                                            : find_color_encoding("srgb")->curve;
     for (const ColorEncoding& encoding : color_encodings)
-        if (encoding.space == space.id && encoding.curve == curve) return known(encoding.name);
-    if (!colors.id.empty()) return unknown(fmt::format("{} with primaries of other spaces", colors.id));
+        if (encoding.space == space.id && encoding.curve == curve) return known_colors(encoding.name);
+    if (!colors.id.empty()) return unknown_colors(fmt::format("{} with primaries of other spaces", colors.id));
     colors.chromaticities = chromaticities;
     return colors;
 }
@@ -101,7 +90,7 @@ std::optional<FileColors> colors_of_png(std::istream& file) {
     const PngChunks chunks = read_chunks(file);
     if (!chunks.cicp.empty()) return colors_of_cicp(chunks.cicp);
     if (chunks.profile) return std::nullopt;
-    if (chunks.srgb) return known("srgb");
+    if (chunks.srgb) return known_colors("srgb");
     FileColors colors;
     if (const uint32_t gamma = big_endian(chunks.gama, 0); gamma != 0) colors = colors_of_gamma(100000.0 / gamma);
     if (chunks.chrm.empty()) return colors;
@@ -119,14 +108,14 @@ std::optional<FileColors> colors_of_radiance(std::istream& file) {
     std::istringstream lines(start);
     std::optional<FileColors> colors;
     for (std::string line; std::getline(lines, line) && !line.empty();) {
-        if (line.starts_with("FORMAT=") && line.find("xyze") != std::string::npos) return unknown(line);
+        if (line.starts_with("FORMAT=") && line.find("xyze") != std::string::npos) return unknown_colors(line);
         constexpr std::string_view primaries = "PRIMARIES=";
         if (!line.starts_with(primaries)) continue;
         std::istringstream numbers(line.substr(primaries.size()));
         numbers.imbue(std::locale::classic());
         Chromaticities chromaticities;
         for (float& number : chromaticities) numbers >> number;
-        if (!numbers) return unknown(line);
+        if (!numbers) return unknown_colors(line);
         colors = FileColors();
         colors->chromaticities = chromaticities;
     }
@@ -140,7 +129,8 @@ std::optional<FileColors> stated_colors(const std::string& path) {
     std::string start(8, '\0');
     file.read(start.data(), 8);
     if (start == "\x89PNG\r\n\x1a\n") return colors_of_png(file);
-    if (!start.starts_with("#?")) return std::nullopt;
+    if (!start.starts_with("#?")) return header_colors(file);
+    file.clear();
     file.seekg(0);
     return colors_of_radiance(file);
 }
@@ -148,11 +138,11 @@ std::optional<FileColors> stated_colors(const std::string& path) {
 FileColors colors_of_gamma(double gamma) {
     constexpr double tolerance = 0.03;
     const auto is = [&](double known_gamma) { return magnitude(gamma - known_gamma) <= tolerance; };
-    if (is(1)) return known("linear");
-    if (is(1.8)) return known("g18_rec709_scene");
-    if (is(2.4)) return known("g24_rec709_scene");
+    if (is(1)) return known_colors("linear");
+    if (is(1.8)) return known_colors("g18_rec709_scene");
+    if (is(2.4)) return known_colors("g24_rec709_scene");
     if (is(2.2)) return FileColors();
-    return unknown(fmt::format("gamma {:.4g}", gamma));
+    return unknown_colors(fmt::format("gamma {:.4g}", gamma));
 }
 
 }  // namespace cistula

@@ -105,7 +105,7 @@ TEST_F(RenderColors, LosslessCompressionsGiveTheSamePixels) {
                    "from 0 to 1000");
     for (const char* wrong : {"-1", "0", "nan", "1e39", "far"})
         expect_refused({"b.json", "-o", "b.exr", "--layers", "Z", std::string("--z-far=") + wrong}, ExitCode::usage,
-                       "must be a number above 0, or inf");
+                       "must be a number above 0 in single precision, or inf");
 }
 
 }  // namespace

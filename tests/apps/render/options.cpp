@@ -436,6 +436,7 @@ TEST(HeaderAttributes, TellImagesApart) {
     EXPECT_TRUE(differs([](LayeredPicture& p) { p.display_width = 5; }));
     EXPECT_TRUE(differs([](LayeredPicture& p) { p.channels[0].half = true; }));
     EXPECT_TRUE(differs([](LayeredPicture& p) { p.channels.pop_back(); }));
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.compression = Compression::dwaa; }));
     EXPECT_FALSE(differs([](LayeredPicture& p) { std::swap(p.channels[0], p.channels[1]); }));
     const auto attributes_differ = [&](const Attributes& attributes) {
         return differs([&](LayeredPicture& p) { p.attributes = attributes; });

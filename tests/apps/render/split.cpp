@@ -17,6 +17,12 @@ class RenderSplit : public RenderProgram {
                 "--split", split, "--resume"};
     }
 
+    static std::vector<std::string> channels_of(const LayeredPicture& picture) {
+        std::vector<std::string> names;
+        for (const LayeredPicture::Channel& channel : picture.channels) names.push_back(channel.name);
+        return names;
+    }
+
     /// The values of all parts, by the names that they have in a file of one part.
     using Values = std::map<std::string, std::vector<float>>;
     static void add(const LayeredPicture& picture, const std::string& layer, Values& values) {
@@ -46,7 +52,8 @@ TEST_F(RenderSplit, PartsHoldWhatOneHolds) {
 
     const LayeredPicture one = read_exr(file("one.02.exr"));
     const std::vector<PicturePart> parts = read_exr_parts(file("parts.02.exr"));
-    EXPECT_EQ(parts.front().name, "beauty");
+    EXPECT_EQ(parts.front().name, "Combined");
+    EXPECT_EQ(channels_of(parts.front().picture), (std::vector<std::string>{"A", "B", "G", "R"}));
     size_t mattes = 0;
     for (const PicturePart& part : parts) {
         LayeredPicture rest = one;
@@ -54,12 +61,20 @@ TEST_F(RenderSplit, PartsHoldWhatOneHolds) {
         mattes += is_matte;
         for (auto known = rest.attributes.begin(); known != rest.attributes.end();)
             known = known->first.starts_with("cryptomatte/") ? rest.attributes.erase(known) : std::next(known);
-        EXPECT_EQ(part.picture.attributes.size(), rest.attributes.size() + (is_matte ? 4 : 0)) << part.name;
-        for (const auto& [name, value] : part.picture.attributes) EXPECT_EQ(one.attributes.at(name), value) << name;
-        for (const LayeredPicture::Channel& channel : part.picture.channels)
-            EXPECT_EQ(part.name == main_part, channel.name.find('.') == std::string::npos) << channel.name;
+        const size_t own = part.name == main_part ? 3 * 4 : is_matte ? 4 : 0;  // Blender looks in the first
+        EXPECT_EQ(part.picture.attributes.size(), rest.attributes.size() + own) << part.name;
+        const std::vector<std::string> channels = channels_of(part.picture);
+        const bool is_color = part.name == main_part || channels.back() == part.name + ".R";
+        for (const auto& [name, value] : part.picture.attributes)
+            if (name == "colorInteropID" && !is_color)
+                EXPECT_EQ(std::get<std::string>(value), "data") << part.name;
+            else
+                EXPECT_EQ(one.attributes.at(name), value) << name;
+        for (const std::string& channel : channels)
+            EXPECT_TRUE(part.name == main_part || channel == part.name || channel.starts_with(part.name + '.'))
+                << part.name << ' ' << channel;
     }
-    EXPECT_EQ(mattes, 3u);
+    EXPECT_EQ(mattes, 3u * 3u);
 
     expect_resumed("parts.##.exr", "parts", "2");
     const std::string whole = bytes_of(file("parts.02.exr"));
@@ -93,6 +108,31 @@ TEST_F(RenderSplit, FilesHoldWhatOneHolds) {
     EXPECT_EQ(result.code, 0) << result.error;
     EXPECT_EQ(result.error.find("are complete"), std::string::npos) << result.error;
     EXPECT_EQ(values_of("d/files.02.exr"), values);
+}
+
+/// Files that hold no colors claim no color space, and only those that are ACES containers say that they are.
+TEST_F(RenderSplit, FilesSayWhatTheyHold) {
+    const Arguments aces = {"s.json",        "-q",   "--layers",     "N,diffuse",    "--bits", "half",
+                            "--compression", "none", "--colorspace", "lin_ap0_scene"};
+    const auto with = [&](const Arguments& more) {
+        Arguments all = aces;
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    const auto attributes = [&](const std::string& name) { return read_exr(file(name)).attributes; };
+    expect_done(with({"-o", "a.exr", "--split", "files"}));
+    EXPECT_EQ(std::get<std::string>(attributes("a.N.exr").at("colorInteropID")), "data");
+    EXPECT_EQ(attributes("a.N.exr").count("chromaticities"), 0u);
+    EXPECT_EQ(attributes("a.N.exr").count("acesImageContainerFlag"), 0u);
+    for (const char* name : {"a.exr", "a.diffuse.exr"}) {
+        EXPECT_EQ(std::get<std::string>(attributes(name).at("colorInteropID")), "lin_ap0_scene") << name;
+        EXPECT_EQ(attributes(name).count("acesImageContainerFlag"), 1u) << name;
+    }
+    expect_done(with({"-o", "one.exr"}));
+    EXPECT_EQ(attributes("one.exr").count("acesImageContainerFlag"), 0u);
+    expect_done(with({"-o", "parts.exr", "--split", "parts"}));
+    for (const PicturePart& part : read_exr_parts(file("parts.exr")))
+        EXPECT_EQ(part.picture.attributes.count("acesImageContainerFlag"), 0u) << part.name;
 }
 
 TEST_F(RenderSplit, WhatHasNoLayersIsNotSplit) {

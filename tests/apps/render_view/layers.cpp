@@ -21,8 +21,8 @@ ExrPart part_of(const std::vector<std::string>& channels, const std::string& nam
     part.name = name;
     part.width = part.height = 1;
     for (const std::string& channel : channels)
-        part.channels.push_back(channel[0] == '#' ? ExrChannel{channel.substr(1), Type::uint, {}, {}}
-                                                  : ExrChannel{channel, Type::float_, {}, {}});
+        part.channels.push_back(channel[0] == '#' ? ExrChannel{channel.substr(1), Type::uint, false, {}, {}}
+                                                  : ExrChannel{channel, Type::float_, false, {}, {}});
     return part;
 }
 
@@ -102,7 +102,7 @@ TEST(Layers, AreChosenByNameEachOnce) {
     const std::vector<Layer> layers = layers_of(parts);
     const auto chosen = [&](const std::vector<std::string>& texts) {
         std::string names;
-        for (const Layer& layer : chosen_layers(layers, texts, "f.exr")) names += layer.name + " ";
+        for (const Layer& layer : chosen_layers(parts, layers, texts, "f.exr")) names += layer.name + " ";
         return names;
     };
     EXPECT_EQ(chosen({}), "A ");
@@ -111,6 +111,22 @@ TEST(Layers, AreChosenByNameEachOnce) {
     EXPECT_ERROR(chosen({"A,z"}), ExitCode::usage,
                  "--layer A,z: f.exr has no layer 'z'; the layers are: Z, A, a,b, id");
     EXPECT_ERROR(chosen({"A,"}), ExitCode::usage, "--layer A,: f.exr has no layer ''; the layers are: A, Z, a,b, id");
+}
+
+TEST(Layers, OfAChannelOrOfACryptomatteAreChosenByItsName) {
+    const std::vector<ExrPart> parts{
+        part_of({"d.B", "d.G", "d.R", "m00.a", "m00.b", "m00.g", "m00.r", "cryptom00.a", "cryptom00.b", "cryptom00.g",
+                 "cryptom00.r", "cryptom01.a", "cryptom01.b", "cryptom01.g", "cryptom01.r"})};
+    const std::vector<Layer> layers = layers_of(parts);
+    const std::vector<Layer> one = chosen_layers(parts, layers, {"d.G"}, "f.exr");
+    ASSERT_EQ(one.size(), 1u);
+    EXPECT_EQ(one[0].name, "d.G");
+    EXPECT_EQ(one[0].kind, LayerKind::scalar);
+    EXPECT_EQ(parts[0].channels[one[0].channels.at(0)].name, "d.G");
+    const std::vector<Layer> mattes = chosen_layers(parts, layers, {"cryptom", "cryptom01"}, "f.exr");
+    ASSERT_EQ(mattes.size(), 2u);
+    EXPECT_EQ(mattes[0].name, "cryptom00");
+    EXPECT_EQ(mattes[1].name, "cryptom01");
 }
 
 TEST(IdColors, TellIdsApart) {

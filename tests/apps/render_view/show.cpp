@@ -28,7 +28,8 @@ class Show : public testing::Test {
   protected:
     void give(const std::vector<std::vector<float>>& values) {
         channels_.clear();
-        for (const std::vector<float>& one : values) channels_.push_back({"", ExrChannel::Type::float_, one, {}});
+        for (const std::vector<float>& one : values)
+            channels_.push_back({"", ExrChannel::Type::float_, false, one, {}});
         part_.width = static_cast<int>(values[0].size());
         part_.height = 1;
         part_.full_height = 10;
@@ -72,7 +73,7 @@ TEST_F(Show, ColorsOfOtherPrimariesAsThoseOfSrgb) {
     give({{static_cast<float>(red[0]), 1}, {static_cast<float>(red[1]), 1}, {static_cast<float>(red[2]), 1}});
     part_.attributes["chromaticities"] = chromaticities(ap1);
     EXPECT_EQ(codes(LayerKind::color), (Codes{code({0.6f, 0.1f, 0.2f}), {255, 255, 255}}));
-    EXPECT_EQ(shown_.values, "from the file's primaries to those of sRGB");
+    EXPECT_EQ(shown_.values, "from the file's color space to that of sRGB");
     part_.attributes["chromaticities"] = chromaticities(color_spaces().front());
     EXPECT_EQ(codes(LayerKind::color)[0], code(glm::vec3(red)));
     EXPECT_EQ(shown_.values, "");
@@ -80,6 +81,34 @@ TEST_F(Show, ColorsOfOtherPrimariesAsThoseOfSrgb) {
         part_.attributes["chromaticities"] = damaged;
         EXPECT_EQ(codes(LayerKind::color)[0], code(glm::vec3(red)));
     }
+}
+
+/// IDs and the flag of an ACES container as textures have them; what is not known is said.
+TEST_F(Show, ColorsOfNamedSpacesAsThoseOfSrgb) {
+    const ColorSpace &ap0 = *find_color_space("lin_ap0_scene"), &own = color_spaces().front();
+    const glm::dvec3 red = color_matrix(own, ap0) * glm::dvec3(0.6, 0.1, 0.2);
+    give({{static_cast<float>(red[0])}, {static_cast<float>(red[1])}, {static_cast<float>(red[2])}});
+    part_.attributes["colorInteropID"] = std::string("lin_ap0_scene");
+    EXPECT_EQ(codes(LayerKind::color), (Codes{code({0.6f, 0.1f, 0.2f})}));
+    part_.attributes = {{"acesImageContainerFlag", 1}};
+    EXPECT_EQ(codes(LayerKind::color), (Codes{code({0.6f, 0.1f, 0.2f})}));
+    part_.attributes = {{"colorInteropID", std::string("data")}};
+    EXPECT_EQ(codes(LayerKind::color), (Codes{code(glm::vec3(red))}));
+    EXPECT_EQ(shown_.values, "");
+    part_.attributes = {{"colorInteropID", std::string("acme")}};
+    EXPECT_EQ(codes(LayerKind::color), (Codes{code(glm::vec3(red))}));
+    EXPECT_EQ(shown_.values, "numbers as they are, as its colorInteropID 'acme' is not known");
+    give({{0.5f}, {0.25f}, {1}});
+    part_.attributes = {{"colorInteropID", std::string("srgb_rec709_scene")}};
+    EXPECT_EQ(codes(LayerKind::color), (Codes{{128, 64, 255}}));
+}
+
+TEST_F(Show, LuminanceAndChromaAsColors) {
+    const glm::dvec3 weights = luminance_weights(color_spaces().front());
+    const glm::vec3 color(0.5f, 0.25f, 0.125f);
+    const auto y = static_cast<float>(dot(glm::dvec3(color), weights));
+    give({{(color[0] - y) / y, 0}, {y, 0.25f}, {(color[2] - y) / y, 0}});
+    EXPECT_EQ(codes(LayerKind::chroma), (Codes{code(color), code(glm::vec3(0.25f))}));
 }
 
 TEST_F(Show, IdsInTheirColors) {

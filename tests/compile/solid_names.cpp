@@ -1,0 +1,67 @@
+// Names by which mattes tell solids and materials apart: those of the scene file as they are, and never one for two.
+#include "scene/compile/scene_source.h"
+#include "scene/readers/read_scene.h"
+#include "testing/support/expect_error.h"
+#include "testing/support/scratch_directory.h"
+
+namespace cistula {
+namespace {
+
+class SolidNames : public testing::Test {
+  protected:
+    SolidNames() {
+        put_bytes(file("m.mtl"), "newmtl left\nnewmtl right\n");
+        put_bytes(file("m.obj"),
+                  "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 0 0\nusemtl left\nf 1 2 3\nusemtl right\nf 2 4 3\n");
+    }
+    std::string file(const std::string& name) const { return folder_.file(name); }
+
+    SceneDescription scene(const std::string& objects) const {
+        return read_scene_text(R"({"materials": {"left": {}, "/World/red": {}}, "objects": [)" + objects + "]}",
+                               "a.json", folder_.file(""));
+    }
+    std::string names(const std::string& objects) const {
+        const SceneDescription description = scene(objects);
+        std::string text;
+        for (const SourceSolid& solid : gather_scene(description).solids) text += name_of(solid) + ' ';
+        return text;
+    }
+    std::string materials(const std::string& objects) const {
+        const SceneDescription description = scene(objects);
+        std::string text;
+        for (const MaterialDescription& material : gather_scene(description).materials) text += material.name + ' ';
+        return text;
+    }
+    static std::string cube(const std::string& name) {
+        return R"({"solid": "cube", "material": "left")" + (name.empty() ? "" : R"(, "name": ")" + name + '"') + "}";
+    }
+    static std::string mesh(const std::string& name) {
+        return R"({"mesh": "m.obj")" + (name.empty() ? "" : R"(, "name": ")" + name + '"') + "}";
+    }
+
+    const ScratchDirectory folder_;
+};
+
+TEST_F(SolidNames, AreThoseOfTheFile) {
+    EXPECT_EQ(names(cube("/World/Cube") + "," + cube("/") + "," + cube("") + "," + cube("a b")),
+              "/World/Cube / object2 a b ");
+    EXPECT_EQ(names(mesh("m") + "," + mesh("")), "m/left m/right object1/left object1/right ");
+}
+
+TEST_F(SolidNames, AreOfOneSolidEach) {
+    EXPECT_ERROR(
+        gather_scene(scene(cube("object1") + "," + cube(""))), ExitCode::usage,
+        "a.json: /objects/1: 'object1' is the name of /objects/0 too: an object without a name is called object "
+        "and its number, a part of a mesh by the object's name, / and its own; give each another");
+    EXPECT_THROW(gather_scene(scene(mesh("m") + "," + cube("m/right"))), Error);
+}
+
+TEST_F(SolidNames, MaterialsOfMeshesAreNotTheScenes) {
+    EXPECT_EQ(materials(mesh("m") + "," + mesh("n")), "left /World/red m/left right n/left right ");
+    std::filesystem::copy_file(file("m.obj"), file("n.obj"));
+    EXPECT_EQ(materials(mesh("m") + R"(, {"mesh": "n.obj", "name": "n"})"),
+              "left /World/red m/left right n/left n/right ");
+}
+
+}  // namespace
+}  // namespace cistula
