@@ -69,7 +69,7 @@ struct SummedNativeShadow : NativeShadow<Real> {
         sum.cross(material);
         if constexpr (E::has(effect_absorption))
             if (solid.kind != SolidKind::sheet)
-                sum.absorb_rest(material, shadow.distance - t, enters ? 1 : -1, scene.extent);
+                sum.absorb_rest(material, shadow.distance, t, enters ? 1 : -1, scene.extent);
     }
 
     /// Adds the absorption of solids that contain the ray's origin.
@@ -77,8 +77,8 @@ struct SummedNativeShadow : NativeShadow<Real> {
         if constexpr (E::has(effect_absorption))
             shadow.ray.media.for_each([&](uint32_t index, int count) {
                 for (int n = 0; n != count; n += count > 0 ? 1 : -1)
-                    sum.absorb_rest(scene.materials[scene.solids[index].material], shadow.distance, count > 0 ? 1 : -1,
-                                    scene.extent);
+                    sum.absorb_rest(scene.materials[scene.solids[index].material], shadow.distance, Real(0),
+                                    count > 0 ? 1 : -1, scene.extent);
             });
     }
 };

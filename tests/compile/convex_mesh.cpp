@@ -225,7 +225,7 @@ TYPED_TEST(ConvexMesh, WhatIsNotConvexStaysAMesh) {
         other_way.triangles[i + 1] = {b, c, d};
     }
     EXPECT_EQ(this->slabs(other_way), 3u);
-    EXPECT_FALSE(this->by_planes(joined(cube(), other_way))) << "twice the same, cut in two ways";
+    EXPECT_EQ(this->slabs(joined(cube(), other_way)), 3u) << "twice the same, cut in two ways, is once the same";
 }
 
 TYPED_TEST(ConvexMesh, WhatPlanesReproduceBadlyStaysAMesh) {

@@ -98,8 +98,9 @@ TEST(MeshTopology, BrokenMeshesAreSheets) {
     fin.triangles.push_back({fin.triangles[0][0], fin.triangles[0][1], 8});
     EXPECT_FALSE(find_topology(source_of(fin)).closed);
     EXPECT_EQ(find_topology(source_of(fin)).why_not_closed(), "2 open edges and 1 edge of more than two faces");
-    TrianglesObject flat = square();  // both sides of a square, cut along different diagonals: without a volume
-    flat.triangles.insert(flat.triangles.end(), {{0, 3, 1}, {1, 3, 2}});
+    TrianglesObject flat = square();  // a triangle, and its other side in three around a point: without a volume
+    flat.vertices[3] = (flat.vertices[0] + flat.vertices[1] + flat.vertices[2]) / 3.0;
+    flat.triangles = {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}};
     const MeshTopology topology = find_topology(source_of(flat));
     EXPECT_EQ(topology.open_edges, 0u);
     EXPECT_FALSE(topology.closed);

@@ -56,6 +56,22 @@ TEST_F(SolidNames, AreOfOneSolidEach) {
     EXPECT_THROW(gather_scene(scene(mesh("m") + "," + cube("m/right"))), Error);
 }
 
+/// Fronts and backs in groups of their own: with one material they are faces that are there twice.
+TEST_F(SolidNames, FacesOfAnEarlierPartAreLeftOut) {
+    put_bytes(file("two.obj"),
+              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\no front\nf 1 2 3 4\no back\nf 4 3 2 1\no more\nf 3 2 1\nf "
+              "2 5 3\n");
+    const SceneDescription description = scene(R"({"mesh": "two.obj", "name": "m", "material": "left"})");
+    const SceneSource source = gather_scene(description);
+    ASSERT_EQ(source.solids.size(), 2u);
+    EXPECT_EQ(source.solids[0].name, "m/front");
+    EXPECT_EQ(source.solids[0].mesh.triangles.size(), 2u);
+    EXPECT_EQ(source.solids[0].mesh.doubled_polygons, 2u);
+    EXPECT_EQ(source.solids[1].name, "m/more");
+    EXPECT_EQ(source.solids[1].mesh.triangles.size(), 1u);
+    EXPECT_EQ(source.solids[1].mesh.doubled_polygons, 1u);
+}
+
 TEST_F(SolidNames, MaterialsOfMeshesAreNotTheScenes) {
     EXPECT_EQ(materials(mesh("m") + "," + mesh("n")), "left /World/red m/left right n/left right ");
     std::filesystem::copy_file(file("m.obj"), file("n.obj"));

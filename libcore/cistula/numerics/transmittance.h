@@ -59,13 +59,15 @@ CISTULA_HD inline uint64_t absorption_loss(double sigma_length) {
     return loss_of_logarithm(fast_two_sum(product.high, fused(sigma_length, log2_e_lo, product.low)));
 }
 
-/// sigma t rounded to the nearest 2^-32 (halves up) in Q31.32, clamped to +-2^30; NaN gives -2^30.
+/// sigma t rounded to the nearest 2^-32 (halves up) in Q31.32, modulo 2^32; what is not finite gives -2^31.
 CISTULA_INLINE int64_t absorption_fixed(double sigma_t) {
-    return static_cast<int64_t>(floor_of(clamped(sigma_t, -0x1p30, 0x1p30) * 0x1p32 + 0.5));
+    const double wrapped = sigma_t - floor_of(sigma_t * 0x1p-32 + 0.5) * 0x1p32;
+    return static_cast<int64_t>(floor_of(clamped(wrapped, -0x1p31, 0x1p31 - 0x1p-20) * 0x1p32 + 0.5));
 }
 
 /// Optical depth of closed meshes along a path, for one channel: sigma t is added where a ray leaves a mesh and
-/// subtracted where it enters. Partial sums may wrap around; the whole sum is correct while sigma M <= 2^20.
+/// subtracted where it enters. Terms and partial sums may wrap around; the whole sum, which is a sum of sigma times
+/// lengths inside, is correct below 2^31: a solid of the size d has sigma d <= 2^20.
 struct PathSum {
     uint64_t sum = 0;  // Q31.32, two's complement
 

@@ -45,12 +45,14 @@ struct ShadowSum {
                 loss[c] = saturating_add(loss[c], absorption_loss(double(material.absorption[c]) * double(length)));
     }
 
-    /// Adds the absorption of a mesh entered (sign 1) or left (sign -1) at a distance `remaining` from the light: the
-    /// signed sum over all its crossings is the length inside.
+    /// Adds the absorption of a mesh entered (sign 1) or left (sign -1) at t on the way to a light at `distance`: the
+    /// signed sum over all its crossings is the length inside. A light that is farther than the scene reaches, 4 extents,
+    /// is in no mesh, and lengths count up to there.
     template <class Real>
-    CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real remaining, int sign, Real extent) {
+    CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real distance, Real t, int sign, Real extent) {
+        const Real farthest = 4 * extent, remaining = min_or_second(distance, farthest) - t;
         for (int c = 0; c < channels; ++c)
-            path[c].add(sign, double(material.absorption[c]), double(remaining), 4 * double(extent));
+            path[c].add(sign, double(material.absorption[c]), double(remaining), double(farthest));
     }
 
     template <class Real, class Scene>
@@ -199,7 +201,7 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t
     sum.cross(material);
     if constexpr (E::has(effect_absorption))
         if (solid.kind == SolidKind::mesh)
-            sum.absorb_rest(material, shadow.distance - t, c.enters() ? 1 : -1, scene.extent);
+            sum.absorb_rest(material, shadow.distance, t, c.enters() ? 1 : -1, scene.extent);
 }
 
 /// Adds what a cluster's triangles take from a light, for a ray that does not start on the cluster's flat sheet.
@@ -236,7 +238,8 @@ CISTULA_INLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media
         shadow.ray.media.for_each([&](uint32_t index, int count) {
             const Solid& solid = scene.solids[index];
             for (int n = 0; solid.kind == SolidKind::mesh && n != count; n += count > 0 ? 1 : -1)
-                sum.absorb_rest(scene.materials[solid.material], shadow.distance, count > 0 ? 1 : -1, scene.extent);
+                sum.absorb_rest(scene.materials[solid.material], shadow.distance, Real(0), count > 0 ? 1 : -1,
+                                scene.extent);
         });
     }
 }

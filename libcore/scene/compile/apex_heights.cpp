@@ -33,15 +33,15 @@ void take_least(AngleFactors& least, const AngleFactors& f) {
     least.outside = min_or_second(f.outside, least.outside);
 }
 
-/// Half-edges are numbered in the source's winding; if that is flipped, edge e is the source's edge 2 - e, and back.
-uint32_t source_edge(const NormalizedMesh& mesh, uint32_t e) {
-    return mesh.topology().flipped ? 2 - e : e;
+/// Half-edges are numbered in the source's winding; if that is reversed, edge e is the source's edge 2 - e, and back.
+uint32_t source_edge(const NormalizedMesh& mesh, uint32_t triangle, uint32_t e) {
+    return mesh.topology().reverses(triangle) ? 2 - e : e;
 }
 
 /// A triangle's edge, in the winding that the mesh is rendered with.
 struct MeshEdge {
     MeshEdge(const NormalizedMesh& mesh, uint32_t half_edge) {
-        const uint32_t e = source_edge(mesh, half_edge % 3);
+        const uint32_t e = source_edge(mesh, half_edge / 3, half_edge % 3);
         const auto corner = mesh.triangle(half_edge / 3);
         start = corner[e];
         edge = corner[(e + 1) % 3] - corner[e];
@@ -130,7 +130,7 @@ ApexHeights apex_heights(const NormalizedMesh& mesh) {
             AngleFactors least;
             double perimeter = 0, twice_area = 0;
             for (uint32_t e = 0; e < 3; ++e) {
-                const uint32_t own = 3 * t + source_edge(mesh, e);
+                const uint32_t own = 3 * t + source_edge(mesh, t, e);
                 const MeshEdge edge(mesh, own);
                 perimeter += length(edge.edge);
                 twice_area = length(edge.normal);

@@ -10,7 +10,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double largest_absorption = 0x1p20;  // of absorption * M (docs/rules.md, 6)
+constexpr double largest_absorption = 0x1p20;  // of absorption * the size of a solid (docs/rules.md, 6)
 constexpr double largest_integer_exponent = 1024;
 
 /// 1 - kr - kt for the rounded shares, rounded down, so that the three never add up to more than 1.
@@ -117,7 +117,7 @@ TextureSet read_textures(const SceneSource& source) {
 }
 
 template <class Real>
-Material<Real> compile_material(const MaterialDescription& material, const dvec3& ambient, int texture,
+Material<Real> compile_material(const MaterialDescription& material, const dvec3& ambient, int texture, double size,
                                 const SceneNormalization& normalization, const SceneDescription& scene) {
     Material<Real> m;
     m.color = Vec3<Real>(material.color);
@@ -137,10 +137,11 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     m.filter = Vec3<Real>(transmission * material.tint);
     m.tint = Vec3<Real>(material.tint);
     const dvec3 absorption = material.absorption / normalization.factor;
-    if (largest_component(absorption) * normalization.extent > largest_absorption)
+    if (largest_component(absorption) * size > largest_absorption)
         throw scene_error(scene, "",
-                          "material " + material.name + " has an absorption above 2^20 per largest coordinate; " +
-                              "such a solid is opaque: give it transmission 0");
+                          "material " + material.name +
+                              " has an absorption above 2^20 per size of a solid that is made " +
+                              "of it; such a solid is opaque: give it transmission 0");
     m.absorption = Vec3<Real>(absorption);
     m.index = material.index;
     m.opaque = 0;
@@ -160,9 +161,9 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     return m;
 }
 
-template Material<float> compile_material(const MaterialDescription&, const dvec3&, int, const SceneNormalization&,
-                                          const SceneDescription&);
-template Material<double> compile_material(const MaterialDescription&, const dvec3&, int, const SceneNormalization&,
-                                           const SceneDescription&);
+template Material<float> compile_material(const MaterialDescription&, const dvec3&, int, double,
+                                          const SceneNormalization&, const SceneDescription&);
+template Material<double> compile_material(const MaterialDescription&, const dvec3&, int, double,
+                                           const SceneNormalization&, const SceneDescription&);
 
 }  // namespace cistula

@@ -23,9 +23,9 @@ struct TextureSet {
 TextureSet read_textures(const SceneSource& source);
 
 /// A material for the shading code. `ambient` is scaled like all radiances; `texture` is an index in the compiled
-/// scene.
+/// scene; `size` is that of the largest solid of the material, in the scene's frame.
 template <class Real>
 Material<Real> compile_material(const MaterialDescription& material, const glm::dvec3& ambient, int texture,
-                                const SceneNormalization& normalization, const SceneDescription& scene);
+                                double size, const SceneNormalization& normalization, const SceneDescription& scene);
 
 }  // namespace cistula

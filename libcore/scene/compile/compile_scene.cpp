@@ -250,7 +250,7 @@ class Compiler {
     }
 
     void warn(const SourceSolid& solid, const MeshTopology& topology) {
-        const std::string place = solid.place + ": " + solid.name + ": ";
+        const std::string place = solid.place + ": " + (solid.name.empty() ? "" : solid.name + ": ");
         if (const std::string left_out = topology.left_out(); !left_out.empty())
             scene_.warnings.push_back(place + left_out);
         if (const uint32_t doubled = solid.mesh.doubled_polygons + topology.doubled; doubled > 0)
@@ -271,10 +271,16 @@ class Compiler {
         scene_.radiance_exponent = scale_.exponent;
         for (int c = 0; c < 3; ++c) scene_.bound[c] = rounded_up<Real>(scale_.bound[c]);
         scene_.background = Vec3<Real>(scaled(description_.background));
-        for (const MaterialDescription& material : source_.materials) {
+        std::vector<double> sizes(source_.materials.size());  // of the largest solid of each
+        for (size_t i = 0; i < boxes_.size(); ++i) {
+            double& size = sizes[source_.solids[i].material];
+            if (!boxes_[i].empty()) size = max_or_second(length(boxes_[i].high - boxes_[i].low), size);
+        }
+        for (size_t i = 0; i < source_.materials.size(); ++i) {
+            const MaterialDescription& material = source_.materials[i];
             const int texture = material.texture < 0 ? -1 : textures.number[static_cast<size_t>(material.texture)];
-            scene_.materials.push_back(
-                compile_material<Real>(material, scaled(description_.ambient), texture, normalization_, description_));
+            scene_.materials.push_back(compile_material<Real>(material, scaled(description_.ambient), texture, sizes[i],
+                                                              normalization_, description_));
         }
         for (const SourceSolid& solid : source_.solids) {
             const MaterialDescription& material = source_.materials[solid.material];

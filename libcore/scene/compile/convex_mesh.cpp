@@ -40,7 +40,7 @@ class ConvexSearch {
         std::vector<uint32_t> number(mesh.vertices.size(), no_vertex);
         for (uint32_t t = 0; t < topology.count; ++t) {
             std::array<uint32_t, 3> corners = mesh.triangles[topology.source_triangle(t)];
-            if (topology.flipped) std::swap(corners[1], corners[2]);
+            if (topology.reverses(t)) std::swap(corners[1], corners[2]);
             for (uint32_t& corner : corners) {
                 uint32_t& known = number[welded[corner]];
                 if (known == no_vertex) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <ranges>
 #include <tuple>
 
 #include <tbb/blocked_range.h>
@@ -64,6 +65,7 @@ bool has_zero_area(const MeshSource& mesh, const std::array<uint32_t, 3>& t) {
 void keep_triangles(const MeshSource& mesh, const std::vector<uint32_t>& welded, const std::vector<uint8_t>& doubled,
                     bool drop_zero_area, MeshTopology& topology) {
     topology.kept.clear();
+    topology.doubles.clear();
     topology.all_kept = true;
     topology.not_finite = topology.repeated_vertex = topology.doubled = topology.zero_area = 0;
     const auto total = static_cast<uint32_t>(mesh.triangles.size());
@@ -77,6 +79,7 @@ void keep_triangles(const MeshSource& mesh, const std::vector<uint32_t>& welded,
             reason = &topology.repeated_vertex;
         } else if (doubled[i]) {
             reason = &topology.doubled;
+            topology.doubles.push_back(i);
         } else if (drop_zero_area && has_zero_area(mesh, t)) {
             reason = &topology.zero_area;
         }
@@ -147,18 +150,106 @@ void link_edges(const MeshSource& mesh, const std::vector<uint32_t>& welded, Mes
     topology.turned_edges = turned;
 }
 
+/// The halves of flat quads that earlier halves cover, along the other diagonal; marks them in `doubled`. Flat: a
+/// corner lies 2^-20 of the longest side at most from the plane of the others, as coordinates in single precision or
+/// with seven digits do. Returns whether there are any.
+bool find_crossed_halves(const MeshSource& mesh, const std::vector<uint32_t>& welded, const MeshTopology& topology,
+                         std::vector<uint8_t>& doubled) {
+    const auto corner = [&](uint32_t half_edge) {
+        return welded[mesh.triangles[topology.source_triangle(half_edge / 3)][half_edge % 3]];
+    };
+    const auto after = [](uint32_t half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; };
+    const auto opposite = [&](uint32_t half_edge) { return corner(after(after(half_edge))); };
+    const auto& next = topology.next_along_edge;
+    // The other triangle at an edge whose third corner is `third`.
+    const auto neighbor = [&](uint32_t half_edge, uint32_t third) {
+        for (uint32_t h = next[half_edge]; h != half_edge; h = next[h])
+            if (opposite(h) == third) return h / 3;
+        return no_vertex;
+    };
+    const auto is_flat_quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {  // in a cycle
+        const dvec3 p = mesh.vertices[a], ac = mesh.vertices[c] - p, ab = mesh.vertices[b] - p,
+                    ad = mesh.vertices[d] - p, bd = ad - ab;
+        const dvec3 normal = cross(ac, bd);
+        const double size = length(normal), longest = max_or_second(length(ac), length(bd));
+        if (!(size > 0) || magnitude(dot(normal, ab)) > 0x1p-20 * longest * size) return false;
+        // The diagonals cross: each pair of corners lies on either side of the other pair's line.
+        const auto side = [&](const dvec3& line, const dvec3& to) { return dot(cross(line, to), normal); };
+        return side(ac, ab) * side(ac, ad) < 0 && side(bd, -ab) * side(bd, ac - ab) < 0;
+    };
+    bool any = false;
+    for (uint32_t h = 0; h < next.size(); ++h) {
+        const uint32_t other = next[h];
+        if (other <= h || next[other] != h) continue;
+        const uint32_t a = corner(h), c = corner(after(h)), b = opposite(h), d = opposite(other);
+        if (b == d) continue;
+        const uint32_t third = neighbor(after(after(h)), d), fourth = neighbor(after(h), d);  // at edges ba and cb
+        if (third == no_vertex || fourth == no_vertex || std::min(third, fourth) < std::min(h, other) / 3) continue;
+        if (!is_flat_quad(a, b, c, d)) continue;
+        for (const uint32_t half : {third, fourth}) doubled[topology.source_triangle(half)] = 1;
+        any = true;
+    }
+    return any;
+}
+
+/// Six times the volume under some kept triangles, seen from `origin`, and the sum of its terms' magnitudes.
+struct Volume {
+    double sum = 0, magnitudes = 0;
+
+    template <class Triangles>
+    Volume(const MeshSource& mesh, const MeshTopology& topology, const Triangles& triangles, const dvec3& origin) {
+        for (const uint32_t triangle : triangles) {
+            auto t = mesh.triangles[topology.source_triangle(triangle)];
+            if (topology.reverses(triangle)) std::swap(t[1], t[2]);
+            const double term =
+                dot(mesh.vertices[t[0]] - origin, cross(mesh.vertices[t[1]] - origin, mesh.vertices[t[2]] - origin));
+            sum += term;
+            magnitudes += magnitude(term);
+        }
+    }
+};
+
+/// Turns triangles of a mesh whose edges all have two of them so that all of a piece face alike, outward; leaves the
+/// topology as it is where there is no such choice.
+void turn_alike(const MeshSource& mesh, const std::vector<uint32_t>& welded, MeshTopology& topology) {
+    const auto corner = [&](uint32_t half_edge) {
+        return welded[mesh.triangles[topology.source_triangle(half_edge / 3)][half_edge % 3]];
+    };
+    constexpr uint8_t unknown = 2;
+    std::vector<uint8_t>& turned = topology.turned;
+    turned.assign(topology.count, unknown);
+    for (uint32_t first = 0; first < topology.count; ++first) {
+        if (turned[first] != unknown) continue;
+        turned[first] = 0;
+        std::vector<uint32_t> piece{first};
+        for (size_t i = 0; i < piece.size(); ++i) {
+            const uint32_t triangle = piece[i];
+            for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; ++h) {
+                const uint32_t other = topology.next_along_edge[h];
+                const bool is_alike = corner(h) != corner(other);  // they run through the edge in opposite directions
+                const auto wanted = static_cast<uint8_t>(is_alike ? turned[triangle] : 1 - turned[triangle]);
+                uint8_t& known = turned[other / 3];
+                if (known == unknown) {
+                    known = wanted;
+                    piece.push_back(other / 3);
+                } else if (known != wanted) {
+                    turned.clear();
+                    return;  // it has one side, as a Klein bottle
+                }
+            }
+        }
+        const dvec3 origin = mesh.vertices[mesh.triangles[topology.source_triangle(first)][0]];
+        if (Volume(mesh, topology, piece, origin).sum < 0)
+            for (const uint32_t triangle : piece) turned[triangle] ^= 1;
+    }
+    topology.turned_edges = 0;
+}
+
 /// Six times the signed volume about the first vertex; 0 if its sign could be due to rounding.
 double signed_volume(const MeshSource& mesh, const MeshTopology& topology) {
     const dvec3 origin = mesh.vertices[mesh.triangles[topology.source_triangle(0)][0]];
-    double sum = 0, magnitudes = 0;
-    for (uint32_t i = 0; i < topology.count; ++i) {
-        const auto& t = mesh.triangles[topology.source_triangle(i)];
-        const double term =
-            dot(mesh.vertices[t[0]] - origin, cross(mesh.vertices[t[1]] - origin, mesh.vertices[t[2]] - origin));
-        sum += term;
-        magnitudes += magnitude(term);
-    }
-    return magnitude(sum) > 0x1p-40 * magnitudes ? sum : 0;
+    const Volume volume(mesh, topology, std::views::iota(uint32_t{0}, topology.count), origin);
+    return magnitude(volume.sum) > 0x1p-40 * volume.magnitudes ? volume.sum : 0;
 }
 
 }  // namespace
@@ -192,9 +283,13 @@ std::string MeshTopology::why_not_closed() const {
 MeshTopology find_topology(const MeshSource& mesh) {
     MeshTopology topology;
     const std::vector<uint32_t> welded = weld(mesh.vertices);
-    const std::vector<uint8_t> doubled = doubled_triangles(mesh, welded);
+    std::vector<uint8_t> doubled = doubled_triangles(mesh, welded);
     keep_triangles(mesh, welded, doubled, true, topology);
     link_edges(mesh, welded, topology);
+    if (find_crossed_halves(mesh, welded, topology, doubled)) {
+        keep_triangles(mesh, welded, doubled, true, topology);
+        link_edges(mesh, welded, topology);
+    }
     if (!topology.has_closed_edges() && topology.zero_area > 0) {
         // Zero-area triangles may close a mesh along edges that their neighbors subdivide.
         MeshTopology sealed;
@@ -202,6 +297,9 @@ MeshTopology find_topology(const MeshSource& mesh) {
         link_edges(mesh, welded, sealed);
         if (sealed.has_closed_edges()) topology = std::move(sealed);
     }
+    const bool had_both_sides = mesh.doubled_polygons + topology.doubled > 0;
+    if (had_both_sides && topology.turned_edges > 0 && topology.open_edges == 0 && topology.crowded_edges == 0)
+        turn_alike(mesh, welded, topology);
     if (topology.count > 0 && topology.has_closed_edges()) {
         const double volume = signed_volume(mesh, topology);
         topology.closed = volume != 0;

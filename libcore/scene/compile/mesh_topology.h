@@ -20,17 +20,24 @@ struct MeshTopology {
     bool flipped = false;  // closed, but wound clockwise seen from outside
     uint32_t count = 0;    // number of kept triangles
     bool all_kept = true;
-    std::vector<uint32_t> kept;  // source numbers of the kept triangles, ascending; empty where all are
+    std::vector<uint32_t> kept;     // source numbers of the kept triangles, ascending; empty where all are
+    std::vector<uint32_t> doubles;  // those of the triangles that `doubled` counts, ascending
+    /// For each kept triangle whether it is wound unlike its neighbors, in a mesh that had a face's two sides and kept
+    /// the wrong one; empty where none is.
+    std::vector<uint8_t> turned;
     /// For each half-edge the next one along the same edge, in a ring; itself where the edge has no other triangle.
     std::vector<uint32_t> next_along_edge;
 
     uint32_t repeated_vertex = 0, not_finite = 0, zero_area = 0;  // triangles left out
-    uint32_t doubled = 0;  // triangles left out: an earlier one has the same corners, in either winding
+    uint32_t doubled =
+        0;  // triangles left out: an earlier one, or an earlier pair, has the same corners, in either winding
     // Edges that prevent it from being closed: of one triangle, of more than two, of two that run through them alike.
     uint32_t open_edges = 0, crowded_edges = 0, turned_edges = 0;
 
     bool has_closed_edges() const { return open_edges == 0 && crowded_edges == 0 && turned_edges == 0; }
     uint32_t source_triangle(uint32_t triangle) const { return all_kept ? triangle : kept[triangle]; }
+    /// Whether a kept triangle is rendered with the reverse of the source's winding.
+    bool reverses(uint32_t triangle) const { return flipped != (!turned.empty() && turned[triangle] != 0); }
     /// A summary: "left out 3 triangles with a repeated vertex and 1 of zero area"; empty if there are none.
     std::string left_out() const;
     /// Why it is not closed: "3 open edges and 1 edge of more than two faces".
@@ -38,7 +45,9 @@ struct MeshTopology {
 };
 
 /// The topology of a mesh. Triangles with a repeated vertex or a coordinate that is not finite are left out; of several
-/// with the same corners the first one stays. Zero-area ones stay only in a mesh that would not be closed without them.
+/// with the same corners the first one stays, and of two pairs that are the halves of one flat quad, along either
+/// diagonal, the first pair. Zero-area ones stay only in a mesh that would not be closed without them. Where triangles
+/// were left out for others with their corners, those that stay are turned to face alike, if that closes the mesh.
 /// Never throws for broken meshes. `vertices` of triangles must be in range.
 MeshTopology find_topology(const MeshSource& mesh);
 
@@ -55,7 +64,7 @@ class NormalizedMesh {
     /// Source indices of the vertices of a kept triangle.
     std::array<uint32_t, 3> corners(uint32_t triangle) const {
         std::array<uint32_t, 3> c = source_.triangles[topology_.source_triangle(triangle)];
-        if (topology_.flipped) std::swap(c[1], c[2]);
+        if (topology_.reverses(triangle)) std::swap(c[1], c[2]);
         return c;
     }
     Vec3<double> vertex(uint32_t number) const {

@@ -79,26 +79,52 @@ void check_triangles(const SceneDescription& scene, const TrianglesObject& objec
         if (!is_finite(uv.x) || !is_finite(uv.y)) throw scene_error(scene, place, "a uv is not finite");
 }
 
-/// Merges all parts into one if that closes a mesh that the file splits by materials.
-bool join_closed(std::vector<MeshPart>& parts) {
+/// The triangles of all parts as one mesh.
+MeshSource joined_mesh(const std::vector<MeshPart>& parts) {
     const bool with_uvs =
         std::all_of(parts.begin(), parts.end(), [](const MeshPart& p) { return !p.mesh.uvs.empty(); });
-    MeshPart joined;
-    joined.name = parts.front().name;
+    MeshSource joined;
     for (const MeshPart& part : parts) {
-        const auto first = static_cast<uint32_t>(joined.mesh.owned_vertices.size());
-        MeshSource& to = joined.mesh;
-        to.owned_vertices.insert(to.owned_vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
-        if (with_uvs) to.owned_uvs.insert(to.owned_uvs.end(), part.mesh.uvs.begin(), part.mesh.uvs.end());
+        const auto first = static_cast<uint32_t>(joined.owned_vertices.size());
+        joined.owned_vertices.insert(joined.owned_vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
+        if (with_uvs) joined.owned_uvs.insert(joined.owned_uvs.end(), part.mesh.uvs.begin(), part.mesh.uvs.end());
         for (const auto& t : part.mesh.triangles)
-            to.owned_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-        to.doubled_polygons += part.mesh.doubled_polygons;
+            joined.owned_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+        joined.doubled_polygons += part.mesh.doubled_polygons;
     }
-    joined.mesh.view_owned();
-    if (!find_topology(joined.mesh).closed) return false;
-    parts.clear();
-    parts.push_back(std::move(joined));
-    return true;
+    joined.view_owned();
+    return joined;
+}
+
+/// Merges all parts of one material into one if that closes a mesh that the file splits; else leaves out of each what
+/// an earlier one has, too.
+void join_parts(std::vector<MeshPart>& parts) {
+    MeshSource joined = joined_mesh(parts);
+    const MeshTopology topology = find_topology(joined);
+    if (topology.closed) {
+        parts.resize(1);
+        parts.front().mesh = std::move(joined);
+        return;
+    }
+    uint32_t first = 0;
+    auto doubled = topology.doubles.begin();
+    for (MeshPart& part : parts) {
+        MeshSource& mesh = part.mesh;
+        const auto count = static_cast<uint32_t>(mesh.owned_triangles.size());
+        uint32_t kept = 0;
+        for (uint32_t i = 0; i < count; ++i) {
+            const bool is_double = doubled != topology.doubles.end() && *doubled == first + i;
+            if (is_double)
+                ++doubled;
+            else
+                mesh.owned_triangles[kept++] = mesh.owned_triangles[i];
+        }
+        mesh.owned_triangles.resize(kept);
+        (kept > 0 ? mesh : parts.front().mesh).doubled_polygons += count - kept;  // which the warning counts
+        mesh.view_owned();
+        first += count;
+    }
+    std::erase_if(parts, [](const MeshPart& part) { return part.mesh.triangles.empty(); });
 }
 
 /// `name`, or one after a place in the file, "object3", if that is empty.
@@ -122,7 +148,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
     if (!is_finite(mesh.center) || !is_finite(mesh.rotation) || !is_finite(mesh.scale) || mesh.scale == 0)
         throw scene_error(scene, object.place, "the center and rotation must be finite, the scale finite and not 0");
     std::vector<MeshPart> parts = read_mesh(mesh, scene.source + ": " + object.place, source.warnings, &source.files);
-    if (object.material >= 0 && parts.size() > 1) join_closed(parts);
+    if (object.material >= 0 && parts.size() > 1) join_parts(parts);
     for (MeshPart& part : parts) {
         SourceSolid solid;
         solid.name = parts.size() == 1 ? object.name : given_name(object.name, object.place) + "/" + part.name;

@@ -5,6 +5,7 @@
 #include <climits>
 #include <exception>
 #include <new>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -132,6 +133,19 @@ void limit_library(uint64_t left) {
     OIIO::attribute("threads", 1);
 }
 
+/// Versions from 2.5 on refuse pictures beyond limit_library's limits in words of their own, which end with the size:
+/// "60000x60000". The host says it in its words, if it is too large for it, too.
+bool fail_to_open(const OiioHost& host, const std::string& reason) {
+    const std::regex size("([0-9]{1,9})x([0-9]{1,9})");
+    std::smatch last;
+    for (auto at = std::sregex_iterator(reason.begin(), reason.end(), size); at != std::sregex_iterator(); ++at)
+        last = *at;
+    if (!last.empty() && reason.find("exceed") != std::string::npos &&
+        !host.begin(host.self, std::stoll(last[1]), std::stoll(last[2]), 3, OiioSamples::uint8))
+        return false;
+    return fail(host, reason);
+}
+
 bool read(const char* path, const OiioHost* host) noexcept {
     return guarded(*host, [&] {
         limit_library(host->left);
@@ -139,7 +153,7 @@ bool read(const char* path, const OiioHost* host) noexcept {
         OIIO::ImageSpec settings;
         settings["oiio:UnassociatedAlpha"] = 1;
         const auto input = OIIO::ImageInput::open(path, &settings);
-        return input ? read_opened(*input, path, *host) : fail(*host, OIIO::geterror());
+        return input ? read_opened(*input, path, *host) : fail_to_open(*host, OIIO::geterror());
     });
 }
 
