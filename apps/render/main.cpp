@@ -193,7 +193,10 @@ void render_scene(RenderOptions options) {
     stats.driver = devices.driver;
     SceneDescription scene;
     stats.read_seconds = seconds_of([&] { scene = read_scene(options); });
-    if (explain) return print(explain_table(scene.source, explain_effects(scene)));
+    if (explain) {
+        choose_precision(options, gather_scene(scene));
+        return print(explain_table(scene.source, explain_effects(scene, options.precision)));
+    }
 
     if (const std::string warning = open_config_view(options.view); !warning.empty())
         print_warnings({warning}, options);
@@ -280,12 +283,12 @@ void measure_scene(RenderOptions options) {
     const ChosenDevices devices = choose_devices(options.backend, options.devices);
     const SceneDescription scene = read_scene(options);
     const FrameSettings settings = frame_settings(options, scene);
-    const std::vector<EffectReason> reasons = explain_effects(scene);
     StepProgress progress(options.quiet ? ProgressStyle::none : options.progress);  // must outlive the guard
     InterruptGuard guard;
     guard.watch(progress.render.stop);
     on_threads(options, [&] {
         choose_precision(options, gather_scene(scene));
+        const std::vector<EffectReason> reasons = explain_effects(scene, options.precision);
         const auto make = [&](const SceneDescription& of) {
             return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
                                                            : renderer_of<float>(of, options, devices.options);

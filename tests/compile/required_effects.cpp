@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "scene/compile/compiled_scene.h"
+#include "scene/description/rotation.h"
+#include "testing/support/scene.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {
@@ -55,6 +57,26 @@ TEST(RequiredEffects, AnUnlitSceneNeedsNone) {
     EXPECT_EQ(effects_of(scene), effect_solids | effect_visible_lights);
     EXPECT_EQ(because(scene, effect_visible_lights), "the light /lights/0 is seen");
     EXPECT_EQ(because(scene, effect_diffuse), "no light has an intensity above 0");
+}
+
+/// A cube on a floor that is 10^5 to 10^9 times as large, off its middle and turned, touches it in double precision.
+TEST(RequiredEffects, ContactsAreFoundOnLargeTurnedFloors) {
+    test::Random random(3);
+    for (const double half : {1e5, 1e7, 1e9})
+        for (int trial = 0; trial < 20; ++trial) {
+            const glm::dvec3 angles = random.in_cube(180),
+                             place(random.between(-half, half), random.between(-half, half), 0);
+            const Rotation rotation(angles);
+            SceneDescription scene = empty_scene();
+            TrianglesObject floor = square(half);
+            for (glm::dvec3& p : floor.vertices) p = rotation(p);
+            add_object(scene, floor);
+            SolidObject cube = solid(PlatonicSolid::cube, rotation(place + glm::dvec3(0, 0, 0.5)), std::sqrt(0.75));
+            cube.rotation = angles;
+            add_object(scene, cube);
+            const std::vector<EffectReason> reasons = explain_effects(scene, Precision::double_);
+            EXPECT_TRUE(required_effects(reasons) & effect_contacts) << half << ' ' << trial;
+        }
 }
 
 TEST(RequiredEffects, AnOpaqueCubeUnderALight) {

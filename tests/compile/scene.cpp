@@ -324,6 +324,21 @@ TYPED_TEST(CompileScene, TexturesByHand) {
     EXPECT_EQ(compiled->uvs[5], Vec2<TypeParam>(0, 1));
 }
 
+/// Absorption is refused by the size of the solids of the material, whatever else the scene has.
+TYPED_TEST(CompileScene, AbsorptionIsMeasuredByItsSolids) {
+    SceneDescription scene = empty_scene();
+    add_object(scene, square(1e9));
+    scene.materials.push_back(samples::material("unused"));
+    scene.materials[1].absorption.x = 1e30;
+    scene.materials.push_back(samples::material("amber", 0, 1));
+    scene.materials[2].absorption = {0.1, 0.5, 1};
+    add_object(scene, solid(PlatonicSolid::cube), 2);
+    EXPECT_NO_THROW(compile_scene<TypeParam>(scene));
+    scene.materials[2].absorption.z = 1e7;
+    expect_error([&] { compile_scene<TypeParam>(scene); }, ExitCode::usage,
+                 "material amber has an absorption above 2^20");
+}
+
 TYPED_TEST(CompileScene, WrongScenesNameThePlace) {
     const auto refused = [](const auto& change, const std::string& text) {
         SceneDescription scene = empty_scene();

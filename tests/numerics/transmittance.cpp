@@ -191,9 +191,19 @@ TEST(Absorption, FixedPoint) {
     EXPECT_EQ(absorption_fixed(0x1.fp-34), 0);
     EXPECT_EQ(absorption_fixed(-0x1p-33), 0);
     EXPECT_EQ(absorption_fixed(0x1p22), int64_t{1} << 54);
-    EXPECT_EQ(absorption_fixed(elementary::infinity), int64_t{1} << 62);
-    EXPECT_EQ(absorption_fixed(-elementary::infinity), -(int64_t{1} << 62));
-    EXPECT_EQ(absorption_fixed(elementary::not_a_number), -(int64_t{1} << 62));
+    for (const double what : {elementary::infinity, -elementary::infinity, elementary::not_a_number})
+        EXPECT_EQ(absorption_fixed(what), std::numeric_limits<int64_t>::min());
+}
+
+/// Terms of any size wrap around, so that what is left of two is what lies between them.
+TEST(Absorption, DifferencesOfLargeTermsAreExact) {
+    const auto between = [](double near, double far) {
+        return static_cast<int64_t>(static_cast<uint64_t>(absorption_fixed(far)) -
+                                    static_cast<uint64_t>(absorption_fixed(near)));
+    };
+    for (const double far : {0x1p29, 0x1p30, 0x1p31, 0x1p32, 3 * 0x1p31, 0x1p40, 0x1p50})
+        for (const double apart : {0.25, 1.0, 1000.0, 0x1p20})
+            EXPECT_EQ(between(far - apart, far), absorption_fixed(apart)) << far << ' ' << apart;
 }
 
 TEST(Absorption, PathsThroughMeshesInAnyOrder) {

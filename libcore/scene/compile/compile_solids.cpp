@@ -82,7 +82,10 @@ std::vector<glm::dvec3> ConvexSolid::face_corners(uint32_t face) const {
     std::vector<glm::dvec3> corners;
     if (offset == -INFINITY) return corners;
     const glm::dvec3 size = box.high - box.low;
-    const double tolerance = max_or_second(on_face * largest_component(size), flatness);
+    // Far from the origin what rounds corners and planes is their distance from it.
+    const double reach = max_or_second(largest_component(box.high), largest_component(-box.low));
+    const double tolerance = max_or_second(max_or_second(on_face * largest_component(size), flatness),
+                                           16 * RealTraits<double>::unit * reach);
     for (const glm::dvec3& p : vertices)
         if (magnitude(dot(pair.normal, p) - offset) <= tolerance) corners.push_back(p);
     glm::dvec3 middle(0);

@@ -226,8 +226,9 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene, const s
     return reasons;
 }
 
-std::vector<EffectReason> explain_effects(const SceneDescription& scene) {
-    return compile_scene<float>(scene)->effect_reasons;
+std::vector<EffectReason> explain_effects(const SceneDescription& scene, Precision precision) {
+    return precision == Precision::double_ ? compile_scene<double>(scene)->effect_reasons
+                                           : compile_scene<float>(scene)->effect_reasons;
 }
 
 std::vector<std::string> names_of_effects(uint32_t mask) {

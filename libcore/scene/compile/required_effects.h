@@ -7,6 +7,7 @@
 #include "cistula/model/effects.h"
 #include "scene/compile/effect_reason.h"
 #include "scene/description/description.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 
@@ -24,8 +25,9 @@ struct MaterialUse {
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, const std::vector<MaterialUse>& uses,
                                           const std::string& light_on_face, const std::string& contact);
 
-/// The reasons for all effects of a scene, compiled in single precision. Throws Error as compile_scene does.
-std::vector<EffectReason> explain_effects(const SceneDescription& scene);
+/// The reasons for all effects of a scene, compiled in that precision: it decides what touches. Throws Error as
+/// compile_scene does.
+std::vector<EffectReason> explain_effects(const SceneDescription& scene, Precision precision = Precision::single_);
 
 /// The names of the effects in a mask, in bit order.
 std::vector<std::string> names_of_effects(uint32_t mask);
