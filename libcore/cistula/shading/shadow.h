@@ -46,8 +46,8 @@ struct ShadowSum {
     }
 
     /// Adds the absorption of a mesh entered (sign 1) or left (sign -1) at t on the way to a light at `distance`: the
-    /// signed sum over all its crossings is the length inside. A light that is farther than the scene reaches, 4 extents,
-    /// is in no mesh, and lengths count up to there.
+    /// signed sum over all its crossings is the length inside. A light that is farther than the scene reaches, 4
+    /// extents, is in no mesh, and lengths count up to there.
     template <class Real>
     CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real distance, Real t, int sign, Real extent) {
         const Real farthest = 4 * extent, remaining = min_or_second(distance, farthest) - t;
