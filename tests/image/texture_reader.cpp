@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <new>
 #include <thread>
 
 #include "scene/image/exr.h"
@@ -146,6 +148,26 @@ TEST(TextureReader, AChildThatEndsOrHangsIsAnErrorAndTheNextOneWorks) {
     EXPECT_EQ(after(SIGXCPU), start + "decoding it takes more processor time than is allowed; the file is damaged");
     EXPECT_EQ(after(SIGSTOP), start + "decoding it takes more time than is allowed; the file is damaged");
     EXPECT_EQ(message_of(reader, path), "no error");
+}
+
+TEST(TextureReader, MemoryThatAChildWasNotAllowedIsNoDamage) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer needs memory for itself";
+#endif
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.exr"), large = scratch.file("b.exr");
+    write_exr_texture(path, 3, 2, 0.5f);
+    write_exr_texture(large, 2000, 1000, 0.5f);
+    TextureReader reader;
+    EXPECT_EQ(message_of(reader, path), "no error");
+    const pid_t child = child_of_this_thread();
+    rlim_t pages = 0;
+    std::ifstream("/proc/" + std::to_string(child) + "/statm") >> pages;
+    const rlim_t bytes = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (8 << 20);
+    const rlimit limit{bytes, bytes};
+    ASSERT_EQ(prlimit(child, RLIMIT_AS, &limit, nullptr), 0);
+    EXPECT_THROW(reader.read(large, nullptr), std::bad_alloc);
+    EXPECT_EQ(message_of(reader, large), "no error");
 }
 
 TEST(TextureReader, LeavesNoProcessAndNoDescriptor) {

@@ -43,4 +43,16 @@ uint64_t machine_memory() {
     return most;
 }
 
+uint64_t address_space() {
+    uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+uint64_t address_space_left() {
+    rlimit limit = {};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return UINT64_MAX;
+    return limit.rlim_cur - std::min<uint64_t>(limit.rlim_cur, address_space());
+}
+
 }  // namespace cistula

@@ -3,11 +3,19 @@
 #include <dlfcn.h>
 
 #include <cfenv>
+#include <new>
 #include <stdexcept>
+
+#include "scene/base/machine_memory.h"
 
 namespace cistula {
 #ifdef CISTULA_OIIO_MODULE
 namespace {
+
+/// Bytes of address space that the module and its libraries may take while they are loaded. With OpenImageIO 2.4 of
+/// Debian 12 these are 428 MiB, 32 of them the stacks of threads. Some of the libraries abort, or wait for ever, where
+/// that fails.
+constexpr uint64_t module_address_space = 512 << 20;
 
 /// Saves and restores the floating-point control register: libraries built with fast-math flush subnormal numbers to
 /// zero once they are loaded.
@@ -23,6 +31,7 @@ class KeptFloatingPoint {
 };
 
 const OiioModule* module_in(const std::filesystem::path& directory, const std::string& users) {
+    if (address_space_left() < module_address_space) throw std::bad_alloc();
     const KeptFloatingPoint kept;
     void* const library = dlopen((directory / CISTULA_OIIO_MODULE).c_str(), RTLD_LAZY | RTLD_LOCAL);
     void* const entry = library ? dlsym(library, oiio_module_entry) : nullptr;

@@ -13,11 +13,12 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <fstream>
+#include <new>
 #include <string>
 #include <string_view>
 
 #include "scene/base/file_bytes.h"
+#include "scene/base/machine_memory.h"
 #include "scene/image/exr.h"
 #include "scene/image/file_colors.h"
 #include "scene/image/icc_profile.h"
@@ -69,19 +70,31 @@ void limit(Resource resource, uint64_t most) {
     setrlimit(resource, &limits);
 }
 
-/// Bytes of address space in use.
-uint64_t address_space() {
-    uint64_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    return pages * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+/// The address space that decoding may take; `is_inherited`: the process that started this one allows no more.
+struct MemoryLimit {
+    uint64_t bytes;
+    bool is_inherited;
+};
+
+MemoryLimit memory_limit(const ReadRequest& request) {
+    constexpr uint64_t beside_texels = 1 << 30;
+    const uint64_t own = address_space() + beside_texels + 2 * request.left;
+    rlimit inherited = {};
+    if (getrlimit(RLIMIT_AS, &inherited) == 0 && inherited.rlim_cur < own) return {inherited.rlim_cur, true};
+    return {own, false};
+}
+
+/// Ends this process because it was given too little memory.
+[[noreturn]] void end_out_of_memory() {
+    _exit(reader_out_of_memory);
 }
 
 /// One answer.
 class Answer {
   public:
     /// `stated`: what the picture's header says of its colors.
-    Answer(const ReadRequest& request, std::optional<FileColors> stated)
-        : request_(request), stated_(std::move(stated)) {
+    Answer(const ReadRequest& request, const MemoryLimit& memory, std::optional<FileColors> stated)
+        : request_(request), memory_(memory), stated_(std::move(stated)) {
         allow_seconds_for(0);
     }
 
@@ -135,12 +148,19 @@ class Answer {
         }
     }
 
+    /// Says why the picture cannot be read.
+    void fail(const std::string& reason) const {
+        if (memory_.is_inherited && errno == ENOMEM) end_out_of_memory();  // whatever a library makes of it
+        send_failure(reason);
+    }
+
   private:
     void allow_seconds_for(uint64_t bytes) const {
         limit(RLIMIT_CPU, static_cast<uint64_t>(seconds_for(static_cast<int>(request_.seconds), bytes)));
     }
 
     const ReadRequest& request_;
+    const MemoryLimit& memory_;
     const std::optional<FileColors> stated_;
     size_t texel_ = 0;
 };
@@ -157,7 +177,7 @@ OiioHost host_of(Answer& answer, uint64_t left) {
             [](void* self, const void* from, size_t texels) noexcept {
                 static_cast<const Answer*>(self)->samples(from, texels);
             },
-            [](void*, const char* reason) noexcept { send_failure(reason); }};
+            [](void* self, const char* reason) noexcept { static_cast<const Answer*>(self)->fail(reason); }};
 }
 
 void answer_exr(const std::string& path, Answer& answer) {
@@ -166,10 +186,13 @@ void answer_exr(const std::string& path, Answer& answer) {
     try {
         picture = read_exr_texture(
             path, [&](int64_t width, int64_t height) { return answer.size_problem(width, height); }, &colors);
+    } catch (const std::bad_alloc&) {
+        errno = ENOMEM;
+        return answer.fail("decoding it takes more memory than is allowed");
     } catch (const std::exception& error) {
         const std::string_view message = error.what();
         const std::string before = path + ": cannot read: ";  // which the other process says, too
-        return send_failure(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
+        return answer.fail(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
     }
     answer.colors(colors);
     if (answer.begin(picture.width, picture.height, 3, OiioSamples::float32))
@@ -177,10 +200,12 @@ void answer_exr(const std::string& path, Answer& answer) {
 }
 
 /// Answers within the limits, and ends this process. `oiio`: null for an EXR.
-[[noreturn]] void answer_and_end(const std::string& path, const ReadRequest& request, const OiioModule* oiio) {
-    constexpr uint64_t beside_texels = 1 << 30;
-    limit(RLIMIT_AS, address_space() + beside_texels + 2 * request.left);
-    Answer answer(request, request.is_exr ? std::nullopt : stated_colors(path));
+[[noreturn]] void answer_and_end(const std::string& path, const ReadRequest& request, const MemoryLimit& memory,
+                                 const OiioModule* oiio) {
+    limit(RLIMIT_AS, memory.bytes);
+    if (memory.is_inherited) std::set_new_handler(end_out_of_memory);
+    errno = 0;
+    Answer answer(request, memory, request.is_exr ? std::nullopt : stated_colors(path));
     if (request.is_exr) {
         answer_exr(path, answer);
     } else {
@@ -203,11 +228,13 @@ void end_with(pid_t parent) {
 }
 
 /// Ends as a child process has ended, unless that was well.
-void end_like(int status) {
+void end_like(int status, const MemoryLimit& memory) {
     if (WIFSIGNALED(status)) {
+        const int number = WTERMSIG(status);  // libraries abort, or use the null pointer that they got for memory
+        if (memory.is_inherited && (number == SIGABRT || number == SIGSEGV || number == SIGBUS)) end_out_of_memory();
         limit(RLIMIT_CORE, 0);
-        std::signal(WTERMSIG(status), SIG_DFL);
-        raise(WTERMSIG(status));
+        std::signal(number, SIG_DFL);
+        raise(number);
     }
     if (status != 0) _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 1);
 }
@@ -222,19 +249,23 @@ void answer_one() {
     const OiioModule* oiio = nullptr;
     try {
         if (!request.is_exr) oiio = &load_oiio(own_directory(), "formats other than EXR and .data");
+    } catch (const std::bad_alloc&) {
+        end_out_of_memory();
     } catch (const std::exception& error) {
         return send_failure(error.what());
     }
+    const MemoryLimit memory = memory_limit(request);
     const pid_t self = getpid(), child = fork();
     if (child == 0) {
         end_with(self);
-        answer_and_end(path, request, oiio);
+        answer_and_end(path, request, memory, oiio);
     }
+    if (child < 0 && errno == ENOMEM) end_out_of_memory();
     if (child < 0) return send_failure("no process can be started to decode it");
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    end_like(status);
+    end_like(status, memory);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -133,6 +134,7 @@ void ReaderProcess::fail_ended() {
     int status = 0;
     if (!has_ended(child_, status)) throw ReaderBroken("its decoder ended in an unknown way; the file is damaged");
     child_ = -1;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == reader_out_of_memory) throw std::bad_alloc();
     throw ReaderBroken(what_ended(status, program_));
 }
 

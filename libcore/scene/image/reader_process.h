@@ -21,14 +21,16 @@ class ReaderProcess {
     ReaderProcess(const ReaderProcess&) = delete;
     ReaderProcess& operator=(const ReaderProcess&) = delete;
 
-    /// Says `size` bytes. Throws ReaderBroken with how the program ended, where it has ended.
+    /// Says `size` bytes. Throws ReaderBroken with how the program ended, where it has ended, and std::bad_alloc where
+    /// that was for want of memory.
     void send(const void* from, size_t size);
 
-    /// Receives exactly `size` bytes. Throws ReaderBroken if the program ends before, or the time is over.
+    /// Receives exactly `size` bytes. Throws as send() does if the program ends before, and ReaderBroken if the time is
+    /// over.
     void receive(void* to, size_t size, Clock::time_point end);
 
   private:
-    /// Throws ReaderBroken with what became of the program, which has closed its socket.
+    /// Throws std::bad_alloc, or ReaderBroken with what became of the program, which has closed its socket.
     [[noreturn]] void fail_ended();
 
     std::string program_;

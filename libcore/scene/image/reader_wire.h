@@ -7,10 +7,11 @@
 namespace cistula {
 
 /// The program's only argument; it changes whenever this header does.
-inline constexpr const char* reader_protocol = "cistula-pictures-3 " CISTULA_VERSION;
+inline constexpr const char* reader_protocol = "cistula-pictures-4 " CISTULA_VERSION;
 
 inline constexpr int reader_socket = 3;           // the program's descriptor of its end
 inline constexpr int reader_wrong_protocol = 64;  // the program's exit code for another argument
+inline constexpr int reader_out_of_memory = 65;   // and where a limit that it inherited leaves too little memory
 
 /// Asks for one picture; the bytes of its path follow.
 struct ReadRequest {

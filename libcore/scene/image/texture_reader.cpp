@@ -40,7 +40,7 @@ ColorPicture TextureReader::read(const std::string& path, ClampedTexels* clamped
         throw file_error(path, "read", std::string(refused.what()));
     } catch (const std::bad_alloc&) {
         process_.reset();  // it may be in the middle of an answer
-        throw file_error(path, "read", std::string("not enough memory for a picture of its size"));
+        throw;
     } catch (const std::runtime_error& broken) {
         process_.reset();
         throw file_error(path, "read", std::string(broken.what()));

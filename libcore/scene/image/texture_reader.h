@@ -26,7 +26,7 @@ class TextureReader {
     /// other formats through OpenImageIO. `encoding`, the name of one of color_encodings, says what its numbers mean;
     /// without it the file does, and if that says nothing, integers are sRGB, floating-point numbers linear Rec. 709.
     /// Values that are then negative, infinite or not a number are clamped and counted in `clamped`; without that they
-    /// are an error. Throws Error(ExitCode::file) with the path.
+    /// are an error. Throws Error(ExitCode::file) with the path, and std::bad_alloc.
     ColorPicture read(const std::string& path, ClampedTexels* clamped, std::string_view encoding = {});
 
   private:

@@ -1,5 +1,7 @@
 // OpenImageIO is a module of the program that reads pictures: never in this process; both are found where they lie, and
 // missed with a clear error.
+#include <sys/resource.h>
+
 #include <sstream>
 
 #include "scene/image/oiio_module.h"
@@ -87,6 +89,32 @@ TEST_F(MovedProgram, SaysThatTheModuleIsMissing) {
                    ": cannot open shared object file: No such file or directory");
 }
 
+TEST_F(MovedProgram, AnyLimitOnMemoryIsToldInOneLine) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer needs memory for itself";
+#endif
+    install("lib/");
+    int failed = 0, rendered = 0;
+    for (rlim_t mebibytes = 360; rendered < 3 && mebibytes < 4000; mebibytes += 24) {
+        const rlimit limit{mebibytes << 20, mebibytes << 20};
+        const ProgramResult result =
+            RunningProgram(prefix_.file("bin/render"), {"t.json", "-q", "-f", "0", "--threads", "1", "-o", "a.exr"},
+                           file(""), "",
+                           [&] {
+                               alarm(60);  // ends what hangs
+                               setrlimit(RLIMIT_AS, &limit);
+                           })
+                .wait();
+        ++(result.code == 0 ? rendered : failed);
+        if (result.code == 0) continue;
+        EXPECT_EQ(result.code, 1) << mebibytes << " MiB: " << result.error;
+        EXPECT_EQ(result.error.rfind("render: out of memory; ", 0), 0u) << mebibytes << " MiB: " << result.error;
+        EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+    }
+    EXPECT_GT(failed, 2);
+    EXPECT_EQ(rendered, 3);
+}
+
 TEST_F(MovedProgram, NeedsNothingForItsOwnFormats) {
     const ProgramResult result = render("s.json");
     EXPECT_EQ(result.code, 0) << result.error;
@@ -132,6 +160,10 @@ TEST_F(MovedProgram, SaysWhatIsWrongWithTheReader) {
     expect_failure(reader + " cannot be started; are the libraries that it needs installed?");
     put_reader("#!/bin/sh\nexit 7\n");
     expect_failure("its decoder ended with exit code 7; the file is damaged");
+    put_reader("#!/bin/sh\nexit 65\n");
+    const ProgramResult result = render("t.json");
+    EXPECT_EQ(result.code, 1);
+    EXPECT_EQ(result.error.rfind("render: out of memory; ", 0), 0u) << result.error;
     put_reader("#!/bin/sh\nkill -ABRT $$\n");
     expect_failure("its decoder was ended by signal 6 (Aborted); the file is damaged");
     put_reader("#!/bin/sh\nhead -c 100000 /dev/zero >&3; cat <&3 >/dev/null\n");  // a request not read is an error of
