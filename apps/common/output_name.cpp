@@ -118,15 +118,17 @@ FrameList frames_to_render(const OutputName& output, const FrameList& given, int
     return first_frames(output.has_pattern() ? std::max(film_frames, 1) : 1);
 }
 
-std::vector<int> frames_named_in(const std::string& path, const FrameList& frames) {
-    const auto is_digit = [&](size_t i) { return i < path.size() && path[i] >= '0' && path[i] <= '9'; };
+std::vector<int> frames_named_in(const std::vector<std::string>& paths, const FrameList& frames) {
     std::set<int> named;
-    for (size_t begin = 0; begin < path.size(); ++begin) {
-        int number = 0;
-        for (size_t i = begin; is_digit(i); ++i) {
-            number = number * 10 + (path[i] - '0');
-            if (number > largest_frame) break;
-            if (frames.contains(number)) named.insert(number);
+    for (const std::string& path : paths) {
+        const auto is_digit = [&](size_t i) { return i < path.size() && path[i] >= '0' && path[i] <= '9'; };
+        for (size_t begin = 0; begin < path.size(); ++begin) {
+            int number = 0;
+            for (size_t i = begin; is_digit(i); ++i) {
+                number = number * 10 + (path[i] - '0');
+                if (number > largest_frame) break;
+                if (frames.contains(number)) named.insert(number);
+            }
         }
     }
     return {named.begin(), named.end()};

@@ -50,9 +50,9 @@ std::string default_output(const SceneDescription& scene, size_t frames_given);
 /// Error (usage) if several frames are given for a plain name.
 FrameList frames_to_render(const OutputName& output, const FrameList& given, int film_frames);
 
-/// The frames of a list whose numbers stand in a path, in whole or as a part of a longer number: those for which a
-/// pattern may give that path.
-std::vector<int> frames_named_in(const std::string& path, const FrameList& frames);
+/// The frames of a list whose numbers stand in one of these paths, in whole or as a part of a longer number: those for
+/// which a pattern may give that path. Each once, in order.
+std::vector<int> frames_named_in(const std::vector<std::string>& paths, const FrameList& frames);
 
 /// Creates missing directories for these frames. Throws Error (file) if that fails or the first name is a directory, so
 /// that the error is found before rendering.

@@ -129,9 +129,8 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
 void check_names(const RenderOptions& options, const RunFiles& others, std::vector<std::string> paths,
                  const Outputs& outputs) {
     paths.insert(paths.end(), {options.scene, options.stats});
-    for (const std::string& path : paths)
-        require_different_files(others, outputs.image, outputs.preview, frames_named_in(path, outputs.frames),
-                                outputs.layers);
+    require_different_files(others, outputs.image, outputs.preview, frames_named_in(paths, outputs.frames),
+                            outputs.layers);
 }
 
 /// Checks the files to be written against all others, makes the directories of the first frames, and finds their
