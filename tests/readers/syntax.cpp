@@ -33,6 +33,33 @@ TEST(SceneSyntax, ErrorsHaveLineAndColumn) {
                  "a.json:1:26: syntax error while parsing value - invalid literal; last read: '\"depth\": N'");
 }
 
+TEST(SceneSyntax, NulBytesAreRefusedWhereverTheyStand) {
+    const std::string nul(1, '\0');
+    EXPECT_WRONG(json_scene("{\"objects\": []}\n" + nul), "a.json:2:1: a NUL byte, which JSON does not have");
+    EXPECT_WRONG(json_scene("{\"objects\": []}" + nul + " {{"), "a.json:1:16: a NUL byte, which JSON does not have");
+    EXPECT_WRONG(json_scene("{\"objects\": [] // one " + nul + "\n}"),
+                 "a.json:1:23: a NUL byte, which JSON does not have");
+    EXPECT_WRONG(json_scene("{\"objects\": [], \"$comment\": \"" + nul + "\"}"),
+                 "a.json:1:30: a NUL byte, which JSON does not have");
+}
+
+TEST(SceneSyntax, MoreThanMemoryHoldsIsRefusedWithItsPlace) {
+    const auto repeated = [](const std::string& what, int times) {
+        std::string text;
+        for (int i = 0; i < times; ++i) text += what + ",";
+        return text + what;
+    };
+    const std::string end =
+        ": more than 4 million keys, strings, arrays and objects up to here, which no scene may have; put large meshes "
+        "into files of their own, PLY or OBJ";
+    EXPECT_WRONG(scene_with("\"$comment\": [" + repeated("\"\"", 4'000'000) + "]"), "a.json: /$comment/3999995" + end);
+    EXPECT_WRONG(scene_with("\"depth\": [" + repeated("[]", 4'000'000) + "]"), "a.json: /depth/3999995" + end);
+    EXPECT_WRONG(scene_with("\"depth\": [" + repeated("{\"a\":{}}", 1'400'000) + "]"),
+                 "a.json: /depth/1333331/a" + end);
+    EXPECT_WRONG(scene_with("\"depth\": [" + repeated("0", 4'000'000) + "]"),
+                 "a.json: /depth: expected a whole number from 1 to 1024, found an array of 4000001");
+}
+
 TEST(SceneSyntax, LongTokensAreCut) {
     try {
         json_scene("{\"" + std::string(100000, 'x'));

@@ -16,8 +16,9 @@ namespace cistula {
 
 using Json = nlohmann::ordered_json;  // keeps the order of keys in the file
 
-/// Parses JSON with comments. Throws Error (usage): "source:line:column: ..." for syntax errors and numbers out of
-/// double's range, "source: /place: ..." for repeated keys and for more than 64 levels. Columns count bytes from 1.
+/// Parses JSON with comments. Throws Error (usage): "source:line:column: ..." for syntax errors, NUL bytes and numbers
+/// out of double's range, "source: /place: ..." for repeated keys, for more than 64 levels and for more than 4 million
+/// keys, strings, arrays and objects. Columns count bytes from 1.
 Json parse_json(const std::string& text, const std::string& source);
 
 /// A value and its JSON pointer. A view: tree and source must outlive it.

@@ -14,8 +14,9 @@
 namespace cistula {
 namespace {
 
-constexpr size_t most_levels = 64;       // of arrays and objects in one another
-constexpr size_t levels_of_a_scene = 6;  // the scene, "objects", an object, "triangles", "vertices", a point
+constexpr size_t most_levels = 64;          // of arrays and objects in one another
+constexpr size_t most_entries = 4'000'000;  // keys, strings, arrays and objects, which take more memory than text
+constexpr size_t levels_of_a_scene = 6;     // the scene, "objects", an object, "triangles", "vertices", a point
 
 /// nlohmann's message without its prefix, and with the quoted last token shortened to its end.
 std::string plain_message(std::string message) {
@@ -49,20 +50,22 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     bool number_integer(number_integer_t value) override { return add(value); }
     bool number_unsigned(number_unsigned_t value) override { return add(value); }
     bool number_float(number_float_t value, const string_t&) override { return add(value); }
-    bool string(string_t& value) override { return add(std::move(value)); }
+    bool string(string_t& value) override {
+        add(std::move(value));
+        return count();
+    }
     bool binary(binary_t&) override { return false; }  // cannot occur in JSON text
 
     bool start_object(std::size_t) override {
         open(Json::object());
         names_.emplace_back();
-        return true;
+        return count();
     }
     bool key(string_t& name) override {
         auto& members = open_.back()->get_ref<Json::object_t&>();
         members.emplace_back(name, Json());
-        if (!names_.back().insert(name).second)
-            throw Error(ExitCode::usage, fmt::format("{}: {}: duplicate key; give it once", source_, place()));
-        return true;
+        if (!names_.back().insert(name).second) fail("duplicate key; give it once");
+        return count();
     }
     bool end_object() override {
         open_.pop_back();
@@ -71,22 +74,37 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     }
     bool start_array(std::size_t) override {
         open(Json::array());
-        return true;
+        return count();
     }
     bool end_array() override {
+        open_.back()->get_ref<Json::array_t&>().shrink_to_fit();
         open_.pop_back();
         return true;
     }
 
     bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
-        const size_t at = std::min(position == 0 ? 0 : position - 1, text_.size());
+        fail_at(std::min(position == 0 ? 0 : position - 1, text_.size()), plain_message(error.what()));
+    }
+
+    /// Throws an error with the line and the column of a byte.
+    [[noreturn]] void fail_at(size_t at, const std::string& what) const {
         const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<ptrdiff_t>(at), '\n');
         const size_t line_start = at == 0 ? 0 : text_.rfind('\n', at - 1) + 1;  // npos + 1 is 0
-        throw Error(ExitCode::usage,
-                    fmt::format("{}:{}:{}: {}", source_, line, at - line_start + 1, plain_message(error.what())));
+        throw Error(ExitCode::usage, fmt::format("{}:{}:{}: {}", source_, line, at - line_start + 1, what));
     }
 
   private:
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(ExitCode::usage, fmt::format("{}: {}: {}", source_, place(), what));
+    }
+    bool count() {
+        if (++entries_ > most_entries)
+            fail(
+                fmt::format("more than {} million keys, strings, arrays and objects up to here, which no scene may "
+                            "have; put large meshes into files of their own, PLY or OBJ",
+                            most_entries / 1'000'000));
+        return true;
+    }
     Json& slot(Json value) {
         if (open_.empty()) return root_ = std::move(value);
         Json& parent = *open_.back();
@@ -104,14 +122,14 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     void open(Json container) {
         Json* level = &slot(std::move(container));
         if (open_.size() == most_levels)
-            throw Error(ExitCode::usage, fmt::format("{}: {}: more than {} levels deep; a scene has {} at most",
-                                                     source_, place(), most_levels, levels_of_a_scene));
+            fail(fmt::format("more than {} levels deep; a scene has {} at most", most_levels, levels_of_a_scene));
         open_.push_back(level);
     }
 
     std::string place() const {
         std::string path;
         for (Json* level : open_) {
+            if (level->empty()) break;  // it is open, and what comes is its first
             if (level->is_array())
                 path += fmt::format("/{}", level->size() - 1);
             else
@@ -125,12 +143,16 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     Json root_;
     std::vector<Json*> open_;  // from the root inward; an element is moved only after it is closed
     std::vector<std::unordered_set<std::string>> names_;
+    size_t entries_ = 0;
 };
 
 }  // namespace
 
 Json parse_json(const std::string& text, const std::string& source) {
     TreeBuilder builder(text, source);
+    // The library takes it for the end of the text, or of a comment.
+    if (const size_t found = text.find('\0'); found != text.npos)
+        builder.fail_at(found, "a NUL byte, which JSON does not have");
     constexpr bool strict = true, ignore_comments = true;
     Json::sax_parse(text, &builder, Json::input_format_t::json, strict, ignore_comments);
     return builder.take();
