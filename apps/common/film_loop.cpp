@@ -83,6 +83,14 @@ void probe_outputs(const FilmJob& job, const CameraFrame& camera) {
         for (const FrameFile& file : expected_files(job, camera)) const AtomicFile own(file.path);
 }
 
+/// Removes what programs that died left beside a frame's files.
+void remove_stale(const FilmJob& job, const CameraFrame& camera) {
+    AtomicFile::remove_stale(job.output.for_frame(camera.frame));
+    if (!job.preview.text().empty()) AtomicFile::remove_stale(job.preview.for_frame(camera.frame));
+    if (job.options.split == Split::files)
+        for (const FrameFile& file : expected_files(job, camera)) AtomicFile::remove_stale(file.path);
+}
+
 /// Finished frames that are looked at for the one to announce to the renderer, before it renders the one before.
 constexpr size_t most_looked_at = 4;
 
@@ -101,6 +109,7 @@ class FramesToRender {
                 ++index_;
                 return camera;
             }
+            remove_stale(job_, camera);
             resumed_.push_back(camera.frame);
         }
         return std::nullopt;

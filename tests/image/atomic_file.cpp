@@ -165,12 +165,13 @@ TEST(AtomicFile, WhatIsSwappedInMeanwhileIsNotFollowed) {
 TEST(AtomicFile, WhatDeadProcessesLeftIsRemovedByTheNextOfThatName) {
     const ScratchDirectory scratch;
     const auto exists = [&](const char* name) { return fs::exists(scratch.file(name)); };
-    for (const char* name : {".a.exr.0.part", ".a.exr.1.part", ".b.exr.0.part"}) put_bytes(scratch.file(name), "half");
+    for (const char* name : {".a.exr.0.part", ".a.exr.1.part", ".a.exr.3.part", ".b.exr.0.part"})
+        put_bytes(scratch.file(name), "half");
     const int locked = open(scratch.file(".a.exr.0.part").c_str(), O_RDONLY | O_CLOEXEC);
     ASSERT_EQ(flock(locked, LOCK_EX), 0);
     write_file_atomically(scratch.file("a.exr"), "whole");
     EXPECT_TRUE(exists(".a.exr.0.part"));  // its writer lives
-    EXPECT_FALSE(exists(".a.exr.1.part"));
+    EXPECT_FALSE(exists(".a.exr.1.part") || exists(".a.exr.3.part"));
     EXPECT_TRUE(exists(".b.exr.0.part"));
     close(locked);
     write_file_atomically(scratch.file("a.exr"), "whole");
@@ -180,6 +181,23 @@ TEST(AtomicFile, WhatDeadProcessesLeftIsRemovedByTheNextOfThatName) {
     fs::create_directory(scratch.file(".a.exr.0.part"));
     write_file_atomically(scratch.file("a.exr"), "again");
     EXPECT_EQ(bytes_of(scratch.file("a.exr")), "again");
+}
+
+TEST(AtomicFile, WhatDeadProcessesLeftIsRemovedWithoutWriting) {
+    const ScratchDirectory scratch;
+    put_bytes(scratch.file("a.exr"), "whole");
+    fs::create_symlink("a.exr", scratch.file("link.exr"));
+    for (const char* name : {".a.exr.1.part", ".a.exr.2.part", ".a.exr.9.part"}) put_bytes(scratch.file(name), "half");
+    const AtomicFile living(scratch.file("b.exr"));
+    const int locked = open(scratch.file(".a.exr.2.part").c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(flock(locked, LOCK_EX), 0);
+    AtomicFile::remove_stale(scratch.file("link.exr"));
+    AtomicFile::remove_stale(scratch.file("b.exr"));
+    close(locked);
+    Names left = scratch.names();
+    std::sort(left.begin(), left.end());
+    EXPECT_EQ(left, (Names{".a.exr.2.part", ".b.exr.0.part", "a.exr", "link.exr"}));
+    EXPECT_EQ(bytes_of(scratch.file("a.exr")), "whole");
 }
 
 TEST(AtomicFile, NewFilesObeyTheUmask) {

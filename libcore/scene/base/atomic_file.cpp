@@ -22,15 +22,30 @@ void flush_directory(int directory) {
     close(readable);
 }
 
-/// Removes a temporary that no living process has locked. False if there is one that is locked, or no regular file.
-bool remove_stale(int directory, const std::string& name) {
+constexpr int most_temporaries = 100;  // of one target
+
+/// The name of a target's temporary.
+std::string temporary_name(const std::string& prefix, int number) {
+    return prefix + std::to_string(number) + ".part";
+}
+
+/// Removes a temporary that no living process has locked, if it is a regular file. False if there is none.
+bool remove_unlocked(int directory, const std::string& name) {
     const int file = openat(directory, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) return errno == ENOENT;
+    if (file < 0) return errno != ENOENT;
     struct stat status;
-    const bool removed = fstat(file, &status) == 0 && S_ISREG(status.st_mode) && flock(file, LOCK_EX | LOCK_NB) == 0 &&
-                         unlinkat(directory, name.c_str(), 0) == 0;
+    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) && flock(file, LOCK_EX | LOCK_NB) == 0)
+        unlinkat(directory, name.c_str(), 0);
     close(file);
-    return removed;
+    return true;
+}
+
+/// Removes the temporaries of a target that no living process has locked.
+void remove_all_unlocked(int directory, const std::string& prefix) {
+    // A temporary gets the least number that is free: so many writers would have ended well, and a later one died.
+    constexpr int most_missing = 10;
+    for (int number = 0, missing = 0; number < most_temporaries && missing < most_missing; ++number)
+        missing = remove_unlocked(directory, temporary_name(prefix, number)) ? 0 : missing + 1;
 }
 
 /// Locks a temporary. False if another process took it for stale before that, and removes it. Where the file system has
@@ -96,18 +111,22 @@ void AtomicFile::find_target() {
         throw file_error(path_, "write", std::string("it was replaced by another file meanwhile; run it again"));
 }
 
-void AtomicFile::create_temporary() {
+/// What the names of the target's temporaries begin with.
+std::string AtomicFile::prefix() const {
     // Leaves room for the rest if the name is as long as the file system allows.
-    constexpr int most_at_once = 100;
     constexpr long rest = 9;  // of ".NAME.99.part"
     const long longest = fpathconf(directory_.number, _PC_NAME_MAX);
     const auto most = static_cast<size_t>(longest > 2 * rest ? longest - rest : 200);
-    const std::string prefix = std::string(1, '.').append(name_, 0, most).append(1, '.');
+    return std::string(1, '.').append(name_, 0, most).append(1, '.');
+}
+
+void AtomicFile::create_temporary() {
+    const std::string start = prefix();
+    remove_all_unlocked(directory_.number, start);
     int failure = EEXIST;
-    for (int i = 0; i < most_at_once && failure == EEXIST; ++i) {
-        temporary_ = prefix + std::to_string(i) + ".part";
+    for (int i = 0; i < most_temporaries && failure == EEXIST; ++i) {
+        temporary_ = temporary_name(start, i);
         failure = open_temporary();
-        if (failure == EEXIST && remove_stale(directory_.number, temporary_)) failure = open_temporary();
         if (failure != 0 || lock(descriptor_)) continue;
         close_temporary(false);
         failure = EEXIST;
@@ -140,6 +159,13 @@ void AtomicFile::close_temporary(bool remove) noexcept {
 
 AtomicFile::~AtomicFile() {
     close_temporary(!temporary_.empty());
+}
+
+void AtomicFile::remove_stale(const std::string& path) {
+    AtomicFile file;
+    file.path_ = path;
+    file.find_target();
+    remove_all_unlocked(file.directory_.number, file.prefix());
 }
 
 void AtomicFile::abandon_all() noexcept {

@@ -10,7 +10,7 @@ namespace cistula {
 
 /// A file that replaces its target in one step. Write to it, then commit(); without a commit the destructor removes
 /// what was written. The temporary is ".NAME.0.part" beside the target (1 and so on for others that write to it at the
-/// same time), so that replacing is one rename. It is locked while it is written: what a process that died left behind
+/// same time), so that replacing is one rename. It is locked while it is written: what processes that died left behind
 /// is removed by the next that writes to the target. A symbolic link is followed once, when the object is made: the
 /// file that it points to is replaced, in the directory where it was then. Links that lead nowhere and files that are
 /// not regular are refused. Of a file with several names (hard links) the others keep the old contents.
@@ -35,6 +35,9 @@ class AtomicFile {
     /// Flushes the bytes to the disk and renames the temporary to the target. Throws Error(ExitCode::file).
     void commit();
 
+    /// Removes the temporaries of a target that processes that died left behind. Throws as the constructor does.
+    static void remove_stale(const std::string& path);
+
     /// Removes the temporaries of all objects of the process, for an end without destructors. After that no file is
     /// created or committed: whoever tries waits for the end. Allocates nothing.
     static void abandon_all() noexcept;
@@ -46,7 +49,9 @@ class AtomicFile {
         ~Descriptor();
     };
 
+    AtomicFile() = default;
     void find_target();
+    std::string prefix() const;
     void create_temporary();
     int open_temporary();
     void close_temporary(bool remove) noexcept;

@@ -46,6 +46,20 @@ TEST_F(RenderFilm, ResumeSkipsWhatIsCompleteAndTheSame) {
     EXPECT_NE(bytes_of(file("a.00.exr")), first);
 }
 
+TEST_F(RenderFilm, ResumeRemovesWhatDeadProgramsLeftOfCompleteFrames) {
+    const Arguments film{"s.json", "-q",      "-f",    "0",        "-o", "a.exr",   "--preview",
+                         "a.png",  "--split", "files", "--layers", "N",  "--resume"};
+    expect_done(film);
+    EXPECT_FALSE(has_part_files());
+    for (const char* name : {"a.exr", "a.png", "a.N.exr"}) {
+        ASSERT_TRUE(exists(name));
+        for (const char* number : {"0", "1", "5"})
+            put_bytes(file(std::string(".") + name + "." + number + ".part"), "");
+    }
+    expect_done(film);
+    EXPECT_FALSE(has_part_files());
+}
+
 TEST_F(RenderFilm, ResumeSeesACameraThatChangedByLessThanAFloat) {
     const Arguments film{"s.json", "-q", "-o", "a.##.exr", "--resume"};
     expect_done(film);
