@@ -10,6 +10,7 @@
 #include "apps/common/backends.h"
 #include "apps/render_verify/ready_part.h"
 #include "backend_embree/embree/embree_renderer.h"
+#include "scene/base/out_of_memory.h"
 #include "testing/reference_renderers.h"
 
 namespace cistula::verify {
@@ -78,13 +79,14 @@ class CaseRun {
     }
 
   private:
-    /// Runs `work`; an exception becomes the outcome's problem.
+    /// Runs `work`; an exception becomes the outcome's problem, or ends the program if memory ran out.
     template <class Work>
     void guarded(Outcome& outcome, const Work& work) {
         const auto start = Clock::now();
         try {
             if (outcome.problem.empty()) work();
         } catch (const std::exception& error) {
+            end_if_out_of_memory(error);
             outcome.problem = error.what();
         }
         outcome.seconds += std::chrono::duration<double>(Clock::now() - start).count();
@@ -108,6 +110,7 @@ class CaseRun {
                 if (problem.empty()) run_part(plan.parts[number], number, ready);
             }
         } catch (const std::exception& error) {
+            end_if_out_of_memory(error);
             problem = error.what();
         }
         for (Outcome& outcome : outcomes_) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -92,6 +93,19 @@ struct Images {
     }
 };
 
+/// Memory runs out while a case of images runs, and while one of rays is planned.
+struct Starved {
+    static constexpr const char* name = "made/starved";
+    static constexpr const char* exact = "nothing";
+    static constexpr Bound bound = no_failures("pixels");
+    static void render(Stage&, Tally&) { throw std::bad_alloc(); }
+};
+struct StarvedPlan : Made<StarvedPlan> {
+    static constexpr const char* name = "made/starved-plan";
+    static constexpr Bound bound = no_failures("rays");
+    static void plan(Plan&) { throw std::bad_alloc(); }
+};
+
 /// The exit code of a run over one case, and its record.
 template <class Case>
 int code_of(nlohmann::json* record = nullptr, Arguments more = {}) {
@@ -104,6 +118,11 @@ int code_of(nlohmann::json* record = nullptr, Arguments more = {}) {
                                  [&] { return verify_program(int(argv.size()), argv.data(), {entry_of<Case>()}); });
     if (record) *record = nlohmann::json::parse(bytes_of(file));
     return code;
+}
+
+TEST(Verify, MemoryThatRunsOutEndsTheProgramAndFailsNoCase) {
+    for (const auto run : {code_of<Starved>, code_of<StarvedPlan>})
+        EXPECT_EXIT(run(nullptr, {}), testing::ExitedWithCode(1), "^render-verify: out of memory; [^\n]*\n$");
 }
 
 TEST(Verify, AFailingRayIsExitCode1AndNamed) {
