@@ -24,9 +24,13 @@ void show(ViewOptions options) {
         file, options.all ? layers : chosen_layers(file.parts(), layers, options.layers, options.file), options);
     make_directory_of(options.output);
     write_preview(options.output, sheet.picture);
-    if (!options.quiet)
+    if (options.quiet) return;
+    try {
         print(fmt::format("{}: {}x{}\n{}", one_line(options.output), sheet.picture.width, sheet.picture.height,
                           sheet.legend));
+    } catch (const Error& error) {  // the PNG, which was asked for, is written
+        note(fmt::format("render-view: warning: {}", error.what()));
+    }
 }
 
 void run(const ViewOptions& options) {

@@ -184,6 +184,22 @@ TEST_F(RenderView, APictureThatIsCutOffLeavesThePngAsItWas) {
     EXPECT_EQ(names(), (std::vector<std::string>{"a.exr", "v.png"}));
 }
 
+TEST_F(RenderView, ThePngIsTheResultWhateverBecomesOfStandardOutput) {
+    const auto with_full_output = [&](const Arguments& arguments) {
+        return RunningProgram(CISTULA_BIN_DIR "/render-view", arguments, file(""), "",
+                              [] { dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO); })
+            .wait();
+    };
+    const std::string full = "standard output: cannot write: No space left on device";
+    const ProgramResult shown = with_full_output({"a.exr", "-o", "a.png"}),
+                        listed = with_full_output({"a.exr", "--list"});
+    EXPECT_EQ(shown.code, 0);
+    EXPECT_EQ(shown.error.rfind("render-view: warning: " + full, 0), 0u) << shown.error;
+    EXPECT_EQ(png("a.png").width, 2u);
+    EXPECT_EQ(listed.code, static_cast<int>(ExitCode::file));
+    EXPECT_EQ(listed.error.rfind("render-view: " + full, 0), 0u) << listed.error;
+}
+
 TEST_F(RenderView, NeverWritesOverTheImage) {
     std::filesystem::create_symlink("a.exr", file("link.png"));
     expect_refused({"a.exr", "-o", "link.png"}, ExitCode::usage,
