@@ -117,6 +117,11 @@ TEST(ExrFile, WhatIsNoFileIsAnError) {
     EXPECT_THROW(ExrFile(scratch.file("")), Error);
     ASSERT_EQ(mkfifo(scratch.file("pipe.exr").c_str(), 0600), 0);
     EXPECT_THROW(ExrFile(scratch.file("pipe.exr")), Error);  // and is not waited for
+    for (const auto read :
+         {+[](const std::string& path) { read_exr(path); }, +[](const std::string& path) { read_exr_parts(path); },
+          +[](const std::string& path) { read_exr_texture(path); }})
+        EXPECT_ERROR(read(scratch.file("pipe.exr")), ExitCode::file,
+                     scratch.file("pipe.exr") + ": cannot read: it is a pipe, a socket or a device; give a file");
 }
 
 }  // namespace

@@ -114,6 +114,7 @@ uint64_t regular_file_size(const std::string& path) {
 }
 
 void check_readable(const std::string& path) {
+    regular_file_size(path);  // before it is opened
     open_for_reading(path);
 }
 

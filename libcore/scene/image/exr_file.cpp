@@ -64,7 +64,6 @@ struct ExrFile::Open {
 };
 
 ExrFile::ExrFile(const std::string& path) : path_(path) {
-    regular_file_size(path);  // a pipe would be waited for
     check_readable(path);
     with_file_errors(path, [&] {
         check_before_opening(path);

@@ -1,5 +1,6 @@
 // The built `render-compare` from outside: statistics against values worked out by hand, verdicts, exit codes, files.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <bit>
@@ -276,6 +277,9 @@ TEST_F(RenderCompare, RefusesInOneLine) {
     expect_refused({"a.exr", "a.exr", "--backend", "cuda"}, ExitCode::usage, "--backend: belongs to --golden");
     expect_refused({"a.exr", "a.exr", "--precision", "float"}, ExitCode::usage, "--precision: belongs to --golden");
     expect_refused({"a.exr", "none.exr"}, ExitCode::file, "none.exr: cannot read");
+    ASSERT_EQ(mkfifo(file("pipe.exr").c_str(), 0600), 0);
+    for (const char* pipe : {"pipe.exr", "/dev/null"})
+        expect_refused({"a.exr", pipe}, ExitCode::file, "it is a pipe, a socket or a device; give a file");
     put_bytes(file("text.exr"), "no image");
     expect_refused({"text.exr", "a.exr"}, ExitCode::file, "text.exr: cannot read");
     const std::string bytes = bytes_of(file("a.exr"));
