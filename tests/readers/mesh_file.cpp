@@ -135,6 +135,23 @@ TEST(MeshFile, ObjGroupsBringTheirMaterials) {
     EXPECT_TRUE(glass.fresnel);
 }
 
+TEST(MeshFile, WhatIsNoMeshIsToldByItsStart) {
+    const ScratchDirectory scratch;
+    const auto refused = [&](const std::string& name, const std::string& text) {
+        expect_error([&] { read_whole_mesh(mesh_of(scratch.file(name)), "here"); }, ExitCode::file,
+                     "here: mesh " + scratch.file(text));
+    };
+    for (const char* name : {"zeros.obj", "zeros.ply", "zeros.mtl"}) {
+        put_bytes(scratch.file(name), "");
+        std::filesystem::resize_file(scratch.file(name), uint64_t{1} << 42);  // more than memory
+    }
+    const std::string no_text = ": is no text, as OBJ and MTL files are: a zero byte is among its first";
+    refused("zeros.ply", "zeros.ply:1: is not PLY: its first line must be \"ply\"");
+    refused("zeros.obj", "zeros.obj" + no_text);
+    put_bytes(scratch.file("a.obj"), "mtllib zeros.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    refused("a.obj", "zeros.mtl" + no_text);
+}
+
 TEST(MeshFile, TrIsTransmission) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("cube.obj"), cube_obj);

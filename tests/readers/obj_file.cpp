@@ -68,6 +68,11 @@ TEST(ObjFile, NumbersAreTheNearestDoubles) {
         corner_positions(meshes),
         (std::vector<dvec3>{{0.5, 5, 1000}, {0.25, -0.2, 0.1}, {9007199254740992.0, 5e-324, 1.7976931348623157e308}}));
     EXPECT_TRUE(std::isnan(corner_positions(read_quietly("v nan 0 0\nf 1 1 1\n"))[0].x));
+    EXPECT_EQ(corner_positions(read_quietly("v 1e-310 3e-324 2e-324\nv 1e-400 -1e-400 0.001e-99999999999999999999\n"
+                                            "v 0.00000000001e-320 1000e-330 1E-9999\nf 1 2 3\n")),
+              (std::vector<dvec3>{{1e-310, 5e-324, 0}, {0, 0, 0}, {0, 0, 0}}));
+    for (const char* large : {"1e309", "-1e309", "0.00001e+400", "1000000e307", "1e99999999999999999999"})
+        expect_obj_refused(std::string("v 0 0 ") + large + "\n", "a.obj:1: expected a number, found");
     expect_obj_refused("v 1,5 0 0\n", "a.obj:1: expected a number, found '1,5'");
     expect_obj_refused(square + "v 1 0\n", "a.obj:5: v needs more numbers than 2");
     expect_obj_refused("v 1e400 0 0\n", "a.obj:1: expected a number, found '1e400'");
@@ -195,6 +200,7 @@ TEST(ObjFile, MaterialsOfLibraries) {
         EXPECT_EQ(folder.material(mtl).transmission, 0.75) << "d counts";
     EXPECT_EQ(folder.material("\xef\xbb\xbf  newmtl a\n\tKd .3 \\\n .5 1e-1").color, dvec3(0.3, 0.5, 0.1));
     EXPECT_EQ(folder.material("newmtl a\nKd 0.5\n").color, dvec3(0.5));
+    EXPECT_EQ(folder.material("newmtl a\nKd 1 1e-400 1e-310\n").color, dvec3(1, 0, 1e-310));
     EXPECT_EQ(folder.material("newmtl a\nKd 1 0 0\nnewmtl b\nNs 5\nnewmtl a\nNs 7\n").color, dvec3(1, 0, 0));
     EXPECT_EQ(folder.material("newmtl a\nNs 7\nKs 1 1 1\n").specular, 0) << "without illum there is no highlight";
     const auto refused = [&](const std::string& mtl, const std::string& text) {

@@ -126,6 +126,9 @@ TEST(PlyFile, NumbersAreRoundedOnceToTheirType) {
     // Between two floats, a hair above their middle: by way of a double it would become the lower one.
     EXPECT_EQ(first("float", "1.000000059604644775390625000001"), 1 + 0x1p-23);
     EXPECT_EQ(first("float", "1e-46"), 0);
+    EXPECT_EQ(first("float", "1e-400"), 0);
+    EXPECT_EQ(first("float", "1e-40"), static_cast<double>(1e-40f));
+    EXPECT_EQ(first("double", "1e-400"), 0);
     EXPECT_TRUE(std::isnan(first("float", "nan")));
     EXPECT_EQ(first("float", "-inf"), -INFINITY);
     EXPECT_EQ(first("uchar", "2e2"), 200);

@@ -16,6 +16,20 @@ namespace {
 
 using glm::dvec3;
 
+constexpr size_t mesh_start_bytes = 4096;  // that tell what a file is, before the rest is read
+
+/// The bytes of an OBJ or an MTL file. Throws if they do not begin as text does.
+std::string text_bytes(const std::string& path, const std::string& label) {
+    if (utf8_of(read_file_start(path, mesh_start_bytes)).find('\0') != std::string::npos)
+        throw Error(ExitCode::file, label + ": is no text, as OBJ and MTL files are: a zero byte is among its first");
+    return read_file(path);
+}
+
+std::string ply_bytes(const std::string& path, const std::string& label) {
+    check_ply_start(utf8_of(read_file_start(path, mesh_start_bytes)), label);
+    return read_file(path);
+}
+
 /// What lies beside an OBJ, and how it is named in messages. Adds the files that it names to `files`.
 ObjSurroundings surroundings_of(const std::string& file, const std::string& place, std::vector<std::string>* files) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
@@ -29,8 +43,10 @@ ObjSurroundings surroundings_of(const std::string& file, const std::string& plac
         std::error_code error;
         return std::filesystem::is_regular_file(path_of(name), error);
     };
-    around.bytes = [path_of](const std::string& name) { return read_file(path_of(name)); };
     around.label = [path_of, place](const std::string& name) { return place + ": mesh " + path_of(name); };
+    around.bytes = [path_of, label = around.label](const std::string& name) {
+        return text_bytes(path_of(name), label(name));
+    };
     around.default_library = std::filesystem::path(file).stem().string() + ".mtl";
     return around;
 }
@@ -101,8 +117,9 @@ std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& pla
 
     std::vector<PolygonMesh> meshes;
     {
-        const std::string bytes = utf8_of(read_file(object.file));
-        if (kind == ".obj")
+        const bool is_obj = kind == ".obj";
+        const std::string bytes = utf8_of(is_obj ? text_bytes(object.file, label) : ply_bytes(object.file, label));
+        if (is_obj)
             meshes = read_obj(bytes, label, surroundings_of(object.file, place, files), warnings);
         else
             meshes.push_back(read_ply(bytes, label));

@@ -67,6 +67,10 @@ class PlyReader {
         if (end != std::string_view::npos && bytes[end] == '\r' && bytes.substr(end + 1, 1) != "\n") line_end_ = '\r';
     }
 
+    void read_first_line() {
+        require(next_line() && words_.size() == 1 && words_[0] == "ply", "is not PLY: its first line must be \"ply\"");
+    }
+
     PolygonMesh read() {
         read_header();
         check_sizes();
@@ -109,7 +113,7 @@ class PlyReader {
 
     void read_header() {
         constexpr std::string_view formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-        require(next_line() && words_.size() == 1 && words_[0] == "ply", "is not PLY: its first line must be \"ply\"");
+        read_first_line();
         size_t format = 3;
         while (true) {
             require(next_line() && at_ <= bytes_.size(), "the file ends in its header, before an end_header line");
@@ -192,15 +196,15 @@ class PlyReader {
         if (word_ == words_.size())
             fail(fmt::format("element {} needs more than the {} values of its line", quoted(element_->name), word_));
         const std::string_view word = words_[word_++];
-        if (type.name == "float")
+        const bool is_float = type.name == "float";
+        if (is_float)
             if (const auto number = decimal<float>(word)) return static_cast<double>(*number);
         const auto number = decimal<double>(word);
         if (!number) fail("expected a number, found " + quoted(word));
         if (type.is_integer() && !(*number >= type.least && *number <= type.most && *number == std::floor(*number)))
             fail(fmt::format("expected a whole number from {} to {}, found {}", type.least, type.most, quoted(word)));
-        if (type.name != "float") return *number;
-        if (std::abs(*number) > 1) fail(quoted(word) + " is more than a float holds; declare the property as double");
-        return static_cast<double>(static_cast<float>(*number));
+        if (is_float) fail(quoted(word) + " is more than a float holds; declare the property as double");
+        return *number;
     }
 
     size_t list_size(const Property& list) {
@@ -320,6 +324,10 @@ class PlyReader {
 };
 
 }  // namespace
+
+void check_ply_start(std::string_view start, const std::string& label) {
+    PlyReader(start, label).read_first_line();
+}
 
 PolygonMesh read_ply(std::string_view bytes, const std::string& label) {
     return PlyReader(bytes, label).read();
