@@ -209,9 +209,13 @@ TEST(ObjFile, MaterialsOfLibraries) {
     refused("map_Kd x.png\n", "m.mtl:1: 'map_Kd' before the first newmtl");
     refused("# nothing\nKd 1 1 1\nnewmtl a\n", "m.mtl:2: 'Kd' before the first newmtl");
     refused("newmtl\n", "m.mtl:1: expected \"newmtl\" and a name");
-    refused("newmtl a\nKd 1 1\n", "m.mtl:2: Kd needs a number of 0 or more");
-    refused("newmtl a\nKd 1 -1 1\n", "m.mtl:2: Kd: expected a number of 0 or more, found '-1'");
-    refused("newmtl a\nNs nan\n", "m.mtl:2: Ns: expected a number of 0 or more, found 'nan'");
+    refused("newmtl a\nKd 1 1\n", "m.mtl:2: Kd needs a number from 0 to 1e30");
+    refused("newmtl a\nKd 1 -1 1\n", "m.mtl:2: Kd: expected a number from 0 to 1e30, found '-1'");
+    refused("newmtl a\nNs nan\n", "m.mtl:2: Ns: expected a number from 0 to 1000000, found 'nan'");
+    refused("newmtl a\n\nKd 1 1e31 1\n", "m.mtl:3: Kd: expected a number from 0 to 1e30, found '1e31'");
+    refused("newmtl a\nKs 1e300\n", "m.mtl:2: Ks: expected a number from 0 to 1e30, found '1e300'");
+    refused("newmtl a\nNs 1e300\n", "m.mtl:2: Ns: expected a number from 0 to 1000000, found '1e300'");
+    refused("newmtl a\nNi inf\n", "m.mtl:2: Ni: expected a number from 0 to 100, found 'inf'");
     refused("newmtl a\nd 1.5\n", "m.mtl:2: d: expected a number from 0 to 1, found '1.5'");
     refused("newmtl a\nillum\n", "m.mtl:2: illum needs a number");
 }

@@ -11,6 +11,7 @@
 #include "scene/base/error.h"
 #include "scene/base/suggest.h"
 #include "scene/readers/mesh_text.h"
+#include "scene/readers/scene_keys.h"
 
 namespace cistula {
 namespace {
@@ -102,8 +103,8 @@ class MtlReader {
         if (key == "Ks") read_color(key, material_.Ks);
         if (key == "Ke") ignore_unless(key, 0);
         if (key == "Tf") ignore_unless(key, 1);
-        if (key == "Ns") material_.Ns = number(key, 1, INFINITY);
-        if (key == "Ni") material_.Ni = number(key, 1, INFINITY);
+        if (key == "Ns") material_.Ns = number(key, 1, most_of("exponent"));
+        if (key == "Ni") material_.Ni = number(key, 1, most_of("index"));
         if (key == "Tr") material_.Tr = number(key, 1, 1);
         if (key == "d") {
             const bool halo = lines_.words().size() > 1 && lines_.words()[1] == "-halo";
@@ -113,12 +114,15 @@ class MtlReader {
         if (key == "illum") material_.illum = static_cast<int>(std::floor(number(key, 1, 1000)));
     }
 
+    /// The largest number that a scene's material may have under a key of its own.
+    static double most_of(std::string_view scene_key) { return material_keys.find(scene_key)->range.high; }
+
     /// Word `i` as a number from 0 to `most`.
     double number(std::string_view key, size_t i, double most) const {
-        const std::string range = std::isfinite(most) ? fmt::format("from 0 to {}", most) : "of 0 or more";
+        const std::string range = "from 0 to " + number_text(most);
         if (i >= lines_.words().size()) fail(fmt::format("{} needs a number {}", key, range));
         const auto value = decimal<double>(lines_.words()[i]);
-        if (!value || !std::isfinite(*value) || !(*value >= 0 && *value <= most))
+        if (!value || !(*value >= 0 && *value <= most))
             fail(fmt::format("{}: expected a number {}, found {}", key, range, quoted(lines_.words()[i])));
         return *value;
     }
@@ -129,7 +133,7 @@ class MtlReader {
         if (words.size() > 1 && (words[1] == "spectral" || words[1] == "xyz"))
             return library_.ignored.add(fmt::format("{} {}", key, words[1]));
         for (int c = 0; c < 3; ++c)
-            color[c] = number(key, words.size() == 2 ? 1 : static_cast<size_t>(c) + 1, INFINITY);
+            color[c] = number(key, words.size() == 2 ? 1 : static_cast<size_t>(c) + 1, most_of("color"));
     }
 
     /// Notes a key without meaning here, unless its value is the one that changes nothing.
