@@ -1,4 +1,4 @@
-// Damage of picture files that the decoders of their formats do not see.
+// What decoders of picture files get wrong without a word: damage, and kinds that they do not know.
 #pragma once
 
 #include <string>
@@ -6,8 +6,9 @@
 
 namespace cistula {
 
-/// What is wrong with a JPEG or DDS file that OpenImageIO has opened as `format`, for a message: it is cut off, where
-/// decoders make up the rest, or its header would have them decode without end. Empty for other formats.
+/// What is wrong with a file that OpenImageIO has opened as `format`, for a message. JPEG, DDS: it is cut off, where
+/// decoders make up the rest, or its header would have them decode without end. TIFF, Radiance: it is of a kind that
+/// OpenImageIO 2.4 reads as another. Empty for other formats.
 std::string picture_damage(std::string_view format, const std::string& path);
 
 }  // namespace cistula
