@@ -127,7 +127,8 @@ int run_program(const char* name, const char* memory_advice, const std::function
     reserve_stack();
     open_standard_streams();
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit then is a write error
-    std::signal(SIGPIPE, SIG_IGN);
+    // So is a pipe that nobody reads. A handler, unlike SIG_IGN, leaves it to InterruptGuard to catch what others send.
+    if (std::signal(SIGPIPE, SIG_IGN) == SIG_DFL) std::signal(SIGPIPE, [](int) {});
     try {
         return work();
     } catch (const Error& error) {

@@ -13,7 +13,7 @@ namespace {
 std::atomic<std::atomic<bool>*> watched{nullptr};
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 constexpr size_t signal_count = std::size(signals);
 struct sigaction previous[signal_count];
 
@@ -21,7 +21,8 @@ void restore() {
     for (size_t i = 0; i < signal_count; ++i) sigaction(signals[i], &previous[i], nullptr);
 }
 
-void on_signal(int) {
+void on_signal(int number, siginfo_t* info, void*) {
+    if (number == SIGPIPE && info->si_pid == getpid()) return;  // by a write of this process, which fails
     std::atomic<bool>* stop = watched;
     if (stop == nullptr) {
         static constexpr char message[] = "render: interrupted; nothing was written\n";
@@ -36,8 +37,8 @@ void on_signal(int) {
 
 InterruptGuard::InterruptGuard() {
     struct sigaction action = {};
-    action.sa_handler = on_signal;
-    action.sa_flags = SA_RESTART;
+    action.sa_sigaction = on_signal;
+    action.sa_flags = SA_RESTART | SA_SIGINFO;
     sigemptyset(&action.sa_mask);
     for (size_t i = 0; i < signal_count; ++i) {
         sigaction(signals[i], nullptr, &previous[i]);

@@ -1,11 +1,12 @@
-// Handling of Ctrl-C, SIGTERM and SIGHUP through a flag that renderers poll.
+// Handling of Ctrl-C, SIGTERM, SIGHUP and SIGPIPE through a flag that renderers poll.
 #pragma once
 
 #include <atomic>
 
 namespace cistula {
 
-/// While an object of this class exists, the first SIGINT, SIGTERM or SIGHUP is caught and the second ends the process.
+/// While an object of this class exists, the first SIGINT, SIGTERM, SIGHUP, or SIGPIPE that another process sends, is
+/// caught and the second ends the process, unless that is SIGPIPE where run_program() has it be a write error.
 /// Before watch() the first one also ends it, with exit code 130 and a line that says that nothing was written. Only
 /// one object at a time.
 class InterruptGuard {

@@ -61,12 +61,12 @@ class RenderProgram : public testing::Test {
         EXPECT_EQ(result.out, "");
     }
 
-    /// Expects that SIGINT, SIGTERM and SIGHUP each end a frame that would take years.
+    /// Expects that SIGINT, SIGTERM, SIGHUP and SIGPIPE each end a frame that would take years.
     void expect_interrupted_within_a_pixel(const Arguments& more) const {
         put_bytes(file("room.json"), test::room_of_mirrors_text);
         Arguments arguments{"room.json", "-v", "-o", "room.exr", "--depth", "256"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
             RunningProgram running(program_, arguments, file(""));
             ASSERT_TRUE(
                 running.wait_until([&] { return running.error_so_far().find("scene hash") != std::string::npos; }, 60));

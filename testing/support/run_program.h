@@ -42,6 +42,7 @@ class RunningProgram {
             signal(SIGINT, SIG_DFL);  // a test that runs in the background of a shell inherits SIG_IGN
             signal(SIGTERM, SIG_DFL);
             signal(SIGHUP, SIG_DFL);
+            signal(SIGPIPE, SIG_DFL);
             redirect(in, O_RDONLY, STDIN_FILENO);
             redirect(out, O_WRONLY | O_CREAT, STDOUT_FILENO);
             redirect(error, O_WRONLY | O_CREAT, STDERR_FILENO);

@@ -1,7 +1,10 @@
 #include "apps/common/interrupt.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 
@@ -13,6 +16,7 @@ void default_signals() {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
     std::signal(SIGHUP, SIG_DFL);
+    std::signal(SIGPIPE, SIG_DFL);
 }
 
 /// Exit code 0 if `good`, else 1: what a child reports.
@@ -48,6 +52,29 @@ TEST(InterruptDeathTest, TheSecondSignalKills) {
                 report(false);
             },
             testing::KilledBySignal(number), "");
+}
+
+/// Sends this process a signal from another one.
+void send_from_another(int number) {
+    const pid_t self = getpid(), other = fork();
+    if (other == 0) _exit(kill(self, number));
+    waitpid(other, nullptr, 0);
+}
+
+TEST(InterruptDeathTest, ABrokenPipeIsNoInterruptionButSigpipeOfOthersIs) {
+    EXPECT_EXIT(
+        {
+            default_signals();
+            std::atomic<bool> stop{false};
+            InterruptGuard guard;
+            guard.watch(stop);
+            int ends[2];
+            bool good = pipe(ends) == 0 && close(ends[0]) == 0;
+            good &= write(ends[1], "x", 1) < 0 && errno == EPIPE && !stop;
+            send_from_another(SIGPIPE);
+            report(good && stop);
+        },
+        testing::ExitedWithCode(0), "");
 }
 
 TEST(InterruptDeathTest, BeforeAnythingRendersItEndsTheProgramAtOnce) {
