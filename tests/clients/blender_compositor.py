@@ -1,6 +1,7 @@
-"""blender_compositor.py FRAME.exr DIMMED.exr OUT: Blender's compositor mattes, adds up and regrades a frame of lamps.json.
+"""blender_compositor.py FRAME.exr DIMMED.exr OUT [PARTS.exr]: Blender's compositor mattes, adds up and regrades a frame of lamps.json.
 
-DIMMED is the same frame rendered with the lamps of the group `key` at a quarter. What Blender makes is written under OUT.
+DIMMED is the same frame rendered with the lamps of the group `key` at a quarter. What Blender makes is written under OUT. PARTS is FRAME
+with each layer in a part of its own, which Blender opens in its place.
 """
 import sys
 
@@ -9,13 +10,13 @@ import bpy
 import clients
 from compositor import Compositor
 
-frame, dimmed, out = sys.argv[1:]
+frame, dimmed, out, *parts = sys.argv[1:]
 MATTES = {"CryptoObject": ["floor", "glass cube", "clay"], "CryptoMaterial": ["glass"], "CryptoLight": ["fill"]}
 KEY = 0.25
 
-blender = Compositor(frame, out)
+blender = Compositor(frame, out, *parts)
 channels, lights, passes = blender.channels, blender.lights, blender.passes
-checks = clients.Checks(f"Blender {bpy.app.version_string}")
+checks = clients.Checks(f"Blender {bpy.app.version_string}" + (", parts" if parts else ""))
 wanted = {name[:-2] for name in channels if name.startswith("Combined_")}
 checks.holds(blender.image.type == "MULTILAYER" and set(lights) == wanted, f"{blender.image.type} of {len(passes)} passes: {', '.join(passes)}")
 blender.write("combined", passes["Combined"])

@@ -7,8 +7,8 @@ import clients
 
 
 class Compositor:
-    def __init__(self, frame, out):
-        """FRAME: the EXR. What Blender makes is written under OUT."""
+    def __init__(self, frame, out, parts=None):
+        """FRAME: the EXR. What Blender makes is written under OUT. PARTS: Blender opens this file, which has the same layers in parts."""
         frame, self.out = pathlib.Path(frame).resolve(), pathlib.Path(out).resolve()
         self.header, self.channels = clients.read(frame)
         height, width = self.channels["R"].shape
@@ -18,7 +18,7 @@ class Compositor:
         self.scene.use_nodes = True
         self.nodes, self.links = self.scene.node_tree.nodes, self.scene.node_tree.links
         self.nodes.clear()
-        self.image = bpy.data.images.load(str(frame))
+        self.image = bpy.data.images.load(str(pathlib.Path(parts).resolve() if parts else frame))
         source = self.nodes.new("CompositorNodeImage")
         source.image = self.image
         self.passes = {socket.name: socket for socket in source.outputs if socket.enabled}

@@ -36,15 +36,18 @@ def main():
     parts = parts_by_openexr(parts_path)
     together = {name for channels in parts.values() for name in channels}
     checks.holds(together == set(one) and all(same(channels, one) for channels in parts.values()), f"{len(parts)} parts hold {len(one)} channels of one, bit by bit")
-    checks.holds(all(n.rpartition(".")[0].rstrip("0123456789") == name.rstrip("0123456789") for name, channels in parts.items() if name != "beauty" for n in channels), "parts are named after their layers")
+    checks.holds(all((n.rpartition(".")[0] or n) == name for name, channels in parts.items() if name != "Combined" for n in channels), "parts are named after their layers")
 
     oiio_checks = clients.Checks("OpenImageIO")
     for name, space, channels in parts_by_oiio(parts_path):
-        oiio_checks.holds(space == "lin_rec709_scene" and same(channels, one), f"part {name}: {len(channels)} channels, {space}")
+        is_color = name == "Combined" or any(channel.endswith(".R") for channel in channels)
+        oiio_checks.holds(space == ("lin_rec709_scene" if is_color else "data") and same(channels, one), f"part {name}: {len(channels)} channels, {space}")
 
     stem = main_path.name.removesuffix(".exr")
     own = {path.name.removeprefix(stem + ".").removesuffix(".exr"): path for path in main_path.parent.glob(f"{stem}.*.exr")}
-    checks.holds(set(own) | {"beauty"} == set(parts), f"{len(own)} layers have files of their own")
+    dotted = {name.rpartition(".")[0] for name in one if "." in name}
+    layers = {name.rstrip("0123456789") if name.startswith("Crypto") else name for name in dotted}
+    checks.holds(set(own) == layers, f"{len(own)} layers have files of their own")
     for name in ("diffuse", "reflection"):
         _, colors = clients.read(own[name])
         checks.holds(set(colors) == set("RGB") and np.array_equal(clients.layer(colors, ""), clients.layer(one, name)), f"file {own[name].name}: R G B are the layer's")

@@ -324,6 +324,16 @@ TYPED_TEST(CompileScene, TexturesByHand) {
     EXPECT_EQ(compiled->uvs[5], Vec2<TypeParam>(0, 1));
 }
 
+/// Objects in one place have as many pairs of faces as the square of their number.
+TYPED_TEST(CompileScene, TooManyObjectsInOnePlaceAreRefused) {
+    SceneDescription scene = empty_scene();
+    for (int i = 0; i < 200; ++i) add_object(scene, square());
+    EXPECT_NO_THROW(compile_scene<TypeParam>(scene));
+    for (int i = 200; i < 3000; ++i) add_object(scene, square());
+    expect_error([&] { compile_scene<TypeParam>(scene); }, ExitCode::usage,
+                 ": more than 16 million pairs of faces come near one another");
+}
+
 /// Absorption is refused by the size of the solids of the material, whatever else the scene has.
 TYPED_TEST(CompileScene, AbsorptionIsMeasuredByItsSolids) {
     SceneDescription scene = empty_scene();

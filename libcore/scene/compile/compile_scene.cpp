@@ -75,7 +75,14 @@ class Compiler {
             hash_mesh(i);
             compile_mesh(i);
         }
-        contact_ = share_planes(scene_, convex_, boxes_, incidents_);
+        try {
+            contact_ = share_planes(scene_, convex_, boxes_, incidents_);
+        } catch (const TooManyPairs& pairs) {
+            throw scene_error(description_, source_.solids[pairs.solid].place,
+                              "more than " + std::to_string(most_near_pairs / 1'000'000) +
+                                  " million pairs of faces come near one another, as where many objects are in one "
+                                  "place; leave out those that are there several times");
+        }
         add_slabs();
         compile_shading();
         compile_lights();

@@ -77,10 +77,8 @@ std::vector<Patch> touching_patches(const CompiledScene<Real>& scene, const std:
         if (!boxes[i].empty()) primitives.push_back(padded_primitive(boxes[i], pad, i));
     const Tree tree = build_tree(primitives, 0);
     const auto meets_another = [&](const Box& box, uint32_t solid) {
-        bool meets = false;
-        for_each_in_box(tree, padded(box, pad),
-                        [&](uint32_t other) { meets |= other != solid && touch(box, boxes[other], pad); });
-        return meets;
+        return any_in_box(tree, padded(box, pad),
+                          [&](uint32_t other) { return other != solid && touch(box, boxes[other], pad); });
     };
     std::vector<bool> near(boxes.size());
     for (uint32_t i = 0; i < boxes.size(); ++i) near[i] = !boxes[i].empty() && meets_another(boxes[i], i);

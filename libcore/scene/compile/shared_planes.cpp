@@ -69,6 +69,7 @@ class PlaneSharing {
                 if (j <= i || !touch(patches_[i].box, patches_[j].box, reach * unit_)) return;
                 const bool one_solid = patches_[i].solid == patches_[j].solid;
                 if (one_solid && !patches_[i].with_own) return;
+                if (pairs_.size() == most_near_pairs) throw TooManyPairs{patches_[i].solid};
                 pairs_.push_back({i, j, one_solid});
             });
         std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
