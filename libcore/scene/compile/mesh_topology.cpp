@@ -161,9 +161,12 @@ bool find_crossed_halves(const MeshSource& mesh, const std::vector<uint32_t>& we
     const auto after = [](uint32_t half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; };
     const auto opposite = [&](uint32_t half_edge) { return corner(after(after(half_edge))); };
     const auto& next = topology.next_along_edge;
-    // The other triangle at an edge whose third corner is `third`.
+    // The other triangle at an edge whose third corner is `third`, if it is among the next few there: an edge may have
+    // all triangles of a mesh.
+    constexpr int most_tried = 16;
     const auto neighbor = [&](uint32_t half_edge, uint32_t third) {
-        for (uint32_t h = next[half_edge]; h != half_edge; h = next[h])
+        uint32_t h = next[half_edge];
+        for (int tried = 0; h != half_edge && tried < most_tried; h = next[h], ++tried)
             if (opposite(h) == third) return h / 3;
         return no_vertex;
     };

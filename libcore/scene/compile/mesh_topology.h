@@ -29,8 +29,8 @@ struct MeshTopology {
     std::vector<uint32_t> next_along_edge;
 
     uint32_t repeated_vertex = 0, not_finite = 0, zero_area = 0;  // triangles left out
-    uint32_t doubled =
-        0;  // triangles left out: an earlier one, or an earlier pair, has the same corners, in either winding
+    /// Triangles left out: an earlier one, or an earlier pair, has the same corners, in either winding.
+    uint32_t doubled = 0;
     // Edges that prevent it from being closed: of one triangle, of more than two, of two that run through them alike.
     uint32_t open_edges = 0, crowded_edges = 0, turned_edges = 0;
 
