@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <ranges>
+#include <numeric>
 #include <tuple>
 
 #include <tbb/blocked_range.h>
@@ -199,8 +199,8 @@ bool find_crossed_halves(const MeshSource& mesh, const std::vector<uint32_t>& we
 struct Volume {
     double sum = 0, magnitudes = 0;
 
-    template <class Triangles>
-    Volume(const MeshSource& mesh, const MeshTopology& topology, const Triangles& triangles, const dvec3& origin) {
+    Volume(const MeshSource& mesh, const MeshTopology& topology, const std::vector<uint32_t>& triangles,
+           const dvec3& origin) {
         for (const uint32_t triangle : triangles) {
             auto t = mesh.triangles[topology.source_triangle(triangle)];
             if (topology.reverses(triangle)) std::swap(t[1], t[2]);
@@ -251,7 +251,9 @@ void turn_alike(const MeshSource& mesh, const std::vector<uint32_t>& welded, Mes
 /// Six times the signed volume about the first vertex; 0 if its sign could be due to rounding.
 double signed_volume(const MeshSource& mesh, const MeshTopology& topology) {
     const dvec3 origin = mesh.vertices[mesh.triangles[topology.source_triangle(0)][0]];
-    const Volume volume(mesh, topology, std::views::iota(uint32_t{0}, topology.count), origin);
+    std::vector<uint32_t> all(topology.count);
+    std::iota(all.begin(), all.end(), 0u);
+    const Volume volume(mesh, topology, all, origin);
     return magnitude(volume.sum) > 0x1p-40 * volume.magnitudes ? volume.sum : 0;
 }
 

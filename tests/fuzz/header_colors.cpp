@@ -1,0 +1,19 @@
+// What headers of pictures say of colors: PNG, Radiance, TIFF, WebP, DPX, Cineon, TGA.
+#include <stdexcept>
+
+#include "checks.h"
+#include "scene/image/stated_colors.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    using namespace cistula;
+    const fuzz::MemoryFile memory(data, size);
+    const std::optional<FileColors> colors = stated_colors(memory.path());
+    if (!colors) return 0;
+    try {
+        file_encoding("", *colors, false);
+        fuzz::require(colors->profile.empty());
+    } catch (const std::runtime_error& refused) {
+        fuzz::check_line(refused.what());
+    }
+    return 0;
+}
