@@ -88,7 +88,7 @@ define client_pythons
 	done
 endef
 
-test-clients: ## have OpenEXR's Python, OpenImageIO with OpenColorIO, ffmpeg and Blender read what render writes; Python 3.11; frames into out/clients
+test-clients: ## have OpenEXR's Python, OpenImageIO with OpenColorIO, ffmpeg, GIMP and Blender read what render writes; Python 3.11; frames into out/clients
 	$(call setup,packages.txt:renderer tests/clients/packages.txt)
 	$(call configure,--renderer $(PRESET))
 	@cmake --build $(BUILD) --target render
