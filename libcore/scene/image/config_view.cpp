@@ -46,8 +46,8 @@ ConfigView::ConfigView(const std::string& name, const std::vector<std::string>& 
     const char* const variable = std::getenv("OCIO");
     const std::string config = variable ? variable : "";
     try {
-        const std::filesystem::path directory = std::filesystem::path(reader_path()).parent_path();
-        module_ = &load_oiio(directory, "views other than srgb and filmic");
+        const std::string users = "views other than srgb and filmic";
+        module_ = &load_oiio(std::filesystem::path(reader_path(users)).parent_path(), users);
         const OiioViewHost host = host_of(answers);
         view_ = module_->open_view(config.c_str(), name.c_str(), &host);
     } catch (const std::bad_alloc&) {

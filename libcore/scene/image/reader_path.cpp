@@ -57,7 +57,7 @@ std::string program_in(const fs::path& directory) {
 
 }  // namespace
 
-std::string reader_path() {
+std::string reader_path(const std::string& users) {
     for (const fs::path& directory : library_directories())
         if (const std::string found = program_in(directory); !found.empty()) return found;
     std::string places = "the library path";
@@ -65,9 +65,8 @@ std::string reader_path() {
         if (const std::string found = program_in(directory); !found.empty()) return found;
         places += ", " + directory.string();
     }
-    throw std::runtime_error("textures other than .data need the program " CISTULA_READ_PICTURE
-                             ", which is not found on " +
-                             places + "; install it with Cistula, or put it into one of them");
+    throw std::runtime_error(users + " need the program " CISTULA_READ_PICTURE ", which is not found on " + places +
+                             "; install it with Cistula, or put it into one of them");
 }
 
 }  // namespace cistula
