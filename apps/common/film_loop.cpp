@@ -75,20 +75,25 @@ bool is_finished(const FilmJob& job, const CameraFrame& camera) {
     return std::all_of(files.rbegin(), files.rend(), [](const FrameFile& file) { return is_finished(file); });
 }
 
+/// The files that are written for a frame: images, those of layers first, and the preview.
+std::vector<std::string> paths_of(const FilmJob& job, const CameraFrame& camera) {
+    std::vector<std::string> paths;
+    if (job.options.split == Split::files)
+        for (const FrameFile& file : expected_files(job, camera)) paths.push_back(file.path);
+    else
+        paths.push_back(job.output.for_frame(camera.frame));
+    if (!job.preview.text().empty()) paths.push_back(job.preview.for_frame(camera.frame));
+    return paths;
+}
+
 /// Throws Error if a frame cannot be written.
 void probe_outputs(const FilmJob& job, const CameraFrame& camera) {
-    const AtomicFile image(job.output.for_frame(camera.frame));
-    if (!job.preview.text().empty()) const AtomicFile preview(job.preview.for_frame(camera.frame));
-    if (job.options.split == Split::files)
-        for (const FrameFile& file : expected_files(job, camera)) const AtomicFile own(file.path);
+    for (const std::string& path : paths_of(job, camera)) const AtomicFile probe(path);
 }
 
 /// Removes what programs that died left beside a frame's files.
 void remove_stale(const FilmJob& job, const CameraFrame& camera) {
-    AtomicFile::remove_stale(job.output.for_frame(camera.frame));
-    if (!job.preview.text().empty()) AtomicFile::remove_stale(job.preview.for_frame(camera.frame));
-    if (job.options.split == Split::files)
-        for (const FrameFile& file : expected_files(job, camera)) AtomicFile::remove_stale(file.path);
+    for (const std::string& path : paths_of(job, camera)) AtomicFile::remove_stale(path);
 }
 
 /// Finished frames that are looked at for the one to announce to the renderer, before it renders the one before.

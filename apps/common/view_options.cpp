@@ -18,8 +18,7 @@ PictureView parse_view(const ViewTexts& texts) {
                                       "a number of stops from -64 to 64; each doubles the light");
     if (texts.view == "filmic") {
         view.curve = ViewCurve::filmic;
-    } else if (!texts.view.empty() && texts.view != "srgb") {
-        view.curve = ViewCurve::config;
+    } else if (texts.view != "srgb") {
         view.name = texts.view;
     }
     if (!texts.bloom.empty())
@@ -29,7 +28,7 @@ PictureView parse_view(const ViewTexts& texts) {
 }
 
 std::string open_config_view(PictureView& view) {
-    if (view.curve != ViewCurve::config) return "";
+    if (view.name.empty()) return "";
     view.config = std::make_shared<const ConfigView>(view.name, own_views);
     return view.config->warning();
 }

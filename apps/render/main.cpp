@@ -193,8 +193,9 @@ void render_scene(RenderOptions options) {
     SceneDescription scene;
     stats.read_seconds = seconds_of([&] { scene = read_scene(options); });
     if (explain) {
-        choose_precision(options, gather_scene(scene));
-        return print(explain_table(scene.source, explain_effects(scene, options.precision)));
+        SceneSource source = gather_scene(scene);
+        choose_precision(options, source);
+        return print(explain_table(scene.source, explain_effects(std::move(source), options.precision)));
     }
 
     if (const std::string warning = open_config_view(options.view); !warning.empty())
@@ -286,8 +287,9 @@ void measure_scene(RenderOptions options) {
     InterruptGuard guard;
     guard.watch(progress.render.stop);
     on_threads(options, [&] {
-        choose_precision(options, gather_scene(scene));
-        const std::vector<EffectReason> reasons = explain_effects(scene, options.precision);
+        SceneSource source = gather_scene(scene);
+        choose_precision(options, source);
+        const std::vector<EffectReason> reasons = explain_effects(std::move(source), options.precision);
         const auto make = [&](const SceneDescription& of) {
             return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
                                                            : renderer_of<float>(of, options, devices.options);

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <sstream>
+#include <utility>
 
 #include "scene/compile/compile_materials.h"
 #include "scene/compile/compiled_scene.h"
@@ -226,9 +227,13 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene, const s
     return reasons;
 }
 
+std::vector<EffectReason> explain_effects(SceneSource source, Precision precision) {
+    return precision == Precision::double_ ? compile_scene<double>(std::move(source))->effect_reasons
+                                           : compile_scene<float>(std::move(source))->effect_reasons;
+}
+
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, Precision precision) {
-    return precision == Precision::double_ ? compile_scene<double>(scene)->effect_reasons
-                                           : compile_scene<float>(scene)->effect_reasons;
+    return explain_effects(gather_scene(scene), precision);
 }
 
 std::vector<std::string> names_of_effects(uint32_t mask) {

@@ -6,6 +6,7 @@
 
 #include "cistula/model/effects.h"
 #include "scene/compile/effect_reason.h"
+#include "scene/compile/scene_source.h"
 #include "scene/description/description.h"
 #include "scene/film/renderer.h"
 
@@ -27,6 +28,7 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene, const s
 
 /// The reasons for all effects of a scene, compiled in that precision: it decides what touches. Throws Error as
 /// compile_scene does.
+std::vector<EffectReason> explain_effects(SceneSource source, Precision precision);
 std::vector<EffectReason> explain_effects(const SceneDescription& scene, Precision precision = Precision::single_);
 
 /// The names of the effects in a mask, in bit order.

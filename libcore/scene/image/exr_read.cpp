@@ -1,5 +1,4 @@
 #include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
@@ -13,6 +12,7 @@
 #include "scene/image/exr.h"
 #include "scene/image/exr_attributes.h"
 #include "scene/image/exr_checks.h"
+#include "scene/image/exr_compression.h"
 
 namespace cistula {
 namespace {
@@ -26,24 +26,9 @@ void check_whole_numbers(const LayeredPicture::Channel& channel) {
 }
 
 Compression compression_of(Imf::Compression compression) {
-    switch (compression) {
-        case Imf::NO_COMPRESSION:
-            return Compression::none;
-        case Imf::RLE_COMPRESSION:
-            return Compression::rle;
-        case Imf::ZIPS_COMPRESSION:
-            return Compression::zips;
-        case Imf::ZIP_COMPRESSION:
-            return Compression::zip;
-        case Imf::PIZ_COMPRESSION:
-            return Compression::piz;
-        case Imf::DWAA_COMPRESSION:
-            return Compression::dwaa;
-        case Imf::DWAB_COMPRESSION:
-            return Compression::dwab;
-        default:
-            return Compression::other;
-    }
+    for (const NamedCompression& named : compressions)
+        if (named.theirs == compression) return named.ours;
+    return Compression::other;
 }
 
 LayeredPicture read_part(Imf::MultiPartInputFile& parts, int number, const std::string& path) {

@@ -26,6 +26,7 @@
 
 #include "scene/base/atomic_file.h"
 #include "scene/image/exr.h"
+#include "scene/image/exr_compression.h"
 
 namespace cistula {
 namespace {
@@ -132,24 +133,8 @@ void insert(Imf::Header& header, const std::string& name, const std::vector<floa
 }
 
 Imf::Compression compression_of(Compression compression) {
-    switch (compression) {
-        case Compression::none:
-            return Imf::NO_COMPRESSION;
-        case Compression::rle:
-            return Imf::RLE_COMPRESSION;
-        case Compression::zips:
-            return Imf::ZIPS_COMPRESSION;
-        case Compression::zip:
-            return Imf::ZIP_COMPRESSION;
-        case Compression::piz:
-            return Imf::PIZ_COMPRESSION;
-        case Compression::dwaa:
-            return Imf::DWAA_COMPRESSION;
-        case Compression::other:
-            break;
-        case Compression::dwab:
-            return Imf::DWAB_COMPRESSION;
-    }
+    for (const NamedCompression& named : compressions)
+        if (named.ours == compression) return named.theirs;
     throw std::invalid_argument("write_exr: no such compression");
 }
 

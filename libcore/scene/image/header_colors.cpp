@@ -9,47 +9,31 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/image/file_numbers.h"
 #include "scene/image/icc_profile.h"
 #include "scene/image/stated_colors.h"
+#include "scene/image/tiff_tags.h"
 
 namespace cistula {
 namespace {
 
-using Numbers = FileNumbers;
-
-/// A list of `count` numbers of a tag's RATIONAL or FLOAT; empty if it has another type or length.
-std::vector<double> tag_values(const Numbers& file, uint64_t entry, bool is_big, uint64_t count) {
-    constexpr uint64_t rational = 5, single = 11;
-    const uint64_t type = file.at(entry + 2, 2), stated = file.at(entry + 4, is_big ? 8 : 4);
-    if ((type != rational && type != single) || stated != count) return {};
-    const uint64_t first = is_big ? file.at(entry + 12, 8) : file.at(entry + 8, 4);
+/// The values of a tag of `count` numbers, RATIONAL or FLOAT; empty if there is none, or of another type or length.
+std::vector<double> tag_values(const FileNumbers& file, uint64_t number, uint64_t count) {
+    const std::optional<TiffTag> tag = find_tiff_tag(file, number);
+    if (!tag || (tag->type != TiffTag::rational && tag->type != TiffTag::single) || tag->count != count) return {};
     std::vector<double> values;
-    for (uint64_t i = 0; i < count; ++i) {
-        if (type == single) {
-            const auto bits = static_cast<uint32_t>(file.at(first + 4 * i, 4));
-            values.push_back(static_cast<double>(std::bit_cast<float>(bits)));
-        } else {
-            const uint64_t over = file.at(first + 8 * i, 4), under = file.at(first + 8 * i + 4, 4);
-            values.push_back(static_cast<double>(over) / static_cast<double>(under));
-        }
+    for (uint64_t place = tag->values; values.size() < count; place += tag->size) {
+        if (tag->type == TiffTag::single)
+            values.push_back(std::bit_cast<float>(static_cast<uint32_t>(file.at(place, 4))));
+        else
+            values.push_back(static_cast<double>(file.at(place, 4)) / static_cast<double>(file.at(place + 4, 4)));
     }
     return values;
 }
 
-std::optional<FileColors> colors_of_tiff(const Numbers& file) {
-    constexpr uint64_t white_point = 318, primaries = 319, profile = 34675, most_entries = 4096;
-    const bool is_big = file.at(2, 2) == 43;
-    const uint64_t directory = is_big ? file.at(8, 8) : file.at(4, 4), entries = file.at(directory, is_big ? 8 : 2);
-    std::vector<double> white, colors;
-    for (uint64_t i = 0; i < std::min(entries, most_entries); ++i) {
-        const uint64_t entry = directory + (is_big ? 8 + 20 * i : 2 + 12 * i);
-        const uint64_t tag = file.at(entry, 2);
-        if (tag == profile) return std::nullopt;
-        if (tag == white_point) white = tag_values(file, entry, is_big, 2);
-        if (tag == primaries) colors = tag_values(file, entry, is_big, 6);
-    }
-    if (colors.empty()) return std::nullopt;
+std::optional<FileColors> colors_of_tiff(const FileNumbers& file) {
+    constexpr uint64_t white_point = 318, primaries = 319, profile = 34675;
+    const std::vector<double> colors = tag_values(file, primaries, 6), white = tag_values(file, white_point, 2);
+    if (colors.empty() || find_tiff_tag(file, profile)) return std::nullopt;
     if (white.empty()) return unknown_colors("PrimaryChromaticities without a WhitePoint");
     FileColors stated;
     stated.chromaticities.emplace();
@@ -57,7 +41,7 @@ std::optional<FileColors> colors_of_tiff(const Numbers& file) {
     return stated;
 }
 
-std::optional<FileColors> colors_of_webp(const Numbers& file) {
+std::optional<FileColors> colors_of_webp(const FileNumbers& file) {
     constexpr uint64_t most_chunks = 1000, largest_profile = 16 << 20;
     uint64_t place = 12;
     for (uint64_t i = 0; i < most_chunks; ++i) {
@@ -72,7 +56,7 @@ std::optional<FileColors> colors_of_webp(const Numbers& file) {
     return std::nullopt;
 }
 
-std::optional<FileColors> colors_of_dpx(const Numbers& file) {
+std::optional<FileColors> colors_of_dpx(const FileNumbers& file) {
     constexpr const char* names[] = {"user defined",
                                      "printing density",
                                      "linear",
@@ -98,7 +82,7 @@ std::optional<FileColors> colors_of_tga(std::istream& file) {
     file.seekg(0, std::ios::end);
     const std::streamoff size = file.tellg();
     if (size < footer) return std::nullopt;
-    const Numbers numbers(file, true);
+    const FileNumbers numbers(file, true);
     const auto end = static_cast<uint64_t>(size - footer);
     if (numbers.text(end + 8, 16) != "TRUEVISION-XFILE") return std::nullopt;
     const uint64_t extension = numbers.at(end, 4);
@@ -124,9 +108,9 @@ FileColors known_colors(std::string_view id) {
 
 std::optional<FileColors> header_colors(std::istream& file) {
     using namespace std::string_view_literals;
-    const std::string start = Numbers(file, false).text(0, 12);
+    const std::string start = FileNumbers(file, false).text(0, 12);
     const std::string_view magic = std::string_view(start).substr(0, 4);
-    const Numbers little(file, true), big(file, false);
+    const FileNumbers little(file, true), big(file, false);
     if (magic == "II*\0"sv || magic == "II+\0"sv) return colors_of_tiff(little);
     if (magic == "MM\0*"sv || magic == "MM\0+"sv) return colors_of_tiff(big);
     if (magic == "RIFF"sv && start.substr(8) == "WEBP") return colors_of_webp(little);

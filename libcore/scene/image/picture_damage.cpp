@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "scene/base/shown_text.h"
-#include "scene/image/file_numbers.h"
+#include "scene/image/tiff_tags.h"
 
 namespace cistula {
 namespace {
@@ -78,30 +78,20 @@ std::string dds_damage(std::ifstream& file, uint64_t size) {
     return "it is cut off: it has " + std::to_string(size) + " bytes, and its header says " + std::to_string(needed);
 }
 
-/// The first number of a tag of a TIFF file's first picture: 8, 16, 32 or 64 bits, without a sign.
-std::optional<uint64_t> tiff_tag(const FileNumbers& file, uint64_t tag) {
-    constexpr uint64_t most_entries = 4096;
-    const bool is_big = file.at(2, 2) == 43;
-    const uint64_t directory = is_big ? file.at(8, 8) : file.at(4, 4), entries = file.at(directory, is_big ? 8 : 2);
-    for (uint64_t i = 0; i < std::min(entries, most_entries); ++i) {
-        const uint64_t entry = directory + (is_big ? 8 + 20 * i : 2 + 12 * i);
-        if (file.at(entry, 2) != tag) continue;
-        const uint64_t type = file.at(entry + 2, 2), count = file.at(entry + 4, is_big ? 8 : 4);
-        const uint64_t size = type == 1 ? 1 : type == 3 ? 2 : type == 4 ? 4 : 8, place = entry + (is_big ? 12 : 8);
-        const uint64_t room = is_big ? 8 : 4;  // for what is not elsewhere
-        return file.at(count > room / size ? file.at(place, static_cast<int>(room)) : place, static_cast<int>(size));
-    }
-    return std::nullopt;
+/// The first number of a tag of a TIFF file, without a sign.
+std::optional<uint64_t> tiff_number(const FileNumbers& file, uint64_t tag) {
+    const std::optional<TiffTag> found = find_tiff_tag(file, tag);
+    return found ? std::optional(file.at(found->values, static_cast<int>(found->size))) : std::nullopt;
 }
 
 std::string tiff_damage(std::ifstream& file) {
     constexpr uint64_t bits_tag = 258, photometric_tag = 262, white_is_zero = 0;
     const FileNumbers numbers(file, file.get() == 'I');
-    const std::optional<uint64_t> bits = tiff_tag(numbers, bits_tag);
+    const std::optional<uint64_t> bits = tiff_number(numbers, bits_tag);
     if (!bits)
         return "it has no tag BitsPerSample, and so 1 bit a sample, and would be read as if it had 8; save it with the "
                "tag, or as PNG";
-    if (*bits > 8 && tiff_tag(numbers, photometric_tag) == white_is_zero)
+    if (*bits > 8 && tiff_number(numbers, photometric_tag) == white_is_zero)
         return "its samples have " + std::to_string(*bits) +
                " bits, and 0 is white (WhiteIsZero), which would be read as black; save it with 0 as black, or as PNG";
     return "";

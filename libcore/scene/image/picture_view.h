@@ -14,7 +14,6 @@ namespace cistula {
 enum class ViewCurve {
     srgb,    // cut off at 1
     filmic,  // filmic_color
-    config,  // a view of an OpenColorIO config
 };
 
 /// What a PNG shows of linear colors; by default the colors as they are.
@@ -22,7 +21,7 @@ struct PictureView {
     double exposure = 0;  // stops: colors are multiplied by 2^exposure
     ViewCurve curve = ViewCurve::srgb;
     double bloom = 0;                            // how often the light above white is added to what is around it
-    std::string name{};                          // that of the view of a config
+    std::string name{};                          // that of a view of an OpenColorIO config, in place of the curve
     std::shared_ptr<const ConfigView> config{};  // the view of a config, once it is open
 };
 
