@@ -101,16 +101,9 @@ bench: ## build the benchmarks and run them; bars and records into out/bench
 	@cmake --build $(BUILD) --target render benchmarks
 	bench/run $(BUILD)
 
-# For the GPUs of this machine, where nothing else is asked for: no driver then compiles kernels at every start.
-define own_architectures
-$(if $(findstring CMAKE_CUDA_ARCHITECTURES,$(CMAKE_ARGS))$(CUDAARCHS),,$(shell \
-    nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/null | tr -d '. ' | grep -E '^[0-9]+$$' | sort -nu | \
-    paste -sd';' | sed -n "s/..*/'-DCMAKE_CUDA_ARCHITECTURES=&'/p"))
-endef
-
 gpu-check: ## on a machine with a GPU: compare it with the CPU bit for bit, and time it; bars and records into out/bench
 	$(call setup,packages.txt)
-	$(call configure,$(PRESET)) $(own_architectures)
+	$(call configure,$(PRESET))
 	@cmake --build $(BUILD) --target help | grep -qw gpu_check || \
 	    { echo 'gpu-check: this build has no CUDA backend (the configuration says why; make cuda-toolkit fetches nvcc)' >&2; exit 4; }
 	@cmake --build $(BUILD) --target gpu_check seed_baseline render render-compare

@@ -1,6 +1,7 @@
 # Finds nvcc: $CUDACXX or -DCMAKE_CUDA_COMPILER, the PATH, the toolkit installed by `make cuda-toolkit` in .cuda/. Sets
 # CISTULA_CUDA, or prints in one line why there is no CUDA backend.
 option(CISTULA_WITH_CUDA "Build the CUDA backend where nvcc is found" ON)
+option(CISTULA_EVERY_GPU "Build kernels for every GPU of capability 7.5 and above that nvcc knows" OFF)
 set(CISTULA_CUDA OFF)
 set(_why "")
 
@@ -20,9 +21,22 @@ else()
     if(NOT _nvcc)
         set(_why "no nvcc on the PATH (`make cuda-toolkit` fetches one)")
     else()
-        # PTX alone takes half the time that machine code takes; drivers compile it for every GPU from 7.5 on.
+        # Machine code for the GPUs of this machine. Where it has none, PTX alone, which takes half the time: drivers compile it
+        # at the first start, for every GPU from 7.5 on.
+        set(_chosen OFF)
         if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})
+            set(_chosen ON)
             set(CMAKE_CUDA_ARCHITECTURES 75-virtual)
+            execute_process(COMMAND nvidia-smi --query-gpu=compute_cap --format=csv,noheader
+                RESULT_VARIABLE _failed OUTPUT_VARIABLE _capabilities ERROR_QUIET)
+            if("${_failed}" STREQUAL 0)
+                string(REGEX MATCHALL "[0-9]+\\.[0-9]+" _capabilities "${_capabilities}")
+                list(REMOVE_DUPLICATES _capabilities)
+                list(TRANSFORM _capabilities REPLACE "\\." "")
+                if(_capabilities)
+                    set(CMAKE_CUDA_ARCHITECTURES ${_capabilities})
+                endif()
+            endif()
         endif()
         if(NOT CMAKE_CUDA_COMPILER)
             # Tested in a separate project, so that a broken nvcc disables the backend instead of failing the
@@ -42,6 +56,14 @@ else()
             if(NOT DEFINED CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 has not heard that nvcc knows C++20
                 set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
                 set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+            endif()
+            if(_chosen AND CISTULA_EVERY_GPU)
+                set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 86-real 89-real)
+                if(CMAKE_CUDA_COMPILER_VERSION VERSION_LESS 12.8)
+                    list(APPEND CMAKE_CUDA_ARCHITECTURES 90)
+                else()
+                    list(APPEND CMAKE_CUDA_ARCHITECTURES 90-real 100-real 120)
+                endif()
             endif()
             set(CMAKE_CUDA_STANDARD 20)
             set(CMAKE_CUDA_STANDARD_REQUIRED ON)
