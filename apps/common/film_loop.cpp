@@ -180,16 +180,18 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
 
 }  // namespace
 
-// A GPU renders much faster than frames are compressed, so every core should compress. Several cores share a frame:
-// with one frame per core, cores would idle until as many frames are rendered, and again while the last ones are
-// written. At least two frames, so that one is encoded while the other is compressed. The CPU backend needs the cores
-// for rendering, and memory for no more than two films.
-WriterLimits writer_limits(const FilmOptions& options) {
+// Every core compresses that has no rays to trace. A GPU renders much faster than frames are compressed, so several
+// frames are written at once, and a few cores share each: with one frame per core, cores would idle until as many
+// frames are rendered, and again while the last ones are written. At least two frames, so that one is encoded while the
+// other is compressed. The CPU backend writes one, with all cores: it has memory for no more than two films.
+WriterLimits writer_limits(const FilmOptions& options, size_t frames) {
+    constexpr int few = 4;  // a frame queues twice as many blocks of lines, and others wait behind them
+    const int threads = tbb::this_task_arena::max_concurrency();
     WriterLimits limits;
-    if (options.backend == Backend::cuda) {
-        const int threads = tbb::this_task_arena::max_concurrency();
+    limits.exr_threads = limits.exr_threads_of_a_frame = threads;
+    if (options.backend == Backend::cuda && frames > 1) {
         limits.frames = std::max(2, threads / 2);
-        limits.exr_threads = threads;
+        limits.exr_threads_of_a_frame = std::min(threads, few);
     }
     return limits;
 }
@@ -205,7 +207,7 @@ std::vector<std::string> layers_with_files(const FilmJob& job) {
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
     const FilmOptions& options = job.options;
     std::set<std::string> notes;  // printed so far
-    FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options), progress.stop,
+    FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options, job.frames.size()), progress.stop,
                        [&](const FrameStats& frame) {
                            stats.totals.add(frame);
                            if (job.written) job.written(frame);

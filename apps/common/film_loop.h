@@ -46,6 +46,6 @@ inline constexpr size_t stretch_length = 1000;
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats);
 
 /// Limits for frames being written while others render.
-WriterLimits writer_limits(const FilmOptions& options);
+WriterLimits writer_limits(const FilmOptions& options, size_t frames);
 
 }  // namespace cistula

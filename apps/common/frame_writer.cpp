@@ -35,7 +35,7 @@ std::string over_largest_half(uint64_t values) {
 FrameWriter::FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits,
                          std::atomic<bool>& stop, FrameSink written)
     : channels_(channels), measure_(measure), limits_(limits), stop_(stop), written_(std::move(written)) {
-    set_exr_threads(limits.exr_threads);
+    set_exr_threads(limits.exr_threads, limits.exr_threads_of_a_frame);
 }
 
 FrameWriter::~FrameWriter() {

@@ -39,8 +39,8 @@ struct FinishedFrame {
 struct WriterLimits {
     int frames = 1;                  // one thread each
     size_t bytes = size_t{2} << 30;  // of films and of the layers made from them
-    int exr_threads =
-        0;  // OpenEXR's own threads, shared by all frames and additional to those above; see set_exr_threads
+    int exr_threads = 0;             // OpenEXR's own, shared by all frames and additional to those above
+    int exr_threads_of_a_frame = 0;  // see set_exr_threads
 };
 
 /// What is said of values that half precision does not hold.

@@ -1,12 +1,15 @@
 #include "scene/film/film_picture.h"
 
 #include <Imath/half.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
 
+#include "scene/base/default_rounding.h"
 #include "scene/base/fnv128.h"
 #include "scene/description/light_group.h"
 #include "scene/film/film_channel.h"
@@ -123,15 +126,16 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint6
 
     // All channels of one block of pixels before the next block, while its pixels are still in a cache.
     constexpr size_t block = 1024;
-    uint64_t over = 0;
-    for (size_t first = 0; first < film.pixels.size(); first += block) {
-        const size_t last = std::min(first + block, film.pixels.size());
+    std::atomic<uint64_t> over{0};
+    tbb::parallel_for(size_t{0}, (film.pixels.size() + block - 1) / block, [&](size_t number) {
+        use_default_rounding();
+        const size_t first = number * block, last = std::min(first + block, film.pixels.size());
         for (size_t i = 0; i < sources.size(); ++i) {
             float* to = picture.channels[i].values.data();
             sources[i].write(first, last, to + first);
             if (sources[i].half) over += clamp_to_half(to + first, to + last);
         }
-    }
+    });
     if (clamped) *clamped += over;
     set_container_flag(picture);
     return picture;

@@ -23,10 +23,9 @@ void write_exr(const std::string& path, const LayeredPicture& picture);
 /// Writes a file of several parts, or of one as above; their names and attributes are in their own headers.
 void write_exr(const std::string& path, const std::vector<PicturePart>& parts);
 
-/// Sets the number of OpenEXR's own threads, shared by all files of the process: they compress what callers of
-/// write_exr write, a few for each file. 0, the default: every caller compresses by itself. Not while a file is written
-/// or read.
-void set_exr_threads(int threads);
+/// Sets the number of OpenEXR's own threads, shared by all files of the process, and how many of them compress what one
+/// call of write_exr writes. 0, the default: every caller compresses by itself. Not while a file is written or read.
+void set_exr_threads(int threads, int of_a_file);
 
 /// Reads all channels as floats, in the order of the file (by name), with the attributes of the types that write_exr
 /// writes; float attributes become doubles. Scan line and tiled files of one part. Throws Error(ExitCode::file).

@@ -31,9 +31,8 @@
 namespace cistula {
 namespace {
 
-/// Enough threads for one file, which queues twice as many blocks of lines. Files written at the same time share the
-/// threads in the order of their blocks, so no file should queue all of its own.
-constexpr int most_threads_of_a_file = 4;
+/// The number of OpenEXR's threads that compress one file.
+int threads_of_a_file = 0;
 
 /// A stream that reports write errors, so that a full disk is noticed: OpenEXR's destructor ignores them.
 class CheckedStream : public Imf::OStream {
@@ -192,7 +191,7 @@ struct PartToWrite {
 };
 
 void write_pixels(Imf::OStream& stream, const std::vector<PartToWrite>& parts) {
-    const int threads = std::min(Imf::globalThreadCount(), most_threads_of_a_file);
+    const int threads = std::min(Imf::globalThreadCount(), threads_of_a_file);
     const auto write = [](auto& file, const LayeredPicture& picture) {
         const Pixels pixels(picture, file.header().dataWindow());
         file.setFrameBuffer(pixels.buffer());
@@ -248,8 +247,9 @@ void write_parts(const std::string& path, const std::vector<PartToWrite>& parts)
 
 }  // namespace
 
-void set_exr_threads(int threads) {
+void set_exr_threads(int threads, int of_a_file) {
     Imf::setGlobalThreadCount(threads);
+    threads_of_a_file = of_a_file;
 }
 
 void write_exr(const std::string& path, const LayeredPicture& picture) {

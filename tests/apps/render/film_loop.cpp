@@ -170,15 +170,18 @@ TEST_F(FilmLoop, OnTheCpuAFilmIsWrittenBeforeTheNextIsHandedOver) {
         EXPECT_EQ(renderer_.sizes[i], 40u * 24u) << "frame " << i << " is a third film";
 }
 
-TEST_F(FilmLoop, ForAGpuTheThreadsOfTheArenaCompress) {
+TEST_F(FilmLoop, TheThreadsOfTheArenaCompress) {
     for (const int threads : {1, 2, 9}) {
         tbb::task_arena(threads).execute([&] {
             film({0, 1, 2}, Backend::cuda);
             EXPECT_EQ(Imf::globalThreadCount(), threads);
-            EXPECT_EQ(writer_limits(options_).frames, threads == 9 ? 4 : 2);
+            EXPECT_EQ(writer_limits(options_, 3).frames, threads == 9 ? 4 : 2);
+            EXPECT_EQ(writer_limits(options_, 3).exr_threads_of_a_frame, std::min(threads, 4));
+            EXPECT_EQ(writer_limits(options_, 1).exr_threads_of_a_frame, threads) << "no other frame waits";
             film({0, 1, 2}, Backend::embree);
-            EXPECT_EQ(Imf::globalThreadCount(), 0) << "the renderer needs the cores";
-            EXPECT_EQ(writer_limits(options_).frames, 1);
+            EXPECT_EQ(Imf::globalThreadCount(), threads);
+            EXPECT_EQ(writer_limits(options_, 3).frames, 1);
+            EXPECT_EQ(writer_limits(options_, 3).exr_threads_of_a_frame, threads);
         });
     }
 }
