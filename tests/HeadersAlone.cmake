@@ -20,6 +20,7 @@ file(GLOB_RECURSE core_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGUR
 file(GLOB_RECURSE scene_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/scene/*.h")
 list(APPEND scene_headers cistula.h)
 
+list(REMOVE_ITEM core_headers cistula/lanes/register_avx512.h)  # for one instruction set; lanes.h includes it there
 cistula_headers_alone(core_headers_alone ${core_headers})
 if(TARGET cistula_scene AND NOT CMAKE_UNITY_BUILD)
     cistula_headers_alone(scene_headers_alone ${scene_headers})
@@ -27,6 +28,7 @@ if(TARGET cistula_scene AND NOT CMAKE_UNITY_BUILD)
         cistula_scene embree TBB::tbb OpenEXR::OpenEXR fmt::fmt nlohmann_json::nlohmann_json)
 endif()
 if(CISTULA_CUDA)
+    list(FILTER core_headers EXCLUDE REGEX "^cistula/lanes/")  # for the host's registers
     list(TRANSFORM core_headers REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
     list(JOIN includes "" includes)
     set(source "${CMAKE_CURRENT_BINARY_DIR}/headers/all.cu")

@@ -16,6 +16,7 @@ core_folders=(
     lights     # lights that are seen themselves
     transport  # a pixel's tree of rays
     adaptive   # how many samples a pixel needs
+    lanes      # all that with many rays at once, on the host
 )
 scene_folders=(
     base         # errors, files, hashes, boxes
@@ -77,8 +78,8 @@ check() {
     layers cistula "${core_folders[@]}"
     layers scene "${scene_folders[@]}"
 
-    # Standard headers have neither a slash nor, but for C's, a suffix.
-    includes "${core[@]}" | { grep -vE '#[ \t]*include[ \t]*("cistula/[a-z0-9_/]+\.h"|<glm/[a-z0-9_/]+\.hpp>|<[a-z_0-9]+>)' || true; } |
+    # Standard headers have neither a slash nor, but for C's, a suffix. Registers of lanes need the processor's own.
+    includes "${core[@]}" | { grep -vE '^libcore/cistula/lanes/register_[a-z0-9]+\.h:[0-9]+:#include <immintrin\.h>|#[ \t]*include[ \t]*("cistula/[a-z0-9_/]+\.h"|<glm/[a-z0-9_/]+\.hpp>|<[a-z_0-9]+>)' || true; } |
         fail 'libcore/cistula includes "cistula/...", the standard library and GLM, nothing else'
     includes "${scene[@]}" | { grep -E 'backend_|apps/|testing/|["<]cuda' || true; } |
         fail 'libcore/scene knows neither backends nor programs'

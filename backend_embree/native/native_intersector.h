@@ -41,7 +41,7 @@ struct NativeClosest {
             return false;
         const uint64_t key = make_key(kind, triangle.solid, triangle.face);
         if (!ray.after.before(t, key) || !best.improves(t, key)) return false;
-        best.take(t, key, Real(hit.u), Real(hit.v), triangle.slot, enters);
+        best.take(true, t, key, Real(hit.u), Real(hit.v), triangle.slot, enters);
         return true;
     }
 };

@@ -18,12 +18,13 @@ namespace convex_here = convex_host;
 /// Bounding sphere test: whether a ray from outside surely misses the solid or meets it only beyond `limit`. A quick
 /// rejection that never decides a hit.
 template <class Real>
-CISTULA_INLINE bool misses_bounds(const BoundingSphere<Real>& sphere, const Vec3<Real>& origin,
-                                  const Vec3<Real>& direction, Real limit) {
-    const Vec3<Real> to_center = sphere.center - origin;
+CISTULA_INLINE MaskOf<Real> misses_bounds(const BoundingSphere<ScalarOf<Real>>& sphere, const Vec3<Real>& origin,
+                                          const Vec3<Real>& direction, Real limit) {
+    const Vec3<Real> to_center = spread<Real>(sphere.center) - origin;
     const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - sphere.padded_square;
-    const Real beyond = limit * (Real(2) * ahead - limit), beside = ahead < Real(0) ? Real(0) : ahead * ahead;
-    return rest > (ahead > limit ? beyond : beside);
+    const Real beyond = limit * (Real(2) * ahead - limit);
+    const Real beside = select(ahead < Real(0), Real(0), ahead * ahead);
+    return rest > select(ahead > limit, beyond, beside);
 }
 
 /// The face of a convex solid on the shared plane on which a ray starts, or no_face.
@@ -40,25 +41,46 @@ CISTULA_INLINE uint32_t face_left(const Scene& scene, uint32_t index, const Ray<
     return ray.from_solid == index ? ray.from_face : face_at_start(scene, index, ray);
 }
 
-/// The crossing by which a ray leaves the convex solid that it is inside, if it is less than `best`. The face is looked
-/// up only if the time does not reject it.
+/// Takes the crossing at `leave` as `best` if it is less, for rays inside a convex solid. face() gives the face; it is
+/// called only if the time does not reject the crossing.
+template <class Real, class Face>
+CISTULA_INLINE void take_exit(const MaskOf<Real>& inside, uint32_t index, Real leave, const Face& face,
+                              Hit<Real>& best) {
+    const Real t = max_or_second(leave, Real(0));
+    const MaskOf<Real> in_time = inside & (t <= best.t) & (t < RealTraits<Real>::infinity);
+    if (!any(in_time)) return;
+    const KeyOf<Real> key = KeyFormat<Real>::make(CrossingKind::leave, index, face());
+    best.take(in_time & best.improves(t, key), t, key, Real(0), Real(0), 0, false);
+}
+
+/// The crossing by which a ray leaves the convex solid that it is inside, if it is less than `best`.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_exit(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray, Hit<Real>& best) {
     const Solid& solid = scene.solids[index];
     const uint32_t skipped = face_left(scene, index, ray);
     const auto exit = convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped);
-    const Real t = max_or_second(exit.t, Real(0));
-    if (!(t <= best.t && t < RealTraits<Real>::infinity)) return;
-    const uint64_t key = make_key(CrossingKind::leave, index,
-                                  convex_here::face_of(scene, solid, ray.origin, ray.direction, exit, skipped));
-    if (best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, false);
+    take_exit<Real>(
+        true, index, exit.t,
+        [&] { return convex_here::face_of(scene, solid, ray.origin, ray.direction, exit, skipped); }, best);
 }
 
 /// Whether a ray from outside meets the solid. An interval that ends at the ray's origin, to within the rounding of a
 /// point on a shared face, is behind it.
 template <class Interval, class Real>
-CISTULA_INLINE bool is_met(const Interval& interval, Real extent) {
-    return interval.enter <= interval.leave && interval.leave > incidence<Real> * extent;
+CISTULA_INLINE auto is_met(const Interval& interval, Real extent) {
+    return (interval.enter <= interval.leave) & (interval.leave > incidence<Real> * extent);
+}
+
+/// Takes the crossing at `enter` as `best` if it is less and the ray has not passed it, for rays that meet a convex
+/// solid from outside. face() gives the face; it is called only if the time does not reject the crossing.
+template <class Real, class Media, class Face>
+CISTULA_INLINE void take_entry(const MaskOf<Real>& meets, uint32_t index, Real enter, const Face& face,
+                               const Ray<Real, Media>& ray, Hit<Real>& best) {
+    const Real t = max_or_second(enter, Real(0));
+    const MaskOf<Real> in_time = meets & (t <= best.t) & (t < RealTraits<Real>::infinity) & !(t < ray.after.t);
+    if (!any(in_time)) return;
+    const KeyOf<Real> key = KeyFormat<Real>::make(CrossingKind::enter, index, face());
+    best.take(in_time & ray.after.before(t, key) & best.improves(t, key), t, key, Real(0), Real(0), 0, true);
 }
 
 /// The crossing by which a ray enters a convex solid that it is not inside, has not just left and does not pass by.
@@ -67,11 +89,9 @@ CISTULA_INLINE void closest_entry(const Scene& scene, uint32_t index, const Soli
                                   Hit<Real>& best) {
     const auto interval = convex_here::interval_of(scene, solid, ray.origin, ray.direction, true);
     if (!is_met(interval, scene.extent)) return;
-    const Real t = max_or_second(interval.enter, Real(0));
-    if (!(t <= best.t && t < RealTraits<Real>::infinity) || t < ray.after.t) return;
-    const uint64_t key =
-        make_key(CrossingKind::enter, index, convex_here::face_of(scene, solid, ray.origin, ray.direction, interval));
-    if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);
+    take_entry<Real>(
+        true, index, interval.enter,
+        [&] { return convex_here::face_of(scene, solid, ray.origin, ray.direction, interval); }, ray, best);
 }
 
 /// The crossing by which a ray enters a convex solid that has a face on the shared plane on which the ray starts.
@@ -84,7 +104,7 @@ CISTULA_INLINE void closest_entry_beside(const Scene& scene, uint32_t index, uin
         if (entry.face == no_face) return;
         const Real t = max_or_second(entry.enter, Real(0));
         const uint64_t key = make_key(CrossingKind::enter, index, entry.face);
-        if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, Real(0), Real(0), 0, true);
+        best.take(ray.after.before(t, key) && best.improves(t, key), t, key, Real(0), Real(0), 0, true);
     }
 }
 

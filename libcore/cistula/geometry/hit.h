@@ -18,6 +18,9 @@ CISTULA_INLINE uint64_t make_key(CrossingKind kind, uint32_t solid, uint32_t fac
 CISTULA_INLINE CrossingKind key_kind(uint64_t key) {
     return CrossingKind(key >> 56);
 }
+CISTULA_INLINE bool is_kind(uint64_t key, CrossingKind kind) {
+    return key_kind(key) == kind;
+}
 /// The change of a solid's entry count at a crossing: 1 on entering, -1 on leaving, 0 for a sheet.
 CISTULA_INLINE int media_change(CrossingKind kind) {
     return kind == CrossingKind::enter ? 1 : kind == CrossingKind::leave ? -1 : 0;
@@ -31,13 +34,23 @@ CISTULA_INLINE uint32_t key_face(uint64_t key) {
 }
 inline constexpr uint64_t no_key = ~uint64_t(0);
 
+/// The keys of rays of a number type: those above, and those of lanes (lane_hit.h).
+template <class Real>
+struct KeyFormat {
+    static constexpr uint64_t none = no_key;
+
+    CISTULA_INLINE static uint64_t make(CrossingKind kind, uint32_t solid, uint32_t face) {
+        return make_key(kind, solid, face);
+    }
+};
+
 /// A position along a ray. Crossings are ordered by (t, key).
 template <class Real>
 struct Crossing {
     Real t = -1;
-    uint64_t key = 0;
+    KeyOf<Real> key = 0;
 
-    CISTULA_INLINE bool before(Real other_t, uint64_t other_key) const {
+    CISTULA_INLINE MaskOf<Real> before(const Real& other_t, const KeyOf<Real>& other_key) const {
         return (t < other_t) | ((t == other_t) & (key < other_key));  // without branches
     }
 };
@@ -46,28 +59,29 @@ struct Crossing {
 template <class Real>
 struct Hit {
     Real t = RealTraits<Real>::infinity;
-    uint64_t key = no_key;
-    Real u = 0, v = 0;   // triangles: weights of the second and third corner
-    uint32_t slot = 0;   // triangles: 8 cluster + lane
-    bool enters = true;  // triangles: against the normal; the sign of det, not of a rounded dot product
+    KeyOf<Real> key = KeyFormat<Real>::none;
+    Real u = 0, v = 0;           // triangles: weights of the second and third corner
+    IndexOf<Real> slot = 0;      // triangles: 8 cluster + lane
+    MaskOf<Real> enters = true;  // triangles: against the normal; the sign of det, not of a rounded dot product
     /// The smallest t of mesh crossings that were refused because they come from the wrong side (triangle.h).
     Real wrong_side_t = RealTraits<Real>::infinity;
 
-    CISTULA_INLINE bool found() const { return key != no_key; }
+    CISTULA_INLINE MaskOf<Real> found() const { return key != KeyFormat<Real>::none; }
 
-    /// Replaces the hit by another crossing, keeping `wrong_side_t`.
-    CISTULA_INLINE void take(Real other_t, uint64_t other_key, Real other_u, Real other_v, uint32_t other_slot,
-                             bool other_enters) {
-        t = other_t;
-        key = other_key;
-        u = other_u;
-        v = other_v;
-        slot = other_slot;
-        enters = other_enters;
+    /// Replaces the hit by another crossing where `who` holds, keeping `wrong_side_t`.
+    CISTULA_INLINE void take(const MaskOf<Real>& who, const Real& other_t, const KeyOf<Real>& other_key,
+                             const Real& other_u, const Real& other_v, const IndexOf<Real>& other_slot,
+                             const MaskOf<Real>& other_enters) {
+        assign_where(who, t, other_t);
+        assign_where(who, key, other_key);
+        assign_where(who, u, other_u);
+        assign_where(who, v, other_v);
+        assign_where(who, slot, other_slot);
+        assign_where(who, enters, other_enters);
     }
 
     /// Whether another crossing comes first: the hit with the smallest (t, key) is kept.
-    CISTULA_INLINE bool improves(Real other_t, uint64_t other_key) const {
+    CISTULA_INLINE MaskOf<Real> improves(const Real& other_t, const KeyOf<Real>& other_key) const {
         return (other_t < t) | ((other_t == t) & (other_key < key));
     }
 };

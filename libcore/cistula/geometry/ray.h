@@ -60,6 +60,11 @@ struct InteriorList {
         return true;
     }
 
+    /// Records that a solid is entered or left, or neither. False if the list is full, which leaves it unchanged.
+    CISTULA_INLINE bool cross(bool enters, bool leaves, uint32_t solid) {
+        return !(enters || leaves) || add(solid, enters ? 1 : -1);
+    }
+
     /// Removes the solids whose count is below 0: a ray that starts anew knows where it is.
     CISTULA_INLINE void drop_negative() {
         for (uint32_t i = size; i-- > 0;)
@@ -78,21 +83,24 @@ struct InteriorList {
 
 /// The interior list of scenes whose closed solids are all convex and do not touch, so that a ray is inside at most
 /// one. Its state lets a ray enter only from outside and leave only from inside.
-struct SingleInterior {
+template <class Real>
+struct SingleInteriorOf {
     static constexpr bool contacts = false, meshes = false;
+    using Index = IndexOf<Real>;
 
-    uint32_t solid = no_solid;
+    Index solid = no_solid;
 
-    CISTULA_INLINE bool contains(uint32_t index) const { return solid == index; }
-    CISTULA_INLINE bool empty() const { return solid == no_solid; }
-    CISTULA_INLINE uint32_t only() const { return solid; }
-    CISTULA_INLINE uint32_t medium() const { return solid; }
+    CISTULA_INLINE MaskOf<Real> contains(const Index& index) const { return solid == index; }
+    CISTULA_INLINE MaskOf<Real> empty() const { return solid == no_solid; }
+    CISTULA_INLINE Index only() const { return solid; }
+    CISTULA_INLINE Index medium() const { return solid; }
 
-    /// Records a crossing. False, without a change, where the solids touch after all.
-    CISTULA_INLINE bool add(uint32_t index, int change) {
-        if (solid != (change > 0 ? no_solid : index)) return false;
-        solid = change > 0 ? index : no_solid;
-        return true;
+    /// Records that a solid is entered or left. False, without a change, where the solids touch after all.
+    CISTULA_INLINE MaskOf<Real> cross(const MaskOf<Real>& enters, const MaskOf<Real>& leaves, const Index& index) {
+        const MaskOf<Real> fits = solid == select(enters, Index(no_solid), index);
+        assign_where(enters & fits, solid, index);
+        assign_where(leaves & fits, solid, Index(no_solid));
+        return fits | !(enters | leaves);
     }
 
     template <class Visit>
@@ -100,6 +108,7 @@ struct SingleInterior {
         if (solid != no_solid) visit(solid, 1);
     }
 };
+using SingleInterior = SingleInteriorOf<float>;
 
 /// Converts an InteriorList to the form of `to`.
 CISTULA_INLINE void assign(InteriorList& to, const InteriorList& from) {
@@ -113,14 +122,24 @@ CISTULA_INLINE void assign(SingleInterior& to, const InteriorList& from) {
 template <class Real, class Media = InteriorList>
 struct Ray {
     Vec3<Real> origin;
-    Vec3<Real> direction;            // unit to within a few u
-    uint32_t from_solid = no_solid;  // the solid on whose face the ray starts, if any
-    uint32_t from_face = 0;          // that face: 2 slab + side, or the scene-wide triangle number
-    uint32_t from_plane = no_plane;  // the shared plane on which that face lies, if any
-    Crossing<Real> after;            // the last crossing that the ray has passed
-    Media media;                     // the interior list at `after`
+    Vec3<Real> direction;                 // unit to within a few u
+    IndexOf<Real> from_solid = no_solid;  // the solid on whose face the ray starts, if any
+    IndexOf<Real> from_face = 0;          // that face: 2 slab + side, or the scene-wide triangle number
+    uint32_t from_plane = no_plane;       // the shared plane on which that face lies, if any
+    Crossing<Real> after;                 // the last crossing that the ray has passed
+    Media media;                          // the interior list at `after`
 
     CISTULA_INLINE bool fresh() const { return after.t < Real(0); }
+    /// Takes another ray where `who` holds; in lanes.
+    CISTULA_INLINE void take_where(const MaskOf<Real>& who, const Ray& other) {
+        assign_where(who, origin, other.origin);
+        assign_where(who, direction, other.direction);
+        assign_where(who, from_solid, other.from_solid);
+        assign_where(who, from_face, other.from_face);
+        assign_where(who, after.t, other.after.t);
+        assign_where(who, after.key, other.after.key);
+        assign_where(who, media.solid, other.media.solid);
+    }
     /// Whether the ray's first crossing of a mesh must come from the side on which the ray starts.
     CISTULA_INLINE bool by_side() const { return after.t <= Real(-1); }
     /// Makes the ray meet all crossings, from whichever side; used to count them.
@@ -129,11 +148,11 @@ struct Ray {
 
 /// Whether a ray is finite; one that is not meets nothing.
 template <class Real>
-CISTULA_INLINE bool is_finite(const Vec3<Real>& origin, const Vec3<Real>& direction) {
+CISTULA_INLINE MaskOf<Real> is_finite(const Vec3<Real>& origin, const Vec3<Real>& direction) {
     return nothing_of(origin) + nothing_of(direction) == Real(0);
 }
 template <class Real, class Media>
-CISTULA_INLINE bool is_finite(const Ray<Real, Media>& ray) {
+CISTULA_INLINE MaskOf<Real> is_finite(const Ray<Real, Media>& ray) {
     return is_finite(ray.origin, ray.direction);
 }
 

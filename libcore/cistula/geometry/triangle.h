@@ -9,30 +9,30 @@ namespace cistula {
 
 /// a[k] by selects: an index would force `a` into memory on the device.
 template <class Real>
-CISTULA_INLINE Real component(const Vec3<Real>& a, int k) {
-    return k == 0 ? a.x : k == 1 ? a.y : a.z;
+CISTULA_INLINE Real component(const Vec3<Real>& a, const IndexOf<Real>& k) {
+    return select(k == 0, a.x, select(k == 1, a.y, a.z));
 }
 
 /// A ray's shear. Axes are permuted so that kz is the axis of the largest direction component and winding is preserved:
 /// det > 0 means that the ray enters.
 template <class Real>
 struct TriangleRay {
-    int kx, ky, kz;
+    using Axis = IndexOf<Real>;
+    Axis kx, ky, kz;
     Real sx, sy, sz;
     Real ox, oy, oz;  // origin along kx, ky, kz
 
     CISTULA_INLINE static TriangleRay of(const Vec3<Real>& origin, const Vec3<Real>& direction) {
         const Real x = magnitude(direction.x), y = magnitude(direction.y), z = magnitude(direction.z);
         TriangleRay r;
-        r.kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
-        r.kx = r.kz == 2 ? 0 : r.kz + 1;
-        r.ky = r.kx == 2 ? 0 : r.kx + 1;
+        r.kz = select(x >= y, select(x >= z, Axis(0), Axis(2)), select(y >= z, Axis(1), Axis(2)));
+        r.kx = select(r.kz == 2, Axis(0), r.kz + 1);
+        r.ky = select(r.kx == 2, Axis(0), r.kx + 1);
         const Real along_z = component(direction, r.kz);
-        if (along_z < Real(0)) {
-            const int k = r.kx;
-            r.kx = r.ky;
-            r.ky = k;
-        }
+        const MaskOf<Real> backward = along_z < Real(0);
+        const Axis k = r.kx;
+        assign_where(backward, r.kx, r.ky);
+        assign_where(backward, r.ky, k);
         r.sz = Real(1) / along_z;  // not reciprocal(): the parity check also tests arguments outside its range
         r.sx = component(direction, r.kx) * r.sz;
         r.sy = component(direction, r.ky) * r.sz;
@@ -51,7 +51,7 @@ inline constexpr Real least_sheared = sizeof(Real) == sizeof(float) ? Real(0x1p-
 template <class Real>
 CISTULA_INLINE Real sheared(Real across, Real shear, Real depth) {
     const Real s = across - shear * depth;
-    return magnitude(s) < least_sheared<Real> ? Real(0) : s;
+    return select(magnitude(s) < least_sheared<ScalarOf<Real>>, Real(0), s);
 }
 
 /// An accepted crossing of a triangle. The barycentric weights are the edge functions divided by their sum, det.
@@ -59,7 +59,7 @@ template <class Real>
 struct TriangleCrossing {
     Real t, edge_u, edge_v, det;
 
-    CISTULA_INLINE bool enters() const { return det > Real(0); }  // against the normal
+    CISTULA_INLINE MaskOf<Real> enters() const { return det > Real(0); }  // against the normal
     CISTULA_INLINE Real u() const { return edge_u / det; }
     CISTULA_INLINE Real v() const { return edge_v / det; }
 };
@@ -70,18 +70,28 @@ template <class Real>
 struct ShearedTriangle {
     Real x[3], y[3], z[3], edge[3];
 
-    CISTULA_INLINE static ShearedTriangle of(const Cluster<Real>& cluster, int lane, const TriangleRay<Real>& ray) {
-        ShearedTriangle s;
-        for (int c = 0; c < 3; ++c)
-            s.shear(c, cluster.corner[c][ray.kx][lane], cluster.corner[c][ray.ky][lane],
-                    cluster.corner[c][ray.kz][lane], ray);
-        s.find_edges();
-        return s;
+    CISTULA_INLINE static ShearedTriangle of(const Cluster<ScalarOf<Real>>& cluster, int lane,
+                                             const TriangleRay<Real>& ray) {
+        if constexpr (in_lanes<Real>) {
+            return of([&](int c, int axis) { return cluster.corner[c][axis][lane]; }, ray);
+        } else {
+            ShearedTriangle s;
+            for (int c = 0; c < 3; ++c)
+                s.shear(c, cluster.corner[c][ray.kx][lane], cluster.corner[c][ray.ky][lane],
+                        cluster.corner[c][ray.kz][lane], ray);
+            s.find_edges();
+            return s;
+        }
     }
-    CISTULA_INLINE static ShearedTriangle of(const Facet<Real>& facet, const TriangleRay<Real>& ray) {
+    CISTULA_INLINE static ShearedTriangle of(const Facet<ScalarOf<Real>>& facet, const TriangleRay<Real>& ray) {
+        return of([&](int c, int axis) { return facet.corner[c][axis]; }, ray);
+    }
+    /// corner(c, axis) gives the coordinates.
+    template <class Corner>
+    CISTULA_INLINE static ShearedTriangle of(const Corner& corner, const TriangleRay<Real>& ray) {
         ShearedTriangle s;
         for (int c = 0; c < 3; ++c) {
-            const Vec3<Real> p(facet.corner[c][0], facet.corner[c][1], facet.corner[c][2]);
+            const Vec3<Real> p(corner(c, 0), corner(c, 1), corner(c, 2));
             s.shear(c, component(p, ray.kx), component(p, ray.ky), component(p, ray.kz), ray);
         }
         s.find_edges();
@@ -100,21 +110,21 @@ struct ShearedTriangle {
         }
     }
 
-    CISTULA_INLINE bool within() const {
-        return (edge[0] >= Real(0) && edge[1] >= Real(0) && edge[2] >= Real(0)) ||
-               (edge[0] <= Real(0) && edge[1] <= Real(0) && edge[2] <= Real(0));
+    CISTULA_INLINE MaskOf<Real> within() const {
+        return ((edge[0] >= Real(0)) & (edge[1] >= Real(0)) & (edge[2] >= Real(0))) |
+               ((edge[0] <= Real(0)) & (edge[1] <= Real(0)) & (edge[2] <= Real(0)));
     }
 
     /// Whether every edge that the ray hits exactly belongs to this triangle (top-left rule). `sign` is the sign of
     /// det.
-    CISTULA_INLINE bool owns_zero_edges(Real sign) const {
+    CISTULA_INLINE MaskOf<Real> owns_zero_edges(Real sign) const {
+        MaskOf<Real> owns = true;
         for (int c = 0; c < 3; ++c) {
-            if (edge[c] != Real(0)) continue;
             const int a = c == 2 ? 0 : c + 1, b = a == 2 ? 0 : a + 1;
             const Real dx = (x[b] - x[a]) * sign, dy = (y[b] - y[a]) * sign;
-            if (!(dy > Real(0) || (dy == Real(0) && dx > Real(0)))) return false;
+            owns &= (edge[c] != Real(0)) | (dy > Real(0)) | ((dy == Real(0)) & (dx > Real(0)));
         }
-        return true;
+        return owns;
     }
 };
 
@@ -168,14 +178,18 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
 /// The exact test of a candidate from its edge functions and its corners' distances along kz; t is not compared with
 /// anything yet. shear() gives the ShearedTriangle, which is needed only if an edge function is zero.
 template <class Real, class Shear>
-CISTULA_INLINE bool cross_triangle(const TriangleRay<Real>& ray, const Real (&edge)[3], const Real (&z)[3],
-                                   const Shear& shear, TriangleCrossing<Real>& crossing) {
+CISTULA_INLINE MaskOf<Real> cross_triangle(const TriangleRay<Real>& ray, const Real (&edge)[3], const Real (&z)[3],
+                                           const Shear& shear, TriangleCrossing<Real>& crossing) {
     const Real u = edge[0], v = edge[1], w = edge[2], det = u + v + w;
-    if (u == Real(0) || v == Real(0) || w == Real(0))
-        if (det == Real(0) || !shear().owns_zero_edges(det > Real(0) ? Real(1) : Real(-1))) return false;
+    MaskOf<Real> owned = true;
+    const MaskOf<Real> on_edge = (u == Real(0)) | (v == Real(0)) | (w == Real(0));
+    if (any(on_edge)) {
+        owned = (!on_edge) | ((det != Real(0)) & shear().owns_zero_edges(select(det > Real(0), Real(1), Real(-1))));
+        if (!any(owned)) return owned;
+    }
     const Real depth = u * (ray.sz * z[0]) + v * (ray.sz * z[1]) + w * (ray.sz * z[2]);
     crossing = {depth / det, v, w, det};
-    return true;
+    return owned;
 }
 
 template <class Real>
@@ -188,10 +202,12 @@ CISTULA_INLINE bool cross_triangle(const Cluster<Real>& cluster, const Candidate
 }
 
 template <class Real>
-CISTULA_INLINE bool cross_triangle(const ShearedTriangle<Real>& s, const TriangleRay<Real>& ray,
-                                   TriangleCrossing<Real>& crossing) {
-    return s.within() && cross_triangle(
-                             ray, s.edge, s.z, [&]() -> const ShearedTriangle<Real>& { return s; }, crossing);
+CISTULA_INLINE MaskOf<Real> cross_triangle(const ShearedTriangle<Real>& s, const TriangleRay<Real>& ray,
+                                           TriangleCrossing<Real>& crossing) {
+    const MaskOf<Real> within = s.within();
+    if (!any(within)) return within;
+    return within & cross_triangle(
+                        ray, s.edge, s.z, [&]() -> const ShearedTriangle<Real>& { return s; }, crossing);
 }
 
 /// Calls visit(lane, crossing) for every triangle of a cluster that the ray's line crosses, at any t.
@@ -224,8 +240,8 @@ CISTULA_INLINE bool starts_on_flat_sheet(const Scene& scene, uint32_t cluster, c
 /// rejection that never decides a hit. (A ray so flat that slant < plane_padding / 4 M stays clear of the whole sheet.)
 /// `off`: signed distance of the origin from the plane; `slant`: direction . normal.
 template <class Real>
-CISTULA_INLINE bool clears_plane(Real off, Real slant, Real limit) {
-    const Real ahead = off < Real(0) ? -slant : slant, far_off = magnitude(off);
+CISTULA_INLINE MaskOf<Real> clears_plane(Real off, Real slant, Real limit) {
+    const Real ahead = select(off < Real(0), -slant, slant), far_off = magnitude(off);
     return (far_off > Real(plane_padding)) & (far_off + ahead * limit > Real(plane_padding));
 }
 
@@ -236,28 +252,32 @@ inline constexpr Real least_slant = Real(0x1p-6);
 /// Whether a line surely crosses a flat sheet's plane outside the sheet's box. The crossing point is accurate to a few
 /// u M over the slant, at most 2^-13 M; the box is padded by more.
 template <class Real>
-CISTULA_INLINE bool crosses_outside_sheet(const SheetPlane<Real>& plane, const Vec3<Real>& origin,
-                                          const Vec3<Real>& direction, Real off, Real slant) {
-    const Vec3<Real> at = along(origin, -off * reciprocal(slant), direction) - plane.center;
-    const bool steep = magnitude(slant) > least_slant<Real>;
-    const bool beside_x = magnitude(at.x) > plane.half.x, beside_y = magnitude(at.y) > plane.half.y,
-               beside_z = magnitude(at.z) > plane.half.z;
+CISTULA_INLINE MaskOf<Real> crosses_outside_sheet(const SheetPlane<ScalarOf<Real>>& plane, const Vec3<Real>& origin,
+                                                  const Vec3<Real>& direction, Real off, Real slant) {
+    const Vec3<Real> at = along(origin, -off * reciprocal(slant), direction) - spread<Real>(plane.center);
+    const MaskOf<Real> steep = magnitude(slant) > least_slant<ScalarOf<Real>>;
+    const MaskOf<Real> beside_x = magnitude(at.x) > plane.half.x, beside_y = magnitude(at.y) > plane.half.y,
+                       beside_z = magnitude(at.z) > plane.half.z;
     return steep & (beside_x | beside_y | beside_z);
 }
 
 /// Whether a ray surely misses a flat sheet up to `limit`. `from`: the solid that it leaves.
 template <class Real>
-CISTULA_INLINE bool misses_flat_sheet(const SheetPlane<Real>& plane, uint32_t from, const Vec3<Real>& origin,
-                                      const Vec3<Real>& direction, Real limit) {
-    const Real off = dot(plane.normal, origin) - plane.offset, slant = dot(plane.normal, direction);
+CISTULA_INLINE MaskOf<Real> misses_flat_sheet(const SheetPlane<ScalarOf<Real>>& plane, const IndexOf<Real>& from,
+                                              const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
+    const Vec3<Real> normal = spread<Real>(plane.normal);
+    const Real off = dot(normal, origin) - plane.offset, slant = dot(normal, direction);
     // Both tests without branches between them, so that their values are computed at once.
-    if ((plane.flat != 0) & ((from == plane.solid) | clears_plane(off, slant, limit))) return true;
-    return (plane.flat != 0) & crosses_outside_sheet(plane, origin, direction, off, slant);
+    const MaskOf<Real> flat = plane.flat != 0;
+    const MaskOf<Real> misses = flat & ((from == plane.solid) | clears_plane(off, slant, limit));
+    if (all(misses)) return misses;
+    return misses | (flat & crosses_outside_sheet(plane, origin, direction, off, slant));
 }
 
 /// Whether a ray surely misses a cluster of a flat sheet; false where the cluster belongs to none.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE bool misses_flat_sheet(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray, Real limit) {
+CISTULA_INLINE MaskOf<Real> misses_flat_sheet(const Scene& scene, uint32_t cluster, const Ray<Real, Media>& ray,
+                                              Real limit) {
     return misses_flat_sheet(plane_of(scene, cluster), ray.from_solid, ray.origin, ray.direction, limit);
 }
 
@@ -281,25 +301,29 @@ CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t triangle, Real ow
     return own;
 }
 
-/// Takes an accepted crossing as `best` if it is the ray's next.
+/// Takes accepted crossings, where `who` holds, as `best` if they are the rays' next.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE void closest_crossing(const Scene& scene, uint32_t solid, uint32_t triangle, uint32_t slot,
-                                     const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray, Hit<Real>& best) {
-    const bool own = ray.from_solid == solid;
+CISTULA_INLINE void closest_crossing(const Scene& scene, const MaskOf<Real>& who, uint32_t solid, uint32_t triangle,
+                                     uint32_t slot, const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray,
+                                     Hit<Real>& best) {
+    const MaskOf<Real> own = ray.from_solid == solid;
     const Real t = crossing_time(scene, triangle, c.t, ray);
-    if (!(t >= Real(0)) || (own && ray.from_face == triangle)) return;
-    CrossingKind kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
-    if constexpr (!Media::meshes) {
-        kind = CrossingKind::sheet;
-    } else if (scene.solids[solid].kind == SolidKind::sheet) {
-        kind = CrossingKind::sheet;
-    } else if (ray.by_side() && c.enters() == ray.media.contains(solid)) {
-        // A ray's first crossing of a mesh is from the side on which the ray starts.
-        best.wrong_side_t = min_no_nan(t, best.wrong_side_t);
-        return;
+    const MaskOf<Real> meets = who & (t >= Real(0)) & !(own & (ray.from_face == triangle));
+    if (!any(meets)) return;
+    CrossingKind kind = CrossingKind::sheet;
+    if constexpr (Media::meshes) {
+        if (scene.solids[solid].kind != SolidKind::sheet) {
+            kind = c.enters() ? CrossingKind::enter : CrossingKind::leave;
+            if (ray.by_side() && c.enters() == ray.media.contains(solid)) {
+                // A ray's first crossing of a mesh is from the side on which the ray starts.
+                best.wrong_side_t = min_no_nan(t, best.wrong_side_t);
+                return;
+            }
+        }
     }
-    const uint64_t key = make_key(kind, solid, triangle);
-    if (ray.after.before(t, key) && best.improves(t, key)) best.take(t, key, c.u(), c.v(), slot, c.enters());
+    const KeyOf<Real> key = KeyFormat<Real>::make(kind, solid, triangle);
+    const MaskOf<Real> first = meets & ray.after.before(t, key) & best.improves(t, key);
+    if (any(first)) best.take(first, t, key, c.u(), c.v(), slot, c.enters());
 }
 
 /// The ray's next crossing of a cluster's triangles, if it is less than `best`, for a ray that does not start on the
@@ -309,8 +333,8 @@ CISTULA_INLINE void closest_triangles(const Scene& scene, uint32_t index, const 
                                       const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
-        closest_crossing(scene, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c, ray,
-                         best);
+        closest_crossing(scene, true, cluster.solid, cluster.triangle[lane], index * uint32_t(cluster_lanes) + lane, c,
+                         ray, best);
     });
 }
 
@@ -328,7 +352,7 @@ CISTULA_INLINE void closest_facet(const Scene& scene, uint32_t index, const Ray<
     const Facet<Real>& facet = scene.facets[index];
     TriangleCrossing<Real> c;
     if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
-        closest_crossing(scene, facet.solid, facet.triangle, facet.slot, c, ray, best);
+        closest_crossing(scene, true, facet.solid, facet.triangle, facet.slot, c, ray, best);
 }
 
 /// The flat sheet on which a ray starts, or no_solid.

@@ -10,8 +10,12 @@ inline constexpr uint32_t no_light = 0xffffffffu;
 
 template <class Real>
 struct VisibleLightHit {
+    static constexpr uint32_t none = in_lanes<Real> ? no_light >> 1 : no_light;
+
     Real t = RealTraits<Real>::infinity;
-    uint32_t light = no_light;
+    IndexOf<Real> light = none;
+
+    CISTULA_INLINE MaskOf<Real> found() const { return light != none; }
 };
 
 /// Intersects the front of a sphere, using the ray's closest approach to its center (Haines et al., Ray Tracing Gems,
@@ -19,15 +23,19 @@ struct VisibleLightHit {
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void intersect_visible_light(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                             VisibleLightHit<Real>& best) {
-    const VisibleLight<Real>& light = scene.visible_lights[index];
-    const Vec3<Real> to_center = light.center - ray.origin;
+    const VisibleLight<ScalarOf<Real>>& light = scene.visible_lights[index];
+    const Vec3<Real> to_center = spread<Real>(light.center) - ray.origin;
     const Real b = dot(to_center, ray.direction);
     const Vec3<Real> across = to_center - b * ray.direction;
     const Real square = light.radius * light.radius;
     const Real discriminant = square - dot(across, across), c = dot(to_center, to_center) - square;
-    if (!(discriminant > Real(0)) || !(c > Real(0)) || !(b > Real(0))) return;
+    const MaskOf<Real> meets = (discriminant > Real(0)) & (c > Real(0)) & (b > Real(0));
+    if (!any(meets)) return;
     const Real t = c / (b + square_root(discriminant));
-    if (t >= ray.after.t && (t < best.t || (t == best.t && index < best.light))) best = {t, index};
+    const IndexOf<Real> own = index;
+    const MaskOf<Real> first = meets & (t >= ray.after.t) & ((t < best.t) | ((t == best.t) & (own < best.light)));
+    assign_where(first, best.t, t);
+    assign_where(first, best.light, own);
 }
 
 /// The outward unit normal of a visible light where the ray meets it: from the center to the closest approach, and back

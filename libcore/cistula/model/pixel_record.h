@@ -25,6 +25,7 @@ struct PixelRays {
         shadow += o.shadow;
     }
     CISTULA_INLINE uint32_t total() const { return primary + reflected + transmitted + shadow; }
+    CISTULA_INLINE void add_shadow(bool) { ++shadow; }
 };
 
 /// Per-pixel working data of a render; a device keeps it in shared memory to save registers.

@@ -1,11 +1,12 @@
 // Traits of float and double, and operations whose library forms differ between the two.
 #pragma once
 
-#include "cistula/numerics/portable.h"
+#include "cistula/numerics/select.h"
 
 namespace cistula {
 
-struct DoubleDouble;
+template <class Double>
+struct DoubleDoubleOf;
 
 template <class Real>
 struct RealTraits;
@@ -22,7 +23,7 @@ struct RealTraits<float> {
 
 template <>
 struct RealTraits<double> {
-    using Up = DoubleDouble;  // double_double.h
+    using Up = DoubleDoubleOf<double>;  // double_double.h
     static constexpr double unit = 0x1p-53;
     static constexpr double least_normal = 0x1p-1022;
     static constexpr double largest = 0x1.fffffffffffffp1023;
@@ -42,7 +43,7 @@ CISTULA_INLINE T max_or_second(T a, T b) {
 }
 template <class T>
 CISTULA_INLINE T clamped(T a, T low, T high) {
-    return a > low ? (a < high ? a : high) : low;
+    return select(a > low, select(a < high, a, high), low);
 }
 template <class T>
 CISTULA_INLINE T magnitude(T a) {

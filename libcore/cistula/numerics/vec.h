@@ -53,8 +53,14 @@ CISTULA_INLINE Real nothing_of(const Vec3<Real>& a) {
     return fused(a.x, Real(0), fused(a.y, Real(0), a.z * Real(0)));
 }
 template <class Real>
-CISTULA_INLINE bool is_finite(const Vec3<Real>& a) {
+CISTULA_INLINE MaskOf<Real> is_finite(const Vec3<Real>& a) {
     return nothing_of(a) == Real(0);
+}
+
+/// A vector of a scene in the number type that traces it.
+template <class Real>
+CISTULA_INLINE Vec3<Real> spread(const Vec3<ScalarOf<Real>>& a) {
+    return Vec3<Real>(a.x, a.y, a.z);
 }
 
 template <class Real>

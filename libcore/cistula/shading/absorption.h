@@ -9,8 +9,8 @@
 namespace cistula {
 
 /// Absorption along a ray from begin() to dim(). The `false` specialization does nothing, for scenes without
-/// absorption.
-template <bool>
+/// absorption. Lanes: whether the ray is of lanes (lane_absorption.h), or any other number type.
+template <bool, class Lanes = float>
 struct Absorption {
     PathSum sum[3];
 
@@ -50,14 +50,14 @@ struct Absorption {
     }
 };
 
-template <>
-struct Absorption<false> {
-    template <class Real, class Media, class Scene>
-    CISTULA_INLINE void begin(const Scene&, const Media&, Real) {}
-    template <class Real, class Scene>
-    CISTULA_INLINE void cross(const Scene&, uint64_t, Real) {}
-    template <class Real, class Media, class Weight, class Scene>
-    CISTULA_INLINE void dim(const Scene&, const Media&, Real, Weight&) {}
+template <class Lanes>
+struct Absorption<false, Lanes> {
+    template <class Real, class Media, class Scene, class... Who>
+    CISTULA_INLINE void begin(const Scene&, const Media&, const Real&, const Who&...) {}
+    template <class Real, class Scene, class... Who>
+    CISTULA_INLINE void cross(const Scene&, const KeyOf<Real>&, const Real&, const Who&...) {}
+    template <class Real, class Media, class Weight, class Scene, class... Who>
+    CISTULA_INLINE void dim(const Scene&, const Media&, const Real&, Weight&, const Who&...) {}
 };
 
 }  // namespace cistula

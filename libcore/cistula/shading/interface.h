@@ -10,13 +10,14 @@ namespace cistula {
 
 template <class Real, class Filter = Vec3<Real>>
 struct InterfaceSplit {
-    Real reflection;  // share of the reflected ray
-    Filter filter;    // share of the transmitted ray
-    bool bends;       // whether the transmitted ray takes the direction `through`; else it goes straight on
+    Real reflection;     // share of the reflected ray
+    Filter filter;       // share of the transmitted ray
+    MaskOf<Real> bends;  // whether the transmitted ray takes the direction `through`; else it goes straight on
     Vec3<Real> through;
 };
 
-/// Index of refraction at a point: that of the solid of highest priority that contains it, or 1.
+/// Index of refraction at a point: that of the solid of highest priority that contains it, or 1. (In lanes:
+/// lane_surface.h.)
 template <class Scene, class Media>
 CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
     const uint32_t solid = media.medium();
@@ -26,30 +27,32 @@ CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
 /// Splits light at an interface. Total internal reflection moves the transmitted share to the reflected ray. With
 /// `fresnel`, kr + kt is split by the exact dielectric terms; nothing is reflected between equal indices. A sheet has
 /// no medium behind it, so it does not bend rays and uses kr and kt unchanged.
-template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& scene, const Material<Real>& m,
+template <class Real, class E, class Surfacing, class Media, class Scene>
+CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& scene, const Surfacing& m,
                                                                   const Vec3<Real>& direction, const Vec3<Real>& normal,
                                                                   const Media& before, const Media& beyond,
-                                                                  bool sheet) {
+                                                                  const MaskOf<Real>& sheet) {
     using Filter = Throughput<Real, E>;
     InterfaceSplit<Real, Filter> split{m.reflection, throughput_as<Filter>(m.filter), false, direction};
     if constexpr (E::has(effect_refraction)) {
-        const bool fresnel = E::has(effect_fresnel) && m.fresnel != 0 && !sheet;
+        MaskOf<Real> fresnel = false;
+        if constexpr (E::has(effect_fresnel)) fresnel = (m.fresnel != 0) & !sheet;
         const Real both = m.reflection + m.transmission;
-        const double from = index_of(scene, before), to = index_of(scene, beyond);
-        if (from == to) {
-            if (fresnel) split.reflection = Real(0), split.filter = throughput_as<Filter>(m.tint) * both;
-        } else if (m.transmission > Real(0) || fresnel) {
+        const WideOf<Real> from = index_of(scene, before), to = index_of(scene, beyond);
+        const MaskOf<Real> equal = narrowed<Real>(from == to);
+        assign_where(fresnel & equal, split.reflection, Real(0));
+        assign_where(fresnel & equal, split.filter, throughput_as<Filter>(m.tint) * both);
+        split.bends = (!equal) & ((m.transmission > Real(0)) | fresnel);
+        if (any(split.bends)) {
             const Refraction<Real> refraction = refracted<Real>(direction, normal, from, to);
-            split.bends = true;
-            split.through = refraction.direction;
-            if (refraction.total) {
-                split.reflection = both;
-                split.filter = Filter(Real(0));
-            } else if (fresnel) {
-                split.reflection = both * refraction.reflectance;
-                split.filter = throughput_as<Filter>(m.tint) * (both * (Real(1) - refraction.reflectance));
-            }
+            assign_where(split.bends, split.through, refraction.direction);
+            const MaskOf<Real> total = split.bends & refraction.total,
+                               part = split.bends & (!refraction.total) & fresnel;
+            assign_where(total, split.reflection, both);
+            assign_where(total, split.filter, Filter(Real(0)));
+            assign_where(part, split.reflection, both * refraction.reflectance);
+            assign_where(part, split.filter,
+                         throughput_as<Filter>(m.tint) * (both * (Real(1) - refraction.reflectance)));
         }
     }
     return split;

@@ -34,9 +34,9 @@ struct LightAim {
     Real distance;
     Real cosine;
 
-    CISTULA_INLINE static LightAim of(const Light<Real>& light, const Surface<Real>& s) {
+    CISTULA_INLINE static LightAim of(const Light<ScalarOf<Real>>& light, const Surface<Real>& s) {
         LightAim aim;
-        aim.direction = light.position - s.viewer_side;
+        aim.direction = spread<Real>(light.position) - s.viewer_side;
         aim.distance = length(aim.direction);
         aim.direction *= reciprocal(aim.distance);
         aim.cosine = dot(s.normal, aim.direction);
@@ -47,8 +47,14 @@ struct LightAim {
 /// Whether a light lies in front of a face. A light within the incidence distance of the face's plane does not light
 /// it, so that rounding does not decide its side.
 template <class Real, class Scene>
-CISTULA_INLINE bool is_before(const Scene& scene, const Light<Real>& light, const Surface<Real>& s) {
-    return dot(s.normal, light.position - s.viewer_side) > incidence<Real> * scene.extent;
+CISTULA_INLINE MaskOf<Real> is_before(const Scene& scene, const Light<ScalarOf<Real>>& light, const Surface<Real>& s) {
+    return dot(s.normal, spread<Real>(light.position) - s.viewer_side) > incidence<ScalarOf<Real>> * scene.extent;
+}
+
+/// Whether a light adds nothing, even where it is not shadowed.
+template <class Real>
+CISTULA_INLINE MaskOf<Real> is_nothing(const Vec3<Real>& lit) {
+    return (lit.x == Real(0)) & (lit.y == Real(0)) & (lit.z == Real(0));
 }
 
 /// Callbacks of add_local_light that report what each light adds to a surface. This default ignores them.
@@ -64,12 +70,13 @@ struct LightObserver {
     CISTULA_INLINE void arrives(uint32_t, const Shadow&, const Arrives&) const {}
 };
 
-/// Adds `weight` times the local light of a surface seen along `ray` (docs/design.md, Light).
-template <class Real, class E, class Intersector, class Media, class Scene, class Sums, class Observer = LightObserver>
+/// Adds `weight` times the local light of a surface seen along `ray` (docs/design.md, Light), where `who` holds.
+template <class Real, class E, class Intersector, class Media, class Scene, class Sums, class Rays,
+          class Observer = LightObserver>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                     const SurfaceEvent<Real, Media>& event, const Surface<Real>& surface,
-                                    const Throughput<Real, E>& weight, Sums& sums, PixelRays& rays,
-                                    const Observer& observer = {}) {
+                                    const Throughput<Real, E>& weight, Sums& sums, Rays& rays,
+                                    const Observer& observer = {}, const MaskOf<Real>& who = true) {
     Surface<Real> s = surface;
     const Media* around = &ray.media;
     [[maybe_unused]] Media corrected;
@@ -80,24 +87,27 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             meshes = start_at_contact(scene, ray, event, s.normal, false, s.viewer_side, corrected);
             around = &corrected;
         }
-    const Material<Real>& m = scene.materials[s.material];
-    sums.add(weight * (s.color * m.ambient), LightSource::ambient);
+    const auto& m = material_of(scene, s);
+    sums.add(weight * (s.color * m.ambient), LightSource::ambient, who);
     if constexpr (E::has(effect_diffuse | effect_specular)) {
         for (uint32_t i = 0; i < scene.lights.size; ++i) {
-            const Light<Real>& light = scene.lights[i];
-            if (!is_before(scene, light, s)) {
+            const Light<ScalarOf<Real>>& light = scene.lights[i];
+            MaskOf<Real> lights = who & is_before(scene, light, s);
+            if (!any(lights)) {
                 observer.behind(i, light);
                 continue;
             }
             const LightAim<Real> aim = LightAim<Real>::of(light, s);
-            if (!(aim.cosine > Real(0))) {
+            lights = lights & (aim.cosine > Real(0));
+            if (!any(lights)) {
                 observer.behind(i, light);
                 continue;
             }
             const Vec3<Real> lit =
                 phong<Real, E>(m, s.color, light, s.normal, aim.direction, -ray.direction, aim.cosine, aim.distance);
             observer.unshadowed(i, aim, lit);
-            if (lit == Vec3<Real>(Real(0))) continue;
+            lights = lights & !is_nothing(lit);
+            if (!any(lights)) continue;
             Throughput<Real, E> arrives(Real(1));
             if constexpr (E::has(effect_opaque_shadows | effect_transparent_shadows)) {
                 ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, event.hit, *around), aim.distance,
@@ -105,14 +115,18 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                 find_start_plane<E>(scene, shadow.ray);
                 if constexpr (meets_contacts<E, Media>)
                     if (meshes) count_meshes(scene, intersector, shadow.ray);
-                ++rays.shadow;
-                arrives = intersector.template transmittance<E>(shadow);
+                rays.add_shadow(lights);
+                if constexpr (in_lanes<Real>)
+                    arrives = intersector.template transmittance<E>(shadow, lights);
+                else
+                    arrives = intersector.template transmittance<E>(shadow);
                 observer.arrives(i, shadow, arrives);
             }
-            sums.add_light(weight * (arrives * lit), i, [&] {
+            const auto diffuse = [&] {
                 return weight * (arrives * phong<Real, Effects<E::mask & ~effect_specular>>(
                                                m, s.color, light, aim.cosine, Real(0), aim.distance));
-            });
+            };
+            sums.add_light(weight * (arrives * lit), i, diffuse, lights);
         }
     }
 }

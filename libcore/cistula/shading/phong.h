@@ -29,24 +29,24 @@ CISTULA_INLINE Real mirror_cosine(const Vec3<Real>& normal, const Vec3<Real>& to
 
 /// What a light adds at unit transmittance, without the local share: I a(r) (C kd N.L + ks S (R.V)^n). n_l = N.L > 0;
 /// `shine` = (R.V)^n.
-template <class Real, class E>
-CISTULA_INLINE Vec3<Real> phong(const Material<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
+template <class Real, class E, class Surfacing>
+CISTULA_INLINE Vec3<Real> phong(const Surfacing& material, const Vec3<Real>& color, const Light<ScalarOf<Real>>& light,
                                 Real n_l, Real shine, Real distance) {
     Vec3<Real> result(Real(0));
     if constexpr (E::has(effect_diffuse)) result += color * (material.diffuse * n_l);
     if constexpr (E::has(effect_specular)) result += material.specular * shine;
-    result *= light.intensity;
+    result *= spread<Real>(light.intensity);
     if constexpr (E::has(effect_light_falloff)) {
-        if (light.clamp_distance > Real(0)) {
-            const Real r = max_or_second(distance, light.clamp_distance);
+        if (light.clamp_distance > 0) {
+            const Real r = max_or_second(distance, Real(light.clamp_distance));
             result *= Real(1) / (r * r);
         }
     }
     return result;
 }
 
-template <class Real, class E>
-CISTULA_INLINE Vec3<Real> phong(const Material<Real>& material, const Vec3<Real>& color, const Light<Real>& light,
+template <class Real, class E, class Surfacing>
+CISTULA_INLINE Vec3<Real> phong(const Surfacing& material, const Vec3<Real>& color, const Light<ScalarOf<Real>>& light,
                                 const Vec3<Real>& normal, const Vec3<Real>& to_light, const Vec3<Real>& to_viewer,
                                 Real n_l, Real distance) {
     Real shine = Real(0);

@@ -14,35 +14,48 @@ template <class Real, class Media = InteriorList>
 struct ShadowRay {
     Ray<Real, Media> ray;
     Real distance;
-    const Light<Real>* light;
+    const Light<ScalarOf<Real>>* light;
 };
 
-/// The losses met so far on the way to a light, per channel or for all channels at once (Throughput).
-template <class E = Effects<all_effects>>
+/// The losses met so far on the way to a light, per channel or for all channels at once (Throughput). Lanes: the number
+/// type of lanes, or any other.
+template <class E = Effects<all_effects>, class Lanes = float>
 struct ShadowSum {
     static constexpr int channels = std::is_same_v<Throughput<float, E>, float> ? 1 : 3;
-    uint64_t loss[channels] = {};
+    using Loss = LossOf<Lanes>;
+    using Bits = IndexOf<Lanes>;
+    Loss loss[channels] = {};
     PathSum path[channels];  // absorption inside meshes
-    uint32_t opaque = 0;     // bit c: channel c is blocked
+    Bits opaque = 0;         // bit c: channel c is blocked
 
-    CISTULA_INLINE bool is_blocked() const { return opaque == 7u; }
+    CISTULA_INLINE MaskOf<Lanes> is_blocked() const { return opaque == 7u; }
 
+    /// Adds a face, where `who` holds.
     template <class Real>
-    CISTULA_INLINE void cross(const Material<Real>& material) {
+    CISTULA_INLINE void cross(const Material<Real>& material, const MaskOf<Lanes>& who = true) {
         if constexpr (!E::has(effect_transparent_shadows)) {
-            opaque = 7u;
+            assign_where(who, opaque, Bits(7u));
         } else {
-            opaque |= material.opaque;
-            for (int c = 0; c < channels; ++c) loss[c] = saturating_add(loss[c], material.filter_loss[c]);
+            assign_where(who, opaque, opaque | Bits(material.opaque));
+            for (int c = 0; c < channels; ++c)
+                assign_where(widened(who), loss[c], saturating_add(loss[c], Loss(material.filter_loss[c])));
         }
     }
 
     /// Adds the absorption of a length >= 0 inside a convex solid.
     template <class Real>
-    CISTULA_INLINE void absorb(const Material<Real>& material, Real length) {
-        for (int c = 0; c < channels; ++c)
-            if (material.absorption[c] > Real(0))
-                loss[c] = saturating_add(loss[c], absorption_loss(double(material.absorption[c]) * double(length)));
+    CISTULA_INLINE void absorb(const Material<ScalarOf<Real>>& material, Real length, const MaskOf<Lanes>& who = true) {
+        for (int c = 0; c < channels; ++c) {
+            const double sigma = double(material.absorption[c]);
+            if (!(sigma > 0)) continue;
+            if constexpr (in_lanes<Lanes>)
+                for_each_lane(who, [&](int lane) {
+                    const uint64_t own = absorption_loss(sigma * double(length[lane]));
+                    loss[c].set(lane, int64_t(saturating_add(uint64_t(loss[c][lane]), own)));
+                });
+            else
+                loss[c] = saturating_add(loss[c], absorption_loss(sigma * double(length)));
+        }
     }
 
     /// Adds the absorption of a mesh entered (sign 1) or left (sign -1) at t on the way to a light at `distance`: the
@@ -58,15 +71,16 @@ struct ShadowSum {
     template <class Real, class Scene>
     CISTULA_INLINE Throughput<Real, E> transmittance(const Scene& scene) const {
         Real arriving[channels];
-        uint64_t known = 0;  // the last loss and its share: gray materials have the same one in all channels
+        Loss known = 0;  // the last loss and its share: gray materials have the same one in all channels
         Real known_transmittance = 1;
         for (int c = 0; c < channels; ++c) {
             if constexpr (E::has(effect_transparent_shadows)) {
-                uint64_t total = loss[c];
-                if constexpr (E::has(effect_absorption)) total = saturating_add(total, path[c].loss());
-                if (total != known) known = total, known_transmittance = transmittance_of(scene, total);
+                Loss total = loss[c];
+                if constexpr (E::has(effect_absorption) && !in_lanes<Lanes>)
+                    total = saturating_add(total, path[c].loss());
+                if (any(total != known)) known = total, known_transmittance = transmittance_of(scene, total);
             }
-            arriving[c] = opaque >> c & 1u ? Real(0) : known_transmittance;
+            arriving[c] = select((opaque & (1u << c)) != 0u, Real(0), known_transmittance);
         }
         if constexpr (channels == 1)
             return arriving[0];
@@ -74,6 +88,10 @@ struct ShadowSum {
             return {arriving[0], arriving[1], arriving[2]};
     }
 };
+
+/// The sum of rays of a number type.
+template <class E, class Real>
+using ShadowSumOf = std::conditional_t<in_lanes<Real>, ShadowSum<E, Real>, ShadowSum<E>>;
 
 /// Where a shadow ray starts, if its light lies on faces of a solid.
 enum class LightSide { none, inside, outside };  // on no face; inside all planes of such faces; outside one
@@ -102,6 +120,24 @@ CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const Sh
     return LightSide::none;
 }
 
+/// Adds a convex solid that rays to a light at `distance` start inside and leave at `leave`, or not before the light.
+template <class Real, class E>
+CISTULA_INLINE void add_exit(const MaskOf<Real>& who, const Material<ScalarOf<Real>>& material, Real leave,
+                             Real distance, ShadowSumOf<E, Real>& sum) {
+    sum.cross(material, who & (leave < distance));
+    if constexpr (E::has(effect_absorption))
+        sum.absorb(material, max_or_second(min_or_second(leave, distance), Real(0)), who);
+}
+/// Adds a convex solid that rays to a light at `distance` enter before it.
+template <class Real, class E>
+CISTULA_INLINE void add_entry(const MaskOf<Real>& who, const Material<ScalarOf<Real>>& material, Real enter, Real leave,
+                              Real distance, ShadowSumOf<E, Real>& sum) {
+    sum.cross(material, who & (leave < distance));
+    sum.cross(material, who);
+    if constexpr (E::has(effect_absorption))
+        sum.absorb(material, max_or_second(min_or_second(leave, distance) - enter, Real(0)), who);
+}
+
 /// Adds what a convex solid that contains the ray's origin takes from a light. A light on that solid's own face is
 /// never outside it, whatever the rounding of two nearly equal distances says.
 template <class Real, class E, class Media, class Scene>
@@ -109,15 +145,12 @@ CISTULA_INLINE void shadow_exit(const Scene& scene, uint32_t index, const Shadow
                                 ShadowSum<E>& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
     const Solid& solid = scene.solids[index];
-    const Material<Real>& material = scene.materials[solid.material];
     Real leave = shadow.distance;
     if (light_side<E>(scene, index, shadow) == LightSide::none) {
         const uint32_t skipped = face_left(scene, index, ray);
         leave = max_or_second(convex_here::exit_of(scene, solid, ray.origin, ray.direction, skipped).t, Real(0));
-        if (leave < shadow.distance) sum.cross(material);
     }
-    if constexpr (E::has(effect_absorption))
-        sum.absorb(material, max_or_second(min_or_second(leave, shadow.distance), Real(0)));
+    add_exit<Real, E>(true, scene.materials[solid.material], leave, shadow.distance, sum);
 }
 
 /// Adds what a convex solid that the ray may enter takes from a light: one that it does not start in, has not left and
@@ -131,15 +164,11 @@ CISTULA_INLINE void shadow_entry(const Scene& scene, uint32_t index, const Solid
     const auto interval = convex_here::interval_of(scene, solid, ray.origin, ray.direction, side == LightSide::none);
     const Real enter = max_or_second(interval.enter, Real(0));
     Real leave = shadow.distance;
-    const Material<Real>& material = scene.materials[solid.material];
     if (side == LightSide::none) {
         if (!is_met(interval, scene.extent) || !(enter < shadow.distance)) return;
         leave = max_or_second(interval.leave, Real(0));
-        if (leave < shadow.distance) sum.cross(material);
     }
-    sum.cross(material);
-    if constexpr (E::has(effect_absorption))
-        sum.absorb(material, max_or_second(min_or_second(leave, shadow.distance) - enter, Real(0)));
+    add_entry<Real, E>(true, scene.materials[solid.material], enter, leave, shadow.distance, sum);
 }
 
 /// Adds what a convex solid takes from a light that has a face on the shared plane on which the ray starts.
@@ -186,20 +215,21 @@ CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32
     return lies;
 }
 
-/// Adds an accepted crossing of a triangle if it lies before the light.
+/// Adds accepted crossings of a triangle, where `who` holds, if they lie before the light.
 template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE void shadow_crossing(const Scene& scene, uint32_t index, uint32_t triangle,
+CISTULA_INLINE void shadow_crossing(const Scene& scene, const MaskOf<Real>& who, uint32_t index, uint32_t triangle,
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow,
-                                    ShadowSum<E>& sum) {
+                                    ShadowSumOf<E, Real>& sum) {
     const Real t = crossing_time(scene, triangle, c.t, shadow.ray);
-    if (!(t >= Real(0) && t < shadow.distance)) return;
-    if (shadow.ray.from_solid == index && shadow.ray.from_face == triangle) return;
+    const MaskOf<Real> own = (shadow.ray.from_solid == index) & (shadow.ray.from_face == triangle);
+    const MaskOf<Real> before = who & (t >= Real(0)) & (t < shadow.distance) & !own;
+    if (!any(before)) return;
     if constexpr (E::has(effect_lights_on_faces))
         if (lies_on(scene, *shadow.light, index, triangle)) return;
     const Solid& solid = scene.solids[index];
-    const Material<Real>& material = scene.materials[solid.material];
-    sum.cross(material);
-    if constexpr (E::has(effect_absorption))
+    const auto& material = scene.materials[solid.material];
+    sum.cross(material, before);
+    if constexpr (E::has(effect_absorption) && !in_lanes<Real>)
         if (solid.kind == SolidKind::mesh)
             sum.absorb_rest(material, shadow.distance, t, c.enters() ? 1 : -1, scene.extent);
 }
@@ -210,7 +240,7 @@ CISTULA_INLINE void shadow_triangles(const Scene& scene, uint32_t index, const S
                                      const TriangleRay<Real>& triangle_ray, ShadowSum<E>& sum) {
     const Cluster<Real>& cluster = scene.clusters[index];
     for_each_crossing(cluster, triangle_ray, [&](uint32_t lane, const TriangleCrossing<Real>& c) {
-        shadow_crossing<Real, E>(scene, cluster.solid, cluster.triangle[lane], c, shadow, sum);
+        shadow_crossing<Real, E>(scene, true, cluster.solid, cluster.triangle[lane], c, shadow, sum);
     });
 }
 
@@ -228,7 +258,7 @@ CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const Shado
     const Facet<Real>& facet = scene.facets[index];
     TriangleCrossing<Real> c;
     if (facet.solid != left && cross_triangle(ShearedTriangle<Real>::of(facet, triangle_ray), triangle_ray, c))
-        shadow_crossing<Real, E>(scene, facet.solid, facet.triangle, c, shadow, sum);
+        shadow_crossing<Real, E>(scene, true, facet.solid, facet.triangle, c, shadow, sum);
 }
 
 /// Adds the absorption of meshes that contain the ray's origin.

@@ -9,7 +9,7 @@ namespace cistula {
 
 template <class Real>
 struct Refraction {
-    bool total;            // total internal reflection: direction is not set
+    MaskOf<Real> total;    // total internal reflection: direction is not set
     Vec3<Real> direction;  // unit to within a few u
     Real reflectance;      // Fresnel's, unpolarized, in [0, 1]; 1 if total
 };
@@ -31,24 +31,25 @@ CISTULA_INLINE Vec3<Real> reflected(const Vec3<Real>& direction, const Vec3<Real
 /// and Fresnel's (a^2 / 2)(1 + b^2) with a = (g - c) / (g + c), b = (c (g + c) - 1) / (c (g - c) + 1) (Cook and
 /// Torrance 1982).
 template <class Real>
-CISTULA_HD inline Refraction<Real> refracted(const Vec3<Real>& direction, const Vec3<Real>& normal, double index_from,
-                                             double index_to) {
+CISTULA_HD inline Refraction<Real> refracted(const Vec3<Real>& direction, const Vec3<Real>& normal,
+                                             WideOf<Real> index_from, WideOf<Real> index_to) {
     using Up = typename RealTraits<Real>::Up;
     const Up dx(direction.x), dy(direction.y), dz(direction.z), nx(normal.x), ny(normal.y), nz(normal.z);
     const Up n = Up(index_to) / Up(index_from);
     Up c = -(dx * nx + dy * ny + dz * nz);
-    if (!(c > Up(0))) c = Up(0);
-    const Up excess = (n - Up(1)) * (n + Up(1));
+    c = select(c > Up(0.0), c, Up(0.0));
+    const Up excess = (n - Up(1.0)) * (n + Up(1.0));
     const Up g2 = excess + c * c;
     Refraction<Real> result;
-    result.total = !(g2 > Up(0));
+    result.total = !narrowed<Real>(g2 > Up(0.0));
     result.reflectance = Real(1);
-    if (result.total) return result;
+    if (all(result.total)) return result;
     const Up g = up_sqrt(g2), h = g + c, bend = excess / h;
     result.direction =
         renormalized(Vec3<Real>(Real((dx - bend * nx) / n), Real((dy - bend * ny) / n), Real((dz - bend * nz) / n)));
-    const Up a = bend / h, b = (c * h - Up(1)) / (c * bend + Up(1));
-    result.reflectance = clamped(Real(a * a * (Up(1) + b * b) * Up(0.5)), Real(0), Real(1));
+    const Up a = bend / h, b = (c * h - Up(1.0)) / (c * bend + Up(1.0));
+    assign_where(!result.total, result.reflectance,
+                 clamped(Real(a * a * (Up(1.0) + b * b) * Up(0.5)), Real(0), Real(1)));
     return result;
 }
 

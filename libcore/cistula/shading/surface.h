@@ -29,6 +29,11 @@ struct Surface {
     uint32_t material;
 };
 
+template <class Real, class Scene>
+CISTULA_INLINE const Material<Real>& material_of(const Scene& scene, const Surface<Real>& s) {
+    return scene.materials[s.material];
+}
+
 /// Whether a solid is convex; a constant where only one kind of primitive is compiled in.
 template <class E>
 CISTULA_INLINE bool is_convex(const Solid& solid) {

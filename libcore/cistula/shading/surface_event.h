@@ -15,10 +15,10 @@ struct SurfaceEvent {
     Hit<Real> hit;                   // the crossing to shade: that of the solid of highest priority
     Crossing<Real> taken[capacity];  // all crossings, in order
     int count;
-    Media beyond;     // media behind all of them
-    bool fits;        // whether `beyond` had room
-    bool wrong_side;  // whether refused mesh crossings come before the first (Hit::wrong_side_t)
-    bool changes;     // whether a solid begins or ends here; else the ray goes straight on
+    Media beyond;       // media behind all of them
+    MaskOf<Real> fits;  // whether `beyond` had room
+    bool wrong_side;    // whether refused mesh crossings come before the first (Hit::wrong_side_t)
+    bool changes;       // whether a solid begins or ends here; else the ray goes straight on
 
     CISTULA_INLINE void begin(const Ray<Real, Media>& ray, const Hit<Real>& first) {
         hit = first;
@@ -26,8 +26,16 @@ struct SurfaceEvent {
         beyond = ray.media;
         fits = true;
         changes = true;
-        wrong_side = first.wrong_side_t <= first.t;
+        if constexpr (Media::meshes) wrong_side = first.wrong_side_t <= first.t;
         take(first);
+    }
+
+    /// Takes another event where `who` holds; in lanes.
+    CISTULA_INLINE void take_where(const MaskOf<Real>& who, const SurfaceEvent& other) {
+        hit.take(who, other.hit.t, other.hit.key, other.hit.u, other.hit.v, other.hit.slot, other.hit.enters);
+        assign_where(who, taken[0].t, other.taken[0].t);
+        assign_where(who, taken[0].key, other.taken[0].key);
+        assign_where(who, beyond.solid, other.beyond.solid);
     }
 
     CISTULA_INLINE const Crossing<Real>& last() const {
@@ -40,8 +48,8 @@ struct SurfaceEvent {
     CISTULA_INLINE void take(const Hit<Real>& crossing) {
         taken[capacity == 1 ? 0 : count] = {crossing.t, crossing.key};
         ++count;
-        const int change = media_change(key_kind(crossing.key));
-        if (change != 0) fits &= beyond.add(key_solid(crossing.key), change);
+        fits &= beyond.cross(is_kind(crossing.key, CrossingKind::enter), is_kind(crossing.key, CrossingKind::leave),
+                             key_solid(crossing.key));
     }
 };
 

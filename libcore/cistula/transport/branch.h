@@ -17,9 +17,14 @@ struct Branch {
     uint32_t no_light_ahead : 1 = 0;  // its line meets no visible light, however far it goes on
 };
 
+/// The type of branches, which lanes specialize.
+template <class Real, class Media, class Weight>
+struct BranchType {
+    using Type = Branch<Real, Media, Weight>;
+};
 /// The branch type of trees that are rendered with effects E.
 template <class Real, class E, class Media>
-using BranchOf = Branch<Real, Media, Throughput<Real, E>>;
+using BranchOf = typename BranchType<Real, Media, Throughput<Real, E>>::Type;
 
 template <class Entry>
 class WaitingBranch;

@@ -26,7 +26,7 @@ class LayeredSums : public PixelSums<Real> {
     /// Notes that what follows comes in through the ray that the first surface mirrored, or transmitted.
     CISTULA_INLINE void enter(bool mirrored) { way_ = mirrored ? PathLayer::reflection : PathLayer::transmission; }
 
-    CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource source) {
+    CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource source, bool = true) {
         int64_t units[3];
         this->add_units(radiance, units);
         const bool is_background = source == LightSource::background;
@@ -42,7 +42,7 @@ class LayeredSums : public PixelSums<Real> {
 
     /// Adds what light i sends. diffuse() is the diffuse part of `radiance`; the specular layer gets the rest.
     template <class Diffuse>
-    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t i, const Diffuse& diffuse) {
+    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t i, const Diffuse& diffuse, bool = true) {
         int64_t units[3];
         this->add_units(radiance, units);
         give(plan_->light, common_light_layers + int((*groups_)[i]), units);
@@ -68,8 +68,13 @@ class LayeredSums : public PixelSums<Real> {
     PathLayer way_ = PathLayer::emission;  // emission: the primary ray is under way
 };
 
+/// The type of sums, which lanes specialize.
+template <class Real, bool layers>
+struct SumsType {
+    using Type = std::conditional_t<layers, LayeredSums<Real>, PixelSums<Real>>;
+};
 /// The sums of trees that are rendered with effects E.
 template <class Real, class E>
-using SumsOf = std::conditional_t<E::has(fills_layers), LayeredSums<Real>, PixelSums<Real>>;
+using SumsOf = typename SumsType<Real, E::has(fills_layers)>::Type;
 
 }  // namespace cistula

@@ -34,12 +34,12 @@ class NextSurface {
     /// Finds the branch's next surface. False if there is none: the visible light or background at the end of the ray
     /// is then added, and `visible` is the light, if it was one.
     CISTULA_INLINE bool find(Entry& branch, SurfaceEvent<Real, Media>& event, VisibleLightHit<Real>& visible) {
-        Absorption<E::has(effect_absorption)> absorption;
+        Absorption<E::has(effect_absorption), Real> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray);
             if constexpr (E::has(effect_visible_lights)) visible = light_before(hit, branch);
-            const bool light = visible.light != no_light;
+            const bool light = visible.found();
             if (light || !hit.found()) {
                 absorption.dim(scene_, branch.ray.media, light ? visible.t : hit.t, branch.weight);
                 sums_.add(branch.weight * light_or_background(visible),
@@ -71,6 +71,52 @@ class NextSurface {
         ray.after = event.last();
     }
 
+    /// The branches in lanes that meet a surface.
+    CISTULA_INLINE MaskOf<Real> find(Entry& branch, const MaskOf<Real>& who, SurfaceEvent<Real, Media>& event,
+                                     VisibleLightHit<Real>& visible) {
+        Absorption<E::has(effect_absorption), Real> absorption;
+        absorption.begin(scene_, branch.ray.media, branch.ray.after.t, who);
+        MaskOf<Real> met = false, left = who;
+        for (int crossings = 0;; ++crossings) {
+            const Hit<Real> hit = intersector_.template closest<E>(branch.ray, left);
+            VisibleLightHit<Real> light;
+            if constexpr (E::has(effect_visible_lights)) light = light_before(hit, branch, left);
+            const MaskOf<Real> ends = left & (light.found() | !hit.found());
+            if (any(ends)) {
+                absorption.dim(scene_, branch.ray.media, select(light.found(), light.t, hit.t), branch.weight, ends);
+                sums_.add(branch.weight * light_or_background(light, ends), LightSource::background, ends);
+                assign_where(ends, visible.t, light.t);
+                assign_where(ends, visible.light, light.light);
+            }
+            SurfaceEvent<Real, Media> next;
+            resolve_event<E>(scene_, intersector_, branch.ray, hit, next);
+            left = left & !ends;
+            if (any(left & !next.fits)) sums_.flag(flag_media_overflow);
+            const MaskOf<Real> passes = left & invisible(branch.ray, next), stops = left & !passes;
+            absorption.dim(scene_, branch.ray.media, next.hit.t, branch.weight, stops);
+            if (crossings == 0)
+                event = next;
+            else
+                event.take_where(stops, next);
+            met |= stops;
+            if (!any(passes)) return met;
+            absorption.cross(scene_, next.taken[0].key, next.taken[0].t, passes);
+            pass(branch.ray, next, passes);
+            left = passes;
+            if (crossings == largest_crossings) {
+                sums_.flag(flag_too_many_crossings);
+                return met;
+            }
+        }
+    }
+
+    /// Moves rays straight on through a face, where `who` holds.
+    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event, const MaskOf<Real>& who) {
+        assign_where(who, ray.media.solid, event.beyond.solid);
+        assign_where(who, ray.after.t, event.taken[0].t);
+        assign_where(who, ray.after.key, event.taken[0].key);
+    }
+
   private:
     /// Adds refused crossings to the media. A ray's first crossing of a mesh is from the right side; others of the same
     /// mesh that rounding puts before it, at a grazed edge, count as well once the ray goes straight on.
@@ -90,21 +136,51 @@ class NextSurface {
 
     /// Whether a crossing has nothing to shade: it lies inside a medium of higher priority, or belongs to a clear face
     /// between equal media.
-    CISTULA_INLINE bool invisible(const Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event) const {
+    CISTULA_INLINE MaskOf<Real> invisible(const Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event) const {
         if constexpr (!E::has(effect_transmission | effect_insides)) {
             return false;
         } else {
             if constexpr (meets_contacts<E, Media>)
                 if (!event.changes) return true;
-            const uint32_t solid = key_solid(event.hit.key), medium = ray.media.medium();
-            bool within_higher = key_kind(event.hit.key) != CrossingKind::sheet && medium != no_solid && medium > solid;
+            const IndexOf<Real> solid = key_solid(event.hit.key), medium = ray.media.medium();
+            const MaskOf<Real> sheet = is_kind(event.hit.key, CrossingKind::sheet);
+            MaskOf<Real> within_higher = (!sheet) & (medium != no_solid) & (medium > solid);
             if constexpr (meets_contacts<E, Media>) within_higher = within_higher && event.beyond.contains(medium);
-            if (within_higher) return true;
-            if (!is_clear(scene_, solid)) return false;
+            if (all(within_higher)) return within_higher;
+            MaskOf<Real> clear = is_clear(scene_, solid);
             if constexpr (E::has(effect_refraction))
-                return index_of(scene_, ray.media) == index_of(scene_, event.beyond);
-            return true;
+                if (any(clear))
+                    clear = clear & narrowed<Real>(index_of(scene_, ray.media) == index_of(scene_, event.beyond));
+            return within_higher | clear;
         }
+    }
+
+    /// The radiances of visible lights, or the background where there is none.
+    CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const VisibleLightHit<Real>& visible,
+                                                  [[maybe_unused]] const MaskOf<Real>& who) const {
+        Vec3<Real> radiance = spread<Real>(scene_.background);
+        if constexpr (E::has(effect_visible_lights))
+            for_each_value(who & visible.found(), visible.light, [&](uint32_t light, const MaskOf<Real>& same) {
+                assign_where(same, radiance, spread<Real>(scene_.visible_lights[light].radiance));
+            });
+        return radiance;
+    }
+
+    CISTULA_INLINE VisibleLightHit<Real> light_before(const Hit<Real>& hit, Entry& branch,
+                                                      const MaskOf<Real>& who) const {
+        MaskOf<Real> asked = who, goes_on = false;
+        if constexpr (lines_go_on<E>) {
+            asked = who & !branch.no_light_ahead;
+            if (int(branch.depth) + 1 < depth_) goes_on = hit.found() & transmits(scene_, key_solid(hit.key));
+        }
+        const VisibleLightHit<Real> visible =
+            closest_visible_light(scene_, branch.ray, select(goes_on, Real(RealTraits<Real>::infinity), hit.t), asked);
+        if constexpr (lines_go_on<E>) assign_where(asked & !visible.found(), branch.no_light_ahead, goes_on);
+        VisibleLightHit<Real> before;
+        const MaskOf<Real> is_before = visible.found() & (visible.t <= hit.t);
+        assign_where(is_before, before.t, visible.t);
+        assign_where(is_before, before.light, visible.light);
+        return before;
     }
 
     /// The radiance of the visible light `visible`, or the background if there is none.

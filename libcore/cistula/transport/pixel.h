@@ -237,6 +237,21 @@ struct GridSample {
     bool middle;  // gives the pixel's id, depth and normal
 };
 
+/// The direction of a sample's primary ray.
+CISTULA_INLINE Vec3<double> sample_direction(const FrameView& frame, int x, int y, const GridSample& sample) {
+    const int k = frame.supersample;
+    // Coordinates in half samples from the middle of the picture.
+    const int across = 2 * (x * k + sample.column) + 1 - frame.width * k;
+    const int down = 2 * (y * k + sample.row) + 1 - frame.height * k;
+    return camera_direction(frame.camera, double(across), double(down), frame.half_sample);
+}
+
+/// Sample i of a pixel, counted row by row in the k x k grid.
+CISTULA_INLINE GridSample grid_sample(int i, int k) {
+    const int row = k == 1 ? 0 : i / k, column = i - row * k;
+    return {column, row, column == k / 2 && row == k / 2};
+}
+
 /// Renders a sample and adds it to the record. `settings`: frame.tree, or a copy with a budget of the sample's own.
 template <class E, class Intersector, class Stack>
 CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, const TreeSettings& settings,
@@ -244,12 +259,8 @@ CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, 
     using Task = PixelTask<E, Intersector, Stack>;
     using Real = typename Task::Real;
     const FrameView& frame = task.frame;
-    const int k = frame.supersample;
     Ray<Real, typename Task::Media> ray;
-    // Coordinates in half samples from the middle of the picture.
-    const int across = 2 * (task.x * k + sample.column) + 1 - frame.width * k;
-    const int down = 2 * (task.y * k + sample.row) + 1 - frame.height * k;
-    const Vec3<double> direction = camera_direction(frame.camera, double(across), double(down), frame.half_sample);
+    const Vec3<double> direction = sample_direction(frame, task.x, task.y, sample);
     SumsOf<Real, E> sums(settings, task.scene, record, task.work.flags);
     if constexpr (E::has(fills_layers)) sums.divide(frame.layers, task.layers, task.scene.light_groups);
     ++task.work.rays.primary;
@@ -285,8 +296,7 @@ CISTULA_INLINE void end_pixel(PixelRecord& record, const PixelWork& work) {
 /// Renders sample i, counted row by row in the k x k grid, and adds it to the record.
 template <class E, class Intersector, class Stack>
 CISTULA_INLINE void add_sample(const PixelTask<E, Intersector, Stack>& task, int i, PixelRecord& record) {
-    const int k = task.frame.supersample, row = k == 1 ? 0 : i / k, column = i - row * k;
-    render_sample(task, task.frame.tree, {column, row, column == k / 2 && row == k / 2}, record);
+    render_sample(task, task.frame.tree, grid_sample(i, task.frame.supersample), record);
 }
 
 /// Renders samples of a pixel's k x k grid of centers into its record.

@@ -50,13 +50,13 @@ class PixelSums {
           flags_(flags),
           left_(settings.budget) {}
 
-    CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource = LightSource::background) {
+    CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource = LightSource::background, bool = true) {
         const Vec3<Real> units = in_units(radiance, Real(settings_.fixed_scale), flags_);
         for (int c = 0; c < 3; ++c) record_.radiance[c] += whole_of(units[c]);
     }
     /// Adds what a point light sends. The light's number and the diffuse part matter to LayeredSums alone.
     template <class Diffuse>
-    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t, const Diffuse&) {
+    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t, const Diffuse&, bool = true) {
         add(radiance);
     }
 

@@ -13,7 +13,7 @@ inline constexpr int largest_depth = 1024;
 /// The number of branches between two checks whether the render was stopped.
 inline constexpr uint32_t turns_between_stops = 64;
 
-template <class Real, class E, class Intersector, class Stack>
+template <class Real, class E, class Intersector, class Stack, class Rays = PixelRays>
 class RayTree {
   public:
     using Sums = SumsOf<Real, E>;
@@ -23,7 +23,7 @@ class RayTree {
     using Entry = BranchOf<Real, E, Media>;
 
     /// `depth`: maximum number of surfaces on a path.
-    CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth, Sums& sums, PixelRays& rays,
+    CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth, Sums& sums, Rays& rays,
                            Stack& stack)
         : scene_(scene),
           intersector_(intersector),
@@ -52,12 +52,28 @@ class RayTree {
             if (line_.find(branch, event, light)) {
                 const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
                 if (at_first) first.surface(event.hit, s);
-                shade(branch, event, s);
+                shade(branch, true, event, s);
             } else if constexpr (E::has(effect_visible_lights)) {
-                if (at_first && light.light != no_light) first.light(scene_, light, branch.ray);
+                if (at_first && light.found()) first.light(scene_, light, branch.ray);
             }
             at_first = false;
         } while (next(branch));
+    }
+
+    /// Follows branches in lanes to their surfaces, where `who` holds, and pushes their children. Branches of depth 0
+    /// report what they hit: first.surface(hit, surface, who) and first.light(scene, hit, ray, who).
+    template <class First>
+    CISTULA_INLINE void follow(Entry& branch, const MaskOf<Real>& who, const First& first) {
+        SurfaceEvent<Real, Media> event;
+        VisibleLightHit<Real> light;
+        const MaskOf<Real> met = line_.find(branch, who, event, light);
+        if constexpr (E::has(effect_visible_lights))
+            if (branch.depth == 0) first.light(scene_, light, branch.ray, who & light.found());
+        if (!any(met)) return;
+        Surface<Real> s;
+        surfaces_at<E>(scene_, branch.ray, event.hit, met, s);
+        if (branch.depth == 0) first.surface(event.hit, s, met);
+        shade(branch, met, event, s);
     }
 
   private:
@@ -81,42 +97,83 @@ class RayTree {
 
     /// Adds a face's local light. The children are pushed before the lights are evaluated, so that nothing of the
     /// branch has to be kept.
-    CISTULA_INLINE void shade(const Entry& branch, const SurfaceEvent<Real, Media>& event, const Surface<Real>& s) {
-        if (!is_finite(s.normal)) sums_.flag(flag_not_finite);
-        if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, event, s);
-        const Real local = scene_.materials[s.material].local;
-        if (local > Real(0))
-            add_local_light<Real, E>(scene_, intersector_, branch.ray, event, s, branch.weight * local, sums_, rays_);
+    CISTULA_INLINE void shade(const Entry& branch, const MaskOf<Real>& who, const SurfaceEvent<Real, Media>& event,
+                              const Surface<Real>& s) {
+        if (any(who & !is_finite(s.normal))) sums_.flag(flag_not_finite);
+        if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, who, event, s);
+        const Real local = material_of(scene_, s).local;
+        const MaskOf<Real> lit = who & (local > Real(0));
+        if (any(lit))
+            add_local_light<Real, E>(scene_, intersector_, branch.ray, event, s, branch.weight * local, sums_, rays_,
+                                     LightObserver(), lit);
     }
 
     /// Pushes the heavier of the branch's children and then the lighter, which is followed next.
-    CISTULA_INLINE void send_on(const Entry& branch, const SurfaceEvent<Real, Media>& event, const Surface<Real>& s) {
-        const bool sheet = key_kind(event.hit.key) == CrossingKind::sheet;
-        const InterfaceSplit<Real, Weight> split =
-            split_at<Real, E>(scene_, scene_.materials[s.material], branch.ray.direction, s.normal, branch.ray.media,
-                              event.beyond, sheet);
+    CISTULA_INLINE void send_on(const Entry& branch, const MaskOf<Real>& who, const SurfaceEvent<Real, Media>& event,
+                                const Surface<Real>& s) {
+        const MaskOf<Real> sheet = is_kind(event.hit.key, CrossingKind::sheet);
+        const InterfaceSplit<Real, Weight> split = split_at<Real, E>(
+            scene_, material_of(scene_, s), branch.ray.direction, s.normal, branch.ray.media, event.beyond, sheet);
         const Weight mirrored = branch.weight * split.reflection, through = branch.weight * split.filter;
         // Sums over channels, so that the lighter child has at most half the weight of its parent.
         const Real mirrored_size = total(mirrored),
                    through_size = E::has(effect_transmission) ? total(through) : Real(0);
-        if (int(branch.depth) + 1 >= depth_) {
-            CISTULA_NOT_UNROLLED
-            for (int i = 0; i < (E::has(effect_transmission) ? 2 : 1); ++i)
-                if ((i == 0 ? mirrored_size : through_size) > Real(0)) sums_.cut(i == 0 ? mirrored : through);
+        if constexpr (in_lanes<Real>) {
+            const MaskOf<Real> mirrors = who & (mirrored_size > Real(0)), passes = who & (through_size > Real(0));
+            if (int(branch.depth) + 1 >= depth_) {
+                sums_.cut(mirrored, mirrors);
+                if constexpr (E::has(effect_transmission)) sums_.cut(through, passes);
+                return;
+            }
+            if (any(mirrors)) stack_.push(mirrored_child(branch, event, s, mirrored), mirrors);
+            if constexpr (E::has(effect_transmission))
+                if (any(passes)) stack_.push(transmitted_child(branch, event, s, split, through, passes), passes);
             return;
-        }
-        if constexpr (!E::has(effect_transmission)) {
-            // The only child takes the place of its parent, so there is room.
-            if (mirrored_size > Real(0)) stack_.push(child_of(branch, event, s, split, false, mirrored));
         } else {
-            bool goes_through = through_size >= mirrored_size;
-            CISTULA_NOT_UNROLLED
-            for (int i = 0; i < 2; ++i, goes_through = !goes_through) {
-                if (!((goes_through ? through_size : mirrored_size) > Real(0))) continue;
-                if (!stack_.push(child_of(branch, event, s, split, goes_through, goes_through ? through : mirrored)))
-                    sums_.flag(flag_stack_overflow);
+            if (int(branch.depth) + 1 >= depth_) {
+                CISTULA_NOT_UNROLLED
+                for (int i = 0; i < (E::has(effect_transmission) ? 2 : 1); ++i)
+                    if ((i == 0 ? mirrored_size : through_size) > Real(0)) sums_.cut(i == 0 ? mirrored : through);
+                return;
+            }
+            if constexpr (!E::has(effect_transmission)) {
+                // The only child takes the place of its parent, so there is room.
+                if (mirrored_size > Real(0)) stack_.push(child_of(branch, event, s, split, false, mirrored));
+            } else {
+                bool goes_through = through_size >= mirrored_size;
+                CISTULA_NOT_UNROLLED
+                for (int i = 0; i < 2; ++i, goes_through = !goes_through) {
+                    if (!((goes_through ? through_size : mirrored_size) > Real(0))) continue;
+                    if (!stack_.push(
+                            child_of(branch, event, s, split, goes_through, goes_through ? through : mirrored)))
+                        sums_.flag(flag_stack_overflow);
+                }
             }
         }
+    }
+
+    /// The children of branches in lanes.
+    CISTULA_INLINE Entry mirrored_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
+                                        const Surface<Real>& s, const Weight& weight) {
+        Entry child = parent.child(weight, true);
+        child.ray = spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), event.hit, parent.ray.media);
+        return child;
+    }
+    CISTULA_INLINE Entry transmitted_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
+                                           const Surface<Real>& s, const InterfaceSplit<Real, Weight>& split,
+                                           const Weight& weight, const MaskOf<Real>& who) {
+        Entry child = parent.child(weight, false);
+        child.ray = parent.ray;
+        if constexpr (lines_go_on<E>) child.no_light_ahead = parent.no_light_ahead;
+        line_.pass(child.ray, event, true);
+        if constexpr (E::has(effect_refraction)) {
+            const MaskOf<Real> bends = who & split.bends;
+            if (any(bends)) {
+                const Vec3<Real> start = far_side<E>(scene_, event.hit, bends, s.point);
+                child.ray.take_where(bends, spawned(start, split.through, event.hit, event.beyond));
+            }
+        }
+        return child;
     }
 
     /// The transmitted or the reflected child of a branch.
@@ -158,7 +215,7 @@ class RayTree {
     NextSurface<Real, E, Intersector> line_;
     const int depth_;
     Sums& sums_;
-    PixelRays& rays_;
+    Rays& rays_;
     Stack& stack_;
 };
 
