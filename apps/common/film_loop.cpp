@@ -207,8 +207,8 @@ std::vector<std::string> layers_with_files(const FilmJob& job) {
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
     const FilmOptions& options = job.options;
     std::set<std::string> notes;  // printed so far
-    FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options, job.frames.size()), progress.stop,
-                       [&](const FrameStats& frame) {
+    FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options, job.frames.size()),
+                       progress.stop, [&](const FrameStats& frame) {
                            stats.totals.add(frame);
                            if (job.written) job.written(frame);
                        });

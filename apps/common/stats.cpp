@@ -138,6 +138,7 @@ void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
         {"intersector", stats.intersector},
         {"precision", options.precision == Precision::double_ ? "double" : "float"},
         {"threads", stats.threads},
+        {"lanes", stats.lanes},
         {"resolution", {settings_.full_width, settings_.full_height}},
         {"crop", {crop.x, crop.y, crop.width, crop.height}},
         {"supersample", settings_.grid()},

@@ -50,7 +50,7 @@ struct RunStats {
     std::vector<std::string> devices;            // GPUs; empty, like the driver, if none is used
     uint32_t required_effects = 0, effects = 0;  // masks
     size_t scene_bytes = 0;                      // geometry, trees and shading data
-    int threads = 0;
+    int threads = 0, lanes = 1;
     FilmTotals totals;
     FrameList resumed;  // frames that --resume skipped
 };

@@ -52,6 +52,7 @@ void refuse_exclusions(const OptionTexts& texts) {
          "the rays of the exact image are followed"},
         {"--layers", texts.layers, "--intersector", texts.intersector != defaults.intersector,
          "they are parts of the exact image"},
+        {"--lanes", texts.lanes, "--backend cuda", texts.backend == "cuda", "a thread of a GPU traces one ray"},
         {"--target-error", texts.target_error, "--supersample", !texts.supersample.empty(),
          "pixels get as many samples as they need"},
         {"--target-error", texts.target_error, "--cutoff", !texts.cutoff.empty(),

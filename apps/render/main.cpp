@@ -231,6 +231,7 @@ void render_scene(RenderOptions options) {
         }
         const auto write_stats = [&] {
             stats.intersector = renderer.intersector();
+            stats.lanes = renderer.lanes();
             stats.effects = renderer.effects();
             stats.scene_bytes = renderer.memory();
             if (file) file->finish(stats, options);

@@ -53,6 +53,9 @@ void declare(CLI::App& app, OptionTexts& texts) {
                    "auto (float, or double where parts are too small for it), float or double")
         ->type_name("NAME");
     app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
+    app.add_option("--lanes", texts.lanes,
+                   "rays that a CPU thread traces at once, at most; 1 to 16, all that it can by default")
+        ->type_name("N");
     app.add_option("--max-texture-gb", texts.max_texture_gb,
                    "memory for all textures, in GB of 10^9 bytes; a quarter of the machine's")
         ->type_name("N");
@@ -183,6 +186,7 @@ RenderOptions checked(const OptionTexts& texts) {
     if (!texts.supersample.empty())
         options.supersample = integer_option("--supersample", texts.supersample, 1, largest_supersample);
     if (!texts.depth.empty()) options.depth = integer_option("--depth", texts.depth, 1, largest_depth);
+    if (!texts.lanes.empty()) options.lanes = integer_option("--lanes", texts.lanes, 1, 16);
     if (!texts.threads.empty()) options.threads = integer_option("--threads", texts.threads, 1, 1024);
     if (!texts.cutoff.empty()) {
         options.cutoff = whole_number<double>(texts.cutoff);
@@ -337,6 +341,7 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     FrameSettings settings = frame_settings(scene);
     if (options.resolution) settings.set_size(options.resolution->width, options.resolution->height);
     settings.supersample = options.supersample.value_or(settings.supersample);
+    settings.lanes = options.lanes;
     settings.depth = options.depth.value_or(settings.depth);
     settings.cutoff = options.cutoff.value_or(settings.cutoff);
     settings.target_error = options.target_error.value_or(0);

@@ -39,6 +39,7 @@ struct RenderOptions : FilmOptions {
     std::optional<int> max_samples;         // for a target error
     bool all_effects = false;               // --effects all
     int threads = 0;                        // 0: one per core
+    int lanes = 0;                          // 0: as many as can be
     std::optional<uint64_t> texture_bytes;  // --max-texture-gb
 };
 

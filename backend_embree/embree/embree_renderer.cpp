@@ -31,6 +31,7 @@ class EmbreeRenderer : public Renderer {
         return task.run();
     }
     uint32_t effects() const override { return used_plain_ ? plain_->effects() : effects_; }
+    int lanes() const override { return used_plain_ ? plain_->lanes() : 1; }
     std::string intersector() const override { return "embree"; }
     size_t memory() const override { return tree_ ? scene_->memory() + tree_->memory() : plain_->memory(); }
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <utility>
 
+#include "backend_embree/lanes/lane_renderer.h"
 #include "cistula/adaptive/adaptive_pixel.h"
 #include "cistula/traversal/bvh.h"
 #include "scene/base/default_rounding.h"
@@ -40,6 +41,12 @@ inline constexpr bool fills_film_layers = false;
 template <class Real>
 inline constexpr bool fills_film_layers<BvhIntersector<Real>> = true;
 
+/// Whether an intersector has a form for lanes (lane_loop.h).
+template <class Intersector>
+inline constexpr bool has_lanes = false;
+template <class Real>
+inline constexpr bool has_lanes<BruteIntersector<Real, SingleInterior, ConstantScene<Real>>> = true;
+
 /// The rendering of one frame on the host.
 template <class Real, class Intersector>
 class FrameTask {
@@ -63,16 +70,24 @@ class FrameTask {
         if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = effect_mask_count - 1;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
+        if constexpr (has_lanes<Intersector>)
+            if (!settings.layers.any() && !settings.adaptive() && mask_ < effect_mask_count)
+                tiles_ = tile_functions(scene_, frame_, settings.lanes);
     }
 
     /// The effects that are compiled into the code that runs (mask_to_run; all of them for references).
     uint32_t effects() const { return effect_masks[mask_]; }
+
+    /// The number of rays that are traced at once.
+    int lanes() const { return tiles_ != nullptr ? tiles_->lanes : 1; }
 
     /// Renders the frame; false if it was stopped.
     bool run() {
         if (settings_.layers.any())
             return settings_.adaptive() ? render_adaptive_layers() : render_mask<layered_mask>();
         if (settings_.adaptive()) return render_adaptive();
+        if constexpr (has_lanes<Intersector>)
+            if (tiles_ != nullptr) return render_in_lanes();
         if constexpr (!runs_every_mask<Intersector>) {
             return mask_ == unshadowed_mask ? render_mask<unshadowed_mask>() : render_mask<effect_mask_count - 1>();
         } else {
@@ -94,6 +109,10 @@ class FrameTask {
         return {scene_, frame_, intersector_, x, y, own, stack};
     }
 
+    /// Lanes get tiles of four times the size, since they run half empty at a tile's end, in films of more pixels than
+    /// this.
+    static constexpr size_t fewest_for_large_tiles = 300'000;
+
     bool stopped() const { return progress_.stop.load(std::memory_order_relaxed); }
 
     /// Renders with a uniform grid of samples.
@@ -111,6 +130,15 @@ class FrameTask {
                 render_pixel(task, SampleRange(), pixel);
             });
         }
+    }
+
+    /// Renders with a uniform grid of samples, many rays at once.
+    bool render_in_lanes() {
+        return for_each_tile([&](const PixelRect& tile, Counts& counts) {
+            TileRenderer renderer(*tiles_, mask_, &scene_, frame_);
+            for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) { renderer.add(x, y, pixel); });
+            renderer.render(progress_.stop, counts.rays, counts.flags);
+        });
     }
 
     /// Renders with a target error, and enters each sample that counts into the layers.
@@ -155,8 +183,23 @@ class FrameTask {
     /// Calls render(x, y, record, work) for each pixel of the film where the scene may be visible, in tiles.
     template <class Render>
     bool for_each_pixel(const Render& render) {
+        return for_each_tile([&](const PixelRect& tile, Counts& counts) {
+            for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) {
+                if (stopped()) return;
+                PixelWork own;
+                render(x, y, pixel, own);
+                counts.rays.add(own.rays);
+                counts.flags |= own.flags;
+            });
+        });
+    }
+
+    /// Calls render(tile, counts) for each tile of the film; false if it was stopped.
+    template <class Render>
+    bool for_each_tile(const Render& render) {
         const PixelRect rect = film_.rect;
-        const int tile = settings_.tile;
+        const int tile =
+            lanes() > 1 && film_.pixels.size() >= fewest_for_large_tiles ? 2 * settings_.tile : settings_.tile;
         const int columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
         std::mutex totals;
         tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
@@ -164,7 +207,8 @@ class FrameTask {
             for (int64_t t = range.begin(); t != range.end(); ++t) {
                 const int x = int(t % columns) * tile, y = int(t / columns) * tile;
                 const PixelRect pixels{x, y, std::min(tile, rect.width - x), std::min(tile, rect.height - y)};
-                const Counts counts = render_tile(pixels, render);
+                Counts counts;
+                render(pixels, counts);
                 if (stopped()) return;
                 progress_.pixels_done += uint64_t(pixels.width) * uint64_t(pixels.height);
                 progress_.rays += counts.rays.total();
@@ -176,10 +220,10 @@ class FrameTask {
         return !progress_.stop.load();
     }
 
-    /// `tile` is relative to the film's first pixel.
+    /// Calls render(x, y, record) for each pixel of a tile where the scene may be visible, and fills the others. `tile`
+    /// is relative to the film's first pixel.
     template <class Render>
-    Counts render_tile(const PixelRect& tile, const Render& render) {
-        Counts counts;
+    void for_each_covered(const PixelRect& tile, Counts& counts, const Render& render) {
         const PixelWriter writer;
         for (int y = tile.y; y < tile.y + tile.height; ++y)
             hints_.cover.for_each_part(y, tile.x, tile.x + tile.width, [&](int begin, int end, bool covered) {
@@ -190,14 +234,8 @@ class FrameTask {
                     fill_background_layers(film_, size_t(pixels - film_.pixels.data()), size_t(end - begin));
                     return;
                 }
-                for (int x = begin; x < end && !stopped(); ++x) {
-                    PixelWork own;
-                    render(film_.rect.x + x, film_.rect.y + y, pixels[x - begin], own);
-                    counts.rays.add(own.rays);
-                    counts.flags |= own.flags;
-                }
+                for (int x = begin; x < end; ++x) render(film_.rect.x + x, film_.rect.y + y, pixels[x - begin]);
             });
-        return counts;
     }
 
     const Scene& scene_;
@@ -208,6 +246,7 @@ class FrameTask {
     FrameView frame_;
     const FrameHints hints_;
     int mask_ = 0;
+    const TileFunctions* tiles_ = nullptr;  // of a frame that is rendered in lanes
 };
 
 }  // namespace cistula

@@ -19,9 +19,11 @@ class HostRenderer : public Renderer {
         const Intersector intersector{*form_};
         FrameTask task(*scene_, intersector, camera, settings, film, progress);
         effects_ = task.effects();
+        lanes_ = task.lanes();
         return task.run();
     }
     uint32_t effects() const override { return effects_; }
+    int lanes() const override { return lanes_; }
     std::string intersector() const override { return name_; }
     size_t memory() const override { return scene_->memory() + sizeof(Form); }
 
@@ -30,6 +32,7 @@ class HostRenderer : public Renderer {
     std::unique_ptr<const Form> form_;  // of *scene_
     const char* name_;
     uint32_t effects_ = 0;
+    int lanes_ = 1;
 };
 
 }  // namespace cistula

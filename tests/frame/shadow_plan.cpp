@@ -46,15 +46,15 @@ class ShadowPlans : public ::testing::Test {
             for (uint32_t s = 0; s < blind_->solids.size; ++s)
                 if (blind_->solids[s].kind == SolidKind::convex &&
                     inside_convex(*blind_, blind_->solids[s], ray.origin))
-                    ray.media.add(s, 1);
+                    ray.media.cross(true, false, s);
             const Hit<Real> hit = first_hit(blind, ray);
             if (!hit.found()) continue;
             const Surface<Real> s = surface_at<Real, E>(*blind_, ray, hit);
             compared += compare(blind, planned, s, hit, ray.media);
             // The other side of the face.
             SingleInterior beyond = ray.media;
-            const int change = media_change(key_kind(hit.key));
-            if (change != 0 && !beyond.add(key_solid(hit.key), change)) continue;
+            const CrossingKind kind = key_kind(hit.key);
+            if (!beyond.cross(kind == CrossingKind::enter, kind == CrossingKind::leave, key_solid(hit.key))) continue;
             Surface<Real> back = s;
             back.normal = -s.normal;
             back.viewer_side = far_side<E>(*blind_, hit, s.point, s.normal);

@@ -31,6 +31,7 @@ struct FrameSettings {
     uint32_t effects = 0;     // mask to run; 0: the smallest that contains what the scene requires
     bool unshadowed = false;  // for measuring the cost of shadows: the image is wrong; not with a target error
     int tile = 16;            // side of a tile in pixels; never changes the image
+    int lanes = 0;            // rays traced at once on the host, at most; 0: as many as can be. Never changes the image
 
     bool operator==(const FrameSettings&) const = default;
 
@@ -76,6 +77,9 @@ class Renderer {
 
     /// The mask of effects that the last render used.
     virtual uint32_t effects() const = 0;
+
+    /// The maximum number of rays that the last render traced at once.
+    virtual int lanes() const { return 1; }
 
     /// The name of the intersector: "embree", "native", "bvh", "brute" or "cuda".
     virtual std::string intersector() const = 0;

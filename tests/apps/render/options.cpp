@@ -142,13 +142,24 @@ TEST(RenderOptions, Actions) {
 
 TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
     const std::string help = help_text();
-    for (const char* part : {"--output",         "--frames",  "--backend",          "--res",          "--crop",
-                             "--supersample",    "--depth",   "--cutoff",           "--precision",    "--threads",
-                             "--bits",           "--preview", "--exposure",         "--view",         "--bloom",
-                             "--layers",         "--split",   "--explain",          "--pixel",        "--json",
-                             "--effects",        "--stats",   "--resume",           "--progress",     "--quiet",
-                             "--verbose",        "--help",    "--device ",          "--list-devices", "--version",
-                             "--print-template", "Examples:", "Exit codes: 0 done", "130 interrupted"})
+    for (const char* part : {"--output",       "--frames",
+                             "--backend",      "--res",
+                             "--crop",         "--supersample",
+                             "--depth",        "--cutoff",
+                             "--precision",    "--threads",
+                             "--lanes",        "--bits",
+                             "--preview",      "--exposure",
+                             "--view",         "--bloom",
+                             "--layers",       "--split",
+                             "--explain",      "--pixel",
+                             "--json",         "--effects",
+                             "--stats",        "--resume",
+                             "--progress",     "--quiet",
+                             "--verbose",      "--help",
+                             "--device ",      "--list-devices",
+                             "--version",      "--print-template",
+                             "Examples:",      "Exit codes: 0 done",
+                             "130 interrupted"})
         EXPECT_NE(help.find(part), std::string::npos) << part;
 }
 
@@ -162,6 +173,7 @@ TEST(RenderOptions, Errors) {
                        std::string("--depth ") + depth + ": must be a whole number from 1 to 1024");
     expect_refused({"s", "--supersample", "65"}, "--supersample 65: must be a whole number from 1 to 64");
     expect_refused({"s", "--threads", "0"}, "--threads 0: must be a whole number from 1 to 1024");
+    expect_refused({"s", "--lanes", "17"}, "--lanes 17: must be a whole number from 1 to 16");
     for (const char* cutoff : {"-1", "nan", "inf", "1e", "x"})
         expect_refused(
             {"s", "--cutoff", cutoff},

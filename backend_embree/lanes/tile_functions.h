@@ -1,0 +1,21 @@
+// The copies of the tile renderers for different instruction sets. Each lies in a namespace of its own, so that no
+// linker takes an inline function that was compiled for AVX-512 in place of another's; so copies share plain functions
+// only.
+#pragma once
+
+#include <cstdint>
+
+extern "C" {
+
+/// Tiles that are rendered in lanes (LaneTile). Pointers are those of the arguments of TileRenderer.
+struct TileFunctions {
+    int lanes;
+    void* (*make)(int mask, const void* scene, const void* frame);
+    void (*add)(void* tile, int x, int y, void* record);
+    void (*render)(void* tile, const void* stop, void* rays, uint32_t* flags);
+    void (*destroy)(void* tile);
+};
+
+extern const TileFunctions cistula_float_tiles_avx2, cistula_double_tiles_avx2;
+extern const TileFunctions cistula_float_tiles_avx512, cistula_double_tiles_avx512;
+}

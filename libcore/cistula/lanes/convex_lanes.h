@@ -1,0 +1,68 @@
+// Lanes of rays against convex solids: one slab after the other, each against all rays. Rays from outside and from
+// inside share the loop.
+#pragma once
+
+#include "cistula/geometry/convex.h"
+#include "cistula/lanes/lane_hit.h"
+
+namespace cistula::convex_lanes {
+
+/// Where lines enter and leave a solid, with the first faces that have these times.
+template <class Real>
+struct Line {
+    Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
+    IndexOf<Real> enter_face = 0, leave_face = 0;
+
+    /// Takes the crossings of slab i, whose leaving face is `leaving`; `skipped` is not left by.
+    CISTULA_INLINE void take(const Real& in, const Real& out, const IndexOf<Real>& leaving,
+                             const IndexOf<Real>& skipped) {
+        const MaskOf<Real> later = in > enter, sooner = (out < leave) & (leaving != skipped);
+        enter = max_or_second(in, enter);
+        enter_face = select(later, leaving, enter_face);
+        leave = select(sooner, out, leave);
+        leave_face = select(sooner, leaving, leave_face);
+    }
+};
+
+/// Computed as if no slab were parallel to a line, and again with the test for that if one was.
+template <class Real, bool careful, class Scene>
+CISTULA_INLINE Line<Real> cross_all(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
+                                    const Vec3<Real>& direction, const IndexOf<Real>& skipped, Real& least) {
+    Line<Real> line;
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        const Slab<ScalarOf<Real>>& slab = scene.slabs.data[solid.first_slab + i];
+        const Vec3<Real> normal = spread<Real>(slab.normal);
+        const Real slope = dot(normal, direction);
+        Real in, out;
+        if constexpr (careful) {
+            cross_slab(normal, Real(slab.low), Real(slab.high), origin, direction, in, out);
+        } else {
+            const Real no = dot(normal, origin), inverse = reciprocal(slope);
+            const Real at_low = (slab.low - no) * inverse, at_high = (slab.high - no) * inverse;
+            in = min_no_nan(at_low, at_high);
+            out = max_no_nan(at_low, at_high);
+            least = min_or_second(magnitude(slope), least);
+        }
+        const IndexOf<Real> leaving = IndexOf<Real>(int(2 * i)) - minus_one_where(slope > Real(0));
+        line.take(in, out, leaving, skipped);
+    }
+    line.enter_face = line.enter_face ^ 1;
+    return line;
+}
+
+template <class Real, class Scene>
+CISTULA_INLINE Line<Real> cross(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
+                                const Vec3<Real>& direction, const IndexOf<Real>& skipped) {
+    Real least(1);
+    const Line<Real> line = cross_all<Real, false>(scene, solid, origin, direction, skipped, least);
+    if (!any(least < least_slope<ScalarOf<Real>>)) return line;
+    return cross_all<Real, true>(scene, solid, origin, direction, skipped, least);
+}
+
+/// The face by which a ray inside a solid does not leave: that on which the ray starts.
+template <class Real, class Media>
+CISTULA_INLINE IndexOf<Real> face_left(uint32_t index, const Ray<Real, Media>& ray) {
+    return select(ray.from_solid == int(index), ray.from_face, IndexOf<Real>(-1));
+}
+
+}  // namespace cistula::convex_lanes

@@ -1,0 +1,71 @@
+// Transmittance in lanes: losses are integers of 64 bits, two registers where numbers are float.
+#pragma once
+
+#include "cistula/lanes/convex_lanes.h"
+#include "cistula/shading/shadow.h"
+
+namespace cistula {
+
+/// a + b, clamped to largest_loss.
+template <int n>
+CISTULA_INLINE Lanes<int64_t, n> saturating_add(const Lanes<int64_t, n>& a, const Lanes<int64_t, n>& b) {
+    const Lanes<int64_t, n> sum = a + b, top(std::numeric_limits<int64_t>::min());
+    const auto flip = [&](const Lanes<int64_t, n>& x) { return x ^ top; };  // the order of unsigned numbers
+    return select(flip(sum) < flip(a), Lanes<int64_t, n>(int64_t(largest_loss)), sum);
+}
+
+/// 2^-loss: from the scene's table where it has all of them.
+template <class Real, int n>
+CISTULA_INLINE Lanes<Real, n> transmittance_of(const ConstantScene<Real>& scene, const Lanes<int64_t, n>& loss) {
+    using Result = Lanes<Real, n>;
+    MaskOf<Result> known = narrowed<Result>(loss == Lanes<int64_t, n>(int64_t(0)));
+    Result share(Real(1));
+    for (const CachedTransmittance<Real>& entry : scene.cached_transmittances) {
+        const MaskOf<Result> is = narrowed<Result>(loss == Lanes<int64_t, n>(int64_t(entry.loss)));
+        assign_where(is, share, Result(entry.transmittance));
+        known |= is;
+    }
+    if (all(known)) return share;
+    LaneArray<Result> shares(share);
+    for_each_lane(!known, [&](int lane) { shares.of[lane] = uncached_transmittance<Real>(uint64_t(loss[lane])); });
+    return shares.all();
+}
+
+/// Where rays start whose light lies on faces of a convex solid: inside all of them, or outside one.
+template <class E, class Real, class Media, class Scene>
+CISTULA_INLINE void light_sides(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                const MaskOf<Real>& who, MaskOf<Real>& inside, MaskOf<Real>& outside) {
+    inside = outside = false;
+    if constexpr (E::has(effect_lights_on_faces)) {
+        if (shadow.light->incident_count == 0) return;
+        uint32_t in = 0, out = 0;
+        for_each_lane(who, [&](int lane) {
+            const LightSide side = light_on_convex(scene, *shadow.light, index, lane_of(shadow.ray.origin, lane));
+            in |= uint32_t(side == LightSide::inside) << lane;
+            out |= uint32_t(side == LightSide::outside) << lane;
+        });
+        inside = MaskOf<Real>::of_bits(in);
+        outside = MaskOf<Real>::of_bits(out);
+    }
+}
+
+/// Adds what a convex solid takes from the light of rays that start inside it, and of others that may enter it.
+template <class E, class Real, class Media, class Scene>
+CISTULA_INLINE void shadow_solid(const Scene& scene, uint32_t index, const Solid& solid,
+                                 const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& inside,
+                                 const MaskOf<Real>& others, ShadowSum<E, Real>& sum) {
+    const Ray<Real, Media>& ray = shadow.ray;
+    MaskOf<Real> lit_inside, lit_outside;
+    light_sides<E>(scene, index, shadow, inside | others, lit_inside, lit_outside);
+    const MaskOf<Real> on_face = lit_inside | lit_outside;
+    const Material<ScalarOf<Real>>& material = scene.materials[solid.material];
+    const auto line = convex_lanes::cross(scene, solid, ray.origin, ray.direction, convex_lanes::face_left(index, ray));
+    const Real leave = select(on_face, shadow.distance, max_or_second(line.leave, Real(0)));
+    if (any(inside)) add_exit<Real, E>(inside, material, leave, shadow.distance, sum);
+    const Real enter = max_or_second(line.enter, Real(0));
+    const MaskOf<Real> meets = is_met(line, scene.extent) & (enter < shadow.distance);
+    const MaskOf<Real> enters = others & !lit_outside & (lit_inside | meets);
+    if (any(enters)) add_entry<Real, E>(enters, material, enter, leave, shadow.distance, sum);
+}
+
+}  // namespace cistula

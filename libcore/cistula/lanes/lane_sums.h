@@ -1,0 +1,153 @@
+// Sums of the pixels of a tile, to which lanes add: integers, so that the order of rays leaves no trace.
+#pragma once
+
+#include "cistula/lanes/lanes.h"
+#include "cistula/transport/layered_sums.h"
+
+namespace cistula {
+
+/// A pixel of a tile that lanes render.
+struct LanePixel {
+    PixelRecord* record;
+    uint32_t rays;  // of all kinds
+};
+
+/// floor(a), or ceil(a), as integers, for a in [0, 2^63).
+template <bool above, int n>
+CISTULA_INLINE Lanes<int64_t, n> integers_of(const Lanes<double, n>& a) {
+    if constexpr (is_pair<double, n>) {
+        return {integers_of<above>(a.low), integers_of<above>(a.high)};
+    } else {
+        const native::Longs bits = (native::Longs)a.v;
+        // The significand, shifted by the exponent; shifts by 64 and more give 0.
+        const native::Longs exponent = bits >> 52, whole = (bits & ((int64_t(1) << 52) - 1)) | int64_t(1) << 52;
+        const native::Longs left = exponent - 1075, right = 1075 - exponent;
+        const native::Longs floor = native::shifted_left(whole, left) | native::shifted_right(whole, right);
+        if constexpr (!above) return Lanes<int64_t, n>(floor);
+        using Integers = Lanes<int64_t, n>;
+        const auto lost = (Integers(right) > Integers(int64_t(0))) &
+                          (Integers(native::shifted_left(floor, right)) != Integers(whole)) &
+                          (a > Lanes<double, n>(0.0));
+        return Integers(floor) - minus_one_where(lost);
+    }
+}
+
+template <class Real>
+class LaneSums {
+  public:
+    using T = ScalarOf<Real>;
+    using Mask = MaskOf<Real>;
+    static constexpr int lanes = LaneTraits<Real>::lanes;
+
+    template <class Scene>
+    LaneSums(const TreeSettings& settings, const Scene& scene, LanePixel* pixels, uint32_t& flags)
+        : settings_(settings), bounds_{scene.bound, scene.largest_bound}, pixels_(pixels), flags_(flags) {}
+
+    /// Begins with branches of these pixels, and ends with them.
+    CISTULA_INLINE void begin(const IndexOf<Real>& pixel) {
+        pixel_ = pixel;
+        rays_ = 0;
+        cuts_ = false;
+        for (int c = 0; c < 3; ++c) radiance_[c] = cut_[c] = int64_t(0);
+    }
+    CISTULA_INLINE void end(const Mask& who) {
+        give(radiance_, who, &PixelRecord::radiance);
+        if (any(cuts_)) give(cut_, cuts_, &PixelRecord::cut);
+        for_each_lane(who, [&](int lane) { pixels_[pixel_[lane]].rays += uint32_t(rays_[lane]); });
+    }
+
+    CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource, const Mask& who) {
+        const Vec3<Real> units = in_units(radiance, who);
+        for (int c = 0; c < 3; ++c) radiance_[c] += integers_of<false>(Lanes<double, lanes>(units[c]));
+    }
+    template <class Diffuse>
+    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t, const Diffuse&, const Mask& who) {
+        add(radiance, LightSource::background, who);
+    }
+
+    /// The branches to follow; the bounds of others are added to the ledger (PixelSums::afford without a budget).
+    template <class Weight>
+    CISTULA_INLINE Mask afford(const Weight& weight, const Mask& who) {
+        const Real most = largest_component(bounded(weight));
+        const Mask counts = (most <= Real(1)) & (most > Real(T(settings_.fixed_unit)));
+        Mask followed = who & counts;
+        for_each_lane(who & !counts, [&](int lane) {
+            PixelSums<T> sums(settings_, bounds_, *pixels_[pixel_[lane]].record, flags_);
+            if (sums.afford(lane_of(weight, lane))) followed |= Mask::of_bits(1u << lane);
+        });
+        return followed;
+    }
+
+    template <class Weight>
+    CISTULA_INLINE void cut(const Weight& weight, const Mask& who) {
+        const Vec3<Real> units = in_units(bounded(weight), who);
+        for (int c = 0; c < 3; ++c) cut_[c] += integers_of<true>(Lanes<double, lanes>(units[c]));
+        cuts_ |= who;
+    }
+
+    CISTULA_INLINE void flag(uint32_t bits) { flags_ |= bits; }
+
+    /// Counts rays.
+    CISTULA_INLINE void count(const Mask& who) { rays_ -= minus_one_where(who); }
+
+  private:
+    /// The part of a scene that PixelSums reads.
+    struct Bounds {
+        const Vec3<T>& bound;
+        const T& largest_bound;
+    };
+
+    template <class Weight>
+    CISTULA_INLINE Vec3<Real> bounded(const Weight& weight) const {
+        return {channel(weight, 0) * bounds_.bound.x, channel(weight, 1) * bounds_.bound.y,
+                channel(weight, 2) * bounds_.bound.z};
+    }
+    CISTULA_INLINE static T lane_of(const Real& weight, int lane) { return weight[lane]; }
+    CISTULA_INLINE static Vec3<T> lane_of(const Vec3<Real>& weight, int lane) { return cistula::lane_of(weight, lane); }
+
+    /// PixelSums::in_units in lanes; 0 in others.
+    CISTULA_INLINE Vec3<Real> in_units(const Vec3<Real>& a, const Mask& who) {
+        const Real scale(T(settings_.fixed_scale)), zero(0);
+        Vec3<Real> units(fused(a.x, scale, zero), fused(a.y, scale, zero), fused(a.z, scale, zero));
+        // Most are right beyond doubt: none is negative or NaN, and their sum is within the scale.
+        const Real all_three = units.x + units.y + units.z,
+                   least = min_or_second(units.x, min_or_second(units.y, units.z));
+        if (!any(who & !((all_three <= scale) & (least >= zero)))) {
+            for (int c = 0; c < 3; ++c) units[c] = select(who, units[c], zero);
+            return units;
+        }
+        Mask right = true;
+        for (int c = 0; c < 3; ++c) {
+            const Mask is_right = (units[c] >= zero) & (units[c] <= scale);
+            units[c] = select(who & is_right, units[c], zero);
+            right &= is_right;
+        }
+        if (any(who & !right)) flags_ |= flag_not_finite;
+        return units;
+    }
+
+    using Integers = Lanes<int64_t, lanes>;
+    CISTULA_INLINE void give(const Integers (&from)[3], const Mask& who, int64_t (PixelRecord::*to)[3]) {
+        alignas(lane_bytes) int64_t whole[3][lanes];
+        for (int c = 0; c < 3; ++c) memcpy(whole[c], &from[c], sizeof from[c]);
+        for_each_lane(who, [&](int lane) {
+            int64_t(&sum)[3] = pixels_[pixel_[lane]].record->*to;
+            for (int c = 0; c < 3; ++c) sum[c] += whole[c][lane];
+        });
+    }
+
+    const TreeSettings& settings_;
+    const Bounds bounds_;
+    LanePixel* pixels_;
+    uint32_t& flags_;
+    IndexOf<Real> pixel_ = 0, rays_ = 0;
+    Integers radiance_[3], cut_[3];
+    Mask cuts_ = false;
+};
+
+template <class T, int n>
+struct SumsType<Lanes<T, n>, false> {
+    using Type = LaneSums<Lanes<T, n>>;
+};
+
+}  // namespace cistula

@@ -1,0 +1,165 @@
+// A register of lanes computes what a number computes, lane by lane, special values included.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cistula/lanes/lane_shadow.h"
+#include "cistula/lanes/lane_sums.h"
+#include "testing/draw/draw.h"
+
+using namespace cistula;
+
+namespace {
+
+template <class T>
+struct Numbers {
+    using Real = Lanes<T, lane_bytes / int(sizeof(T))>;
+    static constexpr int lanes = LaneTraits<Real>::lanes;
+    T of[lanes];
+    Real all;
+};
+
+template <class T>
+class LanesTest : public ::testing::Test {
+  public:
+    using Real = typename Numbers<T>::Real;
+    static constexpr int lanes = Numbers<T>::lanes;
+
+    /// Any bits as often as ordinary numbers and special ones.
+    T number() {
+        switch (draw_.below(3)) {
+            case 0:
+                return draw_.template special<T>();
+            case 1:
+                return draw_.template centered<T>(T(4));
+            default:
+                return draw_.template pattern<T>();
+        }
+    }
+    Numbers<T> numbers() {
+        Numbers<T> n;
+        for (T& one : n.of) one = number();
+        n.all = Real::at(n.of);
+        return n;
+    }
+
+    static bool same(T a, T b) {
+        return (a != a && b != b) || bits_as<SignedOf<sizeof(T)>>(a) == bits_as<SignedOf<sizeof(T)>>(b);
+    }
+
+    template <class OfLanes, class OfNumbers>
+    void expect(const char* what, const OfLanes& found, const OfNumbers& expected) {
+        for (int i = 0; i < lanes; ++i) ASSERT_TRUE(same(found[i], expected(i))) << what << ", lane " << i;
+    }
+    template <class Mask, class OfNumbers>
+    void expect_mask(const char* what, const Mask& found, const OfNumbers& expected) {
+        uint32_t bits = 0;
+        for (int i = 0; i < lanes; ++i) bits |= uint32_t(expected(i)) << i;
+        ASSERT_EQ(found.bits(), bits) << what;
+    }
+
+    parity::Draw draw_{1, 38};
+};
+
+using Reals = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(LanesTest, Reals);
+
+TYPED_TEST(LanesTest, ArithmeticIsThatOfNumbers) {
+    for (int turn = 0; turn < 20000; ++turn) {
+        const auto a = this->numbers(), b = this->numbers(), c = this->numbers();
+        this->expect("+", a.all + b.all, [&](int i) { return a.of[i] + b.of[i]; });
+        this->expect("-", a.all - b.all, [&](int i) { return a.of[i] - b.of[i]; });
+        this->expect("*", a.all * b.all, [&](int i) { return a.of[i] * b.of[i]; });
+        this->expect("/", a.all / b.all, [&](int i) { return a.of[i] / b.of[i]; });
+        this->expect("negative", -a.all, [&](int i) { return -a.of[i]; });
+        this->expect("fused", fused(a.all, b.all, c.all), [&](int i) { return fused(a.of[i], b.of[i], c.of[i]); });
+        this->expect("square_root", square_root(a.all), [&](int i) { return square_root(a.of[i]); });
+        this->expect("floor_of", floor_of(a.all), [&](int i) { return floor_of(a.of[i]); });
+        this->expect("magnitude", magnitude(a.all), [&](int i) { return magnitude(a.of[i]); });
+        this->expect("min_or_second", min_or_second(a.all, b.all),
+                     [&](int i) { return min_or_second(a.of[i], b.of[i]); });
+        this->expect("max_or_second", max_or_second(a.all, b.all),
+                     [&](int i) { return max_or_second(a.of[i], b.of[i]); });
+        this->expect("max_no_nan", max_no_nan(a.all, b.all), [&](int i) { return max_no_nan(a.of[i], b.of[i]); });
+        this->expect("clamped", clamped(a.all, b.all, c.all),
+                     [&](int i) { return clamped(a.of[i], b.of[i], c.of[i]); });
+        this->expect_mask("<", a.all < b.all, [&](int i) { return a.of[i] < b.of[i]; });
+        this->expect_mask("<=", a.all <= b.all, [&](int i) { return a.of[i] <= b.of[i]; });
+        this->expect_mask(">", a.all > b.all, [&](int i) { return a.of[i] > b.of[i]; });
+        this->expect_mask(">=", a.all >= b.all, [&](int i) { return a.of[i] >= b.of[i]; });
+        this->expect_mask("==", a.all == b.all, [&](int i) { return a.of[i] == b.of[i]; });
+        this->expect_mask("!=", a.all != b.all, [&](int i) { return a.of[i] != b.of[i]; });
+        this->expect("select", select(a.all < b.all, c.all, a.all),
+                     [&](int i) { return a.of[i] < b.of[i] ? c.of[i] : a.of[i]; });
+    }
+}
+
+TYPED_TEST(LanesTest, HigherPrecisionIsThatOfNumbers) {
+    using Real = typename TestFixture::Real;
+    using Up = typename RealTraits<Real>::Up;
+    using UpOne = typename RealTraits<TypeParam>::Up;
+    for (int turn = 0; turn < 5000; ++turn) {
+        TypeParam a[TestFixture::lanes], b[TestFixture::lanes];
+        for (int i = 0; i < TestFixture::lanes; ++i) {
+            a[i] = TypeParam(0.1) + TypeParam(3) * this->draw_.template unit<TypeParam>();
+            b[i] = TypeParam(0.1) + TypeParam(3) * this->draw_.template unit<TypeParam>();
+        }
+        const Up x(Real::at(a)), y(Real::at(b));
+        const auto one = [&](int i) { return std::pair(UpOne(a[i]), UpOne(b[i])); };
+        this->expect("up", Real(up_sqrt(x * y + x / y) - y), [&](int i) {
+            const auto [p, q] = one(i);
+            return TypeParam(up_sqrt(p * q + p / q) - q);
+        });
+        this->expect_mask("up >", narrowed<Real>(x > y), [&](int i) { return one(i).first > one(i).second; });
+    }
+}
+
+TYPED_TEST(LanesTest, IntegersAreThoseOfNumbers) {
+    using Real = typename TestFixture::Real;
+    for (int turn = 0; turn < 20000; ++turn) {
+        TypeParam a[TestFixture::lanes];
+        for (TypeParam& one : a) {
+            const TypeParam share = this->draw_.template unit<TypeParam>();
+            one = this->draw_.one_in(8) ? TypeParam(0)
+                                        : share * TypeParam(std::ldexp(1.0, int(this->draw_.below(190)) - 128));
+        }
+        const Lanes<double, TestFixture::lanes> wide(Real::at(a));
+        const auto below = integers_of<false>(wide), above = integers_of<true>(wide);
+        for (int i = 0; i < TestFixture::lanes; ++i) {
+            ASSERT_EQ(below[i], whole_of(a[i])) << a[i];
+            ASSERT_EQ(above[i], whole_above(a[i])) << a[i];
+        }
+    }
+}
+
+TYPED_TEST(LanesTest, LossesSaturate) {
+    constexpr int n = TestFixture::lanes;
+    for (int turn = 0; turn < 5000; ++turn) {
+        Lanes<int64_t, n> a(int64_t(0)), b(int64_t(0));
+        const auto loss = [&] { return this->draw_.one_in(4) ? largest_loss : this->draw_.shifted(0, 63); };
+        for (int i = 0; i < n; ++i) a.set(i, int64_t(loss())), b.set(i, int64_t(loss()));
+        const Lanes<int64_t, n> sum = saturating_add(a, b);
+        for (int i = 0; i < n; ++i) ASSERT_EQ(uint64_t(sum[i]), saturating_add(uint64_t(a[i]), uint64_t(b[i])));
+    }
+}
+
+TYPED_TEST(LanesTest, MasksAndPacking) {
+    using Real = typename TestFixture::Real;
+    constexpr int n = TestFixture::lanes;
+    const auto a = this->numbers();
+    for (uint32_t bits = 0; bits < 1u << n; ++bits) {
+        const auto mask = MaskOf<Real>::of_bits(bits);
+        ASSERT_EQ(mask.bits(), bits);
+        ASSERT_EQ((!mask).bits(), ~bits & ((1u << n) - 1));
+        ASSERT_EQ(any(mask), bits != 0);
+        ASSERT_EQ(all(mask), bits == (1u << n) - 1);
+        ASSERT_EQ(narrowed<Real>(widened(mask)).bits(), bits);
+        const Real packed(native::packed(a.all.v, bits));
+        for (int lane = 0, next = 0; lane < n; ++lane)
+            if (bits >> lane & 1) {
+                ASSERT_TRUE(this->same(packed[next++], a.of[lane]));
+            }
+    }
+}
+
+}  // namespace
