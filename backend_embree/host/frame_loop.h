@@ -109,10 +109,6 @@ class FrameTask {
         return {scene_, frame_, intersector_, x, y, own, stack};
     }
 
-    /// Lanes get tiles of four times the size, since they run half empty at a tile's end, in films of more pixels than
-    /// this.
-    static constexpr size_t fewest_for_large_tiles = 300'000;
-
     bool stopped() const { return progress_.stop.load(std::memory_order_relaxed); }
 
     /// Renders with a uniform grid of samples.
@@ -198,8 +194,7 @@ class FrameTask {
     template <class Render>
     bool for_each_tile(const Render& render) {
         const PixelRect rect = film_.rect;
-        const int tile =
-            lanes() > 1 && film_.pixels.size() >= fewest_for_large_tiles ? 2 * settings_.tile : settings_.tile;
+        const int tile = settings_.tile;
         const int columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
         std::mutex totals;
         tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {

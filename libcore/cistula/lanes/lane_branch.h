@@ -1,7 +1,6 @@
 // Branches of ray trees in lanes, and the queues in which they wait (docs/wide.md).
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 

@@ -11,6 +11,11 @@ struct LaneLoop {
     using Media = SingleInteriorOf<Real>;
     using Mask = MaskOf<Real>;
     const Scene& scene;
+    uint32_t isolated = 0;  // bit i: no other primitive comes near solid i
+
+    explicit LaneLoop(const Scene& of) : scene(of) {
+        for (const IndexedSolid<ScalarOf<Real>>& next : scene.convex) isolated |= next.solid.isolated << next.index;
+    }
 
     /// The hits with the smallest (t, key) after ray.after, where `who` holds.
     template <class E>
@@ -20,13 +25,9 @@ struct LaneLoop {
         Mask traced = who & is_finite(ray);
         best.t = select(traced, Real(RealTraits<Real>::infinity), Real(-1));
         if constexpr (E::solids) {
-            Mask free = traced;  // not inside a solid that no other primitive comes near
-            if constexpr (E::has(effect_insides)) {
-                uint32_t isolated = 0;
-                for (const IndexedSolid<ScalarOf<Real>>& next : scene.convex)
-                    isolated |= next.solid.isolated << next.index;
+            Mask free = traced;  // not inside an isolated solid
+            if constexpr (E::has(effect_insides))
                 free = traced & !((ray.media.solid != int(no_solid)) & has_bit(isolated, ray.media.solid));
-            }
             for (const IndexedSolid<ScalarOf<Real>>& next : scene.convex) {
                 Mask inside = false;
                 if constexpr (E::has(effect_insides)) inside = traced & ray.media.contains(int(next.index));

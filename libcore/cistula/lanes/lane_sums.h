@@ -102,20 +102,11 @@ class LaneSums {
         return {channel(weight, 0) * bounds_.bound.x, channel(weight, 1) * bounds_.bound.y,
                 channel(weight, 2) * bounds_.bound.z};
     }
-    CISTULA_INLINE static T lane_of(const Real& weight, int lane) { return weight[lane]; }
-    CISTULA_INLINE static Vec3<T> lane_of(const Vec3<Real>& weight, int lane) { return cistula::lane_of(weight, lane); }
 
     /// PixelSums::in_units in lanes; 0 in others.
     CISTULA_INLINE Vec3<Real> in_units(const Vec3<Real>& a, const Mask& who) {
         const Real scale(T(settings_.fixed_scale)), zero(0);
         Vec3<Real> units(fused(a.x, scale, zero), fused(a.y, scale, zero), fused(a.z, scale, zero));
-        // Most are right beyond doubt: none is negative or NaN, and their sum is within the scale.
-        const Real all_three = units.x + units.y + units.z,
-                   least = min_or_second(units.x, min_or_second(units.y, units.z));
-        if (!any(who & !((all_three <= scale) & (least >= zero)))) {
-            for (int c = 0; c < 3; ++c) units[c] = select(who, units[c], zero);
-            return units;
-        }
         Mask right = true;
         for (int c = 0; c < 3; ++c) {
             const Mask is_right = (units[c] >= zero) & (units[c] <= scale);

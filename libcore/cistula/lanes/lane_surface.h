@@ -89,6 +89,18 @@ CISTULA_INLINE auto transmits(const ConstantScene<Real>& scene, const Lanes<T, n
     return has_bit(scene.transmitting_solids, solid);
 }
 
+/// The origins of rays that leave from points on a triangle, on its outside or its inside (Apex::from).
+template <class T, int n, class Scene>
+CISTULA_INLINE Vec3<Lanes<T, n>> off_triangle(const Scene& scene, uint32_t slot, const MaskOf<Lanes<T, n>>& outside,
+                                              const Vec3<Lanes<T, n>>& point) {
+    using Real = Lanes<T, n>;
+    const auto start = [&](const Apex<T>& apex) {
+        return along(point, Real(apex.share), spread<Real>(apex.place) - point);
+    };
+    const auto& apex = scene.sides[slot].apex;
+    return select(outside, start(apex[1]), start(apex[0]));
+}
+
 /// Finds the surfaces of hits in the lanes of `who`; others hold arbitrary numbers, but the first material.
 template <class E, class T, int n, class Media, class Scene>
 CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media>& ray, const Hit<Lanes<T, n>>& hit,
@@ -130,11 +142,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
             const Vec3<Real> normal = spread<Real>(outward_normal(scene, slot));
             assign_where(same, s.normal, select(hit.enters, normal, -normal));
             assign_where(same, s.point, point);
-            for (int outside = 0; outside < 2; ++outside) {
-                const Apex<T>& apex = scene.sides[slot].apex[outside];
-                const Vec3<Real> start = along(point, Real(apex.share), spread<Real>(apex.place) - point);
-                assign_where(same & (outside != 0 ? hit.enters : !hit.enters), s.viewer_side, start);
-            }
+            assign_where(same, s.viewer_side, off_triangle(scene, slot, hit.enters, point));
         });
     }
     if constexpr (E::has(effect_texture)) {
@@ -165,11 +173,7 @@ CISTULA_INLINE Vec3<Lanes<T, n>> far_side(const Scene& scene, const Hit<Lanes<T,
         for_each_value(who, key_solid(hit.key), [&](uint32_t index, const MaskOf<Real>& same) {
             if (is_convex<E>(scene.solids[index])) return;
             for_each_value(same, hit.slot, [&](uint32_t slot, const MaskOf<Real>& there) {
-                for (int outside = 0; outside < 2; ++outside) {
-                    const Apex<T>& apex = scene.sides[slot].apex[outside];
-                    const Vec3<Real> moved = along(point, Real(apex.share), spread<Real>(apex.place) - point);
-                    assign_where(there & (outside != 0 ? !hit.enters : hit.enters), start, moved);
-                }
+                assign_where(there, start, off_triangle(scene, slot, !hit.enters, point));
             });
         });
     return start;

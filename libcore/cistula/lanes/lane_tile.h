@@ -84,7 +84,7 @@ class LaneTile {
     /// Renders the pixels that were added, unless stopped(), and adds the counts.
     template <class Stopped>
     void render(const Stopped& stopped, RayCounts& counts, uint32_t& flags) {
-        const Intersector intersector{scene_};
+        const Intersector intersector(scene_);
         LaneSums<Real> sums(frame_.tree, scene_, pixels_.data(), flags);
         LaneRays<Real> rays{RayCounts(), sums};
         RayTree<Real, E, Intersector, LaneQueues<Entry>, LaneRays<Real>> tree(scene_, intersector, frame_.tree.depth,

@@ -200,8 +200,6 @@ template <class T, int n>
 CISTULA_INLINE Lanes<T, n> reciprocal(Lanes<T, n> a) {
     return Lanes<T, n>(T(1)) / a;
 }
-template <class T, int n>
-CISTULA_INLINE void materialize(Lanes<T, n>&) {}
 
 /// -1 where the mask holds, else 0.
 template <int bytes, int n>
@@ -276,11 +274,16 @@ CISTULA_INLINE Lanes<T, n> largest_component(const Lanes<T, n>& a) {
     return a;
 }
 
-/// A vector's lane.
+/// A lane of a number or a vector.
+template <class T, int n>
+CISTULA_INLINE T lane_of(const Lanes<T, n>& a, int lane) {
+    return a[lane];
+}
 template <class T, int n>
 CISTULA_INLINE glm::vec<3, T, glm::defaultp> lane_of(const glm::vec<3, Lanes<T, n>, glm::defaultp>& a, int lane) {
     return {a.x[lane], a.y[lane], a.z[lane]};
 }
+
 /// Lanes in memory, to be written one by one and then read at once: writing into a register costs a round trip each.
 template <class Real>
 struct LaneArray {
