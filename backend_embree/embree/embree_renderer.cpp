@@ -2,6 +2,7 @@
 
 #include "backend_embree/embree/embree_tree.h"
 #include "backend_embree/host/frame_loop.h"
+#include "scene/compile/lane_scene.h"
 
 namespace cistula {
 
@@ -13,35 +14,57 @@ namespace {
 template <class Real>
 class EmbreeRenderer : public Renderer {
   public:
-    EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, std::shared_ptr<const EmbreeTree<Real>> tree)
-        : scene_(std::move(scene)), view_(scene_->view()), tree_(std::move(tree)) {
+    EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, const EmbreeOptions& options,
+                   std::shared_ptr<const EmbreeTree<Real>> tree)
+        : scene_(std::move(scene)), view_(scene_->view()), options_(options), tree_(std::move(tree)) {
         if (tree_) return;
-        plain_ = make_constant_renderer<Real>(scene_);
-        if (!plain_) tree_ = embree_tree(view_, EmbreeOptions{.always_tree = true});
+        if (!options.always_tree) {
+            plain_ = make_constant_renderer<Real>(scene_);
+            if (!plain_) in_lanes_ = lane_scene(view_);
+        }
+        if (!plain_ && !in_lanes_) build_tree();
     }
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
         used_plain_ = plain_ && !settings.layers.any();
         if (used_plain_) return plain_->render(camera, settings, film, progress);
-        if (!tree_) tree_ = embree_tree(view_, EmbreeOptions{.always_tree = true});
-        const EmbreeIntersector<Real> intersector{view_, tree_->scene()};
-        FrameTask task(*scene_, intersector, camera, settings, film, progress);
+        EmbreeIntersector<Real> intersector{view_, tree_ ? tree_->scene() : nullptr};
+        FrameTask task(*scene_, intersector, camera, settings, film, progress,
+                       in_lanes_ ? &in_lanes_->scene() : nullptr);
         effects_ = task.effects();
+        lanes_ = task.lanes();
+        if (lanes_ == 1 && !tree_) {
+            build_tree();
+            intersector.tree = tree_->scene();
+        }
         return task.run();
     }
     uint32_t effects() const override { return used_plain_ ? plain_->effects() : effects_; }
-    int lanes() const override { return used_plain_ ? plain_->lanes() : 1; }
+    int lanes() const override { return used_plain_ ? plain_->lanes() : lanes_; }
     std::string intersector() const override { return "embree"; }
-    size_t memory() const override { return tree_ ? scene_->memory() + tree_->memory() : plain_->memory(); }
+    size_t memory() const override {
+        return (plain_ ? plain_->memory() : scene_->memory()) + (in_lanes_ ? in_lanes_->memory() : 0) +
+               (tree_ ? tree_->memory() : 0);
+    }
 
   private:
+    void build_tree() {
+        EmbreeOptions options = options_;
+        options.always_tree = true;
+        tree_ = embree_tree(view_, options);
+    }
+
     std::shared_ptr<const CompiledScene<Real>> scene_;
     SceneView<Real> view_;
-    std::shared_ptr<const EmbreeTree<Real>> tree_;
+    EmbreeOptions options_;
+    std::shared_ptr<const EmbreeTree<Real>> tree_;  // built when a frame needs it, or before all if every frame does
     std::unique_ptr<Renderer> plain_;  // set if a loop over few primitives replaces the tree, which layers need
-    bool used_plain_ = false;          // for the last frame
+    std::unique_ptr<const OwnedLaneScene<Real>> in_lanes_;  // set if rays may be traced in lanes
+    // Of the last frame:
+    bool used_plain_ = false;
     uint32_t effects_ = 0;
+    int lanes_ = 1;
 };
 
 }  // namespace
@@ -49,14 +72,13 @@ class EmbreeRenderer : public Renderer {
 template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options) {
-    std::shared_ptr<const EmbreeTree<Real>> tree = embree_tree(scene->view(), options);
-    return make_embree_renderer(std::move(scene), std::move(tree));
+    return std::make_unique<EmbreeRenderer<Real>>(std::move(scene), options, nullptr);
 }
 
 template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                std::shared_ptr<const EmbreeTree<Real>> tree) {
-    return std::make_unique<EmbreeRenderer<Real>>(std::move(scene), std::move(tree));
+    return std::make_unique<EmbreeRenderer<Real>>(std::move(scene), EmbreeOptions(), std::move(tree));
 }
 
 template std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<float>>,

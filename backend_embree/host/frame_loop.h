@@ -11,6 +11,7 @@
 
 #include "backend_embree/lanes/lane_renderer.h"
 #include "cistula/adaptive/adaptive_pixel.h"
+#include "cistula/lanes/lane_scene.h"
 #include "cistula/traversal/bvh.h"
 #include "scene/base/default_rounding.h"
 #include "scene/film/put_pixels.h"
@@ -41,12 +42,6 @@ inline constexpr bool fills_film_layers = false;
 template <class Real>
 inline constexpr bool fills_film_layers<BvhIntersector<Real>> = true;
 
-/// Whether an intersector has a form for lanes (lane_loop.h).
-template <class Intersector>
-inline constexpr bool has_lanes = false;
-template <class Real>
-inline constexpr bool has_lanes<BruteIntersector<Real, SingleInterior, ConstantScene<Real>>> = true;
-
 /// The rendering of one frame on the host.
 template <class Real, class Intersector>
 class FrameTask {
@@ -54,14 +49,17 @@ class FrameTask {
     using Scene = typename Intersector::Scene;
     using Media = typename Intersector::Media;
 
-    /// Sets up the film. All arguments must outlive the task. The intersector's scene is a form of `compiled`.
+    /// Sets up the film. All arguments must outlive the task. The intersector's scene is a form of `compiled`, and so
+    /// is `in_lanes`, if rays may be traced in lanes.
     FrameTask(const CompiledScene<Real>& compiled, const Intersector& intersector, const CameraFrame& camera,
-              const FrameSettings& settings, Film& film, RenderProgress& progress)
+              const FrameSettings& settings, Film& film, RenderProgress& progress,
+              const LaneScene<Real>* in_lanes = nullptr)
         : scene_(intersector.scene),
           intersector_(intersector),
           settings_(settings),
           film_(film),
           progress_(progress),
+          lane_scene_(in_lanes),
           frame_((use_default_rounding(), frame_view(compiled, camera, settings))),
           hints_(frame_hints(compiled, frame_, settings)) {
         prepare_film(film, settings, compiled, camera);
@@ -70,9 +68,8 @@ class FrameTask {
         if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = effect_mask_count - 1;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
-        if constexpr (has_lanes<Intersector>)
-            if (!settings.layers.any() && !settings.adaptive() && mask_ < effect_mask_count)
-                tiles_ = tile_functions(scene_, frame_, settings.lanes);
+        if (in_lanes != nullptr && !settings.layers.any() && !settings.adaptive() && mask_ < effect_mask_count)
+            tiles_ = tile_functions<Real>(frame_, settings.lanes);
     }
 
     /// The effects that are compiled into the code that runs (mask_to_run; all of them for references).
@@ -86,8 +83,7 @@ class FrameTask {
         if (settings_.layers.any())
             return settings_.adaptive() ? render_adaptive_layers() : render_mask<layered_mask>();
         if (settings_.adaptive()) return render_adaptive();
-        if constexpr (has_lanes<Intersector>)
-            if (tiles_ != nullptr) return render_in_lanes();
+        if (tiles_ != nullptr) return render_in_lanes();
         if constexpr (!runs_every_mask<Intersector>) {
             return mask_ == unshadowed_mask ? render_mask<unshadowed_mask>() : render_mask<effect_mask_count - 1>();
         } else {
@@ -131,7 +127,7 @@ class FrameTask {
     /// Renders with a uniform grid of samples, many rays at once.
     bool render_in_lanes() {
         return for_each_tile([&](const PixelRect& tile, Counts& counts) {
-            TileRenderer renderer(*tiles_, mask_, &scene_, frame_);
+            TileRenderer renderer(*tiles_, mask_, lane_scene_, frame_);
             for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) { renderer.add(x, y, pixel); });
             renderer.render(progress_.stop, counts.rays, counts.flags);
         });
@@ -238,6 +234,7 @@ class FrameTask {
     const FrameSettings& settings_;
     Film& film_;
     RenderProgress& progress_;
+    const LaneScene<Real>* const lane_scene_;
     FrameView frame_;
     const FrameHints hints_;
     int mask_ = 0;

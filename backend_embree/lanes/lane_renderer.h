@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "backend_embree/lanes/tile_functions.h"
-#include "cistula/model/constant_scene.h"
 #include "cistula/transport/pixel.h"
 
 namespace cistula {
@@ -13,7 +12,7 @@ namespace cistula {
 /// Renders tiles, one after the other.
 class TileRenderer {
   public:
-    /// `mask`: index in effect_masks. The scene, a ConstantScene of the precision of `functions`, and the frame must
+    /// `mask`: index in effect_masks. The scene, a LaneScene of the precision of `functions`, and the frame must
     /// outlive the renderer.
     TileRenderer(const TileFunctions& functions, int mask, const void* scene, const FrameView& frame)
         : functions_(functions), tile_(functions.make(mask, scene, &frame), functions.destroy) {}
@@ -33,6 +32,6 @@ class TileRenderer {
 /// The tile renderers for a frame with at most so many lanes (0: any number); null if the frame is traced one ray at a
 /// time: with one lane, or with a cutoff, whose budget is spent in the order of one stack.
 template <class Real>
-const TileFunctions* tile_functions(const ConstantScene<Real>& scene, const FrameView& frame, int most_lanes);
+const TileFunctions* tile_functions(const FrameView& frame, int most_lanes);
 
 }  // namespace cistula

@@ -21,7 +21,7 @@ class AnyTile {
 template <class Real, class E>
 class MaskTile : public AnyTile {
   public:
-    MaskTile(const ConstantScene<ScalarOf<Real>>& scene, const FrameView& frame) : tile_(scene, frame) {}
+    MaskTile(const LaneScene<ScalarOf<Real>>& scene, const FrameView& frame) : tile_(scene, frame) {}
 
     void add(int x, int y, PixelRecord& record) override { tile_.add(x, y, record); }
     void render(const std::atomic<bool>& stop, RayCounts& rays, uint32_t& flags) override {
@@ -33,13 +33,12 @@ class MaskTile : public AnyTile {
 };
 
 template <class Real>
-AnyTile* make_mask_tile(int mask, const ConstantScene<ScalarOf<Real>>& scene, const FrameView& frame) {
-    using Make = AnyTile* (*)(const ConstantScene<ScalarOf<Real>>&, const FrameView&);
+AnyTile* make_mask_tile(int mask, const LaneScene<ScalarOf<Real>>& scene, const FrameView& frame) {
+    using Make = AnyTile* (*)(const LaneScene<ScalarOf<Real>>&, const FrameView&);
     static constexpr auto table = []<size_t... i>(std::index_sequence<i...>) {
-        return std::array<Make, sizeof...(i)>{
-            [](const ConstantScene<ScalarOf<Real>>& s, const FrameView& f) -> AnyTile* {
-                return new MaskTile<Real, Effects<effect_masks[i]>>(s, f);
-            }...};
+        return std::array<Make, sizeof...(i)>{[](const LaneScene<ScalarOf<Real>>& s, const FrameView& f) -> AnyTile* {
+            return new MaskTile<Real, Effects<effect_masks[i]>>(s, f);
+        }...};
     }
     (std::make_index_sequence<effect_mask_count>());
     return table[size_t(mask)](scene, frame);
@@ -50,7 +49,7 @@ template <class Real>
 constexpr TileFunctions tile_functions_of() {
     return {LaneTraits<Real>::lanes,
             [](int mask, const void* scene, const void* frame) -> void* {
-                return make_mask_tile<Real>(mask, *static_cast<const ConstantScene<ScalarOf<Real>>*>(scene),
+                return make_mask_tile<Real>(mask, *static_cast<const LaneScene<ScalarOf<Real>>*>(scene),
                                             *static_cast<const FrameView*>(frame));
             },
             [](void* tile, int x, int y, void* record) {

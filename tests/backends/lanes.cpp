@@ -1,4 +1,5 @@
 // However many rays the host traces at once, every integer of the film is the same, and so is the count of rays.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -7,6 +8,7 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "testing/generated_scene.h"
 #include "testing/support/golden.h"
+#include "testing/support/read_text.h"
 #include "testing/support/shipped_scenes.h"
 
 using namespace cistula;
@@ -46,8 +48,10 @@ using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(LaneTest, Reals);
 
 TYPED_TEST(LaneTest, ShippedScenesAreEqual) {
-    for (const char* name : {"benchmark", "platonic", "infinity", "seed", "hard/critical-angle", "hard/furnace",
-                             "hard/lights-on-edges", "hard/mirrors", "hard/index-one", "hard/far-camera"}) {
+    for (const char* name :
+         {"benchmark", "platonic", "infinity", "seed", "glass", "hard/critical-angle", "hard/media",
+          "hard/glass-on-floor", "hard/corner", "hard/camera-on-floor", "hard/decal", "hard/big-floor",
+          "hard/lights-on-edges", "hard/mirrors", "hard/index-one", "hard/far-camera"}) {
         const SceneDescription scene = test::shipped_scene(name);
         FrameSettings settings = golden::settings_for(scene);
         settings.set_size(97, 61);  // no multiple of a tile, nor of a register
@@ -56,7 +60,7 @@ TYPED_TEST(LaneTest, ShippedScenesAreEqual) {
         settings.cutoff = 0;
         this->compare(scene, settings, name);
     }
-    EXPECT_GE(this->in_lanes(), 5u);
+    EXPECT_GE(this->in_lanes(), 12u);
 }
 
 TYPED_TEST(LaneTest, GeneratedScenesAreEqual) {
@@ -69,6 +73,59 @@ TYPED_TEST(LaneTest, GeneratedScenesAreEqual) {
         this->compare(scene, settings, "scene " + std::to_string(seed));
     }
     EXPECT_GE(this->in_lanes(), 15u);
+}
+
+/// A scene of transparent solids, one around the other, over a floor of tiles; `rise` lifts each tile over the one
+/// before.
+SceneDescription tiled_scene(int tiles, double rise, int nested) {
+    std::string objects;
+    for (int i = 0; i < tiles * tiles; ++i) {
+        const double x = i % tiles - tiles / 2, y = i / tiles - tiles / 2, z = i * rise;
+        objects += fmt::format(R"({{"quad": [[{0}, {1}, {4}], [{2}, {1}, {4}], [{2}, {3}, {4}], [{0}, {3}, {4}]],
+                                   "material": "{5}"}}, )",
+                               x, y, x + 1, y + 1, z, (i % tiles + i / tiles) % 2 ? "white" : "mirror");
+    }
+    for (int i = 0; i < nested; ++i)
+        objects += fmt::format(R"({{"solid": "cube", "center": [0, 0, 1.3], "radius": {}, "material": "glass{}"}}{})",
+                               1.2 - 0.1 * i, i % 3, i + 1 < nested ? ", " : "");
+    return test::json_scene(R"({"film": {"width": 40, "height": 30}, "depth": 9, "background": [0.3, 0.4, 0.5],
+        "camera": {"position": [0.3, -6, 4], "target": [0, 0, 1]}, "materials": {
+        "white": {"color": 0.8, "diffuse": 0.7}, "mirror": {"color": 0.5, "diffuse": 0.4, "reflection": 0.5},
+        "glass0": {"color": 1, "transmission": 1, "fresnel": true, "index": 1.5, "absorption": [0.1, 0.3, 0.2]},
+        "glass1": {"color": 1, "transmission": 0.9, "index": 1.2}, "glass2": {"color": 1, "transmission": 1}},
+        "objects": [)" + objects +
+                            R"(], "lights": [{"position": [4, -5, 8], "color": 0.9}, {"position": [0, 0, 1.3]}]})");
+}
+
+TYPED_TEST(LaneTest, TreesAndSharedPlanesAreEqual) {
+    size_t scenes = 0;
+    for (const int tiles : {2, 3, 12})
+        for (const double rise : {0.0, 0.001})
+            for (const int nested : {1, 3, InteriorList::capacity}) {
+                const SceneDescription scene = tiled_scene(tiles, rise, nested);
+                this->compare(scene, golden::settings_for(scene), fmt::format("{} {} {}", tiles, rise, nested));
+                ++scenes;
+            }
+    EXPECT_EQ(this->in_lanes(), scenes);
+}
+
+TYPED_TEST(LaneTest, SolidsBeyondAnInteriorListAreToldOf) {
+    const SceneDescription scene = tiled_scene(2, 0, InteriorList::capacity + 1);
+    const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
+    for (const int lanes : {1, 16}) {
+        FrameSettings settings = golden::settings_for(scene);
+        settings.lanes = lanes;
+        EXPECT_TRUE(golden::render_with(*renderer, scene, settings).flags & flag_media_overflow) << lanes;
+    }
+}
+
+TYPED_TEST(LaneTest, MeshesAreTracedOneRayAfterTheOther) {
+    const SceneDescription scene = test::shipped_scene("mesh");
+    FrameSettings settings = golden::settings_for(scene);
+    settings.set_size(16, 9);
+    const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
+    golden::render_with(*renderer, scene, settings);
+    EXPECT_EQ(renderer->lanes(), 1);
 }
 
 TYPED_TEST(LaneTest, ACutoffIsSpentByOneRayAfterTheOther) {

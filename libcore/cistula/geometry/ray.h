@@ -83,23 +83,21 @@ struct InteriorList {
 
 /// The interior list of scenes whose closed solids are all convex and do not touch, so that a ray is inside at most
 /// one. Its state lets a ray enter only from outside and leave only from inside.
-template <class Real>
-struct SingleInteriorOf {
+struct SingleInterior {
     static constexpr bool contacts = false, meshes = false;
-    using Index = IndexOf<Real>;
 
-    Index solid = no_solid;
+    uint32_t solid = no_solid;
 
-    CISTULA_INLINE MaskOf<Real> contains(const Index& index) const { return solid == index; }
-    CISTULA_INLINE MaskOf<Real> empty() const { return solid == no_solid; }
-    CISTULA_INLINE Index only() const { return solid; }
-    CISTULA_INLINE Index medium() const { return solid; }
+    CISTULA_INLINE bool contains(uint32_t index) const { return solid == index; }
+    CISTULA_INLINE bool empty() const { return solid == no_solid; }
+    CISTULA_INLINE uint32_t only() const { return solid; }
+    CISTULA_INLINE uint32_t medium() const { return solid; }
 
     /// Records that a solid is entered or left. False, without a change, where the solids touch after all.
-    CISTULA_INLINE MaskOf<Real> cross(const MaskOf<Real>& enters, const MaskOf<Real>& leaves, const Index& index) {
-        const MaskOf<Real> fits = solid == select(enters, Index(no_solid), index);
-        assign_where(enters & fits, solid, index);
-        assign_where(leaves & fits, solid, Index(no_solid));
+    CISTULA_INLINE bool cross(bool enters, bool leaves, uint32_t index) {
+        const bool fits = solid == (enters ? no_solid : index);
+        if (enters & fits) solid = index;
+        if (leaves & fits) solid = no_solid;
         return fits | !(enters | leaves);
     }
 
@@ -108,7 +106,6 @@ struct SingleInteriorOf {
         if (solid != no_solid) visit(solid, 1);
     }
 };
-using SingleInterior = SingleInteriorOf<float>;
 
 /// Converts an InteriorList to the form of `to`.
 CISTULA_INLINE void assign(InteriorList& to, const InteriorList& from) {
@@ -125,7 +122,7 @@ struct Ray {
     Vec3<Real> direction;                 // unit to within a few u
     IndexOf<Real> from_solid = no_solid;  // the solid on whose face the ray starts, if any
     IndexOf<Real> from_face = 0;          // that face: 2 slab + side, or the scene-wide triangle number
-    uint32_t from_plane = no_plane;       // the shared plane on which that face lies, if any
+    IndexOf<Real> from_plane = no_plane;  // the shared plane on which that face lies, if any
     Crossing<Real> after;                 // the last crossing that the ray has passed
     Media media;                          // the interior list at `after`
 
@@ -138,7 +135,7 @@ struct Ray {
         assign_where(who, from_face, other.from_face);
         assign_where(who, after.t, other.after.t);
         assign_where(who, after.key, other.after.key);
-        assign_where(who, media.solid, other.media.solid);
+        media.take_where(who, other.media);
     }
     /// Whether the ray's first crossing of a mesh must come from the side on which the ray starts.
     CISTULA_INLINE bool by_side() const { return after.t <= Real(-1); }

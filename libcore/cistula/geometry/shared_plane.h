@@ -34,17 +34,19 @@ CISTULA_INLINE void find_start_plane(const Scene& scene, Ray<Real, Media>& ray) 
 /// The t at which a line crosses a shared plane, by the operations of cross_slab(), so that it has the bits of a slab's
 /// face there; `otherwise` for a line that is parallel to it.
 template <class Real>
-CISTULA_INLINE Real plane_time(const SharedPlane<Real>& plane, const Vec3<Real>& origin, const Vec3<Real>& direction,
-                               Real otherwise) {
-    const Real nd = dot(plane.normal, direction);
-    if (magnitude(nd) < least_slope<Real>) return otherwise;
-    return (plane.offset - dot(plane.normal, origin)) * reciprocal(nd);
+CISTULA_INLINE Real plane_time(const SharedPlane<ScalarOf<Real>>& plane, const Vec3<Real>& origin,
+                               const Vec3<Real>& direction, Real otherwise) {
+    const Vec3<Real> normal = spread<Real>(plane.normal);
+    const Real nd = dot(normal, direction);
+    const MaskOf<Real> parallel = magnitude(nd) < least_slope<ScalarOf<Real>>;
+    if (all(parallel)) return otherwise;
+    return select(parallel, otherwise, (plane.offset - dot(normal, origin)) * reciprocal(nd));
 }
 
 /// The signed distance of a point from a shared plane.
 template <class Real>
-CISTULA_INLINE Real distance_from(const SharedPlane<Real>& plane, const Vec3<Real>& point) {
-    return dot(plane.normal, point) - plane.offset;
+CISTULA_INLINE Real distance_from(const SharedPlane<ScalarOf<Real>>& plane, const Vec3<Real>& point) {
+    return dot(spread<Real>(plane.normal), point) - plane.offset;
 }
 
 /// The face of a convex solid on a shared plane, or no_face. It has at most one there.

@@ -294,9 +294,11 @@ CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t triangle, Real ow
     if constexpr (Media::contacts)
         if (!scene.triangle_planes.empty())
             if (const uint32_t plane = scene.triangle_planes[triangle]; plane != no_plane) {
-                if (plane == ray.from_plane) return Real(-1);
+                const MaskOf<Real> starts_there = ray.from_plane == plane;
+                if (all(starts_there)) return Real(-1);
                 const Real t = plane_time(scene.shared_planes[plane], ray.origin, ray.direction, own);
-                if (magnitude(t - own) <= contact_reach<Real>) return t;
+                const MaskOf<Real> near = magnitude(t - own) <= contact_reach<ScalarOf<Real>>;
+                return select(starts_there, Real(-1), select(near, t, own));
             }
     return own;
 }

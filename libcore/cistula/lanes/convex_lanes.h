@@ -59,10 +59,4 @@ CISTULA_INLINE Line<Real> cross(const Scene& scene, const Solid& solid, const Ve
     return cross_all<Real, true>(scene, solid, origin, direction, skipped, least);
 }
 
-/// The face by which a ray inside a solid does not leave: that on which the ray starts.
-template <class Real, class Media>
-CISTULA_INLINE IndexOf<Real> face_left(uint32_t index, const Ray<Real, Media>& ray) {
-    return select(ray.from_solid == int(index), ray.from_face, IndexOf<Real>(-1));
-}
-
 }  // namespace cistula::convex_lanes

@@ -15,13 +15,18 @@ struct Absorption<true, Lanes<T, n>> {
     CISTULA_INLINE void begin(const Scene& scene, const Media& media, const Real& t, const MaskOf<Real>& who) {
         for (Absorption<true>& one : of)
             for (PathSum& sum : one.sum) sum = PathSum();
-        for_each_lane(who & (t > Real(0)),
-                      [&](int lane) { of[lane].add_all(scene, media_of(media, lane), t[lane], -1); });
+        for_each_lane(who & (t > Real(0)), [&](int lane) { of[lane].add_all(scene, media.of(lane), t[lane], -1); });
     }
 
-    template <class Scene>
-    CISTULA_INLINE void cross(const Scene& scene, const KeyOf<Real>& key, const Real& t, const MaskOf<Real>& who) {
-        for_each_lane(who, [&](int lane) { of[lane].cross(scene, KeyFormat<Real>::of_lane(key, lane), t[lane]); });
+    /// Records that rays pass faces at t without shading, which changes the media around them.
+    template <class Media, class Scene>
+    CISTULA_INLINE void change(const Scene& scene, const Media& before, const Media& beyond, const Real& t,
+                               const MaskOf<Real>& who) {
+        for_each_lane(who, [&](int lane) {
+            const uint32_t from = before.of(lane).bits, to = beyond.of(lane).bits;
+            of[lane].add_all(scene, InteriorSet{from & ~to}, t[lane], 1);
+            of[lane].add_all(scene, InteriorSet{to & ~from}, t[lane], -1);
+        });
     }
 
     template <class Media, class Scene>
@@ -30,18 +35,10 @@ struct Absorption<true, Lanes<T, n>> {
         LaneVectors<Real> weights(weight);
         for_each_lane(who, [&](int lane) {
             Vec3<T> one = weights[lane];
-            of[lane].dim(scene, media_of(media, lane), t[lane], one);
+            of[lane].dim(scene, media.of(lane), t[lane], one);
             weights.set(lane, one);
         });
         weight = weights.all();
-    }
-
-  private:
-    template <class Media>
-    CISTULA_INLINE static SingleInterior media_of(const Media& media, int lane) {
-        SingleInterior one;
-        one.solid = uint32_t(media.solid[lane]);
-        return one;
     }
 };
 

@@ -91,7 +91,7 @@ class LaneQueue<LaneBranch<Lanes<T, n>, Media, Weight>> {
         else
             visit(branch.weight.x), visit(branch.weight.y), visit(branch.weight.z);
         visit(branch.ray.after.t), visit(branch.ray.after.key);
-        visit(branch.ray.from_solid), visit(branch.ray.from_face), visit(branch.ray.media.solid);
+        visit(branch.ray.from_solid), visit(branch.ray.from_face), visit(branch.ray.media.bits);
     }
 
     /// Where the next branches of a row begin.

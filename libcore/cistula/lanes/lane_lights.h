@@ -50,7 +50,7 @@ CISTULA_INLINE MaskOf<Real> may_hit_visible_lights(const Scene& scene, const Ray
                                                    const MaskOf<Real>& who, const Real& from, const Real& to) {
     if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return who;
     MaskOf<Real> may = false;
-    for (const IndexedSolid<ScalarOf<Real>>& entry : scene.convex) {
+    for (const IndexedSolid<ScalarOf<Real>>& entry : scene.convex_copies) {
         const SlabGroup<ScalarOf<Real>>& group = scene.slab_groups[entry.solid.first_group];
         const Vec3<Real> to_center = spread<Real>(entry.sphere.center) - ray.origin;
         const Real ahead = dot(to_center, ray.direction), rest = dot(to_center, to_center) - group.light_square;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cistula/lanes/convex_lanes.h"
+#include "cistula/lanes/lane_contact.h"
 #include "cistula/shading/shadow.h"
 
 namespace cistula {
@@ -16,7 +17,7 @@ CISTULA_INLINE Lanes<int64_t, n> saturating_add(const Lanes<int64_t, n>& a, cons
 
 /// 2^-loss: from the scene's table where it has all of them.
 template <class Real, int n>
-CISTULA_INLINE Lanes<Real, n> transmittance_of(const ConstantScene<Real>& scene, const Lanes<int64_t, n>& loss) {
+CISTULA_INLINE Lanes<Real, n> transmittance_of(const LaneScene<Real>& scene, const Lanes<int64_t, n>& loss) {
     using Result = Lanes<Real, n>;
     MaskOf<Result> known = narrowed<Result>(loss == Lanes<int64_t, n>(int64_t(0)));
     Result share(Real(1));
@@ -49,23 +50,38 @@ CISTULA_INLINE void light_sides(const Scene& scene, uint32_t index, const Shadow
     }
 }
 
-/// Adds what a convex solid takes from the light of rays that start inside it, and of others that may enter it.
+/// Adds what a convex solid takes from the light of rays that start inside it, and of others that may enter it. `left`:
+/// faces by which rays do not leave it.
 template <class E, class Real, class Media, class Scene>
 CISTULA_INLINE void shadow_solid(const Scene& scene, uint32_t index, const Solid& solid,
-                                 const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& inside,
-                                 const MaskOf<Real>& others, ShadowSum<E, Real>& sum) {
+                                 const ShadowRay<Real, Media>& shadow, const IndexOf<Real>& left,
+                                 const MaskOf<Real>& inside, const MaskOf<Real>& others, ShadowSum<E, Real>& sum) {
     const Ray<Real, Media>& ray = shadow.ray;
     MaskOf<Real> lit_inside, lit_outside;
     light_sides<E>(scene, index, shadow, inside | others, lit_inside, lit_outside);
     const MaskOf<Real> on_face = lit_inside | lit_outside;
     const Material<ScalarOf<Real>>& material = scene.materials[solid.material];
-    const auto line = convex_lanes::cross(scene, solid, ray.origin, ray.direction, convex_lanes::face_left(index, ray));
+    const auto line = convex_lanes::cross(scene, solid, ray.origin, ray.direction, left);
     const Real leave = select(on_face, shadow.distance, max_or_second(line.leave, Real(0)));
     if (any(inside)) add_exit<Real, E>(inside, material, leave, shadow.distance, sum);
     const Real enter = max_or_second(line.enter, Real(0));
     const MaskOf<Real> meets = is_met(line, scene.extent) & (enter < shadow.distance);
     const MaskOf<Real> enters = others & !lit_outside & (lit_inside | meets);
     if (any(enters)) add_entry<Real, E>(enters, material, enter, leave, shadow.distance, sum);
+}
+
+/// Adds what a convex solid takes from the light of rays that start on a shared plane where it has a face.
+template <class E, class Real, class Media, class Scene>
+CISTULA_NOINLINE void shadow_beside(const Scene& scene, uint32_t index, const Solid& solid,
+                                    const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& who,
+                                    ShadowSum<E, Real>& sum) {
+    MaskOf<Real> lit_inside, lit_outside;
+    light_sides<E>(scene, index, shadow, who, lit_inside, lit_outside);
+    const LaneEntries<Real> entries = entries_beside(scene, index, shadow.ray, who & !lit_outside);
+    const Real enter = max_or_second(entries.enter, Real(0));
+    const MaskOf<Real> enters = entries.found & (enter < shadow.distance);
+    const Real leave = select(lit_inside, shadow.distance, min_or_second(entries.leave, shadow.distance));
+    if (any(enters)) add_entry<Real, E>(enters, scene.materials[solid.material], enter, leave, shadow.distance, sum);
 }
 
 }  // namespace cistula

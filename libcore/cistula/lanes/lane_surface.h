@@ -43,6 +43,7 @@ template <class T, int n>
 struct Surface<Lanes<T, n>> {
     using Real = Lanes<T, n>;
     Vec3<Real> point, normal, viewer_side, color;
+    LaneMedia<Real> viewer_media;  // around viewer_side
     LaneMaterial<Real> material;
 };
 template <class Scene, class T, int n>
@@ -72,21 +73,22 @@ CISTULA_INLINE Lanes<T, n> highlight(const LaneMaterial<Lanes<T, n>>& material, 
 
 /// The index of refraction around each ray.
 template <class Scene, class T, int n>
-CISTULA_INLINE Lanes<double, n> index_of(const Scene& scene, const SingleInteriorOf<Lanes<T, n>>& media) {
+CISTULA_INLINE Lanes<double, n> index_of(const Scene& scene, const LaneMedia<Lanes<T, n>>& media) {
     Lanes<double, n> index(1.0);
-    for_each_value(media.solid != int(no_solid), media.solid, [&](uint32_t solid, const auto& who) {
-        assign_where(widened(who), index, Lanes<double, n>(scene.materials[scene.solids[solid].material].index));
+    for_each_value(!media.empty(), media.bits, [&](uint32_t set, const auto& who) {
+        const Solid& medium = scene.solids[InteriorSet{set}.highest()];
+        assign_where(widened(who), index, Lanes<double, n>(scene.materials[medium.material].index));
     });
     return index;
 }
 
 template <class Real, class T, int n>
-CISTULA_INLINE auto is_clear(const ConstantScene<Real>& scene, const Lanes<T, n>& solid) {
-    return has_bit(scene.clear_solids, solid);
+CISTULA_INLINE auto is_clear(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
+    return entries_of(scene.clear_solids, solid) != T(0);
 }
 template <class Real, class T, int n>
-CISTULA_INLINE auto transmits(const ConstantScene<Real>& scene, const Lanes<T, n>& solid) {
-    return has_bit(scene.transmitting_solids, solid);
+CISTULA_INLINE auto transmits(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
+    return entries_of(scene.transmitting, solid) != T(0);
 }
 
 /// The origins of rays that leave from points on a triangle, on its outside or its inside (Apex::from).
@@ -109,6 +111,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
     using Index = IndexOf<Real>;
     const Index solids = key_solid(hit.key), faces = key_face(hit.key);
     s.point = s.viewer_side = along(ray.origin, hit.t, ray.direction);
+    s.viewer_media = ray.media;
     s.material.all = scene.materials.data;
     s.material.number = s.material.integer_exponent = 0;  // read in all lanes
     Index slab = 0;
@@ -139,7 +142,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
             const Vec3<Real> first = spread<Real>(corner[0]);
             const Vec3<Real> point = along(along(first, hit.u, spread<Real>(corner[1] - corner[0])), hit.v,
                                            spread<Real>(corner[2] - corner[0]));
-            const Vec3<Real> normal = spread<Real>(outward_normal(scene, slot));
+            const Vec3<Real> normal = spread<Real>(scene.sides[slot].normal);
             assign_where(same, s.normal, select(hit.enters, normal, -normal));
             assign_where(same, s.point, point);
             assign_where(same, s.viewer_side, off_triangle(scene, slot, hit.enters, point));

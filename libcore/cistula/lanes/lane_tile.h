@@ -4,8 +4,8 @@
 
 #include "cistula/lanes/lane_absorption.h"
 #include "cistula/lanes/lane_branch.h"
+#include "cistula/lanes/lane_intersector.h"
 #include "cistula/lanes/lane_lights.h"
-#include "cistula/lanes/lane_loop.h"
 #include "cistula/lanes/lane_sums.h"
 #include "cistula/lanes/lane_surface.h"
 #include "cistula/transport/pixel.h"
@@ -31,6 +31,7 @@ struct LaneFirstSeen {
     static constexpr int lanes = LaneTraits<Real>::lanes;
     using T = ScalarOf<Real>;
 
+    const LaneScene<T>& scene;
     const FrameView& frame;
     LanePixel* of[lanes];
     PixelWork work[lanes];  // start and facing of samples in the middle of their pixels
@@ -40,14 +41,14 @@ struct LaneFirstSeen {
         for_each_lane(who, [&](int lane) {
             Hit<T> one;
             one.t = hit.t[lane];
-            one.key = KeyFormat<Real>::of_lane(hit.key, lane);
+            one.key = make_key(CrossingKind::enter, scene.numbers[uint32_t(key_solid(hit.key)[lane])], 0);
             Surface<T> met;
             met.normal = lane_of(s.normal, lane);
             seen(lane).surface(one, met);
         });
     }
-    template <class Scene, class Media>
-    CISTULA_INLINE void light(const Scene& scene, const VisibleLightHit<Real>& hit, const Ray<Real, Media>& ray,
+    template <class Media>
+    CISTULA_INLINE void light(const LaneScene<T>&, const VisibleLightHit<Real>& hit, const Ray<Real, Media>& ray,
                               const MaskOf<Real>& who) const {
         for_each_lane(who, [&](int lane) {
             seen(lane).light(scene, VisibleLightHit<T>{hit.t[lane], uint32_t(hit.light[lane])}, lane_of(ray, lane));
@@ -65,7 +66,7 @@ template <class Real, class E>
 class LaneTile {
   public:
     using T = ScalarOf<Real>;
-    using Intersector = LaneLoop<Real>;
+    using Intersector = LaneIntersector<Real>;
     using Media = typename Intersector::Media;
     using Scene = typename Intersector::Scene;
     using Entry = BranchOf<Real, E, Media>;
@@ -84,7 +85,7 @@ class LaneTile {
     /// Renders the pixels that were added, unless stopped(), and adds the counts.
     template <class Stopped>
     void render(const Stopped& stopped, RayCounts& counts, uint32_t& flags) {
-        const Intersector intersector(scene_);
+        const Intersector intersector{scene_};
         LaneSums<Real> sums(frame_.tree, scene_, pixels_.data(), flags);
         LaneRays<Real> rays{RayCounts(), sums};
         RayTree<Real, E, Intersector, LaneQueues<Entry>, LaneRays<Real>> tree(scene_, intersector, frame_.tree.depth,
@@ -94,7 +95,7 @@ class LaneTile {
             if (turns % turns_between_stops == 0 && stopped()) return queues_.clear();
             Entry branch;
             Mask who = false;
-            LaneFirstSeen<Real> first{frame_, {}, {}};
+            LaneFirstSeen<Real> first{scene_, frame_, {}, {}};
             if (queues_.has_full() || next_ == samples()) {
                 who = queues_.pop(branch);
                 if (!any(who)) break;
@@ -109,6 +110,7 @@ class LaneTile {
                 if (!any(who)) continue;
                 sums.count(who);
             }
+            find_start_plane<E>(scene_, branch.ray);
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
             tree.follow(branch, who, first);
             sums.end(who);
@@ -131,6 +133,14 @@ class LaneTile {
     size_t per_pixel() const { return size_t(frame_.supersample) * size_t(frame_.supersample); }
     size_t samples() const { return pixels_.size() * per_pixel(); }
 
+    /// The solids of an interior list, which has the scene's own numbers.
+    InteriorSet interior_set(const InteriorList& list) const {
+        InteriorSet set;
+        for (uint32_t i = 0; !list.empty() && i < scene_.convex.size; ++i)
+            set.bits |= uint32_t(list.contains(scene_.numbers[i])) << i;
+        return set;
+    }
+
     /// Sets the next primary rays, and returns where they are. Those that miss the scene are done here.
     Mask take_primaries(Entry& branch, LaneFirstSeen<Real>& first, uint32_t& flags) {
         LaneVectors<Real> origins, directions;
@@ -141,7 +151,7 @@ class LaneTile {
             LanePixel& pixel = pixels_[number];
             const GridSample sample = grid_sample(int(next_ % per_pixel()), frame_.supersample);
             const Vec3<double> direction = sample_direction(frame_, places_[number].x, places_[number].y, sample);
-            Ray<T, SingleInterior> ray;
+            Ray<T> ray;
             double start;
             if (!primary_ray(scene_, frame_, direction, ray, start)) {
                 PixelSums<T>(frame_.tree, scene_, *pixel.record, flags).add(scene_.background);
@@ -150,7 +160,7 @@ class LaneTile {
             }
             origins.set(count, ray.origin);
             directions.set(count, ray.direction);
-            media.of[count] = int32_t(ray.media.solid);
+            media.of[count] = int32_t(interior_set(ray.media).bits);
             numbers.of[count] = int32_t(number);
             first.of[count] = &pixel;
             if (sample.middle) {
@@ -163,12 +173,12 @@ class LaneTile {
         for (int lane = count; lane < lanes; ++lane) {
             origins.set(lane, Vec3<T>(T(0)));
             directions.set(lane, Vec3<T>(T(0)));
-            media.of[lane] = int32_t(no_solid);
+            media.of[lane] = 0;
             numbers.of[lane] = 0;
         }
         branch.ray.origin = origins.all();
         branch.ray.direction = directions.all();
-        branch.ray.media.solid = media.all();
+        branch.ray.media.bits = media.all();
         branch.pixel = numbers.all();
         return Mask::first(count);
     }

@@ -68,11 +68,11 @@ struct TriangleSides {
     Vec3<Real> normal;   // on the outside
     Apex<Real> apex[2];  // inside, outside
 
+    /// `normal`: the triangle's outward normal, or that of its shared plane.
     template <class Scene>
-    static TriangleSides of(const Scene& scene, uint32_t slot) {
+    static TriangleSides of(const Scene& scene, uint32_t slot, const Vec3<Real>& normal) {
         Vec3<Real> corner[3];
         triangle_corners(scene, slot, corner);
-        const Vec3<Real> normal = triangle_normal(corner[1] - corner[0], corner[2] - corner[0]);
         return {normal, {apex_of(scene, slot, corner, -normal, false), apex_of(scene, slot, corner, normal, true)}};
     }
 };

@@ -54,8 +54,10 @@ template <class Lanes>
 struct Absorption<false, Lanes> {
     template <class Real, class Media, class Scene, class... Who>
     CISTULA_INLINE void begin(const Scene&, const Media&, const Real&, const Who&...) {}
-    template <class Real, class Scene, class... Who>
-    CISTULA_INLINE void cross(const Scene&, const KeyOf<Real>&, const Real&, const Who&...) {}
+    template <class Real, class Scene>
+    CISTULA_INLINE void cross(const Scene&, uint64_t, const Real&) {}
+    template <class Real, class Media, class Scene>
+    CISTULA_INLINE void change(const Scene&, const Media&, const Media&, const Real&, const MaskOf<Real>&) {}
     template <class Real, class Media, class Weight, class Scene, class... Who>
     CISTULA_INLINE void dim(const Scene&, const Media&, const Real&, Weight&, const Who&...) {}
 };

@@ -79,9 +79,10 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                                     const Observer& observer = {}, const MaskOf<Real>& who = true) {
     Surface<Real> s = surface;
     const Media* around = &ray.media;
+    if constexpr (in_lanes<Real>) around = &surface.viewer_media;
     [[maybe_unused]] Media corrected;
     [[maybe_unused]] bool meshes = false;
-    if constexpr (meets_contacts<E, Media>)
+    if constexpr (meets_contacts<E, Media> && !in_lanes<Real>)  // surfaces in lanes are corrected
         if (starts_at_contact<E>(scene, event)) {
             corrected = ray.media;
             meshes = start_at_contact(scene, ray, event, s.normal, false, s.viewer_side, corrected);
@@ -113,7 +114,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                 ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, event.hit, *around), aim.distance,
                                               &light};
                 find_start_plane<E>(scene, shadow.ray);
-                if constexpr (meets_contacts<E, Media>)
+                if constexpr (meets_contacts<E, Media> && !in_lanes<Real>)
                     if (meshes) count_meshes(scene, intersector, shadow.ray);
                 rays.add_shadow(lights);
                 if constexpr (in_lanes<Real>)

@@ -10,15 +10,15 @@ namespace cistula {
 
 template <class Real, class Media = InteriorList>
 struct SurfaceEvent {
-    static constexpr int capacity = Media::contacts ? 8 : 1;
+    static constexpr int capacity = Media::contacts && !in_lanes<Real> ? 8 : 1;  // lanes keep the last one
 
     Hit<Real> hit;                   // the crossing to shade: that of the solid of highest priority
     Crossing<Real> taken[capacity];  // all crossings, in order
     int count;
-    Media beyond;       // media behind all of them
-    MaskOf<Real> fits;  // whether `beyond` had room
-    bool wrong_side;    // whether refused mesh crossings come before the first (Hit::wrong_side_t)
-    bool changes;       // whether a solid begins or ends here; else the ray goes straight on
+    Media beyond;          // media behind all of them
+    MaskOf<Real> fits;     // whether `beyond` had room
+    bool wrong_side;       // whether refused mesh crossings come before the first (Hit::wrong_side_t)
+    MaskOf<Real> changes;  // whether a solid begins or ends here; else the ray goes straight on
 
     CISTULA_INLINE void begin(const Ray<Real, Media>& ray, const Hit<Real>& first) {
         hit = first;
@@ -35,7 +35,7 @@ struct SurfaceEvent {
         hit.take(who, other.hit.t, other.hit.key, other.hit.u, other.hit.v, other.hit.slot, other.hit.enters);
         assign_where(who, taken[0].t, other.taken[0].t);
         assign_where(who, taken[0].key, other.taken[0].key);
-        assign_where(who, beyond.solid, other.beyond.solid);
+        beyond.take_where(who, other.beyond);
     }
 
     CISTULA_INLINE const Crossing<Real>& last() const {

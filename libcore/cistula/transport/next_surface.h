@@ -89,8 +89,8 @@ class NextSurface {
                 assign_where(ends, visible.light, light.light);
             }
             SurfaceEvent<Real, Media> next;
-            resolve_event<E>(scene_, intersector_, branch.ray, hit, next);
             left = left & !ends;
+            resolve_event<E>(scene_, branch.ray, hit, left, next);
             if (any(left & !next.fits)) sums_.flag(flag_media_overflow);
             const MaskOf<Real> passes = left & invisible(branch.ray, next), stops = left & !passes;
             absorption.dim(scene_, branch.ray.media, next.hit.t, branch.weight, stops);
@@ -100,7 +100,7 @@ class NextSurface {
                 event.take_where(stops, next);
             met |= stops;
             if (!any(passes)) return met;
-            absorption.cross(scene_, next.taken[0].key, next.taken[0].t, passes);
+            absorption.change(scene_, branch.ray.media, next.beyond, next.taken[0].t, passes);
             pass(branch.ray, next, passes);
             left = passes;
             if (crossings == largest_crossings) {
@@ -112,7 +112,7 @@ class NextSurface {
 
     /// Moves rays straight on through a face, where `who` holds.
     CISTULA_INLINE void pass(Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event, const MaskOf<Real>& who) {
-        assign_where(who, ray.media.solid, event.beyond.solid);
+        ray.media.take_where(who, event.beyond);
         assign_where(who, ray.after.t, event.taken[0].t);
         assign_where(who, ray.after.key, event.taken[0].key);
     }
@@ -140,12 +140,16 @@ class NextSurface {
         if constexpr (!E::has(effect_transmission | effect_insides)) {
             return false;
         } else {
-            if constexpr (meets_contacts<E, Media>)
-                if (!event.changes) return true;
+            MaskOf<Real> unchanged = false;
+            if constexpr (meets_contacts<E, Media>) {
+                unchanged = !event.changes;
+                if (all(unchanged)) return unchanged;
+            }
             const IndexOf<Real> solid = key_solid(event.hit.key), medium = ray.media.medium();
             const MaskOf<Real> sheet = is_kind(event.hit.key, CrossingKind::sheet);
             MaskOf<Real> within_higher = (!sheet) & (medium != no_solid) & (medium > solid);
-            if constexpr (meets_contacts<E, Media>) within_higher = within_higher && event.beyond.contains(medium);
+            if constexpr (meets_contacts<E, Media>) within_higher = within_higher & event.beyond.contains(medium);
+            within_higher = within_higher | unchanged;
             if (all(within_higher)) return within_higher;
             MaskOf<Real> clear = is_clear(scene_, solid);
             if constexpr (E::has(effect_refraction))
@@ -166,6 +170,7 @@ class NextSurface {
         return radiance;
     }
 
+    /// The visible lights that rays in lanes meet before `hit`.
     CISTULA_INLINE VisibleLightHit<Real> light_before(const Hit<Real>& hit, Entry& branch,
                                                       const MaskOf<Real>& who) const {
         MaskOf<Real> asked = who, goes_on = false;

@@ -73,6 +73,7 @@ class RayTree {
         Surface<Real> s;
         surfaces_at<E>(scene_, branch.ray, event.hit, met, s);
         if (branch.depth == 0) first.surface(event.hit, s, met);
+        correct_starts<E>(scene_, branch.ray, event, s.normal, false, met, s.viewer_side, s.viewer_media);
         shade(branch, met, event, s);
     }
 
@@ -156,7 +157,7 @@ class RayTree {
     CISTULA_INLINE Entry mirrored_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
                                         const Surface<Real>& s, const Weight& weight) {
         Entry child = parent.child(weight, true);
-        child.ray = spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), event.hit, parent.ray.media);
+        child.ray = spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), event.hit, s.viewer_media);
         return child;
     }
     CISTULA_INLINE Entry transmitted_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
@@ -169,8 +170,10 @@ class RayTree {
         if constexpr (E::has(effect_refraction)) {
             const MaskOf<Real> bends = who & split.bends;
             if (any(bends)) {
-                const Vec3<Real> start = far_side<E>(scene_, event.hit, bends, s.point);
-                child.ray.take_where(bends, spawned(start, split.through, event.hit, event.beyond));
+                Vec3<Real> start = far_side<E>(scene_, event.hit, bends, s.point);
+                Media media = event.beyond;
+                correct_starts<E>(scene_, parent.ray, event, s.normal, true, bends, start, media);
+                child.ray.take_where(bends, spawned(start, split.through, event.hit, media));
             }
         }
         return child;

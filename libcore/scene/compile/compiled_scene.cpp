@@ -2,21 +2,13 @@
 
 #include <algorithm>
 
+#include "scene/compile/arrays.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
 namespace {
 
 using glm::dvec3;
-
-template <class T>
-Span<T> span_of(const std::vector<T>& v) {
-    return {v.data(), static_cast<uint32_t>(v.size())};
-}
-template <class T>
-size_t bytes_of(const std::vector<T>& v) {
-    return v.size() * sizeof(T);
-}
 
 struct Plane {
     dvec3 normal;

@@ -1,0 +1,214 @@
+// Faces of several solids in one plane, in lanes: what is common is done for all lanes at once, the rest lane by lane
+// (docs/rules.md, 11).
+#pragma once
+
+#include "cistula/lanes/lane_hit.h"
+#include "cistula/shading/contact.h"
+#include "cistula/traversal/bvh.h"
+
+namespace cistula {
+
+/// The intersector of single rays over a LaneScene.
+template <class Real>
+struct SingleIntersector {
+    const SceneView<Real>& scene;
+
+    CISTULA_NOINLINE Hit<Real> closest(const Ray<Real>& ray) const {
+        if (scene.tree.empty()) return BruteIntersector<Real>{scene}.closest(ray);
+        return BvhIntersector<Real>{scene}.closest(ray);
+    }
+};
+
+/// The shared planes of faces; no_plane where there is none, or no such solid.
+template <class Real>
+CISTULA_INLINE IndexOf<Real> planes_of(const LaneScene<ScalarOf<Real>>& scene, const IndexOf<Real>& solid,
+                                       const IndexOf<Real>& face) {
+    using Index = IndexOf<Real>;
+    LaneArray<Index> solids(solid), faces(face), planes;
+    for (int lane = 0; lane < LaneTraits<Real>::lanes; ++lane) {
+        const auto own = uint32_t(solids.of[lane]);
+        planes.of[lane] =
+            own < scene.solids.size ? plane_of_face(scene, own, uint32_t(faces.of[lane])) : ScalarOf<Index>(no_plane);
+    }
+    return planes.all();
+}
+
+template <class E, class T, int n>
+CISTULA_INLINE void find_start_plane(const LaneScene<T>& scene, Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray) {
+    if constexpr (E::has(effect_contacts))
+        if (!scene.shared_planes.empty()) ray.from_plane = planes_of<Lanes<T, n>>(scene, ray.from_solid, ray.from_face);
+}
+
+/// The convex solids with a face on the shared planes on which rays start.
+template <class T, int n>
+CISTULA_INLINE auto bodies_at_start(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray) {
+    using Index = IndexOf<Lanes<T, n>>;
+    Index bodies = 0;
+    for_each_value(ray.from_plane != Index(ScalarOf<Index>(no_plane)), ray.from_plane,
+                   [&](uint32_t plane, const auto& same) {
+                       assign_where(same, bodies, Index(int(scene.plane_bodies[plane].all())));
+                   });
+    return bodies;
+}
+
+/// EntryBeside in lanes, of rays that enter.
+template <class Real>
+struct LaneEntries {
+    Real enter = 0, leave = 0;
+    IndexOf<Real> face = 0;
+    MaskOf<Real> found = false;
+};
+
+/// Where rays that start on a shared plane enter a convex solid that has a face there.
+template <class T, int n>
+CISTULA_NOINLINE LaneEntries<Lanes<T, n>> entries_beside(const LaneScene<T>& scene, uint32_t index,
+                                                         const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
+                                                         const MaskOf<Lanes<T, n>>& who) {
+    LaneEntries<Lanes<T, n>> entries;
+    for_each_lane(who, [&](int lane) {
+        const auto plane = uint32_t(ray.from_plane[lane]);
+        const EntryBeside<T> one =
+            entry_beside(static_cast<const SceneView<T>&>(scene), index, face_on(scene, scene.solids[index], plane),
+                         lane_of(ray.origin, lane), lane_of(ray.direction, lane), scene.shared_planes[plane].slack);
+        if (one.face == no_face) return;
+        entries.enter.set(lane, one.enter);
+        entries.leave.set(lane, one.leave);
+        entries.face.set(lane, int32_t(one.face));
+        entries.found |= MaskOf<Lanes<T, n>>::of_bits(1u << lane);
+    });
+    return entries;
+}
+
+/// The faces by which rays inside a convex solid do not leave: those on which they start.
+template <class E, class T, int n>
+CISTULA_INLINE IndexOf<Lanes<T, n>> faces_left(const LaneScene<T>& scene, uint32_t index,
+                                               const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
+                                               const MaskOf<Lanes<T, n>>& beside) {
+    using Index = IndexOf<Lanes<T, n>>;
+    const auto own = ray.from_solid == int(index);
+    Index left = select(own, ray.from_face, Index(-1));
+    if constexpr (E::has(effect_contacts))
+        for_each_value(beside & !own, ray.from_plane, [&](uint32_t plane, const auto& same) {
+            assign_where(same, left, Index(int(face_on(scene, scene.solids[index], plane))));
+        });
+    return left;
+}
+
+/// The events of hits where `who` holds (surface_event.h). Crossings that share a plane are gathered lane by lane.
+template <class E, class T, int n>
+CISTULA_INLINE void resolve_event(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
+                                  const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& who,
+                                  SurfaceEvent<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& event) {
+    event.begin(ray, hit);
+    if constexpr (E::has(effect_contacts)) {
+        using Index = IndexOf<Lanes<T, n>>;
+        if (scene.shared_planes.empty()) return;
+        const auto bodies = who & !is_kind(hit.key, CrossingKind::sheet);
+        if (!any(bodies)) return;
+        const Index planes = planes_of<Lanes<T, n>>(scene, key_solid(hit.key), key_face(hit.key));
+        for_each_lane(bodies & (planes != Index(ScalarOf<Index>(no_plane))),
+                      [&](int lane) { gather_in_lane(scene, ray, hit, lane, event); });
+    }
+}
+
+/// A lane of a hit as that of a single ray.
+template <class T, int n>
+CISTULA_INLINE Hit<T> lane_of(const Hit<Lanes<T, n>>& hit, int lane) {
+    Hit<T> one;
+    one.t = hit.t[lane];
+    one.key = KeyFormat<Lanes<T, n>>::of_lane(hit.key, lane);
+    one.u = hit.u[lane];
+    one.v = hit.v[lane];
+    one.slot = uint32_t(hit.slot[lane]);
+    one.enters = (hit.enters.bits() >> lane & 1u) != 0;
+    return one;
+}
+
+/// Collects the crossings at a lane's hit (gather_shared).
+template <class T, int n>
+CISTULA_NOINLINE void gather_in_lane(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
+                                     const Hit<Lanes<T, n>>& hit, int lane,
+                                     SurfaceEvent<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& event) {
+    using Keys = KeyFormat<Lanes<T, n>>;
+    const SceneView<T>& view = scene;
+    const Ray<T> one = lane_of<InteriorList>(ray, lane);
+    SurfaceEvent<T> gathered;
+    gathered.begin(one, lane_of(hit, lane));
+    gather_shared(view, SingleIntersector<T>{view}, one, gathered);
+    const auto only = MaskOf<Lanes<T, n>>::of_bits(1u << lane);
+    const Hit<T>& shaded = gathered.hit;
+    event.hit.take(only, shaded.t, Keys::of_single(shaded.key), shaded.u, shaded.v, int32_t(shaded.slot),
+                   shaded.enters);
+    event.taken[0].t.set(lane, gathered.last().t);
+    event.taken[0].key.set(lane, Keys::of_single(gathered.last().key));
+    event.beyond.bits.set(lane, int32_t(InteriorSet::of(gathered.beyond).bits));
+    assign_where(only, event.fits, MaskOf<Lanes<T, n>>(gathered.fits));
+    assign_where(only, event.changes, MaskOf<Lanes<T, n>>(gathered.changes));
+}
+
+/// Corrects the start of a lane's ray (start_at_contact).
+template <class T, int n>
+CISTULA_NOINLINE void correct_lane(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& parent,
+                                   const Vec3<Lanes<T, n>>& normal, bool beyond, int lane, Vec3<Lanes<T, n>>& origin,
+                                   LaneMedia<Lanes<T, n>>& media) {
+    const SceneView<T>& view = scene;
+    const SingleIntersector<T> intersector{view};
+    const Ray<T> one = lane_of<InteriorList>(parent, lane);
+    SurfaceEvent<T> event;  // with all crossings, of which lanes keep the last
+    resolve_event<Effects<all_effects>>(view, intersector, one, intersector.closest(one), event);
+    Vec3<T> start = lane_of(origin, lane);
+    InteriorList around = media.of(lane).list();
+    start_at_contact(view, one, event, lane_of(normal, lane), beyond, start, around);
+    for (int axis = 0; axis < 3; ++axis) origin[axis].set(lane, start[axis]);
+    media.bits.set(lane, int32_t(InteriorSet::of(around).bits));
+}
+
+/// Corrects the origins and the media of rays that start at hits where `who` holds (start_at_contact). Starts near one
+/// plane alone are lifted off it at once, others lane by lane.
+template <class E, class T, int n>
+CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& parent,
+                                   const SurfaceEvent<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& event,
+                                   const Vec3<Lanes<T, n>>& normal, bool beyond, const MaskOf<Lanes<T, n>>& who,
+                                   Vec3<Lanes<T, n>>& origin, LaneMedia<Lanes<T, n>>& media) {
+    if constexpr (E::has(effect_contacts)) {
+        using Real = Lanes<T, n>;
+        using Index = IndexOf<Real>;
+        if (scene.shared_planes.empty()) return;
+        const Index solids = key_solid(event.hit.key), own = planes_of<Real>(scene, solids, key_face(event.hit.key));
+        const Vec3<Real> toward = beyond ? -normal : normal, met = along(parent.origin, event.hit.t, parent.direction);
+        Vec3<Real> start = origin;
+        LaneMedia<Real> around = media;
+        for_each_value(who & (own != Index(ScalarOf<Index>(no_plane))), own, [&](uint32_t number, const auto& same) {
+            const SharedPlane<T>& plane = scene.shared_planes[number];
+            const PlaneBodies& bodies = scene.plane_bodies[number];
+            assign_where(same, start, along(met, Real(start_lift<T> * plane.slack), toward));
+            const auto up = dot(toward, spread<Real>(plane.normal)) > Real(0);
+            const Index beside = select(up, Index(int(bodies.below)), Index(int(bodies.above)));
+            assign_where(same, around.bits, around.bits & (beside ^ Index(-1)));
+        });
+        MaskOf<Real> single = false;  // lanes that are done by themselves
+        for_each_value(who, solids, [&](uint32_t index, const auto& same) {
+            const Solid& solid = scene.solids[index];
+            for (uint32_t i = 0; i < solid.near_count; ++i) {
+                const uint32_t number = scene.near_planes[solid.first_near + i];
+                const SharedPlane<T>& plane = scene.shared_planes[number];
+                const Real near(near_start<T> * plane.slack);
+                const auto far =
+                    (magnitude(distance_from(plane, start)) > near) & (magnitude(distance_from(plane, met)) > near);
+                single |= same & (own != Index(ScalarOf<Index>(number))) & !far;
+            }
+        });
+        for_each_lane(single, [&](int lane) {
+            Vec3<Real> corrected = origin;
+            LaneMedia<Real> corrected_media = media;
+            correct_lane(scene, parent, normal, beyond, lane, corrected, corrected_media);
+            const auto only = MaskOf<Real>::of_bits(1u << lane);
+            assign_where(only, start, corrected);
+            around.take_where(only, corrected_media);
+        });
+        assign_where(who, origin, start);
+        media.take_where(who, around);
+    }
+}
+
+}  // namespace cistula

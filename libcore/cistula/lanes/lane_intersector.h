@@ -1,0 +1,248 @@
+// The intersector of lanes: a loop over the primitives where they are few, else a tree over them.
+#pragma once
+
+#include "cistula/lanes/lane_shadow.h"
+#include "cistula/lanes/lane_tree.h"
+
+namespace cistula {
+
+template <class Real>
+struct LaneIntersector {
+    using Scene = LaneScene<ScalarOf<Real>>;
+    using Media = LaneMedia<Real>;
+    using Mask = MaskOf<Real>;
+    using Index = IndexOf<Real>;
+    const Scene& scene;
+
+    /// The hits with the smallest (t, key) after ray.after, where `who` holds.
+    template <class E>
+    CISTULA_NOINLINE Hit<Real> closest(const Ray<Real, Media>& ray, const Mask& who) const {
+        Hit<Real> best;
+        // With t = -1 a ray that is not finite, or not asked for, finds nothing.
+        const Mask traced = who & is_finite(ray);
+        best.t = select(traced, Real(RealTraits<Real>::infinity), Real(-1));
+        Mask enclosed = false;  // by solids that nothing else comes near
+        if constexpr (E::solids && E::has(effect_insides))
+            enclosed = traced & ((ray.media.bits & Index(int(scene.isolated))) != 0);
+        const Index beside = beside_start<E>(ray);
+        if (scene.tree.empty())
+            closest_in_loop<E>(ray, traced, traced & !enclosed, beside, best);
+        else
+            closest_in_tree<E>(ray, enclosed, traced & !enclosed, beside, best);
+        assign_where(!best.found(), best.t, Real(RealTraits<Real>::infinity));
+        return best;
+    }
+
+    /// The share of the light's intensity that reaches the rays' origins, where `who` holds.
+    template <class E>
+    CISTULA_NOINLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow, const Mask& who) const {
+        ShadowSum<E, Real> sum;
+        assign_where(!(who & is_finite(shadow.ray)), sum.opaque, Index(7));
+        const Index beside = beside_start<E>(shadow.ray);
+        if (scene.tree.empty())
+            shadow_in_loop(shadow, who, beside, sum);
+        else
+            shadow_in_tree(shadow, beside, sum);
+        return sum.template transmittance<Real>(scene);
+    }
+
+  private:
+    /// The convex solids with a face on the shared planes on which rays start, a bit each.
+    template <class E>
+    CISTULA_INLINE Index beside_start(const Ray<Real, Media>& ray) const {
+        if constexpr (E::has(effect_contacts))
+            if (!scene.shared_planes.empty()) return bodies_at_start(scene, ray);
+        return 0;
+    }
+
+    /// `free`: the rays of `who` that may hit more than the solid that they are in.
+    template <class E>
+    CISTULA_INLINE void closest_in_loop(const Ray<Real, Media>& ray, const Mask& who, const Mask& free,
+                                        const Index& beside, Hit<Real>& best) const {
+        for (uint32_t i = 0; E::solids && i < scene.convex_copies.size; ++i)
+            closest_solid<E>(i, ray, who, free, beside, best);
+        for (uint32_t i = 0; E::triangles && i < scene.clusters.size; ++i) {
+            const Mask reaches = free & !misses_flat_sheet(scene, i, ray, best.t);
+            if (any(reaches))
+                closest_in_cluster(i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), reaches, best);
+        }
+    }
+
+    template <class E>
+    CISTULA_INLINE void closest_in_tree(const Ray<Real, Media>& ray, const Mask& enclosed, const Mask& free,
+                                        const Index& beside, Hit<Real>& best) const {
+        for_each_value(enclosed, ray.media.bits, [&](uint32_t set, const Mask& same) {
+            closest_solid<E>(InteriorSet{set}.highest(), ray, same, false, beside, best);
+        });
+        if (!any(free)) return;
+        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
+        traverse_tree(
+            scene.tree, scene.tree_items, LaneBoxRay<Real>(ray.origin, ray.direction, tree_near(ray.after.t)), free,
+            [&] { return tree_far(best.t); },
+            [&](uint32_t primitive, const Mask& near) {
+                if (is_solid<E>(scene, primitive)) return closest_solid<E>(primitive, ray, near, near, beside, best);
+                const uint32_t cluster = primitive - scene.convex.size;
+                const Mask reaches = near & !misses_flat_sheet(scene, cluster, ray, best.t);
+                if (any(reaches)) closest_in_cluster(cluster, ray, triangle_ray, reaches, best);
+            });
+    }
+
+    /// `free`: the rays of `who` that may hit it from outside.
+    template <class E>
+    CISTULA_INLINE void closest_solid(uint32_t index, const Ray<Real, Media>& ray, const Mask& who, const Mask& free,
+                                      const Index& beside, Hit<Real>& best) const {
+        const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[index];
+        Mask inside = false;
+        if constexpr (E::has(effect_insides)) inside = who & ray.media.contains(index);
+        const Mask near = free & (!inside) & !misses_bounds(next.sphere, ray.origin, ray.direction, best.t);
+        const Mask on_plane = is_beside<E>(index, beside),
+                   outside = near & (!on_plane) & (ray.from_solid != int(index));
+        if (any(inside | outside)) {
+            const Index left = faces_left<E>(scene, index, ray, inside & on_plane);
+            closest_in_solid(next, ray, left, inside, outside, best);
+        }
+        if constexpr (E::has(effect_contacts))
+            if (any(near & on_plane)) closest_beside(index, ray, near & on_plane, best);
+    }
+
+    /// The rays that start on a shared plane where a convex solid has a face.
+    template <class E>
+    CISTULA_INLINE static Mask is_beside(uint32_t index, const Index& beside) {
+        if constexpr (E::has(effect_contacts)) return (beside & Index(int(1u << index))) != 0;
+        return false;
+    }
+
+    /// The crossings by which rays enter a convex solid that has a face on the shared plane on which they start.
+    CISTULA_NOINLINE void closest_beside(uint32_t index, const Ray<Real, Media>& ray, const Mask& who,
+                                         Hit<Real>& best) const {
+        const LaneEntries<Real> entries = entries_beside(scene, index, ray, who);
+        const Real t = max_or_second(entries.enter, Real(0));
+        const KeyOf<Real> key = KeyFormat<Real>::make(CrossingKind::enter, index, entries.face);
+        best.take(entries.found & ray.after.before(t, key) & best.improves(t, key), t, key, Real(0), Real(0), 0, true);
+    }
+
+    template <class E>
+    CISTULA_INLINE void shadow_in_loop(const ShadowRay<Real, Media>& shadow, const Mask& who, const Index& beside,
+                                       ShadowSum<E, Real>& sum) const {
+        const Ray<Real, Media>& ray = shadow.ray;
+        Index near = -1;  // the plan's masks
+        uint32_t beyond = 0;
+        if (scene.plan != nullptr) {
+            const auto light = uint32_t(shadow.light - scene.lights.data);
+            beyond = scene.plan->beyond[light];
+            for_each_value(who & (ray.from_solid != int(no_solid)), ray.from_solid,
+                           [&](uint32_t from, const Mask& same) {
+                               assign_where(same, near, Index(int32_t(scene.plan->near[from][light])));
+                           });
+        }
+        Mask open = !sum.is_blocked();
+        for (uint32_t p = 0; E::solids && p < scene.convex_copies.size && any(open); ++p) {
+            shadow_solid(p, shadow, open, (near & int32_t(1u << p)) != 0, (beyond >> p & 1u) != 0, beside, sum);
+            open = !sum.is_blocked();
+        }
+        for (uint32_t i = 0; E::triangles && i < scene.clusters.size && any(open); ++i) {
+            Mask reaches = open & !misses_flat_sheet(scene, i, ray, shadow.distance);
+            if (scene.plan != nullptr) reaches &= (near & int32_t(1u << (ShadowPlan::first_cluster + i))) != 0;
+            if (any(reaches)) shadow_cluster(i, shadow, TriangleRay<Real>::of(ray.origin, ray.direction), reaches, sum);
+            open = !sum.is_blocked();
+        }
+    }
+
+    template <class E>
+    CISTULA_INLINE void shadow_in_tree(const ShadowRay<Real, Media>& shadow, const Index& beside,
+                                       ShadowSum<E, Real>& sum) const {
+        const Ray<Real, Media>& ray = shadow.ray;
+        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
+        const Real far = tree_far(shadow.distance);
+        traverse_tree(
+            scene.tree, scene.tree_items, LaneBoxRay<Real>(ray.origin, ray.direction, Real(0)), !sum.is_blocked(),
+            [&] { return select(sum.is_blocked(), Real(-1), far); },
+            [&](uint32_t primitive, const Mask& near) {
+                if (is_solid<E>(scene, primitive))
+                    return shadow_solid(primitive, shadow, near, true, false, beside, sum);
+                const uint32_t cluster = primitive - scene.convex.size;
+                const Mask reaches = near & !misses_flat_sheet(scene, cluster, ray, shadow.distance);
+                if (any(reaches)) shadow_cluster(cluster, shadow, triangle_ray, reaches, sum);
+            });
+    }
+
+    /// Adds a convex solid. `near`: whether it may lie on the way of rays from outside; `beyond`: whether the light is
+    /// well outside of it.
+    template <class E>
+    CISTULA_INLINE void shadow_solid(uint32_t index, const ShadowRay<Real, Media>& shadow, const Mask& who,
+                                     const Mask& near, bool beyond, const Index& beside,
+                                     ShadowSum<E, Real>& sum) const {
+        const Ray<Real, Media>& ray = shadow.ray;
+        const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[index];
+        Mask inside = false, outside = true;
+        if constexpr (E::has(effect_insides)) {
+            const Mask contains = ray.media.contains(index);
+            inside = who & contains;
+            outside = !contains;
+            if (!E::has(effect_absorption) && beyond) {
+                const Mask leaves = inside & (ray.from_solid == int(index));
+                sum.cross(scene.materials[next.solid.material], leaves);
+                inside = inside & !leaves;
+            }
+        }
+        const Mask on_plane = is_beside<E>(index, beside),
+                   reaches =
+                       who & near & outside & !misses_bounds(next.sphere, ray.origin, ray.direction, shadow.distance);
+        const Mask others = reaches & (!on_plane) & (ray.from_solid != int(index));
+        if (any(inside | others)) {
+            const Index left = faces_left<E>(scene, index, ray, inside & on_plane);
+            cistula::shadow_solid<E>(scene, index, next.solid, shadow, left, inside, others, sum);
+        }
+        if constexpr (E::has(effect_contacts))
+            if (any(reaches & on_plane)) shadow_beside(scene, index, next.solid, shadow, reaches & on_plane, sum);
+    }
+
+    CISTULA_INLINE void closest_in_solid(const IndexedSolid<ScalarOf<Real>>& next, const Ray<Real, Media>& ray,
+                                         const Index& left, const Mask& inside, const Mask& outside,
+                                         Hit<Real>& best) const {
+        const auto line = convex_lanes::cross(scene, next.solid, ray.origin, ray.direction, left);
+        if (any(inside))
+            take_exit<Real>(
+                inside, next.index, line.leave, [&] { return line.leave_face; }, best);
+        const Mask meets = outside & is_met(line, scene.extent);
+        if (any(meets))
+            take_entry<Real>(
+                meets, next.index, line.enter, [&] { return line.enter_face; }, ray, best);
+    }
+
+    CISTULA_INLINE void closest_in_cluster(uint32_t index, const Ray<Real, Media>& ray,
+                                           const TriangleRay<Real>& triangle_ray, const Mask& who,
+                                           Hit<Real>& best) const {
+        for_each_crossing(
+            index, triangle_ray, who, [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
+                closest_crossing(scene, accepted, scene.clusters[index].solid, scene.clusters[index].triangle[lane],
+                                 index * uint32_t(cluster_lanes) + lane, c, ray, best);
+            });
+    }
+
+    template <class E>
+    CISTULA_INLINE void shadow_cluster(uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                       const TriangleRay<Real>& triangle_ray, const Mask& who,
+                                       ShadowSum<E, Real>& sum) const {
+        for_each_crossing(index, triangle_ray, who,
+                          [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
+                              shadow_crossing<Real, E>(scene, accepted, scene.clusters[index].solid,
+                                                       scene.clusters[index].triangle[lane], c, shadow, sum);
+                          });
+    }
+
+    /// Calls visit(triangle's lane, mask, crossings) for the triangles of a cluster that rays cross.
+    template <class Visit>
+    CISTULA_INLINE void for_each_crossing(uint32_t index, const TriangleRay<Real>& triangle_ray, const Mask& who,
+                                          const Visit& visit) const {
+        const auto& cluster = scene.clusters[index];
+        for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+            TriangleCrossing<Real> c{};
+            const Mask accepted =
+                who & cross_triangle(ShearedTriangle<Real>::of(cluster, int(lane), triangle_ray), triangle_ray, c);
+            if (any(accepted)) visit(lane, accepted, c);
+        }
+    }
+};
+
+}  // namespace cistula

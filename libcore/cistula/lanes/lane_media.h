@@ -1,0 +1,76 @@
+// The interior lists of lanes.
+#pragma once
+
+#include "cistula/geometry/ray.h"
+#include "cistula/lanes/lane_scene.h"
+#include "cistula/lanes/lanes.h"
+
+namespace cistula {
+
+/// The convex solids of a LaneScene that contain a point, a bit each.
+struct InteriorSet {
+    uint32_t bits = 0;
+
+    /// Calls visit(solid, 1) for every solid.
+    template <class Visit>
+    CISTULA_INLINE void for_each(const Visit& visit) const {
+        for (uint32_t left = bits; left != 0; left &= left - 1) visit(lowest_bit(left), 1);
+    }
+    CISTULA_INLINE uint32_t only() const { return bits != 0 && (bits & (bits - 1)) == 0 ? lowest_bit(bits) : no_solid; }
+    /// The solids of an interior list.
+    CISTULA_INLINE static InteriorSet of(const InteriorList& list) {
+        InteriorSet set;
+        list.for_each([&](uint32_t solid, int) { set.bits |= 1u << solid; });
+        return set;
+    }
+    CISTULA_INLINE InteriorList list() const {
+        InteriorList list;
+        for_each([&](uint32_t solid, int count) { list.add(solid, count); });
+        return list;
+    }
+
+    /// The solid of highest priority, of one or more.
+    CISTULA_INLINE uint32_t highest() const { return 31u - uint32_t(__builtin_clz(bits)); }
+};
+
+/// InteriorSets in lanes.
+template <class Real>
+struct LaneMedia {
+    static constexpr bool contacts = true, meshes = false;
+    using Index = IndexOf<Real>;
+    using Mask = MaskOf<Real>;
+
+    Index bits = 0;
+
+    CISTULA_INLINE Mask contains(uint32_t solid) const { return (bits & Index(int(1u << solid))) != 0; }
+    CISTULA_INLINE Mask contains(const Index& solid) const { return (bits & bit_of(solid)) != 0; }
+    CISTULA_INLINE Mask empty() const { return bits == 0; }
+    CISTULA_INLINE Index medium() const {
+        Index highest = no_solid;
+        for_each_value(bits != 0, bits, [&](uint32_t set, const Mask& same) {
+            assign_where(same, highest, Index(int(InteriorSet{set}.highest())));
+        });
+        return highest;
+    }
+
+    /// Records that a convex solid is entered or left. False, without a change, where that is impossible or the solids
+    /// are more than an InteriorList holds.
+    CISTULA_INLINE Mask cross(const Mask& enters, const Mask& leaves, const Index& solid) {
+        const Index bit = bit_of(solid);
+        const Mask is_inside = (bits & bit) != 0;
+        Mask fits = (enters & !is_inside) | (leaves & is_inside);
+        for_each_value(enters & !empty(), bits, [&](uint32_t set, const Mask& same) {
+            if (__builtin_popcount(set) == InteriorList::capacity) fits = fits & !(enters & same);
+        });
+        assign_where(fits, bits, bits ^ bit);
+        return fits | !(enters | leaves);
+    }
+
+    CISTULA_INLINE void take_where(const Mask& who, const LaneMedia& other) { assign_where(who, bits, other.bits); }
+    CISTULA_INLINE InteriorSet of(int lane) const { return {uint32_t(bits[lane])}; }
+
+  private:
+    CISTULA_INLINE static Index bit_of(const Index& solid) { return Index(1) << (solid & 31); }
+};
+
+}  // namespace cistula

@@ -1,0 +1,40 @@
+// The form of a scene that rays in lanes trace.
+#pragma once
+
+#include "cistula/model/constant_scene.h"
+
+namespace cistula {
+
+/// The fields of a crossing's key in lanes, which has 31 bits: kind, solid, face.
+struct LaneKey {
+    static constexpr int solid_bit = 17, kind_bit = 29;
+    static constexpr uint32_t solids = (1u << (kind_bit - solid_bit)) - 1, faces = (1u << solid_bit) - 1;
+    static constexpr int32_t none = 0x7fffffff;
+};
+
+/// The convex solids with a face on a shared plane, a bit each: those that lie where its normal points, and the others.
+struct PlaneBodies {
+    uint32_t above = 0, below = 0;
+
+    CISTULA_INLINE uint32_t all() const { return above | below; }
+};
+
+/// A scene whose closed solids are all convex and at most 31. Its solids are numbered anew, the
+/// convex ones first, so that a bit each says which of them a ray is inside: solid i < convex.size is convex[i]. The
+/// order within either kind is kept, and with it that of crossings at equal t.
+template <class Real>
+struct LaneScene : SceneView<Real> {
+    static constexpr uint32_t most_convex = 31;
+
+    Span<IndexedSolid<Real>> convex_copies;  // of `convex`, to avoid an indirection
+    Span<SheetPlane<Real>> planes;           // of the clusters
+    Span<TriangleSides<Real>> sides;         // by slot
+    CachedTransmittance<Real> cached_transmittances[4];
+    const ShadowPlan* plan = nullptr;           // of a scene that is small enough for one
+    uint32_t isolated = 0;                      // bit i: no other primitive comes near convex solid i
+    Span<uint32_t> clear_solids, transmitting;  // of each solid, 1 if its material is clear; if it transmits
+    Span<uint32_t> numbers;                     // of the solids in the scene's own order
+    Span<PlaneBodies> plane_bodies;             // of each of shared_planes
+};
+
+}  // namespace cistula

@@ -1,0 +1,131 @@
+#include "scene/compile/lane_scene.h"
+
+#include <algorithm>
+
+#include "cistula/shading/contact.h"
+#include "scene/compile/arrays.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/scene_copies.h"
+#include "scene/compile/shadow_plan.h"
+
+namespace cistula {
+namespace {
+
+/// The maximum number of primitives for which a loop is faster than a tree.
+constexpr uint32_t most_in_loop = 16;
+
+template <class Real>
+bool fits_lanes(const SceneView<Real>& scene) {
+    if (scene.convex.size > LaneScene<Real>::most_convex || scene.solids.size >= LaneKey::solids) return false;
+    for (const Solid& solid : scene.solids)
+        if (solid.kind == SolidKind::mesh || 2 * solid.slab_count > LaneKey::faces) return false;
+    return std::all_of(scene.clusters.begin(), scene.clusters.end(), [](const Cluster<Real>& cluster) {
+        return std::all_of(cluster.triangle, cluster.triangle + cluster.count,
+                           [](uint32_t triangle) { return triangle <= LaneKey::faces; });
+    });
+}
+
+/// Whether a scene may have a ShadowPlan: it is small, and no solids touch.
+template <class Real>
+bool fits_plan(const SceneView<Real>& scene) {
+    return scene.shared_planes.empty() && scene.solids.size <= ShadowPlan::solids &&
+           scene.lights.size <= ShadowPlan::lights && scene.convex.size <= ShadowPlan::convex &&
+           scene.clusters.size <= ShadowPlan::clusters;
+}
+
+}  // namespace
+
+template <class Real>
+OwnedLaneScene<Real>::OwnedLaneScene(const SceneView<Real>& from) {
+    static_cast<SceneView<Real>&>(scene_) = from;
+    number_solids(from);
+    copy_parts();
+    find_tree();
+}
+
+template <class Real>
+void OwnedLaneScene<Real>::number_solids(const SceneView<Real>& from) {
+    std::vector<uint32_t> place(from.solids.size);
+    for (const bool is_convex : {true, false})
+        for (uint32_t i = 0; i < from.solids.size; ++i) {
+            if ((from.solids[i].kind == SolidKind::convex) != is_convex) continue;
+            place[i] = static_cast<uint32_t>(numbers_.size());
+            if (is_convex) convex_.push_back(place[i]);
+            numbers_.push_back(i);
+            solids_.push_back(from.solids[i]);
+            clear_.push_back(is_clear(from, i));
+            transmitting_.push_back(transmits(from, i));
+        }
+    clusters_.assign(from.clusters.begin(), from.clusters.end());
+    for (Cluster<Real>& cluster : clusters_) cluster.solid = place[cluster.solid];
+    incidents_.assign(from.incidents.begin(), from.incidents.end());
+    for (Incident& incident : incidents_) incident.solid = place[incident.solid];
+    plane_solids_.assign(from.plane_solids.begin(), from.plane_solids.end());
+    for (uint32_t& solid : plane_solids_) solid = place[solid];
+    scene_.numbers = span_of(numbers_);
+    scene_.solids = span_of(solids_);
+    scene_.convex = span_of(convex_);
+    scene_.clear_solids = span_of(clear_);
+    scene_.transmitting = span_of(transmitting_);
+    scene_.clusters = span_of(clusters_);
+    scene_.incidents = span_of(incidents_);
+    scene_.plane_solids = span_of(plane_solids_);
+}
+
+template <class Real>
+void OwnedLaneScene<Real>::copy_parts() {
+    for (const uint32_t i : convex_) {
+        convex_copies_.push_back(indexed_solid(scene_, i));
+        scene_.isolated |= solids_[i].isolated << i;
+    }
+    for (uint32_t i = 0; i < clusters_.size(); ++i) planes_.push_back(boxed_plane(scene_, i));
+    for (uint32_t slot = 0; slot < clusters_.size() * cluster_lanes; ++slot) sides_.push_back(sides_of(scene_, slot));
+    scene_.convex_copies = span_of(convex_copies_);
+    scene_.planes = span_of(planes_);
+    scene_.sides = span_of(sides_);
+    plane_bodies_.resize(scene_.shared_planes.size);
+    for (uint32_t plane = 0; plane < plane_bodies_.size(); ++plane)
+        for (const uint32_t i : convex_) {
+            const int side = inner_side(scene_, i, plane);
+            (side > 0 ? plane_bodies_[plane].above : plane_bodies_[plane].below) |= uint32_t(side != 0) << i;
+        }
+    scene_.plane_bodies = span_of(plane_bodies_);
+    cache_transmittances(scene_.materials, scene_.cached_transmittances);
+}
+
+template <class Real>
+void OwnedLaneScene<Real>::find_tree() {
+    if (scene_.convex.size + scene_.clusters.size <= most_in_loop) {
+        scene_.tree = {};
+        scene_.tree_items = {};
+        if (!fits_plan(scene_)) return;
+        plan_.clear(scene_.convex.size, scene_.clusters.size);
+        plan_shadows(scene_, plan_);
+        scene_.plan = &plan_;
+        return;
+    }
+    PrimitiveTree tree = primitive_tree(scene_);
+    tree_ = std::move(tree.nodes);
+    tree_items_ = std::move(tree.items);
+    scene_.tree = span_of(tree_);
+    scene_.tree_items = span_of(tree_items_);
+}
+
+template <class Real>
+size_t OwnedLaneScene<Real>::memory() const {
+    const auto bytes = [](const auto&... arrays) { return (... + bytes_of(arrays)); };
+    return sizeof *this + bytes(numbers_, convex_, clear_, transmitting_, tree_items_, solids_, convex_copies_,
+                                clusters_, planes_, sides_, incidents_, tree_, plane_solids_, plane_bodies_);
+}
+
+template <class Real>
+std::unique_ptr<const OwnedLaneScene<Real>> lane_scene(const SceneView<Real>& scene) {
+    return fits_lanes(scene) ? std::make_unique<const OwnedLaneScene<Real>>(scene) : nullptr;
+}
+
+template class OwnedLaneScene<float>;
+template class OwnedLaneScene<double>;
+template std::unique_ptr<const OwnedLaneScene<float>> lane_scene(const SceneView<float>&);
+template std::unique_ptr<const OwnedLaneScene<double>> lane_scene(const SceneView<double>&);
+
+}  // namespace cistula

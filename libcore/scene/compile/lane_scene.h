@@ -1,0 +1,44 @@
+// Conversion of a scene to the form that rays in lanes trace.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "cistula/lanes/lane_scene.h"
+
+namespace cistula {
+
+/// A LaneScene with the arrays that it does not share with the view from which it was made.
+template <class Real>
+class OwnedLaneScene {
+  public:
+    /// The view must fit and outlive this.
+    explicit OwnedLaneScene(const SceneView<Real>& from);
+    OwnedLaneScene(const OwnedLaneScene&) = delete;
+
+    const LaneScene<Real>& scene() const { return scene_; }
+    size_t memory() const;  // bytes of all arrays
+
+  private:
+    void number_solids(const SceneView<Real>& from);
+    void copy_parts();
+    void find_tree();
+
+    LaneScene<Real> scene_{};
+    std::vector<uint32_t> numbers_, convex_, clear_, transmitting_, tree_items_, plane_solids_;
+    std::vector<Solid> solids_;
+    std::vector<IndexedSolid<Real>> convex_copies_;
+    std::vector<Cluster<Real>> clusters_;
+    std::vector<SheetPlane<Real>> planes_;
+    std::vector<TriangleSides<Real>> sides_;
+    std::vector<Incident> incidents_;
+    std::vector<PlaneBodies> plane_bodies_;
+    std::vector<TreeNode> tree_;
+    ShadowPlan plan_;
+};
+
+/// The LaneScene of a view; null if the scene does not fit: it has closed meshes, or too many solids or triangles.
+template <class Real>
+std::unique_ptr<const OwnedLaneScene<Real>> lane_scene(const SceneView<Real>& scene);
+
+}  // namespace cistula
