@@ -127,7 +127,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
             assign_where(same, slab, Index(int(solid.first_slab)) + (faces >> 1));
         }
     });
-    if constexpr (E::solids) {
+    if (any(convex)) {
         LaneVectors<Real> normals;
         LaneArray<Index> slabs(slab);
         for (int lane = 0; lane < n; ++lane) normals.set(lane, scene.slabs[uint32_t(slabs.of[lane])].normal);
