@@ -72,9 +72,11 @@ class Records:
 
 
 def cpu_bars(add, records):
-    scene, sphere = "benchmark.json/", "bumpy_sphere/"
-    add("povray/time-ratio", records.ratio(scene + "povray", scene + "cistula"), ">=15")
+    scene, glass, sphere = "benchmark.json/", "glass_on_tiles.json/", "bumpy_sphere/"
+    add("povray/time-ratio", records.ratio(scene + "povray", scene + "cistula"), ">=60")
     add("povray/share-within-0.004", records.named(scene + "images")[0]["share_within_0.004"], ">=0.99")
+    add("povray/glass/time-ratio", records.ratio(glass + "povray", glass + "cistula"), ">=15")
+    add("povray/glass/share-within-0.004", records.named(glass + "images")[0]["share_within_0.004"], ">=0.98")
     add("embree/rays-ratio", records.ratio(sphere + "embree_robust", sphere + "cistula/float", "cpu_time"), ">=0.95")
     for precision, most in (("float", 160), ("double", 240)):
         add(f"bytes-a-triangle/{precision}", records.named(f"{sphere}memory/{precision}")[0]["bytes_per_triangle"], f"<={most}")

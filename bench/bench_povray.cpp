@@ -1,5 +1,5 @@
-// Cistula against POV-Ray 3.7 on scenes/benchmark.json: the time to trace it, and whether the pictures agree.
-// bench_povray [FOLDER]: scene and pictures go there (out/bench).
+// Cistula against POV-Ray 3.7, on scenes/benchmark.json and on solids of glass: the time to trace them, and whether the
+// pictures agree. bench_povray [FOLDER]: scenes and pictures go there (out/bench).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,13 +17,24 @@
 namespace cistula::bench {
 namespace {
 
-constexpr int width = 640, height = 480, depth = 16, threads = 2, repetitions = 5;
+constexpr int width = 640, height = 480, threads = 2, repetitions = 5;
 /// A difference that 8 bits do not show.
 constexpr float visible = 0.004f;
 
-struct Paths {
-    std::filesystem::path scene, povray_scene, povray_image, image, stats;
-} paths;
+struct Work {
+    std::filesystem::path scene;
+    int depth;
+    std::filesystem::path povray_scene, povray_image, image, stats;
+
+    Work(const std::filesystem::path& of, int to_depth, const std::filesystem::path& folder)
+        : scene(of), depth(to_depth) {
+        const std::filesystem::path stem = folder / of.stem();
+        povray_scene = stem.string() + ".pov";
+        povray_image = stem.string() + "_povray.exr";
+        image = stem.string() + "_cistula.exr";
+        stats = stem.string() + "_stats.json";
+    }
+};
 
 /// The number in parentheses that POV-Ray ends "Trace Time: 0 hours 0 minutes 7 seconds (7.418 seconds)" with.
 double povray_trace_seconds(const std::string& log) {
@@ -33,31 +44,31 @@ double povray_trace_seconds(const std::string& log) {
     return std::stod(log.substr(begin + 1));
 }
 
-double run_povray() {
+double run_povray(const Work& work) {
     return povray_trace_seconds(
-        output_of(fmt::format("povray {} {} +FE +W{} +H{} +WT{} -A -D -V", quoted("+I" + paths.povray_scene.string()),
-                              quoted("+O" + paths.povray_image.string()), width, height, threads)));
+        output_of(fmt::format("povray {} {} +FE +W{} +H{} +WT{} -A -D -V", quoted("+I" + work.povray_scene.string()),
+                              quoted("+O" + work.povray_image.string()), width, height, threads)));
 }
 
-nlohmann::json run_cistula() {
+nlohmann::json run_cistula(const Work& work) {
     output_of(
         fmt::format("{} {} -o {} --res {}x{} --depth {} --cutoff 0 --supersample 1 --threads {} --stats {} "
                     "--progress none -q",
-                    quoted(CISTULA_BIN_DIR "/render"), quoted(paths.scene), quoted(paths.image), width, height, depth,
-                    threads, quoted(paths.stats)));
-    const nlohmann::json stats = nlohmann::json::parse(std::ifstream(paths.stats));
+                    quoted(CISTULA_BIN_DIR "/render"), quoted(work.scene), quoted(work.image), width, height,
+                    work.depth, threads, quoted(work.stats)));
+    const nlohmann::json stats = nlohmann::json::parse(std::ifstream(work.stats));
     for (const auto& entry : stats.at("benchmarks"))
         if (entry.contains("render_ms")) return entry;
-    throw Error(ExitCode::failed, paths.stats.string() + ": names no frame");
+    throw Error(ExitCode::failed, work.stats.string() + ": names no frame");
 }
 
-void time_povray(benchmark::State& state) {
-    for (auto _ : state) state.SetIterationTime(run_povray());
+void time_povray(benchmark::State& state, const Work& work) {
+    for (auto _ : state) state.SetIterationTime(run_povray(work));
 }
 
-void time_cistula(benchmark::State& state) {
+void time_cistula(benchmark::State& state, const Work& work) {
     for (auto _ : state) {
-        const nlohmann::json frame = run_cistula();
+        const nlohmann::json frame = run_cistula(work);
         state.SetIterationTime(frame.at("render_ms").get<double>() / 1e3);
         state.counters["rays"] = frame.at("rays").at("total").get<double>();
         state.counters["rays_per_second"] = frame.at("rays_per_second").get<double>();
@@ -71,11 +82,11 @@ const LayeredPicture::Channel& channel(const LayeredPicture& picture, std::strin
 }
 
 /// Per pixel the largest difference of its channels; POV-Ray writes half floats, which at 1 are 0.0005 apart.
-void compare_images(benchmark::State& state) {
+void compare_images(benchmark::State& state, const Work& work) {
     for (auto _ : state) {
-        run_povray();
-        run_cistula();
-        const LayeredPicture theirs = read_exr(paths.povray_image.string()), ours = read_exr(paths.image.string());
+        run_povray(work);
+        run_cistula(work);
+        const LayeredPicture theirs = read_exr(work.povray_image.string()), ours = read_exr(work.image.string());
         if (theirs.width != width || theirs.height != height || ours.width != width || ours.height != height)
             throw Error(ExitCode::failed, "the pictures to compare differ in size");
         double sum = 0, worst = 0, sum_ours = 0, sum_theirs = 0;
@@ -101,21 +112,51 @@ void compare_images(benchmark::State& state) {
     }
 }
 
+/// A file of the scene: three solids of glass over a floor of 144 tiles.
+std::filesystem::path write_glass_scene(const std::filesystem::path& folder) {
+    std::string objects;
+    for (int i = 0; i < 144; ++i)
+        objects += fmt::format(
+            R"({{"quad": [[{0}, {1}, 0], [{2}, {1}, 0], [{2}, {3}, 0], [{0}, {3}, 0]], "material": "{4}"}},
+)",
+            i % 12 - 6, i / 12 - 4, i % 12 - 5, i / 12 - 3, (i % 12 + i / 12) % 2 ? "light" : "dark");
+    const std::filesystem::path path = folder / "glass_on_tiles.json";
+    std::ofstream file(path);
+    file << R"({"film": {"width": 640, "height": 480}, "depth": 24, "ambient": 0.2, "background": [0.4, 0.5, 0.6],
+"camera": {"position": [0, -6, 4], "target": [0, 1, 1], "fov": 50},
+"materials": {
+    "light": {"color": 0.8, "diffuse": 0.8}, "dark": {"color": [0.2, 0.2, 0.25], "diffuse": 0.8},
+    "water": {"color": 1, "transmission": 1, "fresnel": true, "index": 1.33},
+    "crown": {"color": 1, "transmission": 1, "fresnel": true, "index": 1.5},
+    "flint": {"color": 1, "transmission": 1, "fresnel": true, "index": 1.8}},
+"objects": [
+)" << objects
+         << R"({"solid": "cube", "center": [-2, 1, 1.3], "radius": 1.2, "rotate": [11, 23, 37], "material": "water"},
+{"solid": "dodecahedron", "center": [0.2, 0.5, 1.4], "radius": 1.2, "rotate": [11, 23, 37], "material": "crown"},
+{"solid": "icosahedron", "center": [2.4, 1, 1.3], "radius": 1.2, "rotate": [11, 23, 37], "material": "flint"}],
+"lights": [{"position": [4, -5, 8], "color": 0.9}, {"position": [-6, -3, 7], "color": 0.4}]})";
+    if (!file.flush()) throw Error(ExitCode::file, path.string() + ": cannot be written");
+    return path;
+}
+
 void register_all(const std::vector<std::string>& arguments) {
     const std::filesystem::path folder = arguments.empty() ? "out/bench" : arguments[0];
     std::filesystem::create_directories(folder);
-    paths = {scene_file("benchmark.json"), folder / "benchmark.pov", folder / "benchmark_povray.exr",
-             folder / "benchmark_cistula.exr", folder / "benchmark_stats.json"};
-    const SceneDescription scene = read_scene(paths.scene.string());
-    std::ofstream file(paths.povray_scene);
-    file << povray_scene(scene, camera_at(scene.camera, 0), width, height, depth);
-    if (!file.flush()) throw Error(ExitCode::file, paths.povray_scene.string() + ": cannot be written");
-    const auto add = [](const char* name, void (*run)(benchmark::State&)) {
-        return benchmark::RegisterBenchmark(name, run)->Iterations(1)->Unit(benchmark::kMillisecond);
-    };
-    add("benchmark.json/povray", time_povray)->UseManualTime();
-    add("benchmark.json/cistula", time_cistula)->UseManualTime();
-    add("benchmark.json/images", compare_images)->Repetitions(1);
+    for (const Work& work :
+         {Work(scene_file("benchmark.json"), 16, folder), Work(write_glass_scene(folder), 24, folder)}) {
+        const SceneDescription scene = read_scene(work.scene.string());
+        std::ofstream file(work.povray_scene);
+        file << povray_scene(scene, camera_at(scene.camera, 0), width, height, work.depth);
+        if (!file.flush()) throw Error(ExitCode::file, work.povray_scene.string() + ": cannot be written");
+        const auto add = [&](const char* name, void (*run)(benchmark::State&, const Work&)) {
+            return benchmark::RegisterBenchmark((work.scene.filename().string() + "/" + name).c_str(), run, work)
+                ->Iterations(1)
+                ->Unit(benchmark::kMillisecond);
+        };
+        add("povray", time_povray)->UseManualTime();
+        add("cistula", time_cistula)->UseManualTime();
+        add("images", compare_images)->Repetitions(1);
+    }
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ void check(const SceneDescription& scene, const SceneSource& source) {
         throw Error(ExitCode::usage, scene.source + ": cannot be put in POV-Ray's terms: " + what);
     };
     for (const MaterialDescription& m : source.materials) {
-        if (m.index != 1 || m.fresnel) refuse("material " + m.name + " refracts; its index must be 1");
+        if (m.index == 1 ? m.fresnel : !m.fresnel || m.transmission < 1)
+            refuse("material " + m.name + " refracts; its index must be 1, or it must be clear and have Fresnel");
         if (m.absorption != dvec3(0)) refuse("material " + m.name + " absorbs; its absorption must be 0");
         if (m.tint != dvec3(1)) refuse("material " + m.name + " tints what passes; its tint must be white");
         if (!is_gray(m.specular_color)) refuse("material " + m.name + " has a colored highlight; it must be gray");
@@ -71,10 +72,13 @@ std::string texture(const SceneDescription& scene, const MaterialDescription& m,
         m.texture >= 0 ? checker(scene.textures[size_t(m.texture)], m.color, mesh)
                        : fmt::format("{}{}", color(m.color),
                                      m.transmission > 0 ? fmt::format(" transmit {}", m.transmission) : "");
-    return fmt::format("texture {{ pigment {{ {} }} finish {{ ambient {} diffuse {} phong {} phong_size {} {}}} }}",
+    const std::string mirror = m.fresnel          ? "reflection { 0, 1 fresnel on } conserve_energy "
+                               : m.reflection > 0 ? fmt::format("reflection {} ", m.reflection)
+                                                  : "";
+    return fmt::format("texture {{ pigment {{ {} }} finish {{ ambient {} diffuse {} phong {} phong_size {} {}}} }}{}",
                        pigment, m.ambient * scene.ambient.x * painted, m.diffuse * painted,
-                       m.specular * m.specular_color.x * local, m.exponent,
-                       m.reflection > 0 ? fmt::format("reflection {} ", m.reflection) : "");
+                       m.specular * m.specular_color.x * local, m.exponent, mirror,
+                       m.fresnel ? fmt::format(" interior {{ ior {} }}", m.index) : "");
 }
 
 MeshSource triangles_of(const SolidObject& solid) {
@@ -111,6 +115,7 @@ std::string povray_scene(const SceneDescription& scene, const CameraFrame& frame
         for (const auto& t : mesh.triangles)
             text += fmt::format("  triangle {{ {}, {}, {} }}\n", vector(mesh.vertices[t[0]]),
                                 vector(mesh.vertices[t[1]]), vector(mesh.vertices[t[2]]));
+        if (source.materials[solid.material].fresnel) text += "  inside_vector <0, 0, 1>\n";
         text += "  " + texture(scene, source.materials[solid.material], mesh) + "\n}\n";
     }
     return text;
