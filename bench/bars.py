@@ -77,7 +77,10 @@ def cpu_bars(add, records):
     add("povray/share-within-0.004", records.named(scene + "images")[0]["share_within_0.004"], ">=0.99")
     add("povray/glass/time-ratio", records.ratio(glass + "povray", glass + "cistula"), ">=15")
     add("povray/glass/share-within-0.004", records.named(glass + "images")[0]["share_within_0.004"], ">=0.98")
-    add("embree/rays-ratio", records.ratio(sphere + "embree_robust", sphere + "cistula/float", "cpu_time"), ">=0.95")
+    for kind in ("primary", "mirrored"):
+        for theirs, least in (("", ">=0.95"), ("_16", ">=0.9")):
+            rays = f"{sphere}{kind}/"
+            add(f"embree{theirs}/{kind}/rays-ratio", records.ratio(f"{rays}embree_robust{theirs}", rays + "cistula/float", "cpu_time"), least)
     for precision, most in (("float", 160), ("double", 240)):
         add(f"bytes-a-triangle/{precision}", records.named(f"{sphere}memory/{precision}")[0]["bytes_per_triangle"], f"<={most}")
     for depth in (4, 16):

@@ -1,6 +1,7 @@
-// Cistula's triangles, each hit exactly once, against Embree's own robust ones: primary rays on a bumpy sphere of 1.3
-// million triangles, one thread; and what that sphere takes of memory. bench_intersect --memory float|double|none: in a
-// process of its own, the peak while generating, compiling and building the tree (none: before any of it), in bytes.
+// Cistula's triangles, each hit exactly once, against Embree's own robust ones, by single rays and by packets of 16:
+// primary and mirrored rays on a bumpy sphere of 1.3 million triangles, one thread; and what that sphere takes of
+// memory. bench_intersect --memory float|double|none: in a process of its own, the peak while generating, compiling and
+// building the tree (none: before any of it), in bytes.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -58,12 +59,16 @@ std::vector<Ray<Real>> primary_rays(const CompiledScene<Real>& compiled, const S
     return rays;
 }
 
+/// The kinds of rays.
+enum Rays { primary, mirrored, ray_kinds };
+constexpr const char* ray_names[] = {"primary", "mirrored"};
+
 template <class Real>
 struct Ours {
     std::unique_ptr<CompiledScene<Real>> compiled;
     SceneView<Real> view;
     std::unique_ptr<EmbreeTree<Real>> tree;
-    std::vector<Ray<Real>> rays;
+    std::vector<Ray<Real>> rays[ray_kinds];
 
     explicit Ours(const SceneDescription& scene)
         : compiled(compile_scene<Real>(scene)),
@@ -71,6 +76,17 @@ struct Ours {
           tree(std::make_unique<EmbreeTree<Real>>(view, EmbreeOptions())) {}
 
     Hit<Real> closest(const Ray<Real>& ray) const { return EmbreeIntersector<Real>{view, tree->scene()}.closest(ray); }
+
+    /// Shoots the primary rays, and what the surface mirrors of them.
+    void find_rays(const SceneDescription& scene) {
+        rays[primary] = primary_rays(*compiled, scene);
+        for (const Ray<Real>& ray : rays[primary]) {
+            const Hit<Real> hit = closest(ray);
+            if (!hit.found()) continue;
+            const auto s = surface_at<Real, Effects<all_effects>>(view, ray, hit);
+            rays[mirrored].push_back(spawned(s.viewer_side, reflected(ray.direction, s.normal), hit, ray.media));
+        }
+    }
 };
 
 /// Embree alone over the triangles of Ours, in their scene coordinates.
@@ -115,7 +131,40 @@ class Theirs {
         return rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? RealTraits<float>::infinity : rayhit.ray.tfar;
     }
 
+    /// The least t of 16 rays from `ray` on; infinity where nothing was hit.
+    void closest_of_16(const Ray<float>* ray, float (&t)[16]) const {
+        alignas(64) static constexpr int all[16] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+        RTCRayHit16 packet;
+        for (int i = 0; i < 16; ++i) {
+            RTCRayHit one;
+            set_ray(one.ray, ray[i], 0.0f, RealTraits<float>::infinity);
+            packet.ray.org_x[i] = one.ray.org_x, packet.ray.org_y[i] = one.ray.org_y,
+            packet.ray.org_z[i] = one.ray.org_z;
+            packet.ray.dir_x[i] = one.ray.dir_x, packet.ray.dir_y[i] = one.ray.dir_y,
+            packet.ray.dir_z[i] = one.ray.dir_z;
+            packet.ray.tnear[i] = 0.0f, packet.ray.tfar[i] = RealTraits<float>::infinity;
+            packet.ray.time[i] = 0.0f, packet.ray.mask[i] = ~0u, packet.ray.id[i] = 0, packet.ray.flags[i] = 0;
+            packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        EmbreeContext context;
+        embree_init(context);
+        embree_intersect_16(scene_, context, all, packet);
+        for (int i = 0; i < 16; ++i)
+            t[i] = packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? RealTraits<float>::infinity : packet.ray.tfar[i];
+    }
+
   private:
+    static void embree_intersect_16(RTCScene scene, EmbreeContext& context, const int* valid, RTCRayHit16& packet) {
+#if CISTULA_EMBREE_MAJOR >= 4
+        RTCIntersectArguments arguments;
+        rtcInitIntersectArguments(&arguments);
+        arguments.context = &context;
+        rtcIntersect16(valid, scene, &packet, &arguments);
+#else
+        rtcIntersect16(valid, scene, &context, &packet);
+#endif
+    }
+
     RTCDevice device_ = rtcNewDevice("");
     RTCScene scene_ = rtcNewScene(device_);
 };
@@ -134,25 +183,43 @@ void count_rays(benchmark::State& state, size_t rays) {
 }
 
 template <class Real>
-void time_cistula(benchmark::State& state, const Ours<Real>& ours) {
+void time_cistula(benchmark::State& state, const Ours<Real>& ours, Rays kind) {
     for (auto _ : state)
-        for (const Ray<Real>& ray : ours.rays) benchmark::DoNotOptimize(ours.closest(ray).t);
-    count_rays(state, ours.rays.size());
+        for (const Ray<Real>& ray : ours.rays[kind]) benchmark::DoNotOptimize(ours.closest(ray).t);
+    count_rays(state, ours.rays[kind].size());
 }
 
-void time_embree(benchmark::State& state) {
+void time_embree(benchmark::State& state, Rays kind) {
     for (auto _ : state)
-        for (const Ray<float>& ray : setting->single.rays) benchmark::DoNotOptimize(setting->embree.closest(ray));
-    count_rays(state, setting->single.rays.size());
+        for (const Ray<float>& ray : setting->single.rays[kind]) benchmark::DoNotOptimize(setting->embree.closest(ray));
+    count_rays(state, setting->single.rays[kind].size());
+}
+
+void time_embree_packets(benchmark::State& state, Rays kind) {
+    const std::vector<Ray<float>>& rays = setting->single.rays[kind];
+    const size_t packets = rays.size() / 16;
+    for (auto _ : state)
+        for (size_t i = 0; i < packets; ++i) {
+            float t[16];
+            setting->embree.closest_of_16(&rays[16 * i], t);
+            benchmark::DoNotOptimize(t);
+        }
+    count_rays(state, 16 * packets);
 }
 
 /// Checks that equal work is compared: both find one surface.
 void check_agreement() {
     size_t hits = 0, differing = 0;
-    for (const Ray<float>& ray : setting->single.rays) {
-        const float ours = setting->single.closest(ray).t, theirs = setting->embree.closest(ray);
+    const std::vector<Ray<float>>& rays = setting->single.rays[primary];
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const float ours = setting->single.closest(rays[i]).t;
+        const auto differs = [&](float theirs) { return !(ours == theirs || std::abs(ours - theirs) < 1e-3f); };
         hits += std::isfinite(ours);
-        differing += !(ours == theirs || std::abs(ours - theirs) < 1e-3f);
+        differing += differs(setting->embree.closest(rays[i]));
+        if (i % 16 != 0 || i + 16 > rays.size()) continue;
+        float t[16];
+        setting->embree.closest_of_16(&rays[i], t);
+        differing += differs(t[0]);
     }
     if (hits == 0 || differing * 1000 > hits)
         throw Error(ExitCode::failed,
@@ -179,18 +246,20 @@ double memory_of_ours() {
 
 void register_all(const std::vector<std::string>&) {
     setting = std::make_unique<Setting>();
-    setting->single.rays = primary_rays(*setting->single.compiled, setting->scene);
-    setting->twice.rays = primary_rays(*setting->twice.compiled, setting->scene);
+    setting->single.find_rays(setting->scene);
+    setting->twice.find_rays(setting->scene);
     check_agreement();
-    benchmark::RegisterBenchmark("bumpy_sphere/embree_robust", time_embree)
-        ->MinTime(0.1)
-        ->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("bumpy_sphere/cistula/float", [](auto& s) { time_cistula(s, setting->single); })
-        ->MinTime(0.1)
-        ->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("bumpy_sphere/cistula/double", [](auto& s) { time_cistula(s, setting->twice); })
-        ->MinTime(0.1)
-        ->Unit(benchmark::kMillisecond);
+    for (const Rays kind : {primary, mirrored}) {
+        const auto add = [&](const char* name, auto run) {
+            benchmark::RegisterBenchmark(fmt::format("bumpy_sphere/{}/{}", ray_names[kind], name).c_str(), run)
+                ->MinTime(0.1)
+                ->Unit(benchmark::kMillisecond);
+        };
+        add("embree_robust", [=](benchmark::State& state) { time_embree(state, kind); });
+        add("embree_robust_16", [=](benchmark::State& state) { time_embree_packets(state, kind); });
+        add("cistula/float", [=](benchmark::State& state) { time_cistula(state, setting->single, kind); });
+        add("cistula/double", [=](benchmark::State& state) { time_cistula(state, setting->twice, kind); });
+    }
     for (const char* precision : {"float", "double"})
         benchmark::RegisterBenchmark(fmt::format("bumpy_sphere/memory/{}", precision).c_str(),
                                      [=](benchmark::State& state) { measure_memory(state, precision); })

@@ -1,4 +1,5 @@
-// The image does not depend on threads, tiles, crops, trees, instruction sets, the order of primitives, or devices.
+// The image does not depend on threads, lanes, tiles, crops, trees, instruction sets, the order of primitives, or
+// devices.
 #pragma once
 
 #include <tbb/global_control.h>
@@ -142,7 +143,7 @@ struct OneHash {
 
 struct ThreadsAndTiles {
     static constexpr const char* name = "metamorphic/threads-tiles-crops";
-    static constexpr const char* exact = "sums, ids and normals for any number of threads, tile and crop";
+    static constexpr const char* exact = "sums, ids and normals for any number of threads, lanes, tile and crop";
     static constexpr Bound bound = no_failures("pixels");
 
     static void render(Stage& stage, Tally& tally) {
@@ -157,6 +158,10 @@ struct ThreadsAndTiles {
                     settings.tile = tile;
                     expect_same(tally, stage.render(scene, settings), whole, seed, variation++);
                 }
+            }
+            for (const int lanes : {1, 4, 8, 16}) {
+                settings.lanes = lanes;
+                expect_same(tally, stage.render(scene, settings), whole, seed, variation++);
             }
             for (const PixelRect& crop : {PixelRect{0, 0, 24, 5}, PixelRect{0, 5, 11, 11}, PixelRect{11, 5, 13, 11}}) {
                 settings.crop = crop;
