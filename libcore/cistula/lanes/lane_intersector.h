@@ -3,6 +3,7 @@
 
 #include "cistula/lanes/lane_shadow.h"
 #include "cistula/lanes/lane_tree.h"
+#include "cistula/lanes/lane_triangles.h"
 
 namespace cistula {
 
@@ -64,7 +65,7 @@ struct LaneIntersector {
         for (uint32_t i = 0; E::triangles && i < scene.clusters.size; ++i) {
             const Mask reaches = free & !misses_flat_sheet(scene, i, ray, best.t);
             if (any(reaches))
-                closest_in_cluster(i, ray, TriangleRay<Real>::of(ray.origin, ray.direction), reaches, best);
+                closest_in_cluster(i, ray, LaneTriangleRay<Real>(ray.origin, ray.direction), reaches, best);
         }
     }
 
@@ -75,7 +76,7 @@ struct LaneIntersector {
             closest_solid<E>(InteriorSet{set}.highest(), ray, same, false, beside, best);
         });
         if (!any(free)) return;
-        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
+        const LaneTriangleRay<Real> triangle_ray(ray.origin, ray.direction);
         traverse_tree(
             scene.tree, scene.tree_items, LaneBoxRay<Real>(ray.origin, ray.direction, tree_near(ray.after.t)), free,
             [&] { return tree_far(best.t); },
@@ -143,7 +144,7 @@ struct LaneIntersector {
         for (uint32_t i = 0; E::triangles && i < scene.clusters.size && any(open); ++i) {
             Mask reaches = open & !misses_flat_sheet(scene, i, ray, shadow.distance);
             if (scene.plan != nullptr) reaches &= (near & int32_t(1u << (ShadowPlan::first_cluster + i))) != 0;
-            if (any(reaches)) shadow_cluster(i, shadow, TriangleRay<Real>::of(ray.origin, ray.direction), reaches, sum);
+            if (any(reaches)) shadow_cluster(i, shadow, LaneTriangleRay<Real>(ray.origin, ray.direction), reaches, sum);
             open = !sum.is_blocked();
         }
     }
@@ -152,7 +153,7 @@ struct LaneIntersector {
     CISTULA_INLINE void shadow_in_tree(const ShadowRay<Real, Media>& shadow, const Index& beside,
                                        ShadowSum<E, Real>& sum) const {
         const Ray<Real, Media>& ray = shadow.ray;
-        const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
+        const LaneTriangleRay<Real> triangle_ray(ray.origin, ray.direction);
         const Real far = tree_far(shadow.distance);
         traverse_tree(
             scene.tree, scene.tree_items, LaneBoxRay<Real>(ray.origin, ray.direction, Real(0)), !sum.is_blocked(),
@@ -211,37 +212,25 @@ struct LaneIntersector {
     }
 
     CISTULA_INLINE void closest_in_cluster(uint32_t index, const Ray<Real, Media>& ray,
-                                           const TriangleRay<Real>& triangle_ray, const Mask& who,
+                                           const LaneTriangleRay<Real>& triangle_ray, const Mask& who,
                                            Hit<Real>& best) const {
-        for_each_crossing(
-            index, triangle_ray, who, [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
-                closest_crossing(scene, accepted, scene.clusters[index].solid, scene.clusters[index].triangle[lane],
-                                 index * uint32_t(cluster_lanes) + lane, c, ray, best);
-            });
+        const auto& cluster = scene.clusters[index];
+        for_each_crossing(cluster, triangle_ray, who,
+                          [&](uint32_t triangle, const Mask& accepted, const TriangleCrossing<Real>& c) {
+                              closest_crossing(scene, accepted, cluster.solid, cluster.triangle[triangle],
+                                               index * uint32_t(cluster_lanes) + triangle, c, ray, best);
+                          });
     }
 
     template <class E>
     CISTULA_INLINE void shadow_cluster(uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                       const TriangleRay<Real>& triangle_ray, const Mask& who,
+                                       const LaneTriangleRay<Real>& triangle_ray, const Mask& who,
                                        ShadowSum<E, Real>& sum) const {
-        for_each_crossing(index, triangle_ray, who,
-                          [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
-                              shadow_crossing<Real, E>(scene, accepted, scene.clusters[index].solid,
-                                                       scene.clusters[index].triangle[lane], c, shadow, sum);
-                          });
-    }
-
-    /// Calls visit(triangle's lane, mask, crossings) for the triangles of a cluster that rays cross.
-    template <class Visit>
-    CISTULA_INLINE void for_each_crossing(uint32_t index, const TriangleRay<Real>& triangle_ray, const Mask& who,
-                                          const Visit& visit) const {
         const auto& cluster = scene.clusters[index];
-        for (uint32_t lane = 0; lane < cluster.count; ++lane) {
-            TriangleCrossing<Real> c{};
-            const Mask accepted =
-                who & cross_triangle(ShearedTriangle<Real>::of(cluster, int(lane), triangle_ray), triangle_ray, c);
-            if (any(accepted)) visit(lane, accepted, c);
-        }
+        for_each_crossing(
+            cluster, triangle_ray, who, [&](uint32_t triangle, const Mask& accepted, const TriangleCrossing<Real>& c) {
+                shadow_crossing<Real, E>(scene, accepted, cluster.solid, cluster.triangle[triangle], c, shadow, sum);
+            });
     }
 };
 

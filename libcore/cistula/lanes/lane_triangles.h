@@ -1,0 +1,62 @@
+// Rays in lanes against clusters of triangles: a triangle after the other against all rays, or a ray after the other
+// against all triangles, whichever is less work.
+#pragma once
+
+#include "cistula/geometry/triangle.h"
+#include "cistula/lanes/lanes.h"
+
+namespace cistula {
+
+/// The shears of rays: of all lanes in registers, and in memory for rays by themselves.
+template <class Real>
+class LaneTriangleRay {
+  public:
+    using T = ScalarOf<Real>;
+    TriangleRay<Real> all;
+
+    CISTULA_INLINE LaneTriangleRay(const Vec3<Real>& origin, const Vec3<Real>& direction)
+        : all(TriangleRay<Real>::of(origin, direction)),
+          axes_{LaneArray<Index>(all.kx), LaneArray<Index>(all.ky), LaneArray<Index>(all.kz)},
+          shear_{LaneArray<Real>(all.sx), LaneArray<Real>(all.sy), LaneArray<Real>(all.sz)},
+          origin_{LaneArray<Real>(all.ox), LaneArray<Real>(all.oy), LaneArray<Real>(all.oz)} {}
+
+    CISTULA_INLINE TriangleRay<T> of(int lane) const {
+        TriangleRay<T> one;
+        one.kx = uint32_t(axes_[0].of[lane]), one.ky = uint32_t(axes_[1].of[lane]),
+        one.kz = uint32_t(axes_[2].of[lane]);
+        one.sx = shear_[0].of[lane], one.sy = shear_[1].of[lane], one.sz = shear_[2].of[lane];
+        one.ox = origin_[0].of[lane], one.oy = origin_[1].of[lane], one.oz = origin_[2].of[lane];
+        return one;
+    }
+
+  private:
+    using Index = IndexOf<Real>;
+    LaneArray<Index> axes_[3];
+    LaneArray<Real> shear_[3], origin_[3];
+};
+
+/// Calls visit(triangle's lane in the cluster, rays, crossings) for the triangles of a cluster that rays of `who`
+/// cross.
+template <class Real, class Visit>
+CISTULA_INLINE void for_each_crossing(const Cluster<ScalarOf<Real>>& cluster, const LaneTriangleRay<Real>& ray,
+                                      const MaskOf<Real>& who, const Visit& visit) {
+    using T = ScalarOf<Real>;
+    using Mask = MaskOf<Real>;
+    constexpr uint32_t registers = cluster_lanes * sizeof(T) / 32;  // of a ray's test against a whole cluster
+    if (uint32_t(__builtin_popcount(who.bits())) * registers >= cluster.count) {
+        for (uint32_t triangle = 0; triangle < cluster.count; ++triangle) {
+            TriangleCrossing<Real> c{};
+            const Mask accepted =
+                who & cross_triangle(ShearedTriangle<Real>::of(cluster, int(triangle), ray.all), ray.all, c);
+            if (any(accepted)) visit(triangle, accepted, c);
+        }
+        return;
+    }
+    for_each_lane(who, [&](int lane) {
+        for_each_crossing(cluster, ray.of(lane), [&](uint32_t triangle, const TriangleCrossing<T>& c) {
+            visit(triangle, Mask::of_bits(1u << lane), TriangleCrossing<Real>{c.t, c.edge_u, c.edge_v, c.det});
+        });
+    });
+}
+
+}  // namespace cistula
