@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "apps/common/part_name.h"
 #include "scene/base/lower_case.h"
 
 namespace cistula {
@@ -169,9 +170,7 @@ std::vector<Layer> layers_of(const std::vector<ExrPart>& parts) {
     std::set<std::string> names;
     for (size_t i = 0; i < parts.size(); ++i)
         for (Layer& layer : layers_of_part(parts[i])) {
-            const std::string& part = parts[i].name;
-            const bool repeats = layer.name == part || layer.name.rfind(part + ".", 0) == 0;
-            if (parts.size() > 1 && !part.empty() && !repeats) layer.name = part + "." + layer.name;
+            if (parts.size() > 1) layer.name = name_in_part(parts[i].name, layer.name);
             const std::string name = layer.name;
             for (int number = 2; !names.insert(layer.name).second; ++number)
                 layer.name = fmt::format("{} ({})", name, number);

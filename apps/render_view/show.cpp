@@ -124,7 +124,7 @@ void show_chroma(ShownLayer& shown, const ExrPart& part, const Channels& channel
         if (colors.chromaticities) space = color_space_of(*colors.chromaticities);
     } catch (const std::runtime_error&) {  // those of no space: ToRec709 says so
     }
-    const bool is_halved[] = {channels[0]->is_halved, channels[1]->is_halved, channels[2]->is_halved};
+    const bool is_halved[] = {channels[0]->is_halved(), channels[1]->is_halved(), channels[2]->is_halved()};
     colors_from_chroma(shown.picture, is_halved, luminance_weights(space));
     const ToRec709 to_rec709(part);
     for (glm::vec3& texel : shown.picture.texels) texel = to_rec709(texel);

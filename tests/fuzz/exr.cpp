@@ -1,6 +1,7 @@
-// OpenEXR files, as they are read for comparisons, for --resume and as textures.
+// OpenEXR files, as they are read for --resume, as textures, and for comparisons.
 #include "scene/image/exr.h"
 #include "checks.h"
+#include "scene/image/stored_exr.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;
@@ -18,6 +19,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     try {
         const ColorPicture picture = read_exr_texture(file.path());
         fuzz::require(picture.texels.size() == static_cast<size_t>(picture.width) * picture.height);
+    } catch (const Error& error) {
+        fuzz::check_error(error, ExitCode::file);
+    }
+    try {
+        const StoredFile stored = read_stored_exr(file.path());
+        fuzz::require(!stored.pictures.empty() && stored.pictures.front().is_whole());
+        for (const StoredPicture& picture : stored.pictures)
+            for (const StoredChannel& channel : picture.channels)
+                std::visit([&](const auto& values) { fuzz::require(values.size() == picture.data.pixels()); },
+                           channel.values);
     } catch (const Error& error) {
         fuzz::check_error(error, ExitCode::file);
     }

@@ -107,7 +107,7 @@ TEST(ExrFile, OnlyWhatIsReadMustHaveAValueForEachPixel) {
     }
     const ExrFile file(scratch.file("yc.exr"));
     EXPECT_EQ(file.read(0, {1})[0].values, full);
-    EXPECT_TRUE(file.parts()[0].channels[0].is_halved);
+    EXPECT_TRUE(file.parts()[0].channels[0].is_halved());
     EXPECT_EQ(file.read(0, {0})[0].values, (std::vector<float>{1, 1, 2, 2, 1, 1, 2, 2}));
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/image/picture.h"
@@ -11,6 +12,9 @@
 namespace cistula {
 
 struct FileColors;
+
+/// The first bytes of every OpenEXR file.
+inline constexpr std::string_view exr_magic = "\x76\x2f\x31\x01";
 
 /// Writes a scan line file. Equal pictures give equal files: no dates, nothing of the machine or
 /// the number of threads (see set_exr_threads). Half channels round to nearest even. Attributes: string, int, double,

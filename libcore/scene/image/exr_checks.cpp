@@ -5,9 +5,11 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfTiledInputPart.h>
 
 #include <filesystem>
 #include <stdexcept>
+#include <type_traits>
 
 #include "scene/image/exr_header.h"
 
@@ -76,18 +78,21 @@ void check_claim(const Imf::Header& header, const std::string& path) {
 template <class File>
 void check_chunks(File& file) {
     if (!file.isComplete()) throw std::runtime_error("the file is not complete: chunks of pixels are missing");
-    if (file.header().hasTileDescription()) return;
-    const Imath::Box2i window = file.header().dataWindow();
-    const int step = lines_per_chunk(file.header().compression());
-    for (int64_t y = window.min.y; y <= window.max.y; y += step) {
-        const char* bytes = nullptr;
-        int count = 0;
-        file.rawPixelData(static_cast<int>(y), bytes, count);
+    if constexpr (!std::is_same_v<File, Imf::TiledInputPart>) {
+        if (file.header().hasTileDescription()) return;
+        const Imath::Box2i window = file.header().dataWindow();
+        const int step = lines_per_chunk(file.header().compression());
+        for (int64_t y = window.min.y; y <= window.max.y; y += step) {
+            const char* bytes = nullptr;
+            int count = 0;
+            file.rawPixelData(static_cast<int>(y), bytes, count);
+        }
     }
 }
 
 template void check_chunks(Imf::InputFile& file);
 template void check_chunks(Imf::InputPart& file);
+template void check_chunks(Imf::TiledInputPart& file);
 
 void check_sampling(const Imf::Header& header, bool is_chroma) {
     const Imf::ChannelList& channels = header.channels();

@@ -47,7 +47,8 @@ void check_sampling(const Imf::Header& header, bool is_chroma = false);
 void check_claim(const Imf::Header& header, const std::string& path);
 
 /// Throws unless every chunk is present. The table of offsets is not enough: it precedes the pixels, so a truncated
-/// file has all of it. Tiles are checked when their pixels are read. File: Imf::InputFile or Imf::InputPart.
+/// file has all of it. Tiles are checked when their pixels are read. File: Imf::InputFile, Imf::InputPart
+/// or Imf::TiledInputPart.
 template <class File>
 void check_chunks(File& file);
 

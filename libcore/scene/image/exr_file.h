@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "scene/image/picture.h"
+#include "scene/image/stored_picture.h"
 
 namespace cistula {
 
@@ -17,9 +19,16 @@ struct ExrChannel {
 
     std::string name;
     Type type = Type::float_;
-    bool is_halved = false;  // the file has one value for two by two pixels, which all of them get
+    int x_sampling = 1, y_sampling = 1;  // the file has one value for so many pixels, which all of them get
     std::vector<float> values;
     std::vector<uint32_t> numbers;  // those of a uint channel, exact; its values are rounded
+
+    bool is_halved() const { return x_sampling == 2 && y_sampling == 2; }
+};
+
+/// Numbers of a level of a mip map or a rip map.
+struct ExrLevel {
+    int x = 0, y = 0;
 };
 
 /// What a part's header says.
@@ -27,8 +36,12 @@ struct ExrPart {
     std::string name;           // files of one part need not have one
     int width = 0, height = 0;  // of the data window
     int full_height = 0;        // of the display window
+    PixelWindow data, display;
+    std::vector<ExrLevel> levels;  // {0, 0} is the whole resolution, and first
     decltype(LayeredPicture::attributes) attributes;
-    std::vector<ExrChannel> channels;  // by name
+    std::map<std::string, StoredAttribute> header;  // all attributes but those that windows and channels are
+    std::map<std::string, std::string> packing;     // exr_packing
+    std::vector<ExrChannel> channels;               // by name
 };
 
 /// The file stays open, so what is read is what the headers said.
@@ -44,6 +57,10 @@ class ExrFile {
 
     /// The values of channels of a part, in this order; both are numbers in parts(). Throws Error(ExitCode::file).
     std::vector<ExrChannel> read(size_t part, const std::vector<size_t>& channels) const;
+
+    /// Those of a level, whose data window this is.
+    std::vector<ExrChannel> read(size_t part, const std::vector<size_t>& channels, ExrLevel level,
+                                 PixelWindow& window) const;
 
   private:
     struct Open;

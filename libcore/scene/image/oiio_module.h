@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "scene/image/reply_type.h"
+
 namespace cistula {
 
 /// Type of a sample; the value is its size in bytes.
@@ -20,6 +22,31 @@ struct OiioHost {
     /// Announces a picture. False: the host refuses and knows the reason; the module returns.
     bool (*begin)(void* self, int64_t width, int64_t height, uint32_t channels, OiioSamples type) noexcept;
     /// Takes the next `texels` texels of width * height, row-major from the top left.
+    void (*samples)(void* self, const void* from, size_t texels) noexcept;
+    /// Reports why the call fails, without the file's name.
+    void (*failed)(void* self, const char* reason) noexcept;
+};
+
+/// A picture of a file, with all of its channels as they stand.
+struct OiioPicture {
+    int32_t x, y, width, height;
+    int32_t display_x, display_y, display_width, display_height;
+    uint32_t level;  // of a mip map
+    uint32_t channels;
+    ReplyType type;            // halves come as floats
+    const char* format;        // of the file: "png"
+    const char* const* names;  // of the channels
+};
+
+/// Callbacks of whoever reads all of a file. Every function gets `self`; what is given is copied before it returns.
+struct OiioStoredHost {
+    void* self;
+    uint64_t left;  // bytes that all values may take
+    /// Announces the next picture. False: the host refuses and knows the reason; the module returns.
+    bool (*picture)(void* self, const OiioPicture* picture) noexcept;
+    /// Says what the picture's header says.
+    void (*attribute)(void* self, const char* name, const char* type, const char* text) noexcept;
+    /// Takes the values of the next `texels` texels of the picture.
     void (*samples)(void* self, const void* from, size_t texels) noexcept;
     /// Reports why the call fails, without the file's name.
     void (*failed)(void* self, const char* reason) noexcept;
@@ -43,6 +70,10 @@ struct OiioModule {
     /// three. True on success; otherwise `failed` was called, or `begin` refused.
     bool (*read)(const char* path, const OiioHost* host) noexcept;
 
+    /// Reads all of a file: its pictures, their levels, channels and attributes, as they stand. True on success;
+    /// otherwise `failed` was called, or `picture` refused.
+    bool (*read_stored)(const char* path, const OiioStoredHost* host) noexcept;
+
     /// Opens a view of the config in a file, or, where `config` is empty, of the one that is part of OpenColorIO (2.2
     /// and later). A view of the default display goes by its name, others by "VIEW (DISPLAY)". All names go to `view`.
     /// Null: `failed` was called, or, where it was not, there is no view of that name.
@@ -61,6 +92,6 @@ struct OiioModule {
 
 /// The one function that the module exports. Its number changes whenever this header does.
 using OiioModuleEntry = const OiioModule* (*)();
-inline constexpr const char* oiio_module_entry = "cistula_oiio_module_6";
+inline constexpr const char* oiio_module_entry = "cistula_oiio_module_7";
 
 }  // namespace cistula

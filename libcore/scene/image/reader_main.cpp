@@ -1,8 +1,6 @@
 // cistula-read-picture: reads pictures for another process, which starts it (reader_process.h), each by a fork of its
 // own, so that a picture that makes a library crash or take memory or time without end harms nothing else.
 #include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,91 +16,34 @@
 #include <string_view>
 
 #include "scene/base/file_bytes.h"
-#include "scene/base/machine_memory.h"
 #include "scene/image/exr.h"
 #include "scene/image/file_colors.h"
 #include "scene/image/icc_profile.h"
 #include "scene/image/oiio_library.h"
+#include "scene/image/reader_limits.h"
+#include "scene/image/reader_socket.h"
 #include "scene/image/reader_wire.h"
 #include "scene/image/stated_colors.h"
+#include "scene/image/stored_answer.h"
 #include "scene/image/texture_limits.h"
 
 namespace cistula {
 namespace {
 
-/// Fills `size` bytes at `to` with what the other process says; ends this one if that has ended.
-void receive(void* to, size_t size) {
-    for (auto* bytes = static_cast<char*>(to); size > 0;) {
-        const ssize_t got = read(reader_socket, bytes, size);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) _exit(0);
-        bytes += got;
-        size -= static_cast<size_t>(got);
-    }
-}
-
-void send(const void* from, size_t size) {
-    for (const auto* bytes = static_cast<const char*>(from); size > 0;) {
-        const ssize_t sent = ::send(reader_socket, bytes, size, MSG_NOSIGNAL);
-        if (sent < 0 && errno == EINTR) continue;
-        if (sent <= 0) _exit(0);
-        bytes += sent;
-        size -= static_cast<size_t>(sent);
-    }
-}
-
-void send_part(ReplyKind kind, const void* from, size_t size) {
-    const ReplyHead head = {kind, static_cast<uint32_t>(size)};
-    send(&head, sizeof head);
-    send(from, size);
-}
-
-void send_failure(const std::string& reason) {
-    send_part(ReplyKind::failed, reason.data(), std::min<size_t>(reason.size(), largest_reply_part));
-}
-
-/// Limits a resource from now on; a lower limit of the other process stays.
-template <class Resource>
-void limit(Resource resource, uint64_t most) {
-    rlimit limits = {};
-    if (getrlimit(resource, &limits) != 0) return;
-    limits.rlim_cur = std::min<rlim_t>(limits.rlim_max, most);
-    setrlimit(resource, &limits);
-}
-
-/// The address space that decoding may take; `is_inherited`: the process that started this one allows no more.
-struct MemoryLimit {
-    uint64_t bytes;
-    bool is_inherited;
-};
-
-MemoryLimit memory_limit(const ReadRequest& request) {
-    constexpr uint64_t beside_texels = 1 << 30;
-    const uint64_t own = address_space() + beside_texels + 2 * request.left;
-    rlimit inherited = {};
-    if (getrlimit(RLIMIT_AS, &inherited) == 0 && inherited.rlim_cur < own) return {inherited.rlim_cur, true};
-    return {own, false};
-}
-
-/// Ends this process because it was given too little memory.
-[[noreturn]] void end_out_of_memory() {
-    _exit(reader_out_of_memory);
-}
-
-/// One answer.
+/// The answer with a texture.
 class Answer {
   public:
     /// `stated`: what the picture's header says of its colors.
     Answer(const ReadRequest& request, const MemoryLimit& memory, std::optional<FileColors> stated)
         : request_(request), memory_(memory), stated_(std::move(stated)) {
-        allow_seconds_for(0);
+        allow_seconds_for(request_, 0);
     }
 
     /// Why a picture of this size is refused; empty if it is not, and then it may take the time for its size.
     std::string size_problem(int64_t width, int64_t height) const {
         std::string problem = texture_size_problem(width, height, request_.left, request_.limit);
         if (problem.empty())
-            allow_seconds_for(texel_bytes * static_cast<uint64_t>(width) * static_cast<uint64_t>(height));
+            allow_seconds_for(request_, texel_bytes * static_cast<uint64_t>(width) * static_cast<uint64_t>(height));
         return problem;
     }
 
@@ -138,27 +79,12 @@ class Answer {
         return true;
     }
 
-    void samples(const void* from, size_t texels) const {
-        const size_t most = largest_reply_part / texel_;
-        for (const auto* bytes = static_cast<const char*>(from); texels > 0;) {
-            const size_t count = std::min(texels, most);
-            send_part(ReplyKind::samples, bytes, count * texel_);
-            bytes += count * texel_;
-            texels -= count;
-        }
-    }
+    void samples(const void* from, size_t texels) const { send_samples(from, texels, texel_); }
 
     /// Says why the picture cannot be read.
-    void fail(const std::string& reason) const {
-        if (memory_.is_inherited && errno == ENOMEM) end_out_of_memory();  // whatever a library makes of it
-        send_failure(reason);
-    }
+    void fail(const std::string& reason) const { fail_answer(memory_, reason); }
 
   private:
-    void allow_seconds_for(uint64_t bytes) const {
-        limit(RLIMIT_CPU, static_cast<uint64_t>(seconds_for(static_cast<int>(request_.seconds), bytes)));
-    }
-
     const ReadRequest& request_;
     const MemoryLimit& memory_;
     const std::optional<FileColors> stated_;
@@ -205,8 +131,13 @@ void answer_exr(const std::string& path, Answer& answer) {
     limit(RLIMIT_AS, memory.bytes);
     if (memory.is_inherited) std::set_new_handler(end_out_of_memory);
     errno = 0;
-    Answer answer(request, memory, request.is_exr ? std::nullopt : stated_colors(path));
-    if (request.is_exr) {
+    if (request.kind == ReadKind::stored) {
+        answer_stored(path, request, memory, *oiio);
+        _exit(0);
+    }
+    const bool is_exr = request.kind == ReadKind::exr_texture;
+    Answer answer(request, memory, is_exr ? std::nullopt : stated_colors(path));
+    if (is_exr) {
         answer_exr(path, answer);
     } else {
         const OiioHost host = host_of(answer, request.left);
@@ -248,7 +179,8 @@ void answer_one() {
     receive(path.data(), path.size());
     const OiioModule* oiio = nullptr;
     try {
-        if (!request.is_exr) oiio = &load_oiio(own_directory(), "formats other than EXR and .data");
+        if (request.kind == ReadKind::texture) oiio = &load_oiio(own_directory(), "formats other than EXR and .data");
+        if (request.kind == ReadKind::stored) oiio = &load_oiio(own_directory(), "formats other than EXR");
     } catch (const std::bad_alloc&) {
         end_out_of_memory();
     } catch (const std::exception& error) {

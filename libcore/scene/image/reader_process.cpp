@@ -80,7 +80,7 @@ std::string what_ended(int status, const std::string& program) {
 
 }  // namespace
 
-ReaderProcess::ReaderProcess() : program_(reader_path()) {
+ReaderProcess::ReaderProcess(const std::string& users) : program_(reader_path(users)) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
         throw std::runtime_error(program_ + " cannot be started: " + error_text(errno));

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace cistula {
@@ -15,8 +16,8 @@ class ReaderProcess {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// Starts it. Throws std::runtime_error.
-    ReaderProcess();
+    /// Starts it; `users` need it, for the message where it is not found. Throws std::runtime_error.
+    explicit ReaderProcess(const std::string& users = "textures other than .data");
     ~ReaderProcess();
     ReaderProcess(const ReaderProcess&) = delete;
     ReaderProcess& operator=(const ReaderProcess&) = delete;
@@ -37,5 +38,10 @@ class ReaderProcess {
     int socket_ = -1;
     pid_t child_ = -1;
 };
+
+/// The time on the clock for so much processor time: other processes may need the processors, too.
+inline ReaderProcess::Clock::duration patience(int64_t seconds) {
+    return std::chrono::seconds(5 * seconds);
+}
 
 }  // namespace cistula

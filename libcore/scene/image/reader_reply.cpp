@@ -14,20 +14,6 @@ namespace {
     throw ReaderBroken("its decoder gave an answer that makes no sense; the file is damaged, give another");
 }
 
-/// The head of the next part; throws PictureRefused if that is the reason of a failure.
-ReplyHead next_part(const Receive& receive) {
-    ReplyHead head;
-    receive(&head, sizeof head);
-    if (head.bytes > largest_reply_part) fail_broken();
-    if (head.kind != ReplyKind::failed) return head;
-    std::string reason(head.bytes, '\0');
-    receive(reason.data(), reason.size());
-    constexpr size_t longest = 1000;
-    reason.resize(std::min(reason.size(), longest));
-    std::replace(reason.begin(), reason.end(), '\n', ' ');
-    throw PictureRefused(one_line(reason));
-}
-
 FileColors receive_colors(const Receive& receive, uint32_t bytes) {
     ReplyColors reply;
     if (bytes < sizeof reply || bytes - sizeof reply > largest_reply_id) fail_broken();
@@ -43,6 +29,19 @@ FileColors receive_colors(const Receive& receive, uint32_t bytes) {
 }
 
 }  // namespace
+
+ReplyHead next_part(const Receive& receive) {
+    ReplyHead head;
+    receive(&head, sizeof head);
+    if (head.bytes > largest_reply_part) fail_broken();
+    if (head.kind != ReplyKind::failed) return head;
+    std::string reason(head.bytes, '\0');
+    receive(reason.data(), reason.size());
+    constexpr size_t longest = 1000;
+    reason.resize(std::min(reason.size(), longest));
+    std::replace(reason.begin(), reason.end(), '\n', ' ');
+    throw PictureRefused(one_line(reason));
+}
 
 ReplyStart receive_start(const Receive& receive, uint64_t left) {
     ReplyStart start;

@@ -4,31 +4,44 @@
 
 #include <cstdint>
 
+#include "scene/image/reply_type.h"
+
 namespace cistula {
 
 /// The program's only argument; it changes whenever this header does.
-inline constexpr const char* reader_protocol = "cistula-pictures-4 " CISTULA_VERSION;
+inline constexpr const char* reader_protocol = "cistula-pictures-5 " CISTULA_VERSION;
 
 inline constexpr int reader_socket = 3;           // the program's descriptor of its end
 inline constexpr int reader_wrong_protocol = 64;  // the program's exit code for another argument
 inline constexpr int reader_out_of_memory = 65;   // and where a limit that it inherited leaves too little memory
 
-/// Asks for one picture; the bytes of its path follow.
+/// What is wanted of a file.
+enum class ReadKind : uint32_t {
+    texture,      // colors of what OpenImageIO finds
+    exr_texture,  // colors of OpenEXR
+    stored,       // all that OpenImageIO finds, as it stands
+};
+
+/// Asks for one file; the bytes of its path follow.
 struct ReadRequest {
-    uint64_t left, limit;  // bytes that its texels may take; of the limit for all textures
-    uint32_t is_exr;       // 1: OpenEXR; 0: what OpenImageIO finds
-    uint32_t seconds;      // of TextureLimits
+    uint64_t left, limit;  // bytes that its texels or values may take; of the limit for all textures
+    ReadKind kind;
+    uint32_t seconds;  // of TextureLimits
     uint32_t path_size;
     uint32_t reserved;
 };
 
-/// The answer is `colors`, where the file says something of them, `size`, and then `samples` until there are all, or at
-/// any time `failed`.
+/// The answer for a texture is `colors`, where the file says something of them, `size`, and then `samples` until there
+/// are all. That for a stored file is, for each of its pictures, `picture`, `attribute` for each, and `samples` until
+/// there are all, and then `end`. Either ends at any time with `failed`.
 enum class ReplyKind : uint32_t {
-    size = 1,  // a ReplySize
-    samples,   // whole texels, row-major from the top left
-    failed,    // the reason, without the file's name
-    colors,    // a ReplyColors, and then the id or the profile's name
+    size = 1,   // a ReplySize
+    samples,    // whole texels, row-major from the top left
+    failed,     // the reason, without the file's name
+    colors,     // a ReplyColors, and then the id or the profile's name
+    picture,    // a ReplyPicture, the format's name and the channels' names, each with a zero byte
+    attribute,  // name, type and text, each with a zero byte
+    end,
 };
 
 /// Begins each part of an answer.
@@ -43,6 +56,17 @@ struct ReplySize {
     uint32_t channels;      // 1 or 3
     uint32_t sample_bytes;  // 1 or 2: codes, whose largest is white; 4: floats
 };
+
+/// A StoredPicture.
+struct ReplyPicture {
+    int32_t x, y, display_x, display_y;
+    uint32_t width, height, display_width, display_height;
+    uint32_t level;
+    uint32_t channels;
+    ReplyType type;  // of all of them; halves are sent as floats
+    uint32_t reserved;
+};
+inline constexpr uint32_t most_stored_pictures = 4096;
 
 /// FileColors.
 struct ReplyColors {

@@ -32,4 +32,15 @@ std::string texture_size_problem(int64_t width, int64_t height, uint64_t left, u
            "; give a smaller one, or raise the limit (--max-texture-gb of render)";
 }
 
+std::string stored_size_problem(int64_t width, int64_t height, uint64_t texel, uint64_t left, uint64_t limit) {
+    const std::string size = "its size is " + std::to_string(width) + "x" + std::to_string(height);
+    if (width < 1 || height < 1 || width > largest_picture_side || height > largest_picture_side)
+        return size + "; width and height of a picture are 1 to " + std::to_string(largest_picture_side);
+    const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+    if (pixels <= left / texel) return "";
+    return size + ", and its values take " + gigabytes(texel * pixels) + " of memory; pictures may take " +
+           gigabytes(limit) + (left < limit ? ", and others take " + gigabytes(limit - left) : "") +
+           "; give a smaller one";
+}
+
 }  // namespace cistula

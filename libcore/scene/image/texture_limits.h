@@ -28,6 +28,9 @@ int64_t seconds_for(int seconds, uint64_t bytes);
 /// and their bytes are at most `left` of the `limit` for all.
 std::string texture_size_problem(int64_t width, int64_t height, uint64_t left, uint64_t limit);
 
+/// Why a picture that is read as it stands is not, as above; `texel`: bytes that the values of a pixel take.
+std::string stored_size_problem(int64_t width, int64_t height, uint64_t texel, uint64_t left, uint64_t limit);
+
 /// A size in memory for messages: "6.32 GB".
 std::string gigabytes(uint64_t bytes);
 

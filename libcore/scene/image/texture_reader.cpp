@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "scene/base/file_bytes.h"
+#include "scene/image/exr.h"
 #include "scene/image/raw_picture.h"
 #include "scene/image/reader_process.h"
 #include "scene/image/reader_reply.h"
@@ -17,11 +18,6 @@ constexpr uint64_t most_bytes = UINT32_MAX * texel_bytes;
 TextureLimits within_reach(TextureLimits limits) {
     if (limits.bytes > most_bytes) limits.bytes = most_bytes;
     return limits;
-}
-
-/// The time on the clock for so much processor time: other processes may need the processors, too.
-ReaderProcess::Clock::duration patience(int64_t seconds) {
-    return std::chrono::seconds(5 * seconds);
 }
 
 }  // namespace
@@ -55,8 +51,7 @@ ColorPicture TextureReader::read(const std::string& path, ClampedTexels* clamped
 ColorPicture TextureReader::read_any(const std::string& path, std::string_view encoding) {
     if (regular_file_size(path) == 0) throw file_error(path, "read", std::string("it is empty; give a picture"));
     const std::string extension = lower_extension(path);
-    if (extension == ".exr" || read_file_start(path, 4) == "\x76\x2f\x31\x01")
-        return read_in_child(path, true, encoding);
+    if (extension == ".exr" || read_file_start(path, 4) == exr_magic) return read_in_child(path, true, encoding);
     if (extension == ".data" || extension == ".out")
         return read_raw_picture(path, left_, limits_.bytes, file_encoding(encoding, {}, false));
     return read_in_child(path, false, encoding);
@@ -65,8 +60,12 @@ ColorPicture TextureReader::read_any(const std::string& path, std::string_view e
 ColorPicture TextureReader::read_in_child(const std::string& path, bool is_exr, std::string_view encoding) {
     if (!process_) process_ = std::make_unique<ReaderProcess>();
     const auto start = ReaderProcess::Clock::now();
-    const ReadRequest request = {
-        left_, limits_.bytes, is_exr, static_cast<uint32_t>(limits_.seconds), static_cast<uint32_t>(path.size()), 0};
+    const ReadRequest request = {left_,
+                                 limits_.bytes,
+                                 is_exr ? ReadKind::exr_texture : ReadKind::texture,
+                                 static_cast<uint32_t>(limits_.seconds),
+                                 static_cast<uint32_t>(path.size()),
+                                 0};
     process_->send(&request, sizeof request);
     process_->send(path.data(), path.size());
     auto end = start + patience(limits_.seconds);

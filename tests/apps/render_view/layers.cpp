@@ -21,8 +21,8 @@ ExrPart part_of(const std::vector<std::string>& channels, const std::string& nam
     part.name = name;
     part.width = part.height = 1;
     for (const std::string& channel : channels)
-        part.channels.push_back(channel[0] == '#' ? ExrChannel{channel.substr(1), Type::uint, false, {}, {}}
-                                                  : ExrChannel{channel, Type::float_, false, {}, {}});
+        part.channels.push_back(channel[0] == '#' ? ExrChannel{channel.substr(1), Type::uint, 1, 1, {}, {}}
+                                                  : ExrChannel{channel, Type::float_, 1, 1, {}, {}});
     return part;
 }
 

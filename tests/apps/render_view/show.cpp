@@ -28,8 +28,7 @@ class Show : public testing::Test {
   protected:
     void give(const std::vector<std::vector<float>>& values) {
         channels_.clear();
-        for (const std::vector<float>& one : values)
-            channels_.push_back({"", ExrChannel::Type::float_, false, one, {}});
+        for (const std::vector<float>& one : values) channels_.push_back({"", ExrChannel::Type::float_, 1, 1, one, {}});
         part_.width = static_cast<int>(values[0].size());
         part_.height = 1;
         part_.full_height = 10;

@@ -5,6 +5,7 @@
 #include "scene/image/exr.h"
 #include "scene/image/picture_io.h"
 #include "scene/image/raw_picture.h"
+#include "scene/image/stored_reader.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 
@@ -21,6 +22,21 @@ TEST(WithoutOpenImageIO, OtherFormatsAreAClearError) {
     put_bytes(path, "anything");
     EXPECT_ERROR(read_texture(path), ExitCode::file, message);
     EXPECT_EQ(bytes_of(path), "anything");
+}
+
+TEST(WithoutOpenImageIO, PicturesToCompareAreEXRs) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("x.png");
+    write_preview(path, ColorPicture{1, 1, {{1, 0, 1}}});
+    EXPECT_ERROR(StoredReader().read(path), ExitCode::file,
+                 path +
+                     ": cannot read: this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF), which formats other than "
+                     "EXR need; `make build` installs it (Debian: libopenimageio-dev) and builds with it");
+    LayeredPicture layers;
+    layers.width = layers.height = layers.display_width = layers.display_height = 1;
+    layers.channels = {{"Y", true, {0.5f}}};
+    write_exr(path, layers);
+    EXPECT_EQ(StoredReader().read(path).pictures[0].channels[0].name, "Y");
 }
 
 TEST(WithoutOpenImageIO, PreviewsAreWritten) {
