@@ -3,114 +3,182 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
+#include <map>
 #include <set>
+#include <tuple>
+
+#include "apps/common/command_line.h"
+#include "apps/common/part_name.h"
+#include "header_differences.h"
+#include "picture_pairs.h"
+#include "scene/base/suggest.h"
+#include "ssim.h"
+#include "stored_layers.h"
 
 namespace cistula {
 namespace {
 
-using Channel = LayeredPicture::Channel;
-using Attribute = decltype(LayeredPicture::attributes)::mapped_type;
-
-const Channel* find(const LayeredPicture& picture, const std::string& name) {
-    for (const Channel& channel : picture.channels)
-        if (channel.name == name) return &channel;
-    return nullptr;
+void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
+    lines.insert(lines.end(), more.begin(), more.end());
 }
 
-bool same_data_window(const LayeredPicture& a, const LayeredPicture& b) {
-    return a.width == b.width && a.height == b.height && a.x == b.x && a.y == b.y;
-}
-
-/// The shortest text that reads back as the same number, so that equal texts are equal values, NaN and -0 included.
-std::string to_text(const Attribute& value) {
-    if (const auto* text = std::get_if<std::string>(&value)) return *text;
-    if (const auto* whole = std::get_if<int>(&value)) return fmt::format("{}", *whole);
-    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-    if (const auto* ratio = std::get_if<Ratio>(&value))
-        return fmt::format("{}/{}", ratio->numerator, ratio->denominator);
-    return fmt::format("{}", fmt::join(std::get<std::vector<float>>(value), " "));
-}
-
-std::vector<std::string> differing_structure(const LayeredPicture& a, const LayeredPicture& b) {
-    std::vector<std::string> lines;
-    const auto data = [](const LayeredPicture& p) { return fmt::format("{}x{}+{}+{}", p.width, p.height, p.x, p.y); };
-    const auto display = [](const LayeredPicture& p) {
-        return fmt::format("{}x{}", p.display_width, p.display_height);
+/// What differences of a channel are counted in, where that needs a word.
+std::string unit_text(const ChannelStatistics& channel) {
+    const auto fractions = [](StoredType type) {
+        return largest_code(type) > 0 ? fmt::format("{} as fractions of {}", type_name(type), largest_code(type))
+                                      : fmt::format("{} as it is", type_name(type));
     };
-    if (data(a) != data(b)) lines.push_back(fmt::format("data window: {} / {}", data(a), data(b)));
-    if (display(a) != display(b)) lines.push_back(fmt::format("display window: {} / {}", display(a), display(b)));
-    for (const Channel& channel : a.channels)
-        if (!find(b, channel.name)) lines.push_back(fmt::format("channel {}: only in the first", channel.name));
-    for (const Channel& channel : b.channels)
-        if (!find(a, channel.name)) lines.push_back(fmt::format("channel {}: only in the second", channel.name));
-    return lines;
+    switch (channel.unit()) {
+        case DifferenceUnit::integer:
+            return fmt::format("{}: compared as integers", type_name(channel.first_type));
+        case DifferenceUnit::fraction:
+            return fmt::format("{} / {}: compared as numbers, {}, {}", type_name(channel.first_type),
+                               type_name(channel.second_type), fractions(channel.first_type),
+                               fractions(channel.second_type));
+        case DifferenceUnit::value:
+            break;
+    }
+    return "";
 }
 
-std::vector<std::string> differing_header(const LayeredPicture& a, const LayeredPicture& b) {
-    std::vector<std::string> lines;
-    for (const Channel& channel : a.channels) {
-        const Channel* other = find(b, channel.name);
-        if (other && other->half != channel.half)
-            lines.push_back(fmt::format("channel {}: {} / {}", channel.name, channel.half ? "half" : "float",
-                                        other->half ? "half" : "float"));
-    }
-    std::set<std::string> names;
-    for (const auto& picture : {&a, &b})
-        for (const auto& entry : picture->attributes) names.insert(entry.first);
-    for (const std::string& name : names) {
-        const auto first = a.attributes.find(name), second = b.attributes.find(name);
-        const bool in_first = first != a.attributes.end(), in_second = second != b.attributes.end();
-        if (in_first && in_second && first->second.index() == second->second.index() &&
-            to_text(first->second) == to_text(second->second))
-            continue;
-        lines.push_back(fmt::format("{}: {} / {}", name, in_first ? to_text(first->second) : "(none)",
-                                    in_second ? to_text(second->second) : "(none)"));
-    }
-    return lines;
-}
+/// A comparison in work.
+class Comparer {
+  public:
+    Comparer(const StoredFile& a, const StoredFile& b, const Selection& selection)
+        : a_(a), b_(b), selection_(selection), pairs_(pair_pictures(a, b)) {}
 
-/// Statistics of two channels; `window`: the picture whose data window both have.
-ChannelStatistics statistics_of(const Channel& a, const Channel& b, const LayeredPicture& window,
-                                std::vector<double>& worst_of_pixels) {
-    ChannelStatistics result;
-    result.name = a.name;
-    double sum = 0, squares = 0, peak = 1;
-    size_t worst = 0;
-    for (size_t i = 0; i < a.values.size(); ++i) {
-        for (const float value : {a.values[i], b.values[i]})
-            if (std::isfinite(value)) peak = std::max(peak, std::abs(static_cast<double>(value)));
-        if (std::bit_cast<uint32_t>(a.values[i]) == std::bit_cast<uint32_t>(b.values[i])) continue;
-        const double d = difference(a.values[i], b.values[i]);
-        if (result.differing++ == 0 || d > result.max) worst = i;
-        result.max = std::max(result.max, d);
-        worst_of_pixels[i] = std::max(worst_of_pixels[i], d);
-        if (std::isinf(d)) {
-            ++result.infinite;
-            continue;
+    Comparison compare(const Thresholds& thresholds) {
+        check_layers();
+        append(result_.structure, pairs_.unpaired);
+        result_.compares_headers = a_.format == b_.format;
+        if (!result_.compares_headers)
+            result_.not_compared.push_back(
+                fmt::format("attributes, which {} and {} do not have in common", a_.format, b_.format));
+        for (const PicturePair& pair : pairs_.pairs) compare_pair(pair);
+        if (pairs_.is_other_order) result_.not_compared.push_back("the order of parts");
+        if (!left_out_.empty())
+            result_.not_compared.push_back(fmt::format("{} channel{} that --layers leaves out: {}", left_out_.size(),
+                                                       left_out_.size() == 1 ? "" : "s", fmt::join(left_out_, ", ")));
+        count_pixels(thresholds);
+        return std::move(result_);
+    }
+
+  private:
+    /// Pixels of parts with one window are one pixel, whatever the number of parts.
+    using Place = std::tuple<PixelWindow, int, int>;
+    struct Pixels {
+        Region region;
+        std::vector<double> worst;
+    };
+
+    bool is_chosen(const PicturePair& pair, const StoredChannel& channel) const {
+        return is_selected(selection_.layers, channel.name, name_in_part(pair.part, channel.name));
+    }
+
+    /// Throws for a pattern that fits no channel of either file.
+    void check_layers() const {
+        std::set<std::string> names;
+        std::set<std::string> fitting;  // patterns
+        for (const PicturePair& pair : pairs_.pairs)
+            for (const StoredPicture* picture : {pair.a, pair.b})
+                for (const StoredChannel& channel : picture->channels) {
+                    const std::string shown = name_in_part(pair.part, channel.name);
+                    names.insert(shown);
+                    for (const std::string& pattern : selection_.layers)
+                        if (is_selected({pattern}, channel.name, shown)) fitting.insert(pattern);
+                }
+        for (const std::string& pattern : selection_.layers)
+            if (fitting.count(pattern) == 0)
+                fail_usage(fmt::format("--layers {}: no channel has such a name; {}", pattern,
+                                       nearest_first(pattern, {names.begin(), names.end()}, "channels")));
+    }
+
+    void compare_windows(const PicturePair& pair) {
+        const std::vector<std::string> lines = differing_windows(pair);
+        append(selection_.excuses_windows() ? result_.not_compared : result_.structure, lines);
+    }
+
+    void compare_pair(const PicturePair& pair) {
+        const std::string subject = pair.subject();
+        if (!pair.a->is_whole() && selection_.has_region()) {
+            result_.not_compared.push_back(subject + "a level of lower resolution, since pixels are chosen");
+            return;
         }
-        sum += d;
-        squares += d * d;
+        compare_windows(pair);
+        if (result_.compares_headers) {
+            append(result_.header, differing_attributes(pair));
+            append(result_.not_compared, differing_packing(pair));
+        }
+        const Region region = region_of(*pair.a, *pair.b, selection_, subject);
+        if (selection_.excuses_windows() && region.window.pixels() == 0)
+            result_.structure.push_back(subject + "no pixel is in both data windows");
+        else if (selection_.has_region() && region.pixels() < std::max(pair.a->data.pixels(), pair.b->data.pixels()))
+            result_.not_compared.push_back(
+                fmt::format("{}pixels other than {} of {}", subject, region.pixels(), window_text(region.window)));
+        compare_channels(pair, region);
     }
-    if (const auto counted = static_cast<double>(a.values.size() - result.infinite); counted > 0) {
-        result.mean = sum / counted;
-        result.rmse = std::sqrt(squares / counted);
+
+    void compare_channels(const PicturePair& pair, const Region& region) {
+        for (const StoredChannel& channel : pair.a->channels) {
+            if (!is_chosen(pair, channel)) {
+                left_out_.push_back(pair.shown(channel.name));
+                continue;
+            }
+            const StoredChannel* other = pair.b->channel(channel.name);
+            if (!other) {
+                result_.structure.push_back(fmt::format("channel {}: only in the first", pair.shown(channel.name)));
+                continue;
+            }
+            if (const std::string line = differing_type(pair, channel, *other); !line.empty())
+                result_.header.push_back(line);
+            if (region.window.pixels() > 0) add_statistics(pair, region, channel, *other);
+        }
+        for (const StoredChannel& channel : pair.b->channels) {
+            if (pair.a->channel(channel.name)) continue;
+            if (is_chosen(pair, channel))
+                result_.structure.push_back(fmt::format("channel {}: only in the second", pair.shown(channel.name)));
+            else
+                left_out_.push_back(pair.shown(channel.name));
+        }
     }
-    if (result.rmse > 0) result.psnr = 20 * std::log10(peak / result.rmse);
-    const auto width = static_cast<size_t>(window.width);
-    result.x = window.x + static_cast<int>(worst % width);
-    result.y = window.y + static_cast<int>(worst / width);
-    result.a = a.values[worst];
-    result.b = b.values[worst];
-    return result;
-}
+
+    void add_statistics(const PicturePair& pair, const Region& region, const StoredChannel& a, const StoredChannel& b) {
+        Pixels& pixels = pixels_[{region.window, pair.a->x_level, pair.a->y_level}];
+        if (pixels.worst.empty()) pixels = {region, std::vector<double>(region.window.pixels())};
+        ChannelStatistics statistics = statistics_of({a, pair.a->data}, {b, pair.b->data}, region, pixels.worst);
+        statistics.name = pair.shown(a.name);
+        if (selection_.ssim) statistics.ssim = ssim_of({a, pair.a->data}, {b, pair.b->data}, region);
+        result_.max = std::max(result_.max, statistics.max);
+        const std::string unit = unit_text(statistics);
+        if (!unit.empty() && std::find(result_.units.begin(), result_.units.end(), unit) == result_.units.end())
+            result_.units.push_back(unit);
+        result_.channels.push_back(std::move(statistics));
+    }
+
+    void count_pixels(const Thresholds& thresholds) {
+        for (const auto& [place, pixels] : pixels_) {
+            result_.pixels += pixels.region.pixels();
+            for (const double worst : pixels.worst) {  // 0 where a pixel does not count
+                if (thresholds.fail && worst > *thresholds.fail) ++result_.over_fail;
+                if (thresholds.hardfail && worst > *thresholds.hardfail) ++result_.over_hardfail;
+            }
+        }
+    }
+
+    const StoredFile &a_, &b_;
+    const Selection& selection_;
+    const PicturePairs pairs_;
+    Comparison result_;
+    std::vector<std::string> left_out_;
+    std::map<Place, Pixels> pixels_;
+};
 
 }  // namespace
 
-double difference(float a, float b) {
-    if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b) ? 0 : INFINITY;
-    return a == b ? 0 : std::abs(static_cast<double>(a) - static_cast<double>(b));
+size_t Comparison::values() const {
+    size_t sum = 0;
+    for (const ChannelStatistics& channel : channels) sum += channel.values;
+    return sum;
 }
 
 size_t Comparison::differing() const {
@@ -119,24 +187,20 @@ size_t Comparison::differing() const {
     return sum;
 }
 
+bool Comparison::has_only_floats() const {
+    const auto is_float = [](StoredType type) { return type == StoredType::half || type == StoredType::float_; };
+    return std::all_of(channels.begin(), channels.end(), [&](const ChannelStatistics& channel) {
+        return is_float(channel.first_type) && is_float(channel.second_type);
+    });
+}
+
+Comparison compare_files(const StoredFile& a, const StoredFile& b, const Thresholds& thresholds,
+                         const Selection& selection) {
+    return Comparer(a, b, selection).compare(thresholds);
+}
+
 Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, const Thresholds& thresholds) {
-    Comparison result;
-    result.structure = differing_structure(a, b);
-    result.header = differing_header(a, b);
-    if (!same_data_window(a, b)) return result;
-    result.pixels = static_cast<size_t>(a.width) * static_cast<size_t>(a.height);
-    std::vector<double> worst_of_pixels(result.pixels);
-    for (const Channel& channel : a.channels) {
-        const Channel* other = find(b, channel.name);
-        if (!other) continue;
-        result.channels.push_back(statistics_of(channel, *other, a, worst_of_pixels));
-        result.max = std::max(result.max, result.channels.back().max);
-    }
-    for (const double worst : worst_of_pixels) {
-        if (thresholds.fail && worst > *thresholds.fail) ++result.over_fail;
-        if (thresholds.hardfail && worst > *thresholds.hardfail) ++result.over_hardfail;
-    }
-    return result;
+    return compare_files(stored_layers(a), stored_layers(b), thresholds);
 }
 
 bool passes(const Comparison& comparison, const Thresholds& thresholds) {
@@ -145,25 +209,6 @@ bool passes(const Comparison& comparison, const Thresholds& thresholds) {
     return static_cast<double>(comparison.over_fail) * 100 <=
                thresholds.failpercent * static_cast<double>(comparison.pixels) &&
            comparison.over_hardfail == 0;
-}
-
-LayeredPicture difference_picture(const LayeredPicture& a, const LayeredPicture& b) {
-    LayeredPicture picture;
-    picture.width = a.width;
-    picture.height = a.height;
-    picture.x = a.x;
-    picture.y = a.y;
-    picture.display_width = a.display_width;
-    picture.display_height = a.display_height;
-    for (const Channel& channel : a.channels) {
-        const Channel* other = find(b, channel.name);
-        if (!other) continue;
-        Channel differences{channel.name, false, {}};
-        for (size_t i = 0; i < channel.values.size(); ++i)
-            differences.values.push_back(static_cast<float>(difference(channel.values[i], other->values[i])));
-        picture.channels.push_back(std::move(differences));
-    }
-    return picture;
 }
 
 }  // namespace cistula

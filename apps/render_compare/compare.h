@@ -1,4 +1,4 @@
-// Comparison of two pictures by channel: sizes of differences, and differences other than floats.
+// Comparison of two files of pictures by channel: sizes of differences, and what differs beside values.
 #pragma once
 
 #include <cmath>
@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "channel_statistics.h"
 #include "scene/image/picture.h"
+#include "scene/image/stored_picture.h"
+#include "selection.h"
 
 namespace cistula {
-
-/// |a - b|; 0 for two NaNs and for two equal infinities, infinity if only one is finite or the infinities have
-/// different signs.
-double difference(float a, float b);
 
 /// Allowed differences. By default none: every bit counts.
 struct Thresholds {
@@ -24,33 +23,30 @@ struct Thresholds {
     bool any() const { return fail || hardfail; }
 };
 
-/// Differences in a channel that both pictures have.
-struct ChannelStatistics {
-    std::string name;
-    size_t differing = 0;  // floats with different bits
-    size_t infinite = 0;   // infinite differences; included in max, excluded from mean, rmse and psnr
-    double max = 0, mean = 0, rmse = 0;
-    double psnr = INFINITY;  // dB; the peak is the largest finite magnitude in either channel, at least 1
-    int x = 0, y = 0;        // largest difference, or first float with different bits; origin at the display window
-    float a = 0, b = 0;      // the two values there
-};
-
 struct Comparison {
-    std::vector<std::string> structure;  // differences of windows and channels: never allowed
+    std::vector<std::string> structure;  // differences of parts, windows and channels: never allowed
     std::vector<std::string> header;     // differences of attributes and channel types: allowed if there are thresholds
-    std::vector<ChannelStatistics> channels;  // empty if the data windows differ
-    size_t pixels = 0, over_fail = 0, over_hardfail = 0;
+    bool compares_headers = true;        // false: the formats are different
+    std::vector<std::string> not_compared;    // what the verdict says nothing of
+    std::vector<std::string> units;           // what differences are counted in, where that is no plain number
+    std::vector<ChannelStatistics> channels;  // of pictures with pixels in common
+    size_t pixels = 0;  // that count; pixels of parts with one window are one pixel, as channels of one part are
+    size_t over_fail = 0, over_hardfail = 0;
     double max = 0;
 
-    size_t differing() const;  // floats with different bits in all channels
+    size_t values() const;     // compared, in all channels
+    size_t differing() const;  // those with different bits
+    bool has_only_floats() const;
 };
+
+/// Parts are matched by their names where all have one, else by their order. Throws Error (usage) for a selection that
+/// fits neither file.
+Comparison compare_files(const StoredFile& a, const StoredFile& b, const Thresholds& thresholds,
+                         const Selection& selection = {});
 
 Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, const Thresholds& thresholds);
 
 /// Whether the differences are within the thresholds; without thresholds, whether the pictures are bitwise equal.
 bool passes(const Comparison& comparison, const Thresholds& thresholds);
-
-/// The differences by channel as a picture. The data windows must be equal.
-LayeredPicture difference_picture(const LayeredPicture& a, const LayeredPicture& b);
 
 }  // namespace cistula

@@ -131,7 +131,7 @@ Json to_json(const std::vector<GoldenResult>& results, size_t differing, const C
                          {"film_hash", result.hash},
                          {"film_hash_golden", result.expected_hash},
                          {"flags", result.flags},
-                         {"floats", result.comparison.channels.size() * result.comparison.pixels},
+                         {"floats", result.comparison.values()},
                          {"floats_differing", result.comparison.differing()},
                          {"image", image_text(result.comparison)}});
     return {

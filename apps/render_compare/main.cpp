@@ -1,8 +1,11 @@
 // render-compare: compares two images, or a backend's images with the golden ones.
 #include <algorithm>
+#include <optional>
 
 #include "apps/common/command_line.h"
 #include "compare.h"
+#include "difference_picture.h"
+#include "flip.h"
 #include "golden_run.h"
 #include "options.h"
 #include "report.h"
@@ -10,25 +13,33 @@
 #include "scene/base/error.h"
 #include "scene/base/shown_text.h"
 #include "scene/image/exr.h"
+#include "scene/image/stored_reader.h"
 #include "sums.h"
 
 namespace cistula {
 namespace {
 
-bool compare_files(const CompareOptions& options) {
-    const LayeredPicture a = read_exr(options.a), b = read_exr(options.b);
-    const Comparison comparison = compare_pictures(a, b, options.thresholds);
-    std::string text = report_text(comparison, options.thresholds);
-    if (!options.diff.empty()) {
-        if (comparison.channels.empty())
-            text += one_line(options.diff) + ": not written, as no pixel has a partner\n";
-        else
-            write_exr(options.diff, difference_picture(a, b));
-    }
+/// Writes the difference image; returns a line where there is nothing to write.
+std::string write_differences(const CompareOptions& options, const StoredFile& a, const StoredFile& b) {
+    const std::vector<PicturePart> parts = difference_parts(a, b, options.selection);
+    if (parts.empty()) return one_line(options.diff) + ": not written, as no pixel has a partner\n";
+    write_exr(options.diff, parts);
+    return "";
+}
+
+bool compare_images(CompareOptions options) {
+    StoredReader reader;
+    const StoredFile a = reader.read(options.a), b = reader.read(options.b);
+    if (!options.mask.empty()) options.selection.mask = mask_of(reader.read(options.mask).pictures.front());
+    const Comparison comparison = compare_files(a, b, options.thresholds, options.selection);
+    std::optional<FlipResult> flip;
+    if (options.flip) flip = flip_of(a, b, options.selection);
+    std::string text = report_text(comparison, options.thresholds, flip ? &*flip : nullptr);
+    if (!options.diff.empty()) text += write_differences(options, a, b);
     if (!options.json.empty())
-        write_file_atomically(
-            options.json,
-            report_json(comparison, options).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        write_file_atomically(options.json, report_json(comparison, options, flip ? &*flip : nullptr)
+                                                    .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                                                "\n");
     if (!options.quiet) print(text);
     return passes(comparison, options.thresholds);
 }
@@ -55,7 +66,7 @@ int run(const CompareOptions& options) {
             print("render-compare (Cistula) " CISTULA_VERSION "\n");
             break;
         case CompareAction::compare:
-            holds = compare_files(options);
+            holds = compare_images(options);
             break;
         case CompareAction::sums:
             holds = check_sums(options);

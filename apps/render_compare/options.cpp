@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
+#include "apps/common/picture_size.h"
 #include "apps/common/run_files.h"
 #include "scene/base/file_bytes.h"
 
@@ -17,16 +18,24 @@ constexpr const char* default_golden = "golden";
 
 /// The options' texts as CLI11 stores them.
 struct Texts {
-    std::string a, b, fail, failpercent, hardfail, diff, json, golden, sums, backend, device, precision;
-    bool quiet = false, version = false;
+    std::string a, b, fail, failpercent, hardfail, layers, crop, mask, metrics, diff, json, golden, sums, backend,
+        device, precision;
+    bool intersection = false, quiet = false, version = false;
 };
 
 void declare(CLI::App& app, Texts& texts) {
-    app.add_option("A", texts.a, "an EXR image")->type_name("");
+    app.add_option("A", texts.a, "an image; differences are relative to it")->type_name("");
     app.add_option("B", texts.b, "another")->type_name("");
     app.add_option("--fail", texts.fail, "a pixel fails where a channel differs by more than E")->type_name("E");
     app.add_option("--failpercent", texts.failpercent, "with --fail: P % of the pixels may fail; 0")->type_name("P");
     app.add_option("--hardfail", texts.hardfail, "no pixel may differ by more than E")->type_name("E");
+    app.add_option("--layers", texts.layers,
+                   "only channels and layers of these names, with * and ?; e.g. R,G,B,diffuse.*")
+        ->type_name("LIST");
+    app.add_flag("--intersection", texts.intersection, "only pixels that both data windows have");
+    app.add_option("--crop", texts.crop, "only these pixels; X and Y in the file's pixel space")->type_name("X,Y,W,H");
+    app.add_option("--mask", texts.mask, "only pixels where this image is above 0")->type_name("FILE");
+    app.add_option("--metrics", texts.metrics, "also ssim, or flip (by NVIDIA's program), or both")->type_name("LIST");
     app.add_option("--diff", texts.diff, "write the absolute differences as an image")->type_name("FILE.exr");
     app.add_option("--json", texts.json, "write the result as JSON")->type_name("FILE");
     app.add_option("--sums", texts.sums, "whether an image's layers by path and by light add up to its R G B")
@@ -48,6 +57,47 @@ void refuse(bool given, const char* option, const char* why) {
     if (given) fail_usage(fmt::format("{}: {}", option, why));
 }
 
+/// Refuses what chooses among the pixels and channels of two images, or measures their difference.
+void refuse_selection(const Texts& texts, const char* why) {
+    refuse(!texts.layers.empty(), "--layers", why);
+    refuse(texts.intersection, "--intersection", why);
+    refuse(!texts.crop.empty(), "--crop", why);
+    refuse(!texts.mask.empty(), "--mask", why);
+    refuse(!texts.metrics.empty(), "--metrics", why);
+}
+
+/// X,Y,W,H, in which X and Y may be negative, or what --crop of render takes.
+PixelWindow parse_window(const std::string& text) {
+    const std::vector<std::string_view> parts = parts_at_commas(text);
+    if (parts.size() == 1) {
+        const PixelRect crop = parse_crop(text);
+        return {crop.x, crop.y, crop.width, crop.height};
+    }
+    std::vector<int> numbers;
+    for (const std::string_view part : parts)
+        if (const auto number = whole_number<int>(part)) numbers.push_back(*number);
+    if (parts.size() != 4 || numbers.size() != 4 || numbers[2] < 1 || numbers[3] < 1)
+        fail_usage(fmt::format("--crop {}: must be X,Y,WIDTH,HEIGHT in pixels, as in 128,96,64,64", text));
+    return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+void check_selection(const Texts& texts, CompareOptions& options) {
+    Selection& selection = options.selection;
+    if (!texts.layers.empty())
+        for (const std::string_view pattern : parts_at_commas(texts.layers)) {
+            if (pattern.empty())
+                fail_usage(fmt::format(
+                    "--layers {}: has an empty name; names have commas between, as in R,G,B,diffuse.*", texts.layers));
+            selection.layers.emplace_back(pattern);
+        }
+    selection.intersection = texts.intersection;
+    if (!texts.crop.empty()) selection.crop = parse_window(texts.crop);
+    options.mask = texts.mask;
+    if (texts.metrics.empty()) return;
+    for (const std::string_view metric : parts_at_commas(texts.metrics))
+        *chosen<bool*>("--metrics", std::string(metric), {{"ssim", &selection.ssim}, {"flip", &options.flip}}) = true;
+}
+
 void check_golden(const Texts& texts, CompareOptions& options) {
     constexpr const char* bits = "golden images are equal in every bit or not; leave it out";
     refuse(!texts.fail.empty(), "--fail", bits);
@@ -56,6 +106,7 @@ void check_golden(const Texts& texts, CompareOptions& options) {
     refuse(!texts.diff.empty(), "--diff",
            "belongs to two images; render one of the scenes and compare it with its "
            "golden image");
+    refuse_selection(texts, "belongs to two images; golden ones are compared whole");
     options.action = CompareAction::golden;
     options.golden = texts.golden.empty() ? default_golden : texts.golden;
     if (!texts.backend.empty()) options.backend = parse_backend(texts.backend);
@@ -84,12 +135,14 @@ void check_images(const Texts& texts, CompareOptions& options) {
     if (!texts.failpercent.empty())
         options.thresholds.failpercent =
             number_option("--failpercent", texts.failpercent, 0, 100, "a number from 0 to 100, as in 0.5");
+    check_selection(texts, options);
     options.a = texts.a;
     options.b = texts.b;
     options.diff = texts.diff;
     RunFiles files;
     files.reads(options.a, "the first image");
     files.reads(options.b, "the second image");
+    files.reads(options.mask, "--mask");
     files.writes(options.diff, "--diff");
     files.writes(options.json, "--json");
     if (!options.diff.empty() && lower_extension(options.diff) != ".exr")
@@ -102,6 +155,7 @@ void check_sums(const Texts& texts, CompareOptions& options) {
     refuse(!texts.fail.empty(), "--fail", one);
     refuse(!texts.failpercent.empty(), "--failpercent", one);
     refuse(!texts.hardfail.empty(), "--hardfail", one);
+    refuse_selection(texts, one);
     refuse(!texts.diff.empty(), "--diff", one);
     refuse(!texts.json.empty(), "--json", one);
     refuse(!texts.backend.empty(), "--backend", one);
@@ -142,8 +196,9 @@ CompareOptions parse_compare_options(int argc, const char* const* argv) {
 
 std::string compare_help_text() {
     CLI::App app(
-        "Compares two EXR images channel by channel. Without thresholds they must be equal in every bit, header "
-        "included.",
+        "Compares two images channel by channel: all parts of EXRs, and what OpenImageIO reads. Without thresholds "
+        "they "
+        "must be equal in every bit, header included.",
         "render-compare");
     Texts texts;
     declare(app, texts);
@@ -151,6 +206,8 @@ std::string compare_help_text() {
 Examples:
   render-compare a.exr b.exr
   render-compare float.exr double.exr --fail 0.002 --failpercent 0.1 --hardfail 0.5 --diff differences.exr
+  render-compare a.png b.png --fail 2                      of 8 bits: by more than 2 codes
+  render-compare whole.exr crop.exr --intersection --layers 'R,G,B,diffuse.*' --metrics ssim
   render-compare --sums layers.exr                         whether layers by path and by light add up
   render-compare --golden                                  in the source tree: every golden image, on the CPU
   render-compare --golden --backend cuda --device all      the same on the GPUs

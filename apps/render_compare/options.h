@@ -15,7 +15,9 @@ struct CompareOptions {
     CompareAction action = CompareAction::compare;
     std::string a, b;  // with --sums: a alone
     Thresholds thresholds;
-    std::string diff, json;  // files; empty: none
+    Selection selection;  // but for its mask
+    bool flip = false;
+    std::string mask, diff, json;  // files; empty: none
     bool quiet = false;
     // With --golden:
     std::string golden;  // the folder

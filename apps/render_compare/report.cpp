@@ -38,27 +38,81 @@ Json optional_number(const std::optional<T>& value) {
     return value ? number(*value) : Json();
 }
 
+std::string channel_table(const Comparison& comparison) {
+    if (comparison.channels.empty()) return "";
+    size_t width = 7;
+    bool has_ssim = false;
+    for (const ChannelStatistics& channel : comparison.channels) {
+        width = std::max(width, channel.name.size());
+        has_ssim |= channel.ssim.has_value();
+    }
+    const auto ssim = [&](const std::string& text) { return has_ssim ? fmt::format(" {:>8}", text) : std::string(); };
+    std::string text =
+        fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>8} {:>10}{} {:>10}  {}\n", "channel", width, "max", "mean", "rmse",
+                    "psnr dB", "rel. mse", ssim("ssim"), "differing", "worst pixel (x, y): first / second");
+    for (const ChannelStatistics& c : comparison.channels)
+        text += fmt::format("{:<{}} {:>10.4g} {:>10.4g} {:>10.4g} {:>8.2f} {:>10.4g}{} {:>10}  {}\n", one_line(c.name),
+                            width, c.max, c.mean, c.rmse, c.psnr, c.relative_mse,
+                            ssim(c.ssim ? fmt::format("{:.6f}", *c.ssim) : "-"), c.differing,
+                            c.differing > 0 ? worst_text(c) : "-");
+    return text;
+}
+
+Json channel_json(const ChannelStatistics& c) {
+    constexpr const char* units[] = {"value", "integer", "fraction"};
+    Json worst;
+    if (c.differing > 0) worst = {{"x", c.x}, {"y", c.y}, {"first", number(c.a)}, {"second", number(c.b)}};
+    return {{"name", c.name},
+            {"types", {type_name(c.first_type), type_name(c.second_type)}},
+            {"unit", units[static_cast<size_t>(c.unit())]},
+            {"values", c.values},
+            {"max", number(c.max)},
+            {"mean", number(c.mean)},
+            {"rmse", number(c.rmse)},
+            {"psnr", number(c.psnr)},
+            {"relative_mse", number(c.relative_mse)},
+            {"ssim", optional_number(c.ssim)},
+            {"differing", c.differing},
+            {"infinite", c.infinite},
+            {"worst", worst}};
+}
+
+std::string flip_text(const FlipResult& flip) {
+    if (!flip.absent.empty()) return fmt::format("flip: absent: {}", flip.absent);
+    return fmt::format("{} ({}): mean {:.6f}, weighted median {:.6f}, min {:.6f}, max {:.6f}", flip.kind, flip.version,
+                       flip.mean, flip.median, flip.min, flip.max);
+}
+
+Json flip_json(const FlipResult& flip) {
+    if (!flip.absent.empty()) return {{"absent", flip.absent}};
+    return {{"kind", flip.kind},     {"version", flip.version}, {"mean", flip.mean},
+            {"median", flip.median}, {"min", flip.min},         {"max", flip.max}};
+}
+
 }  // namespace
 
 std::string worst_text(const ChannelStatistics& channel) {
-    const auto value = [&](float v) {
-        return channel.max > 0 ? fmt::format("{:.9g}", v)
-                               : fmt::format("{:.9g} (bits {:08x})", v, std::bit_cast<uint32_t>(v));
+    const auto value = [&](double v, uint64_t bits, StoredType type) {
+        if (channel.unit() == DifferenceUnit::integer) return fmt::format("{:.0f}", v);
+        if (channel.max > 0) return fmt::format("{:.9g}", v);
+        return fmt::format("{:.9g} (bits {:0{}x})", v, bits, type == StoredType::double_ ? 16 : 8);
     };
-    return fmt::format("({}, {}): {} / {}", channel.x, channel.y, value(channel.a), value(channel.b));
+    return fmt::format("({}, {}): {} / {}", channel.x, channel.y, value(channel.a, channel.a_bits, channel.first_type),
+                       value(channel.b, channel.b_bits, channel.second_type));
 }
 
 std::string verdict(const Comparison& comparison, const Thresholds& thresholds) {
     std::vector<std::string> parts;
-    if (!comparison.structure.empty()) parts.push_back("the windows or channels differ");
-    const size_t floats = comparison.channels.size() * comparison.pixels;
+    if (!comparison.structure.empty()) parts.push_back("the parts, windows or channels differ");
+    const std::string values = counted(comparison.values(), comparison.has_only_floats() ? "float" : "value");
     if (!thresholds.any()) {
         if (passes(comparison, thresholds))
-            return fmt::format("equal: every bit of {} and of the header", counted(floats, "float"));
+            return fmt::format("equal: every bit of {}{}", values,
+                               comparison.compares_headers ? " and of the header" : "");
         if (comparison.differing() > 0)
-            parts.push_back(fmt::format("{} of {} differ", comparison.differing(), counted(floats, "float")));
+            parts.push_back(fmt::format("{} of {} differ", comparison.differing(), values));
         else if (!comparison.channels.empty())
-            parts.push_back(fmt::format("all {} compared are equal", counted(floats, "float")));
+            parts.push_back(fmt::format("all {} compared are equal", values));
         if (!comparison.header.empty()) parts.push_back("the header differs");
         return fmt::format("differ: {}", fmt::join(parts, "; "));
     }
@@ -70,37 +124,24 @@ std::string verdict(const Comparison& comparison, const Thresholds& thresholds) 
                        fmt::join(parts, "; "));
 }
 
-std::string report_text(const Comparison& comparison, const Thresholds& thresholds) {
+std::string report_text(const Comparison& comparison, const Thresholds& thresholds, const FlipResult* flip) {
     std::string text;
-    for (const std::string& line : comparison.structure) text += one_line(line) + "\n";
-    for (const std::string& line : comparison.header) text += "header: " + one_line(line) + "\n";
-    if (!comparison.channels.empty()) {
-        size_t width = 7;
-        for (const ChannelStatistics& channel : comparison.channels) width = std::max(width, channel.name.size());
-        text += fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>8} {:>10}  {}\n", "channel", width, "max", "mean", "rmse",
-                            "psnr dB", "differing", "worst pixel (x, y): first / second");
-        for (const ChannelStatistics& c : comparison.channels)
-            text += fmt::format("{:<{}} {:>10.4g} {:>10.4g} {:>10.4g} {:>8.2f} {:>10}  {}\n", one_line(c.name), width,
-                                c.max, c.mean, c.rmse, c.psnr, c.differing, c.differing > 0 ? worst_text(c) : "-");
-    }
+    const auto say = [&](const char* before, const std::vector<std::string>& lines) {
+        for (const std::string& line : lines) text += before + one_line(line) + "\n";
+    };
+    say("", comparison.structure);
+    say("header: ", comparison.header);
+    say("not compared: ", comparison.not_compared);
+    say("", comparison.units);
+    text += channel_table(comparison);
+    if (flip) text += one_line(flip_text(*flip)) + "\n";
     return text + verdict(comparison, thresholds) + "\n";
 }
 
-Json report_json(const Comparison& comparison, const CompareOptions& options) {
+Json report_json(const Comparison& comparison, const CompareOptions& options, const FlipResult* flip) {
     const Thresholds& t = options.thresholds;
     Json channels = Json::array();
-    for (const ChannelStatistics& c : comparison.channels) {
-        Json worst;
-        if (c.differing > 0) worst = {{"x", c.x}, {"y", c.y}, {"first", number(c.a)}, {"second", number(c.b)}};
-        channels.push_back({{"name", c.name},
-                            {"max", number(c.max)},
-                            {"mean", c.mean},
-                            {"rmse", c.rmse},
-                            {"psnr", number(c.psnr)},
-                            {"differing", c.differing},
-                            {"infinite", c.infinite},
-                            {"worst", worst}});
-    }
+    for (const ChannelStatistics& channel : comparison.channels) channels.push_back(channel_json(channel));
     return {{"first", options.a},
             {"second", options.b},
             {"holds", passes(comparison, t)},
@@ -111,11 +152,13 @@ Json report_json(const Comparison& comparison, const CompareOptions& options) {
               {"hardfail", optional_number(t.hardfail)}}},
             {"structure", comparison.structure},
             {"header", comparison.header},
+            {"not_compared", comparison.not_compared},
             {"pixels", comparison.pixels},
             {"over_fail", comparison.over_fail},
             {"over_hardfail", comparison.over_hardfail},
             {"max", number(comparison.max)},
-            {"channels", channels}};
+            {"channels", channels},
+            {"flip", flip ? flip_json(*flip) : Json()}};
 }
 
 }  // namespace cistula

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compare.h"
+#include "flip.h"
 #include "options.h"
 
 namespace cistula {
@@ -13,11 +14,13 @@ namespace cistula {
 /// One line: whether the comparison passes, and the reason.
 std::string verdict(const Comparison& comparison, const Thresholds& thresholds);
 
-/// The differences other than floats, a table of the channels, and the verdict.
-std::string report_text(const Comparison& comparison, const Thresholds& thresholds);
+/// The differences other than values, what is not compared, a table of the channels, FLIP where it was asked for, and
+/// the verdict.
+std::string report_text(const Comparison& comparison, const Thresholds& thresholds, const FlipResult* flip = nullptr);
 
 /// The report as JSON; infinities and NaN, which JSON lacks, are strings.
-nlohmann::ordered_json report_json(const Comparison& comparison, const CompareOptions& options);
+nlohmann::ordered_json report_json(const Comparison& comparison, const CompareOptions& options,
+                                   const FlipResult* flip = nullptr);
 
 /// The pixel with the largest difference: "R at (12, 34): 0.5 / 0.25", with the bits if the values are equal.
 std::string worst_text(const ChannelStatistics& channel);

@@ -7,89 +7,21 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "apps/common/backends.h"
+#include "apps/render_compare/fixture.h"
 #include "scene/base/error.h"
 #include "scene/image/exr.h"
 #include "testing/support/gpu.h"
-#include "testing/support/run_program.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {
 namespace {
 
-using Arguments = std::vector<std::string>;
-using Channel = LayeredPicture::Channel;
-
 using test::infinity;
-const std::string source = CISTULA_SOURCE_DIR;
 
 float float_of(uint32_t bits) {
     return std::bit_cast<float>(bits);
-}
-
-/// 4 x 2 pixels at (5, 7) of 20 x 10.
-LayeredPicture picture_of(std::vector<Channel> channels) {
-    LayeredPicture picture;
-    picture.width = 4;
-    picture.height = 2;
-    picture.x = 5;
-    picture.y = 7;
-    picture.display_width = 20;
-    picture.display_height = 10;
-    picture.channels = std::move(channels);
-    picture.attributes = {{"cistula:depth", 4}, {"cistula:sceneHash", std::string("abc")}};
-    return picture;
-}
-
-const Channel first_r{"R", false, {0, 0.5f, 1, 2, 0, 0, 0, 0}};
-const Channel second_r{"R", false, {0, 0.75f, 1, 1.5f, 0, 0, 0, 0}};
-const Channel zeros{"G", false, std::vector<float>(8)};
-
-class RenderCompare : public testing::Test {
-  protected:
-    std::string file(const std::string& name) const { return folder_.file(name); }
-    bool exists(const std::string& name) const { return std::filesystem::exists(file(name)); }
-
-    ProgramResult run(const Arguments& arguments) const {
-        return RunningProgram(CISTULA_BIN_DIR "/render-compare", arguments, file("")).wait();
-    }
-
-    /// The standard output of a run that ends with `code` and says nothing on standard error.
-    std::string expect_code(int code, const Arguments& arguments) const {
-        const ProgramResult result = run(arguments);
-        EXPECT_EQ(result.code, code) << result.out << result.error;
-        EXPECT_EQ(result.error, "");
-        return result.out;
-    }
-
-    void expect_refused(const Arguments& arguments, ExitCode code, const std::string& part) const {
-        const ProgramResult result = run(arguments);
-        EXPECT_EQ(result.code, static_cast<int>(code)) << result.error;
-        EXPECT_EQ(result.error.rfind("render-compare: ", 0), 0u) << result.error;
-        EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
-        EXPECT_NE(result.error.find(part), std::string::npos) << result.error;
-        EXPECT_EQ(result.out, "");
-    }
-
-    void put(const std::string& name, const LayeredPicture& picture) const { write_exr(file(name), picture); }
-
-    /// a.exr and b.exr of these channels; more arguments; the JSON.
-    nlohmann::json compare(int code, const std::vector<Channel>& a, const std::vector<Channel>& b,
-                           Arguments more = {}) const {
-        put("a.exr", picture_of(a));
-        put("b.exr", picture_of(b));
-        more.insert(more.begin(), {"a.exr", "b.exr", "--json", "result.json"});
-        expect_code(code, more);
-        return nlohmann::json::parse(bytes_of(file("result.json")));
-    }
-
-    const ScratchDirectory folder_;
-};
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 TEST_F(RenderCompare, StatisticsAreThoseWorkedOutByHand) {
@@ -203,7 +135,7 @@ TEST_F(RenderCompare, WindowsAndChannelsMustBeTheSameWhateverTheThresholds) {
             arguments.insert(arguments.end(), more.begin(), more.end());
             const std::string text = expect_code(1, arguments);
             EXPECT_TRUE(contains(text, part + "\n")) << text;
-            EXPECT_TRUE(contains(text, "differ: the windows or channels differ")) << text;
+            EXPECT_TRUE(contains(text, "differ: the parts, windows or channels differ")) << text;
         }
     };
     differs([](LayeredPicture& p) { p.x = 6; }, "data window: 4x2+5+7 / 4x2+6+7");
@@ -215,7 +147,7 @@ TEST_F(RenderCompare, WindowsAndChannelsMustBeTheSameWhateverTheThresholds) {
             for (Channel& channel : p.channels) channel.values.resize(4);
         },
         "data window: 4x2+5+7 / 4x1+5+7");
-    differs([](LayeredPicture& p) { p.display_width = 21; }, "display window: 20x10 / 21x10");
+    differs([](LayeredPicture& p) { p.display_width = 21; }, "display window: 20x10+0+0 / 21x10+0+0");
     differs([](LayeredPicture& p) { p.channels.pop_back(); }, "channel G: only in the first");
     EXPECT_EQ(read_exr(file("d.exr")).channels.size(), 1u);
     differs(
@@ -240,7 +172,7 @@ TEST_F(RenderCompare, TheHeaderCountsWhereEveryBitDoes) {
     differs([](LayeredPicture& p) { p.attributes["cistula:depth"] = 8; }, "cistula:depth: 4 / 8");
     differs([](LayeredPicture& p) { p.attributes.erase("cistula:sceneHash"); }, "cistula:sceneHash: abc / (none)");
     differs([](LayeredPicture& p) { p.attributes["by"] = std::string("me\n"); }, "by: (none) / me\\n");
-    differs([](LayeredPicture& p) { p.attributes["cistula:depth"] = 4.0; }, "cistula:depth: 4 / 4");
+    differs([](LayeredPicture& p) { p.attributes["cistula:depth"] = 4.0; }, "cistula:depth: 4 (int) / 4 (double)");
     differs([](LayeredPicture& p) { p.channels[0].half = true; }, "channel R: float / half");
 }
 
