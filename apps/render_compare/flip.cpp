@@ -11,11 +11,13 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "apps/common/interrupt.h"
@@ -63,8 +65,10 @@ int exit_status(pid_t child) {
     InterruptGuard guard;
     guard.watch(stop);
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+    while (waitpid(child, &status, WNOHANG) == 0) {  // a signal does not end a wait
         if (stop) kill(child, SIGKILL);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     if (stop) throw Error(ExitCode::interrupted, "interrupted while flip runs; nothing was written");
     return status;
 }

@@ -10,10 +10,6 @@
 namespace cistula {
 namespace {
 
-[[noreturn]] void fail_broken() {
-    throw ReaderBroken("its decoder gave an answer that makes no sense; the file is damaged, give another");
-}
-
 FileColors receive_colors(const Receive& receive, uint32_t bytes) {
     ReplyColors reply;
     if (bytes < sizeof reply || bytes - sizeof reply > largest_reply_id) fail_broken();
@@ -29,6 +25,10 @@ FileColors receive_colors(const Receive& receive, uint32_t bytes) {
 }
 
 }  // namespace
+
+void fail_broken() {
+    throw ReaderBroken("its decoder gave an answer that makes no sense; the file is damaged, give another");
+}
 
 ReplyHead next_part(const Receive& receive) {
     ReplyHead head;

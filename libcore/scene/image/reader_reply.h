@@ -24,6 +24,9 @@ struct ReaderBroken : std::runtime_error {
 /// Fills `size` bytes at `to` with what the program says next, or throws.
 using Receive = std::function<void(void* to, size_t size)>;
 
+/// Throws ReaderBroken for an answer that makes no sense.
+[[noreturn]] void fail_broken();
+
 /// The head of the next part of an answer; throws PictureRefused if that is the reason of a failure, and ReaderBroken.
 ReplyHead next_part(const Receive& receive);
 

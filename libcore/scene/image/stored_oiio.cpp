@@ -2,7 +2,7 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include <cstring>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,7 +62,8 @@ std::string attribute_text(const OIIO::ParamValue& attribute) {
                 std::snprintf(number, sizeof number, "%.17g", static_cast<const double*>(data)[i]);
             else
                 return attribute.get_string(static_cast<int>(most));
-            text += (i > 0 ? " " : "") + std::string(number);
+            if (i > 0) text += ' ';
+            text += number;
         }
         return text;
     }

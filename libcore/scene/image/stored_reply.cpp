@@ -13,10 +13,6 @@ namespace {
 constexpr uint32_t most_attributes = 65536;
 constexpr uint32_t longest_window = 1 << 30;
 
-[[noreturn]] void fail_broken() {
-    throw ReaderBroken("its decoder gave an answer that makes no sense; the file is damaged, give another");
-}
-
 StoredType stored_type(ReplyType type) {
     switch (type) {
         case ReplyType::uint8:

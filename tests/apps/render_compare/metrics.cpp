@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 
@@ -157,6 +158,29 @@ TEST_F(CompareMetrics, FlipIsAbsentWhereItIsNotDefined) {
     put("mask.exr", picture);
     EXPECT_EQ(metrics("flip", 1, {"--mask", "mask.exr"}).at("flip").at("absent"),
               "it looks at neighbors, and a mask leaves some out");
+}
+
+TEST_F(CompareMetrics, AnInterruptionLeavesNothingOfFlip) {
+    put("a.exr", of_codes(std::vector<int>(width * height, 100)));
+    for (const char* folder : {"bin", "temporary"}) std::filesystem::create_directory(file(folder));
+    put_bytes(file("bin/flip"),
+              "#!/bin/sh\n[ $1 = --help ] && echo 'FLIP v1.7. --reference' && exit\n: > started\nexec /bin/sleep 60\n");
+    ASSERT_EQ(chmod(file("bin/flip").c_str(), 0700), 0);
+    RunningProgram program(CISTULA_BIN_DIR "/render-compare",
+                           {"a.exr", "a.exr", "--metrics", "flip", "--json", "r.json"}, file(""), "", [&] {
+                               setenv("PATH", file("bin").c_str(), 1);
+                               setenv("TMPDIR", file("temporary").c_str(), 1);
+                           });
+    ASSERT_TRUE(program.wait_until([&] { return exists("started"); }, 30));
+    EXPECT_FALSE(std::filesystem::is_empty(file("temporary")));
+    program.send(SIGTERM);
+    const auto start = std::chrono::steady_clock::now();
+    const ProgramResult result = program.wait();
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+    EXPECT_EQ(result.code, 130);
+    EXPECT_EQ(result.error, "render-compare: interrupted while flip runs; nothing was written\n");
+    EXPECT_TRUE(std::filesystem::is_empty(file("temporary")));
+    EXPECT_FALSE(exists("r.json"));
 }
 
 TEST_F(CompareMetrics, FlipIsWhatItsProgramSays) {
