@@ -1,6 +1,7 @@
 // The layers of a film as channels of a file: the sums by their names, first hits, and Cryptomatte.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -119,6 +120,30 @@ TEST_F(FilmLayers, MattesAreRankedByCoverage) {
     EXPECT_EQ(value("CryptoMaterial00.g"), 0.75f);
     EXPECT_EQ(value("CryptoLight00.r"), cryptomatte_id("lamp"));
     EXPECT_EQ(value("CryptoLight00.g"), 0.25f);
+}
+
+/// Large frames are encoded by all cores, each with ranks of its own.
+TEST_F(FilmLayers, MattesOfManyPixelsAreThoseOfEach) {
+    constexpr int side = 512;
+    film_.full_width = film_.full_height = film_.rect.width = film_.rect.height = side;
+    film_.pixels.assign(size_t{side} * side, PixelRecord());
+    begin_layers(film_.layers, layers_for(channels_), film_.pixels.size(), film_.layers.names);
+    std::fill(film_.layers.words.begin(), film_.layers.words.end(), 0);
+    const auto coverage = [](size_t pixel) { return static_cast<int64_t>(pixel / 1024 % 4 + 1); };
+    for (size_t pixel = 0; pixel < film_.pixels.size(); ++pixel)
+        film_.layers.of(pixel)[film_.layers.plan.objects] =
+            int64_t{static_cast<int>(pixel % 2) + 1} << object_shift | coverage(pixel);
+    const float ids[] = {cryptomatte_id("b\u00f6x"), cryptomatte_id("ball")};
+    for (int round = 0; round < 4; ++round)
+        for (const auto& channel : to_layers(film_, channels_).channels) {
+            size_t wrong = 0;
+            for (size_t pixel = 0; pixel < channel.values.size(); ++pixel) {
+                wrong += channel.name == "CryptoObject00.r" && channel.values[pixel] != ids[pixel % 2];
+                wrong += channel.name == "CryptoObject00.g" &&
+                         channel.values[pixel] != static_cast<float>(coverage(pixel)) / 4;
+            }
+            EXPECT_EQ(wrong, 0u) << channel.name;
+        }
 }
 
 TEST_F(FilmLayers, TheHeaderTellsNamesByIds) {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <nlohmann/json.hpp>
 
 #include "scene/film/film_channel.h"
@@ -57,49 +58,54 @@ struct Rank {
 };
 using Ranks = std::array<Rank, ranks>;
 
-/// The ranks of a block of pixels, which all channels of a kind share.
-class RankedBlock {
+/// The ranks of blocks of pixels, which all channels of a kind share. Each thread keeps those of its last block.
+class RankedBlocks {
   public:
-    RankedBlock(const Film& film, Mattes mattes) : film_(film), mattes_(std::move(mattes)) {}
+    RankedBlocks(const Film& film, Mattes mattes) : film_(film), mattes_(std::move(mattes)) {}
 
     const std::vector<Ranks>& of(size_t first, size_t last) {
-        if (first == first_ && last == last_) return ranks_;
-        ranks_.clear();
-        for (size_t pixel = first; pixel < last; ++pixel) ranks_.push_back(ranks_of(pixel));
-        first_ = first;
-        last_ = last;
-        return ranks_;
+        Block& block = blocks_.local();
+        if (first == block.first && last == block.last) return block.ranks;
+        block.ranks.clear();
+        for (size_t pixel = first; pixel < last; ++pixel) block.ranks.push_back(ranks_of(pixel, block.met));
+        block.first = first;
+        block.last = last;
+        return block.ranks;
     }
 
   private:
-    Ranks ranks_of(size_t pixel) {
+    struct Block {
+        size_t first = 0, last = 0;
+        std::vector<Ranks> ranks;
+        std::vector<Rank> met;  // by one pixel; kept for its memory
+    };
+
+    Ranks ranks_of(size_t pixel, std::vector<Rank>& met) const {
         const LayerPlan& plan = film_.layers.plan;
         const int64_t* table = film_.layers.of(pixel) + plan.objects;
-        met_.clear();
+        met.clear();
         for (int i = 0; i < plan.object_entries && table[i] != 0; ++i) {
             const auto object = static_cast<size_t>(static_cast<uint64_t>(table[i]) >> object_shift);
             const auto samples = static_cast<uint32_t>(table[i]);
             if (samples == 0 || mattes_.names[object].empty()) continue;
             const float id = mattes_.ids[object];
-            const auto known = std::find_if(met_.begin(), met_.end(), [id](const Rank& rank) { return rank.id == id; });
-            if (known == met_.end())
-                met_.push_back({id, samples});
+            const auto known = std::find_if(met.begin(), met.end(), [id](const Rank& rank) { return rank.id == id; });
+            if (known == met.end())
+                met.push_back({id, samples});
             else
                 known->samples += samples;
         }
-        std::sort(met_.begin(), met_.end(), [](const Rank& a, const Rank& b) {
+        std::sort(met.begin(), met.end(), [](const Rank& a, const Rank& b) {
             return a.samples != b.samples ? a.samples > b.samples : a.id < b.id;
         });
         Ranks best;
-        std::copy_n(met_.begin(), std::min(met_.size(), best.size()), best.begin());
+        std::copy_n(met.begin(), std::min(met.size(), best.size()), best.begin());
         return best;
     }
 
     const Film& film_;
     const Mattes mattes_;
-    std::vector<Rank> met_;
-    std::vector<Ranks> ranks_;
-    size_t first_ = 0, last_ = 0;
+    tbb::enumerable_thread_specific<Block> blocks_;
 };
 
 /// The key under which a kind's attributes stand: seven hexadecimal digits.
@@ -121,13 +127,13 @@ std::vector<FilmChannel> cryptomatte_channels(const Film& film, const OutputChan
     std::vector<FilmChannel> to;
     for (Mattes& mattes : kinds(film, channels)) {
         const std::string name = mattes.name;
-        const auto block = std::make_shared<RankedBlock>(film, std::move(mattes));
+        const auto blocks = std::make_shared<RankedBlocks>(film, std::move(mattes));
         for (int rank = 0; rank < ranks; ++rank)
             for (const bool coverage : {false, true}) {
                 const char channel = "rgba"[rank % 2 * 2 + coverage];
                 to.push_back({fmt::format("{}{:02}.{}", name, rank / 2, channel), false,
-                              [block, rank, coverage, &film](size_t first, size_t last, float* values) {
-                                  for (const Ranks& of : block->of(first, last)) {
+                              [blocks, rank, coverage, &film](size_t first, size_t last, float* values) {
+                                  for (const Ranks& of : blocks->of(first, last)) {
                                       const Rank& own = of[static_cast<size_t>(rank)];
                                       *values++ =
                                           coverage ? static_cast<float>(double(own.samples) / film.samples) : own.id;
