@@ -19,7 +19,7 @@ install(DIRECTORY libcore/cistula DESTINATION "${CISTULA_INSTALL_HEADERS}" FILES
 
 # Scenes beside the schema that they name. Documents lie as in the source tree, so that their links hold.
 install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/cistula" PATTERN "*.py" EXCLUDE)
-install(FILES docs/scene.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/cistula/docs")
+install(FILES docs/scene.schema.json docs/suite.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/cistula/docs")
 install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)  # where Debian looks for it
 install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}"

@@ -16,6 +16,7 @@
 #include "apps/common/describe_flags.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/frame_list.h"
+#include "apps/common/render_frame.h"
 #include "apps/common/timing.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
@@ -158,14 +159,6 @@ void reserve(Film& film, uint64_t pixels) {
     if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
 }
 
-/// Whether a pixel shows more objects than its table holds; the tables of this film and the next are then larger. One
-/// entry for each sample is always enough.
-bool needs_larger_tables(const Film& film, LayerRequest& layers) {
-    if ((film.flags & flag_objects_overflow) == 0 || layers.object_entries >= film.samples) return false;
-    layers.object_entries = std::min(4 * layers.object_entries, film.samples);
-    return true;
-}
-
 FrameStats stats_of(const Film& film, int frame, const std::string& path, double seconds, const RenderTimes& device) {
     FrameStats stats;
     stats.frame = frame;
@@ -234,14 +227,8 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             reserve(finished.film, pixels);
             if (next) renderer.expect(*next, settings);
             bool whole = false;
-            const double seconds = seconds_of([&] {
-                whole = renderer.render(camera, settings, finished.film, progress);
-                while (whole && needs_larger_tables(finished.film, settings.layers)) {
-                    progress.pixels_done = 0;
-                    progress.rays = 0;
-                    whole = renderer.render(camera, settings, finished.film, progress);
-                }
-            });
+            const double seconds =
+                seconds_of([&] { whole = render_frame(renderer, camera, settings, finished.film, progress); });
             for (const std::string& note : renderer.notes())
                 if (!options.quiet && notes.insert(note).second) report.say("render: " + note);
             if (!whole) break;

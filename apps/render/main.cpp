@@ -12,6 +12,7 @@
 #include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/layer_list.h"
 #include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"

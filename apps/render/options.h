@@ -54,13 +54,6 @@ std::string help_text();
 /// Parses "X,Y". Throws Error (usage).
 ChosenPixel parse_pixel(std::string_view text);
 
-/// Parses a list of layers and groups of layers (docs/programs.md). Throws Error (usage) with the nearest name for an
-/// unknown one, but for light layers, which depend on the scene.
-OutputChannels parse_layers(std::string_view text);
-
-/// Throws Error (usage) for a light layer that the scene does not have, with those that it has.
-void require_light_layers(const OutputChannels& channels, const LayerNames& names);
-
 /// Reads the scene, and adds what options say about reading it. Throws Error.
 SceneDescription read_scene(const RenderOptions& options);
 

@@ -1,6 +1,7 @@
 // render-compare: compares two images, or a backend's images with the golden ones.
 #include <algorithm>
 #include <optional>
+#include <string_view>
 
 #include "apps/common/command_line.h"
 #include "compare.h"
@@ -14,6 +15,7 @@
 #include "scene/base/shown_text.h"
 #include "scene/image/exr.h"
 #include "scene/image/stored_reader.h"
+#include "suite_program.h"
 #include "sums.h"
 
 namespace cistula {
@@ -83,6 +85,8 @@ int run(const CompareOptions& options) {
 
 int main(int argc, char** argv) {
     using namespace cistula;
-    return run_program("render-compare", "smaller images need less",
-                       [&] { return run(parse_compare_options(argc, argv)); });
+    return run_program("render-compare", "smaller images need less", [&] {
+        if (argc > 1 && std::string_view(argv[1]) == "suite") return run_suite(argc - 1, argv + 1);
+        return run(parse_compare_options(argc, argv));
+    });
 }

@@ -211,6 +211,7 @@ Examples:
   render-compare --sums layers.exr                         whether layers by path and by light add up
   render-compare --golden                                  in the source tree: every golden image, on the CPU
   render-compare --golden --backend cuda --device all      the same on the GPUs
+  render-compare suite DIR                                 golden images of DIR/suite.json; suite --help tells more
 
 Exit codes: 0 the comparison holds, 1 it does not, 2 command line, 3 file, 4 device.)");
     return app.help();

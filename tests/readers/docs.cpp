@@ -11,6 +11,7 @@
 #include "scene/readers/read_text_input.h"
 #include "scene/readers/scene_keys.h"
 #include "testing/support/scene_dump.h"
+#include "testing/support/schema_keys.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
@@ -100,75 +101,11 @@ TEST(ScenePage, ExampleIsValidAndUsesEveryKey) {
         for (const Key& key : table->keys) EXPECT_TRUE(used.count(text_of(key.name))) << key.name;
 }
 
-void expect_range(const Json& number, const Range& range, bool whole) {
-    EXPECT_EQ(number.at("type"), whole ? "integer" : "number");
-    EXPECT_EQ(number.at(range.above ? "exclusiveMinimum" : "minimum").get<double>(), range.low);
-    EXPECT_EQ(number.at(range.below ? "exclusiveMaximum" : "maximum").get<double>(), range.high);
-}
-
-void expect_numbers(const Json& array, size_t count, const Range& range) {
-    EXPECT_EQ(array.at("type"), "array");
-    EXPECT_EQ(array.at("minItems"), count);
-    EXPECT_EQ(array.at("maxItems"), count);
-    expect_range(array.at("items"), range, false);
-}
-
 TEST(SceneSchema, HasEveryKeyWithItsTypeDefaultAndRange) {
     const Json root = schema();
     const Json& definitions = root.at("$defs");
-    for (const KeyTable* table : all_key_tables()) {
-        const Json& object = table == &scene_keys ? root : definitions.at(text_of(table->name));
-        EXPECT_EQ(object.at("type"), "object") << table->name;
-        EXPECT_EQ(object.at("additionalProperties"), false) << table->name;
-        EXPECT_EQ(object.at("properties").size(), table->keys.size() + 1) << table->name;
-        EXPECT_EQ(object.at("properties").at(comment_key).at("$ref"), "#/$defs/comment") << table->name;
-        std::set<std::string> required;
-        if (object.contains("required"))
-            for (const Json& name : object.at("required")) required.insert(name.get<std::string>());
-        for (const Key& key : table->keys) {
-            SCOPED_TRACE(text_of(table->name) + "." + text_of(key.name));
-            ASSERT_TRUE(object.at("properties").contains(text_of(key.name)));
-            const Json& property = object.at("properties").at(text_of(key.name));
-            EXPECT_EQ(required.count(text_of(key.name)), key.required ? 1u : 0u);
-            EXPECT_TRUE(property.contains("description"));
-            EXPECT_EQ(property.value("default", Json()).dump(),
-                      key.fallback.empty() ? "null" : Json::parse(key.fallback).dump());
-            const std::string prefix = "#/$defs/";
-            const std::string reference = property.value("$ref", "");
-            const Json& shape = reference.empty() ? property : definitions.at(reference.substr(prefix.size()));
-            switch (key.type) {
-                case KeyType::whole:
-                    expect_range(shape, key.range, true);
-                    break;
-                case KeyType::number:
-                    expect_range(shape, key.range, false);
-                    break;
-                case KeyType::boolean:
-                    EXPECT_EQ(shape.at("type"), "boolean");
-                    break;
-                case KeyType::text:
-                    EXPECT_EQ(shape.at("type"), "string");
-                    EXPECT_EQ(shape.at("minLength"), 1);
-                    break;
-                case KeyType::choice:
-                    EXPECT_EQ(shape.at("enum").get<std::vector<std::string>>(),
-                              std::vector<std::string>(key.choices.begin(), key.choices.end()));
-                    break;
-                case KeyType::color:
-                    expect_range(shape.at("oneOf").at(0), key.range, false);
-                    expect_numbers(shape.at("oneOf").at(1), 3, key.range);
-                    break;
-                case KeyType::point:
-                    expect_numbers(shape, 3, key.range);
-                    break;
-                case KeyType::pair:
-                    expect_numbers(shape, 2, key.range);
-                    break;
-                case KeyType::other:
-                    break;
-            }
-        }
-    }
+    for (const KeyTable* table : all_key_tables())
+        test::expect_keys(*table, table == &scene_keys ? root : definitions.at(text_of(table->name)), definitions);
 }
 
 TEST(SceneSchema, ListsOfNamesHaveComments) {

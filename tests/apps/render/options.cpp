@@ -17,6 +17,7 @@
 #include "apps/common/describe_flags.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/header_attributes.h"
+#include "apps/common/layer_list.h"
 #include "apps/common/stats.h"
 #include "apps/common/step_progress.h"
 #include "apps/render/explain.h"

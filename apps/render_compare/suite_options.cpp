@@ -1,0 +1,183 @@
+#include "suite_options.h"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "apps/common/command_line.h"
+#include "apps/common/run_files.h"
+#include "scene/base/suggest.h"
+#include "scene/compile/scene_source.h"
+#include "scene/readers/read_scene.h"
+
+namespace cistula {
+namespace {
+
+struct SuiteTexts {
+    std::string folder, backend, device, jobs, junit, json, html;
+    std::vector<std::string> cases, filters;
+    bool update = false, list = false, fail_fast = false, quiet = false;
+};
+
+void declare(CLI::App& app, SuiteTexts& texts) {
+    app.add_option("DIR", texts.folder, "the folder of a suite.json")->type_name("");
+    app.add_option("CASE", texts.cases, "these cases only")->type_name("");
+    app.add_option("--filter", texts.filters,
+                   "cases with a name or a tag that this is, or that a pattern with * and ? fits; may be given several "
+                   "times")
+        ->type_name("PATTERN")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU); those that each case names")
+        ->type_name("NAME");
+    app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
+        ->type_name("LIST");
+    app.add_flag("--update", texts.update,
+                 "write golden images and hashes anew where they differ, and say what changed");
+    app.add_option("--jobs", texts.jobs, "cases that are rendered at once; 1")->type_name("N");
+    app.add_flag("--fail-fast", texts.fail_fast, "begin no further case after one that failed");
+    app.add_option("--junit", texts.junit, "write the results as JUnit XML")->type_name("FILE");
+    app.add_option("--json", texts.json, "write the results as JSON")->type_name("FILE");
+    app.add_flag("--list", texts.list, "print the cases, each with a tab and its tags, and exit");
+    app.add_flag("-q,--quiet", texts.quiet, "errors only; the exit code tells");
+    app.set_help_flag("-h,--help", "print this and exit");
+}
+
+bool fits(const std::string& pattern, const std::string& text) {
+    return fnmatch(pattern.c_str(), text.c_str(), FNM_NOESCAPE) == 0;
+}
+
+bool fits(const std::string& pattern, const SuiteCase& one) {
+    return fits(pattern, one.name) ||
+           std::any_of(one.tags.begin(), one.tags.end(), [&](const auto& tag) { return fits(pattern, tag); });
+}
+
+/// Throws unless some case has the name or, for a pattern, fits.
+void require_known(const Suite& suite, const std::string& text, const char* what, bool is_pattern) {
+    std::vector<std::string_view> known;
+    for (const SuiteCase& one : suite.cases) {
+        if (is_pattern ? fits(text, one) : text == one.name) return;
+        known.push_back(one.name);
+    }
+    if (is_pattern)
+        for (const SuiteCase& one : suite.cases)
+            for (const std::string& tag : one.tags)
+                if (std::find(known.begin(), known.end(), tag) == known.end()) known.push_back(tag);
+    fail_usage(fmt::format("{}{}: {} has no such case; {}", what, text, suite.path,
+                           nearest_first(text, known, is_pattern ? "names and tags" : "cases")));
+}
+
+/// Adds a scene, and the files that it names if they are asked for. What is wrong with a scene is said by its cases.
+void add_scene(const std::string& path, bool with_files, RunFiles& files) {
+    files.reads(path, "a scene");
+    if (!with_files) return;
+    try {
+        files.reads_scene(path, gather_scene(read_scene(path)).files);
+    } catch (const Error&) {
+    }
+}
+
+}  // namespace
+
+SuiteOptions parse_suite_options(int argc, const char* const* argv) {
+    CLI::App app;
+    SuiteTexts texts;
+    declare(app, texts);
+    SuiteOptions options;
+    if (!parse_command_line(app, argc, argv, [](const std::string& extra) { return extra + ": no such word"; })) {
+        options.help = true;
+        return options;
+    }
+    if (texts.folder.empty()) fail_usage("no suite is given: render-compare suite DIR, the folder of a suite.json");
+    options.folder = texts.folder;
+    options.cases = texts.cases;
+    options.filters = texts.filters;
+    if (!texts.backend.empty()) options.backend = parse_backend(texts.backend);
+    options.devices = parse_devices(texts.device, options.backend.value_or(Backend::embree));
+    if (!texts.jobs.empty()) options.jobs = integer_option("--jobs", texts.jobs, 1, 1024);
+    options.update = texts.update;
+    options.list = texts.list;
+    options.fail_fast = texts.fail_fast;
+    options.quiet = texts.quiet;
+    options.junit = texts.junit;
+    options.json = texts.json;
+    options.html = texts.html;
+    return options;
+}
+
+std::string suite_help_text() {
+    CLI::App app("Renders the cases of a suite of golden images, DIR/suite.json, and compares.",
+                 "render-compare suite");
+    SuiteTexts texts;
+    declare(app, texts);
+    app.footer(R"(
+Examples:
+  render-compare suite golden                              every case, on the backends that it names
+  render-compare suite golden glass --backend cuda         one of them, on a GPU
+  render-compare suite golden --filter 'hard/*' --filter smoke --junit results.xml
+  render-compare suite golden --update                     what differs becomes the golden image
+
+Exit codes: 0 all cases hold, 1 some do not, 2 command line or suite.json, 3 file, 4 device, 130 interrupted.)");
+    return app.help();
+}
+
+std::vector<Backend> backends_of(const SuiteCase& one, const SuiteOptions& options) {
+    if (!options.backend) return one.backends;
+    const bool has = std::find(one.backends.begin(), one.backends.end(), *options.backend) != one.backends.end();
+    return has ? std::vector{*options.backend} : std::vector<Backend>{};
+}
+
+std::vector<const SuiteCase*> chosen_cases(const Suite& suite, const SuiteOptions& options) {
+    for (const std::string& name : options.cases) require_known(suite, name, "", false);
+    for (const std::string& pattern : options.filters) require_known(suite, pattern, "--filter ", true);
+    std::vector<const SuiteCase*> chosen;
+    for (const SuiteCase& one : suite.cases) {
+        const auto& names = options.cases;
+        const auto& filters = options.filters;
+        if (!names.empty() && std::find(names.begin(), names.end(), one.name) == names.end()) continue;
+        if (!filters.empty() &&
+            std::none_of(filters.begin(), filters.end(), [&](const auto& pattern) { return fits(pattern, one); }))
+            continue;
+        if (!backends_of(one, options).empty()) chosen.push_back(&one);
+    }
+    if (chosen.empty())
+        fail_usage(options.backend
+                       ? fmt::format("--backend {}: no case that is asked for names it among its \"backends\"",
+                                     backend_name(*options.backend))
+                       : std::string("no case has both a name that is given and one that --filter fits"));
+    return chosen;
+}
+
+void require_other_files(const Suite& suite, const SuiteOptions& options, const std::vector<const SuiteCase*>& chosen) {
+    namespace fs = std::filesystem;
+    RunFiles files;
+    files.reads(suite.path, "the suite");
+    std::error_code ignored;
+    // A file that is not there yet is none that a scene names.
+    const bool replaces = options.update || fs::exists(options.junit, ignored) || fs::exists(options.json, ignored);
+    std::set<std::string> scenes;
+    for (const SuiteCase& one : suite.cases)
+        if (scenes.insert(one.scene_path(suite.folder)).second)
+            add_scene(one.scene_path(suite.folder), replaces, files);
+    for (const bool updated : {false, true})
+        for (const SuiteCase& one : suite.cases) {
+            const bool is_chosen = std::find(chosen.begin(), chosen.end(), &one) != chosen.end();
+            if ((options.update && is_chosen) != updated || one.golden.empty()) continue;
+            for (const int frame : one.frames.part(0, one.frames.size())) {
+                const std::string path = one.golden_path(suite.folder, frame);
+                if (updated)
+                    files.writes(path, "the golden image of " + one.name);
+                else
+                    files.reads(path, "the golden image of " + one.name);
+            }
+        }
+    files.writes(options.junit, "--junit");
+    files.writes(options.json, "--json");
+}
+
+}  // namespace cistula

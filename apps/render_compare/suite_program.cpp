@@ -1,0 +1,96 @@
+#include "suite_program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/common/command_line.h"
+#include "apps/common/output_name.h"
+#include "scene/base/atomic_file.h"
+#include "suite_report.h"
+#include "suite_update.h"
+
+namespace cistula {
+namespace {
+
+std::string list_text(const std::vector<const SuiteCase*>& chosen) {
+    std::string text;
+    for (const SuiteCase* one : chosen) text += fmt::format("{}\t{}\n", one->name, fmt::join(one->tags, ","));
+    return text;
+}
+
+/// Makes the folders of the files to be written, and finds out before the first picture if they cannot be written.
+void probe(const std::string& path) {
+    if (path.empty()) return;
+    make_directory_of(path);
+    const AtomicFile file(path);
+}
+
+void write_reports(const Suite& suite, const std::vector<SuiteResult>& results,
+                   const std::vector<SuiteBackend>& backends, const SuiteCounts& counts, const SuiteOptions& options) {
+    if (!options.junit.empty()) write_file_atomically(options.junit, junit_xml(suite, results));
+    if (!options.json.empty())
+        write_file_atomically(
+            options.json,
+            suite_json(suite, results, backends, counts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                "\n");
+}
+
+ExitCode exit_code(const SuiteCounts& counts) {
+    if (counts.failed > 0) return ExitCode::failed;
+    return counts.held == 0 ? ExitCode::device : ExitCode::done;
+}
+
+}  // namespace
+
+int run_suite(int argc, const char* const* argv) {
+    const SuiteOptions options = parse_suite_options(argc, argv);
+    if (options.help) {
+        print(suite_help_text());
+        return static_cast<int>(ExitCode::done);
+    }
+    const Suite suite = read_suite(options.folder);
+    const std::vector<const SuiteCase*> chosen = chosen_cases(suite, options);
+    if (options.list) {
+        print(list_text(chosen));
+        return static_cast<int>(ExitCode::done);
+    }
+    require_other_files(suite, options, chosen);
+    const std::vector<SuiteBackend> backends = find_backends(chosen, options);
+    for (const std::string& path : {options.junit, options.json}) probe(path);
+
+    size_t name_width = 8;
+    for (const SuiteCase* one : chosen) name_width = std::max(name_width, one->name.size());
+    const auto say = [&](const std::string& text) {
+        if (!options.quiet) print(text);
+    };
+    say(table_head(suite, backends, name_width));
+    SuiteUpdate update(suite);
+    SuiteWork work;
+    if (options.update)
+        work.judged = [&](const SuiteFrame& frame, const LayeredPicture* golden, SuiteResult& result) {
+            update.record(frame, golden, result);
+        };
+    work.finished = [&](const std::vector<SuiteResult>& results) {
+        say(table_rows(results, name_width));
+        if (options.update) update.finish(results);
+    };
+    std::vector<SuiteResult> results;
+    try {
+        results = run_cases(suite, chosen, backends, options, work);
+    } catch (const Error&) {
+        update.write();  // what was recorded by then
+        throw;
+    }
+    update.write();
+    const SuiteCounts counts = count_results(results, chosen.size());
+    write_reports(suite, results, backends, counts, options);
+    if (options.update)
+        say(fmt::format("recorded: {} of {} pictures{}\n", update.changed(), results.size(),
+                        counts.failed > 0 ? fmt::format("; {} failed", counts.failed) : ""));
+    else
+        say(summary_text(counts));
+    return static_cast<int>(exit_code(counts));
+}
+
+}  // namespace cistula

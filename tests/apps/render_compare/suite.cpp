@@ -1,0 +1,352 @@
+// `render-compare suite` from outside: what holds, what does not and how that is said, what --update changes, files.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/common/backends.h"
+#include "scene/base/error.h"
+#include "scene/image/exr.h"
+#include "scene/image/picture_hash.h"
+#include "testing/support/gpu.h"
+#include "testing/support/run_program.h"
+
+namespace cistula {
+namespace {
+
+using Words = std::vector<std::string>;
+namespace fs = std::filesystem;
+
+constexpr const char* cube_scene = R"({"film": {"width": 24, "height": 16, "frames": 8}, "depth": 3,
+    "camera": {"path": {"position": {"r0": 5, "z0": 2, "wphi": 10}}}, "materials": {"m": {"reflection": 0.5}},
+    "objects": [{"solid": "cube", "material": "m"}], "lights": [{"position": [3, -4, 5]}]})";
+
+/// A folder s with a suite of one scene; the program runs beside it.
+class SuiteProgram : public ::testing::Test {
+  protected:
+    SuiteProgram() {
+        fs::create_directory(file("s"));
+        put_bytes(file("s/cube.json"), cube_scene);
+    }
+    std::string file(const std::string& name) const { return folder_.file(name); }
+    std::string text(const std::string& name) const { return bytes_of(file(name)); }
+    nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(text(name)); }
+
+    /// suite.json of these cases, each a text without its braces and its scene.
+    void cases(const Words& list, const std::string& defaults = "") const {
+        std::string all;
+        for (const std::string& one : list) all += (all.empty() ? "    {" : ",\n    {") + one + "}";
+        put_bytes(file("s/suite.json"), "{\n  \"defaults\": {\"scene\": \"cube.json\"" +
+                                            (defaults.empty() ? "" : ", " + defaults) + "},\n  \"cases\": [\n" + all +
+                                            "\n  ]\n}\n");
+    }
+    ProgramResult run(Words words) const {
+        words.insert(words.begin(), {"suite", "s"});
+        return RunningProgram(CISTULA_BIN_DIR "/render-compare", words, file("")).wait();
+    }
+    std::string expect(int code, const Words& words = {}) const {
+        const ProgramResult result = run(words);
+        EXPECT_EQ(result.code, code) << result.out << result.error;
+        EXPECT_EQ(result.error, "");
+        return result.out;
+    }
+    void expect_has(const std::string& out, const std::string& part) const {
+        EXPECT_NE(out.find(part), std::string::npos) << out << "\nhas no " << part;
+    }
+    void expect_refused_suite(const Words& words, ExitCode code, const std::string& part) const {
+        const ProgramResult result = run(words);
+        EXPECT_EQ(result.code, static_cast<int>(code)) << result.out << result.error;
+        EXPECT_EQ(result.error.rfind("render-compare: ", 0), 0u) << result.error;
+        EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+        EXPECT_NE(result.error.find(part), std::string::npos) << result.error << "\nhas no " << part;
+    }
+    void render(Words words, const std::string& to) const {
+        words.insert(words.begin(), {"s/cube.json", "-q", "-o", to});
+        const ProgramResult result = RunningProgram(CISTULA_BIN_DIR "/render", words, file("")).wait();
+        ASSERT_EQ(result.code, 0) << result.error;
+    }
+    void change(const std::string& exr, const std::function<void(LayeredPicture&)>& how) const {
+        LayeredPicture picture = read_exr(file(exr));
+        how(picture);
+        write_exr(file(exr), picture);
+    }
+
+    const ScratchDirectory folder_;
+};
+
+TEST_F(SuiteProgram, PicturesAreThoseThatRenderWrites) {
+    cases(
+        {R"("name": "plain", "golden": "plain.exr")",
+         R"("name": "all", "golden": "g/all.####.exr", "frames": "2-6x4", "resolution": [32, 20], "crop": [20, 10, 4, 2],
+              "supersample": 2, "depth": 2, "cutoff": 0.01, "precision": "double", "layers": "N,id,cryptomatte",
+              "bits": "half", "background": "transparent", "colorspace": "lin_ap1_scene")",
+         R"("name": "target", "golden": "target.exr", "target_error": 0.05, "max_samples": 64, "layers": "samples,Z",
+              "z_far": "inf")"});
+    render({}, "s/plain.exr");
+    render({"-f",
+            "2-6x4",
+            "--res",
+            "32x20",
+            "--crop",
+            "20x10+4+2",
+            "--supersample",
+            "2",
+            "--depth",
+            "2",
+            "--cutoff",
+            "0.01",
+            "--precision",
+            "double",
+            "--layers",
+            "N,id,cryptomatte",
+            "--bits",
+            "half",
+            "--background",
+            "transparent",
+            "--colorspace",
+            "lin_ap1_scene"},
+           "s/g/all.####.exr");
+    render({"--target-error", "0.05", "--max-samples", "64", "--layers", "samples,Z", "--z-far", "inf"},
+           "s/target.exr");
+    const std::string out = expect(0);
+    expect_has(out, "hold: all 4 pictures\n");
+    EXPECT_EQ(out.find("header"), std::string::npos) << out;
+    const std::string plain = text("s/plain.exr"), half = text("s/g/all.0006.exr");
+    fs::remove(file("s/plain.exr"));
+    fs::remove_all(file("s/g"));
+    expect(0, {"--update"});
+    EXPECT_EQ(text("s/plain.exr"), plain);
+    EXPECT_EQ(text("s/g/all.0006.exr"), half);
+}
+
+TEST_F(SuiteProgram, WhatDiffersIsSaidAndTheOthersGoOn) {
+    cases(
+        {R"("name": "gone", "golden": "gone.exr")", R"("name": "size", "golden": "size.exr", "resolution": [12, 8])",
+         R"("name": "layers", "golden": "layers.exr", "layers": "Z")", R"("name": "damaged", "golden": "damaged.exr")",
+         R"("name": "scene", "scene": "none.json", "golden": "a.exr")",
+         R"("name": "crop", "golden": "good.exr", "crop": [10, 10, 20, 0])",
+         R"("name": "light", "golden": "good.exr", "layers": "Combined_key")",
+         R"("name": "value", "golden": "value.exr")", R"("name": "bare")", R"("name": "good", "golden": "good.exr")"});
+    for (const char* name : {"size", "damaged", "value", "good"}) render({}, "s/" + std::string(name) + ".exr");
+    render({"--layers", "N"}, "s/layers.exr");
+    put_bytes(file("s/damaged.exr"), text("s/damaged.exr").substr(0, 500));
+    change("s/value.exr", [](LayeredPicture& picture) { picture.channels[1].values[24 * 3 + 5] = 9; });
+    const std::string out = expect(1, {"--json", "r.json", "--junit", "r.xml"});
+    expect_has(out, "no golden image: s/gone.exr is not there; --update gone records it\n");
+    expect_has(out, "another size: 24x16 in the golden image, 12x8 rendered\n");
+    expect_has(out, "layers of the golden image alone: N.X, N.Y, N.Z; layers that the golden image lacks: Z\n");
+    expect_has(out, "failed: s/damaged.exr: cannot read");
+    expect_has(out, "failed: s/none.json: cannot read the scene");
+    expect_has(out, "failed: /cases/5/crop: 10x10 at 20,0 leaves the frame, which is 24x16\n");
+    expect_has(out, "failed: --layers Combined_key: the scene has no such group of lights");
+    expect_has(out, "differ: 1 of 1536 floats differ; worst: B at (5, 3): 9 / ");
+    expect_has(out, "neither \"golden\" nor \"hash\" says what is expected; --update bare records it\n");
+    expect_has(out, "24x16    0.0");
+    expect_has(out, "\ndiffer: 9 of 10 pictures\n");
+    const auto result = json("r.json");
+    EXPECT_FALSE(result.at("holds").get<bool>());
+    EXPECT_EQ(result.at("parity"), nlohmann::json({{"compared", 10}, {"differing", 9}}));
+    Words outcomes;
+    for (const auto& one : result.at("cases")) outcomes.push_back(one.at("outcome"));
+    EXPECT_EQ(outcomes, (Words{"missing", "differs", "differs", "broken", "broken", "broken", "broken", "differs",
+                               "missing", "holds"}));
+    const auto& value = result.at("cases")[7];
+    EXPECT_EQ(value.at("comparison").at("channels")[1].at("differing"), 1);
+    EXPECT_EQ(value.at("precision"), "float");
+    EXPECT_EQ(value.at("hash"), picture_hash(read_exr(file("s/good.exr"))));
+    const std::string xml = text("r.xml");
+    expect_has(xml, R"(<testsuites tests="10" failures="5" errors="4" skipped="0" time=")");
+    expect_has(xml, R"(<testcase classname="s" name="value" time=")");
+    expect_has(xml, R"(<failure type="differs" message="differ: 1 of 1536 floats differ; worst: B at (5, 3): 9 / )");
+    expect_has(xml, R"(says what is expected; --update bare records it"/>)");
+    expect_has(xml, R"(neither &quot;golden&quot; nor)");
+    EXPECT_EQ(expect(1, {"-q"}), "");
+}
+
+TEST_F(SuiteProgram, HeadersAreComparedAndDoNotDecide) {
+    cases({R"("name": "a", "golden": "a.exr")"});
+    render({}, "s/a.exr");
+    change("s/a.exr", [](LayeredPicture& picture) {
+        picture.attributes["cistula:version"] = std::string("0.0.7");
+        picture.attributes["owner"] = std::string("<me>");
+        picture.compression = Compression::none;
+    });
+    expect_has(expect(0, {"--json", "r.json", "--junit", "r.xml"}), "  equal\n");
+    const auto notes = json("r.json").at("cases")[0].at("notes");
+    EXPECT_EQ(notes.at(0), "recorded by version 0.0.7, rendered by " CISTULA_VERSION);
+    EXPECT_EQ(notes.at(2), "header: owner: <me> / (none)");
+    expect_has(text("r.xml"), "header: owner: &lt;me&gt; / (none)\n");
+    change("s/a.exr", [](LayeredPicture& picture) { picture.channels[0].half = true; });
+    expect_has(expect(1), "recorded by version 0.0.7, rendered by " CISTULA_VERSION ": differ: ");
+}
+
+TEST_F(SuiteProgram, ThresholdsAreThoseOfTwoImages) {
+    cases({R"("name": "within", "golden": "a.exr", "thresholds": {"hardfail": 0.5})",
+           R"("name": "percent", "golden": "a.exr", "thresholds": {"fail": 0.1, "failpercent": 1})",
+           R"("name": "over", "golden": "a.exr", "thresholds": {"fail": 0.1})",
+           R"("name": "bits", "golden": "a.exr")"});
+    render({}, "s/a.exr");
+    change("s/a.exr", [](LayeredPicture& picture) { picture.channels[0].values[7] += 0.25f; });
+    const std::string out = expect(1, {"--json", "r.json"});
+    expect_has(out, "within the thresholds: 0 pixels over --hardfail 0.5\n");
+    expect_has(out, "\ndiffer: 2 of 4 pictures\n");
+    EXPECT_EQ(json("r.json").at("cases")[1].at("outcome"), "holds");
+}
+
+TEST_F(SuiteProgram, HashesHoldAndSayWhatRecordedThem) {
+    cases({R"("name": "a", "layers": "N")", R"("name": "film", "frames": "0-2")"});
+    expect_has(expect(0, {"--update"}), "\nrecorded: 4 of 4 pictures\n");
+    expect_has(expect(0), "hold: all 4 pictures\n");
+    render({"--layers", "N", "--compression", "piz"}, "a.exr");
+    const auto suite = json("s/suite.json");
+    EXPECT_EQ(suite.at("cases")[0].at("hash"), picture_hash(read_exr(file("a.exr"))));
+    EXPECT_EQ(suite.at("cases")[0].at("recorded"),
+              nlohmann::json({{"version", CISTULA_VERSION}, {"precision", "float"}}));
+    EXPECT_EQ(suite.at("cases")[1].at("hash").size(), 3u);
+
+    const std::string hash = suite.at("cases")[0].at("hash");
+    const auto recorded = [&](const std::string& what) {
+        cases({R"("name": "a", "layers": "N", "precision": "double", "hash": ")" + hash + "\"" + what});
+        return expect(1);
+    };
+    expect_has(recorded(""), "0  the hash is ");
+    expect_has(recorded(R"(, "recorded": {"version": "0.0.7", "precision": "float"})"),
+               "  recorded in float by version 0.0.7, rendered in double by " CISTULA_VERSION ": the hash is ");
+    expect_has(recorded(R"(, "recorded": {"version": "0.0.7", "precision": "double"})"),
+               "  recorded by version 0.0.7, rendered by " CISTULA_VERSION ": the hash is ");
+}
+
+TEST_F(SuiteProgram, TheFilmsIntegersCountWhereTheyAreAskedFor) {
+    const std::string none(32, '0');
+    cases({R"("name": "a", "golden": "a.exr", "film_hash": ")" + none + "\""});
+    render({"--stats", "stats.json"}, "s/a.exr");
+    const std::string film = json("stats.json").at("benchmarks").back().at("film_hash");
+    expect_has(expect(1), "  equal; the film's integers differ: film_hash is " + film + ", " + none + " is expected\n");
+    expect_has(expect(0, {"--update"}), "recorded: film_hash is " + film + ", was " + none + "\n");
+    EXPECT_EQ(json("s/suite.json").at("cases")[0].at("film_hash"), film);
+    expect_has(expect(0), "hold: all 1 pictures\n");
+}
+
+TEST_F(SuiteProgram, UpdatesWhatDiffersAndNothingElse) {
+    cases({R"("name": "a", "golden": "a.exr")", R"("name": "b", "golden": "b.exr")",
+           R"("name": "c", "golden": "c.exr", "thresholds": {"fail": 100})", R"("name": "bad", "scene": "none.json")"},
+          R"("layers": "Z")");
+    for (const char* name : {"a", "b", "c"}) render({"--layers", "Z"}, "s/" + std::string(name) + ".exr");
+    for (const char* name : {"s/b.exr", "s/c.exr"})
+        change(name, [](LayeredPicture& picture) { picture.channels[0].values[7] += 0.25f; });
+    const std::string a = text("s/a.exr"), b = text("s/b.exr"), suite = text("s/suite.json");
+    expect_has(expect(0, {"--update", "c"}), "recorded: s/c.exr is written; before, within the thresholds: ");
+    EXPECT_EQ(text("s/c.exr"), a);
+    EXPECT_EQ(text("s/b.exr"), b);
+    const std::string out = expect(1, {"--update"});
+    expect_has(out, "  unchanged\n");
+    expect_has(out, "recorded: s/b.exr is written; before, differ: 1 of 1920 floats differ; worst: ");
+    expect_has(out, "failed: s/none.json: cannot read");
+    expect_has(out, "\nrecorded: 1 of 4 pictures; 1 failed\n");
+    EXPECT_EQ(text("s/b.exr"), a);
+    EXPECT_EQ(text("s/suite.json"), suite);
+}
+
+TEST_F(SuiteProgram, UpdateKeepsTheFormOfTheFile) {
+    cases({"\n      \"name\": \"a\", // the first\n      \"frames\": \"0-1\"\n    ", R"("name": "b")"});
+    expect(0, {"--update"});
+    const std::string suite = text("s/suite.json");
+    expect_has(suite, "      \"name\": \"a\", // the first\n      \"frames\": \"0-1\",\n      \"hash\": [\n        \"");
+    expect_has(suite, "\"\n      ],\n      \"recorded\": {\"version\": \"" CISTULA_VERSION
+                      "\", \"precision\": \"float\"}\n    },\n");
+    expect_has(suite, "    {\"name\": \"b\", \"hash\": \"");
+    expect(0);
+    EXPECT_EQ(text("s/suite.json"), suite);
+}
+
+TEST_F(SuiteProgram, CasesAreChosenByNamesAndTags) {
+    cases({R"("name": "glass/a", "tags": ["smoke"])", R"("name": "glass/b")",
+           R"("name": "glass", "tags": ["slow", "x"])"});
+    const auto listed = [&](Words words) {
+        words.push_back("--list");
+        return expect(0, words);
+    };
+    EXPECT_EQ(listed({}), "glass/a\tsmoke\nglass/b\t\nglass\tslow,x\n");
+    EXPECT_EQ(listed({"glass"}), "glass\tslow,x\n");
+    EXPECT_EQ(listed({"--filter", "glass"}), "glass\tslow,x\n");
+    EXPECT_EQ(listed({"--filter", "glass/*"}), "glass/a\tsmoke\nglass/b\t\n");
+    EXPECT_EQ(listed({"--filter", "?low", "--filter", "smoke"}), "glass/a\tsmoke\nglass\tslow,x\n");
+    EXPECT_EQ(listed({"glass", "glass/a", "--filter", "smoke"}), "glass/a\tsmoke\n");
+    expect_refused_suite({"glas"}, ExitCode::usage, "glas: s/suite.json has no such case; the cases are: glass");
+    expect_refused_suite({"--filter", "smok"}, ExitCode::usage,
+                         "--filter smok: s/suite.json has no such case; the names "
+                         "and tags are: smoke");
+    expect_refused_suite({"glass/b", "--filter", "smoke"}, ExitCode::usage, "no case has both");
+}
+
+TEST_F(SuiteProgram, SeveralAtOnceSayTheSameInTheSameOrder) {
+    Words list;
+    for (int i = 0; i < 12; ++i)
+        list.push_back(R"("name": "c)" + std::to_string(i) + R"(", "frames": )" + std::to_string(i % 5) +
+                       (i == 3 || i == 9 ? R"(, "golden": "none.exr")" : ""));
+    cases(list);
+    const auto parts = [&](const Words& words) {
+        expect(1, words);
+        auto all = json("r.json").at("cases");
+        for (auto& one : all) one.erase("render_seconds");
+        return all;
+    };
+    expect(0, {"c0", "c1", "c2", "c4", "c5", "--update", "--jobs", "3"});
+    const auto alone = parts({"--json", "r.json"});
+    EXPECT_EQ(alone.size(), 12u);
+    EXPECT_EQ(parts({"--json", "r.json", "--jobs", "5"}), alone);
+    const std::string out = expect(1, {"--fail-fast", "--json", "r.json"});
+    expect_has(out, "\ndiffer: 1 of 4 pictures; 8 cases not begun after a failure\n");
+    EXPECT_EQ(json("r.json").at("not_begun"), 8);
+}
+
+TEST_F(SuiteProgram, ABackendThatIsNotThereIsSkippedOrRefused) {
+    if (test::missing_gpu().empty()) GTEST_SKIP() << "this machine has a GPU";
+    cases({R"("name": "both", "golden": "a.exr", "backends": ["cuda", "embree"])",
+           R"("name": "gpu", "golden": "a.exr", "backends": ["cuda"])", R"("name": "cpu", "golden": "a.exr")"});
+    render({}, "s/a.exr");
+    const std::string out = expect(0, {"--junit", "r.xml"});
+    expect_has(out, "\nhold: all 2 pictures; 2 skipped\n");
+    expect_has(text("r.xml"), R"(name="both [cuda]" time="0.000">)");
+    expect_has(text("r.xml"), "<skipped message=\"");
+    expect_has(expect(4, {"gpu"}), "\nnothing was compared; 1 skipped\n");
+    expect_refused_suite({"--backend", "cuda"}, ExitCode::device, "");
+    expect_refused_suite({"cpu", "--backend", "cuda"}, ExitCode::usage, "no case that is asked for names it");
+    expect_has(expect(0, {"--backend", "embree"}), "\nhold: all 2 pictures\n");
+}
+
+TEST_F(SuiteProgram, CudaHoldsTheSameGoldenImages) {
+    CISTULA_NEEDS_GPU();
+    cases({R"("name": "a", "golden": "a.exr", "layers": "N,Z", "backends": ["embree", "cuda"])"});
+    render({"--layers", "N,Z"}, "s/a.exr");
+    expect_has(expect(0), "\nhold: all 2 pictures\n");
+}
+
+TEST_F(SuiteProgram, RefusesInOneLine) {
+    cases({R"("name": "a", "golden": "a.exr")", R"("name": "b", "golden": "./a.exr")"});
+    render({}, "s/a.exr");
+    const std::string good = text("s/a.exr");
+    expect_refused_suite({"--json", "s/a.exr"}, ExitCode::usage, "the golden image of a and --json");
+    expect_refused_suite({"--junit", "s/cube.json"}, ExitCode::usage, "--junit");
+    expect_refused_suite({"--json", "s/suite.json"}, ExitCode::usage, "the suite and --json");
+    expect_refused_suite({"--json", "x", "--junit", "./x"}, ExitCode::usage, "--junit and --json");
+    expect_refused_suite({"--update"}, ExitCode::usage, "the golden image of a and the golden image of b");
+    expect_refused_suite({"--fliter", "a"}, ExitCode::usage, "did you mean '--filter'?");
+    expect_refused_suite({"--jobs", "0"}, ExitCode::usage, "--jobs 0: must be a whole number from 1 to 1024");
+    expect_refused_suite({"--device", "0"}, ExitCode::usage, "add --backend cuda");
+    EXPECT_EQ(text("s/a.exr"), good);
+    put_bytes(file("s/suite.json"), "{\"cases\": [{\"nam\": 1}]}");
+    expect_refused_suite({}, ExitCode::usage, "s/suite.json: /cases/0/nam: unknown key; did you mean 'name'?");
+    fs::remove(file("s/suite.json"));
+    expect_refused_suite({}, ExitCode::file, "s/suite.json: cannot read");
+    const ProgramResult help = run({"--help"});
+    EXPECT_EQ(help.code, 0);
+    expect_has(help.out, "Exit codes: 0 all cases hold");
+    EXPECT_EQ(help.out.find_first_of("{}"), std::string::npos) << help.out;
+}
+
+}  // namespace
+}  // namespace cistula
