@@ -1,5 +1,5 @@
 # make install: programs with manuals and completion, libraries, headers, scenes, documents, and a CMake package for
-# find_package(cistula) with the targets cistula::cistula | scene | embree | cuda.
+# find_package(cistula) with the targets cistula::cistula | scene | embree | cuda, the programs' and cistula_add_golden_suite.
 include(CMakePackageConfigHelpers)
 
 # Headers: the shading library, whole; of the scene library those that cistula.h lists, which are public, and those that they
@@ -67,6 +67,11 @@ foreach(_component scene embree cuda)  # cuda: whoever links it brings the langu
         list(APPEND CISTULA_COMPONENTS ${_component})
     endif()
 endforeach()
+if(TARGET render-compare)
+    install(EXPORT cistula_programs NAMESPACE cistula:: DESTINATION "${CISTULA_INSTALL_CMAKE}")
+    install(FILES cmake/CistulaGoldenSuite.cmake cmake/CistulaSuiteTests.cmake DESTINATION "${CISTULA_INSTALL_CMAKE}")
+    list(APPEND CISTULA_COMPONENTS programs)
+endif()
 if(TARGET cistula_embree)
     install(FILES backend_embree/embree/embree_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_embree/embree")
 endif()

@@ -99,12 +99,18 @@ const std::string* indentation(const std::string& text, size_t at, std::string& 
     return store.find_first_not_of(" \t") == std::string::npos ? &store : nullptr;
 }
 
-/// A value whose lines after the first are indented by as much.
-std::string indented(const std::string& value, const std::string& by) {
+/// A value whose lines after the first are indented by as much, or one line of it where that is null.
+std::string fitted(const std::string& value, const std::string* indentation) {
     std::string text;
-    for (const char c : value) {
-        text += c;
-        if (c == '\n') text += by;
+    for (size_t i = 0; i < value.size(); ++i) {
+        if (value[i] != '\n') {
+            text += value[i];
+        } else if (indentation) {
+            text += '\n' + *indentation;
+        } else {
+            if (text.back() == ',') text += ' ';
+            while (value[i + 1] == ' ') ++i;
+        }
     }
     return text;
 }
@@ -129,14 +135,13 @@ std::string with_json_value(const std::string& text, std::string_view pointer, c
             at = found->value.begin;
         } else if (found) {
             const std::string* lines = indentation(text, found->key, store);
-            return text.substr(0, found->value.begin) + indented(value, lines ? *lines : "") +
-                   text.substr(found->value.end);
+            return text.substr(0, found->value.begin) + fitted(value, lines) + text.substr(found->value.end);
         } else if (is_object && pointer.empty()) {
             const std::string* lines = members.empty() ? nullptr : indentation(text, members.back().key, store);
             const size_t place = members.empty() ? at + 1 : members.back().value.end;
             const std::string before = members.empty() ? "" : lines ? ",\n" + *lines : ", ";
-            return text.substr(0, place) + before + nlohmann::json(key).dump() + ": " +
-                   indented(value, lines ? *lines : "") + text.substr(place);
+            return text.substr(0, place) + before + nlohmann::json(key).dump() + ": " + fitted(value, lines) +
+                   text.substr(place);
         } else {
             throw std::logic_error("the JSON text has no such place");
         }

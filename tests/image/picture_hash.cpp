@@ -12,7 +12,7 @@ namespace cistula {
 namespace {
 
 /// 2 x 1 pixels at (5, 7) of 20 x 10, of a float and a half.
-LayeredPicture two_pixels() {
+LayeredPicture float_and_half() {
     LayeredPicture picture;
     picture.width = 2;
     picture.height = 1;
@@ -26,11 +26,11 @@ LayeredPicture two_pixels() {
 }
 
 TEST(PictureHash, IsThatOfAnotherImplementation) {
-    EXPECT_EQ(picture_hash(two_pixels()), "d654b8f5f7c870e4cf2bd71dd713113f");
+    EXPECT_EQ(picture_hash(float_and_half()), "d654b8f5f7c870e4cf2bd71dd713113f");
 }
 
 TEST(PictureHash, TellsApartWhatFilesStore) {
-    std::set<std::string> hashes = {picture_hash(two_pixels())};
+    std::set<std::string> hashes = {picture_hash(float_and_half())};
     const std::function<void(LayeredPicture&)> changes[] = {
         [](LayeredPicture& p) { p.x = 6; },
         [](LayeredPicture& p) { p.y = 6; },
@@ -44,7 +44,7 @@ TEST(PictureHash, TellsApartWhatFilesStore) {
         [](LayeredPicture& p) { p.channels.pop_back(); },
     };
     for (const auto& change : changes) {
-        LayeredPicture picture = two_pixels();
+        LayeredPicture picture = float_and_half();
         change(picture);
         hashes.insert(picture_hash(picture));
     }
@@ -53,7 +53,7 @@ TEST(PictureHash, TellsApartWhatFilesStore) {
 
 TEST(PictureHash, IsThatOfTheFileWhateverItsHeaderAndCompression) {
     const ScratchDirectory folder;
-    LayeredPicture picture = two_pixels();
+    LayeredPicture picture = float_and_half();
     const std::string hash = picture_hash(picture);
     std::swap(picture.channels[0], picture.channels[1]);
     EXPECT_EQ(picture_hash(picture), hash);
@@ -65,9 +65,9 @@ TEST(PictureHash, IsThatOfTheFileWhateverItsHeaderAndCompression) {
     }
 }
 
-TEST(StoredPicture, HasTheBitsThatItsFileHas) {
+TEST(PictureHash, RoundedPicturesHaveTheBitsOfTheirFiles) {
     const ScratchDirectory folder;
-    LayeredPicture picture = two_pixels();
+    LayeredPicture picture = float_and_half();
     picture.channels[0].values = {0.3333f, 2049.0f / 2048};  // the second lies between two halves
     write_exr(folder.file("a.exr"), picture);
     EXPECT_NE(read_exr(folder.file("a.exr")).channels[1].values, picture.channels[0].values);

@@ -61,6 +61,8 @@ foreach(scene scene double)
     endforeach()
 endforeach()
 
+include("${source}/suite.cmake")
+
 # With the module for pictures, where the package has it: also from a program that was installed elsewhere, and from the installed
 # programs of a prefix that was moved.
 set(picture "")

@@ -266,6 +266,7 @@ TEST(JsonEdit, ChangesOneValue) {
 TEST(JsonEdit, AddsAKeyAsTheObjectIsWritten) {
     EXPECT_EQ(with_json_value("{}", "/a", "1"), "{\"a\": 1}");
     EXPECT_EQ(with_json_value("{\"a\": {\"b\": 1}}", "/a/c", "2"), "{\"a\": {\"b\": 1, \"c\": 2}}");
+    EXPECT_EQ(with_json_value("{\"a\": 1}", "/b", "[\n  2,\n  3\n]"), "{\"a\": 1, \"b\": [2, 3]}");
     EXPECT_EQ(with_json_value("{\n    \"a\": 1 // one\n}", "/b", "[\n  2\n]"),
               "{\n    \"a\": 1,\n    \"b\": [\n      2\n    ] // one\n}");
     EXPECT_EQ(with_json_value("{\n\t\"a\": 1,\n\t\"b\": {}\n}", "/c", "2"),
