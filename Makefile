@@ -110,11 +110,11 @@ gpu-check: ## on a machine with a GPU: compare it with the CPU bit for bit, and 
 	@! cmake --build $(BUILD) --target help | grep -qw gpu_check_fast || cmake --build $(BUILD) --target gpu_check_fast
 	bench/gpu-check $(BUILD)
 
-golden: ## render the golden images again and say what changed
+golden: ## record the golden images that differ and say what changed
 	$(call setup,packages.txt)
 	$(call configure,$(PRESET))
-	@cmake --build $(BUILD) --target make_golden
-	$(BUILD)/bin/make_golden golden
+	@cmake --build $(BUILD) --target render-compare
+	$(BUILD)/bin/render-compare suite golden --backend embree --update
 
 docs: ## the reference of libcore/cistula and of the Renderer interface, into out/docs
 	$(call setup,docs/packages.txt)

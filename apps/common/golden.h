@@ -1,4 +1,4 @@
-// Render settings of the golden images, shared by make_golden, the tests and render-compare.
+// Render settings of the golden images, for tests and render-compare.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// render-compare: compares two images, or a backend's images with the golden ones.
+// render-compare: compares two images, or scenes with their golden images.
 #include <algorithm>
 #include <optional>
 #include <string_view>
@@ -7,7 +7,6 @@
 #include "compare.h"
 #include "difference_picture.h"
 #include "flip.h"
-#include "golden_run.h"
 #include "options.h"
 #include "report.h"
 #include "scene/base/atomic_file.h"
@@ -72,9 +71,6 @@ int run(const CompareOptions& options) {
             break;
         case CompareAction::sums:
             holds = check_sums(options);
-            break;
-        case CompareAction::golden:
-            holds = run_golden(options);
             break;
     }
     return static_cast<int>(holds ? ExitCode::done : ExitCode::failed);

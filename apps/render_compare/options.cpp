@@ -14,12 +14,9 @@
 namespace cistula {
 namespace {
 
-constexpr const char* default_golden = "golden";
-
 /// The options' texts as CLI11 stores them.
 struct Texts {
-    std::string a, b, fail, failpercent, hardfail, layers, crop, mask, metrics, diff, json, golden, sums, backend,
-        device, precision;
+    std::string a, b, fail, failpercent, hardfail, layers, crop, mask, metrics, diff, json, sums;
     bool intersection = false, quiet = false, version = false;
 };
 
@@ -40,14 +37,6 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--json", texts.json, "write the result as JSON")->type_name("FILE");
     app.add_option("--sums", texts.sums, "whether an image's layers by path and by light add up to its R G B")
         ->type_name("FILE.exr");
-    app.add_option("--golden", texts.golden,
-                   "render the golden images in DIR again, of the scenes in DIR/../scenes, and compare; golden")
-        ->type_name("[DIR]")
-        ->expected(0, 1);
-    app.add_option("--backend", texts.backend, "with --golden: embree (CPU) or cuda (GPU); embree")->type_name("NAME");
-    app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
-        ->type_name("LIST");
-    app.add_option("--precision", texts.precision, "with --golden: float, double or both; both")->type_name("NAME");
     app.add_flag("-q,--quiet", texts.quiet, "errors only; the exit code tells");
     app.add_flag("--version", texts.version, "print the version and exit");
     app.set_help_flag("-h,--help", "print this and exit");
@@ -98,34 +87,10 @@ void check_selection(const Texts& texts, CompareOptions& options) {
         *chosen<bool*>("--metrics", std::string(metric), {{"ssim", &selection.ssim}, {"flip", &options.flip}}) = true;
 }
 
-void check_golden(const Texts& texts, CompareOptions& options) {
-    constexpr const char* bits = "golden images are equal in every bit or not; leave it out";
-    refuse(!texts.fail.empty(), "--fail", bits);
-    refuse(!texts.failpercent.empty(), "--failpercent", bits);
-    refuse(!texts.hardfail.empty(), "--hardfail", bits);
-    refuse(!texts.diff.empty(), "--diff",
-           "belongs to two images; render one of the scenes and compare it with its "
-           "golden image");
-    refuse_selection(texts, "belongs to two images; golden ones are compared whole");
-    options.action = CompareAction::golden;
-    options.golden = texts.golden.empty() ? default_golden : texts.golden;
-    if (!texts.backend.empty()) options.backend = parse_backend(texts.backend);
-    options.devices = parse_devices(texts.device, options.backend);
-    options.precisions =
-        chosen<std::vector<Precision>>("--precision", texts.precision.empty() ? "both" : texts.precision,
-                                       {{"float", {Precision::single_}},
-                                        {"double", {Precision::double_}},
-                                        {"both", {Precision::single_, Precision::double_}}});
-}
-
 void check_images(const Texts& texts, CompareOptions& options) {
-    constexpr const char* golden = "belongs to --golden; two images are compared as they are";
     if (texts.a.empty() || texts.b.empty())
-        fail_usage(fmt::format("{}; render-compare A.exr B.exr, or --golden; --help tells more",
+        fail_usage(fmt::format("{}; render-compare A.exr B.exr; --help tells more",
                                texts.a.empty() ? "no images are given" : "only one image is given"));
-    refuse(!texts.backend.empty(), "--backend", golden);
-    refuse(!texts.device.empty(), "--device", golden);
-    refuse(!texts.precision.empty(), "--precision", golden);
     if (texts.fail.empty())
         refuse(!texts.failpercent.empty(), "--failpercent", "needs to know when a pixel fails; add --fail E");
     constexpr const char* amount = "a number, 0 or above, in the units of the channels";
@@ -158,9 +123,6 @@ void check_sums(const Texts& texts, CompareOptions& options) {
     refuse_selection(texts, one);
     refuse(!texts.diff.empty(), "--diff", one);
     refuse(!texts.json.empty(), "--json", one);
-    refuse(!texts.backend.empty(), "--backend", one);
-    refuse(!texts.device.empty(), "--device", one);
-    refuse(!texts.precision.empty(), "--precision", one);
     options.action = CompareAction::sums;
     options.a = texts.sums;
 }
@@ -181,12 +143,7 @@ CompareOptions parse_compare_options(int argc, const char* const* argv) {
     }
     options.quiet = texts.quiet;
     options.json = texts.json;
-    if (app.count("--golden") > 0) {
-        const std::string& extra = texts.b.empty() ? texts.a : texts.b;
-        if (!extra.empty()) fail_usage(fmt::format("{}: --golden takes one folder and no images", extra));
-        refuse(!texts.sums.empty(), "--sums", "belongs to one image, and --golden renders its own; leave one out");
-        check_golden(texts, options);
-    } else if (!texts.sums.empty()) {
+    if (!texts.sums.empty()) {
         check_sums(texts, options);
     } else {
         check_images(texts, options);
@@ -209,11 +166,9 @@ Examples:
   render-compare a.png b.png --fail 2                      of 8 bits: by more than 2 codes
   render-compare whole.exr crop.exr --intersection --layers 'R,G,B,diffuse.*' --metrics ssim
   render-compare --sums layers.exr                         whether layers by path and by light add up
-  render-compare --golden                                  in the source tree: every golden image, on the CPU
-  render-compare --golden --backend cuda --device all      the same on the GPUs
   render-compare suite DIR                                 golden images of DIR/suite.json; suite --help tells more
 
-Exit codes: 0 the comparison holds, 1 it does not, 2 command line, 3 file, 4 device.)");
+Exit codes: 0 the comparison holds, 1 it does not, 2 command line, 3 file.)");
     return app.help();
 }
 

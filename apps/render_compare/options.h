@@ -2,14 +2,12 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "apps/common/backends.h"
 #include "compare.h"
 
 namespace cistula {
 
-enum class CompareAction { compare, golden, sums, print_help, print_version };
+enum class CompareAction { compare, sums, print_help, print_version };
 
 struct CompareOptions {
     CompareAction action = CompareAction::compare;
@@ -19,11 +17,6 @@ struct CompareOptions {
     bool flip = false;
     std::string mask, diff, json;  // files; empty: none
     bool quiet = false;
-    // With --golden:
-    std::string golden;  // the folder
-    Backend backend = Backend::embree;
-    DeviceChoice devices;
-    std::vector<Precision> precisions;
 };
 
 /// Parses the command line. Throws Error (usage).

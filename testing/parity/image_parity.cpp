@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <vector>
 
 #include "apps/common/golden.h"
@@ -12,6 +11,7 @@
 #include "scene/film/film_difference.h"
 #include "scene/readers/read_scene.h"
 #include "testing/generated_scene.h"
+#include "testing/support/golden_suite.h"
 
 namespace cistula::bench {
 namespace {
@@ -66,10 +66,9 @@ void check_adaptive(GpuRecord& record, const std::string& name, const SceneDescr
 void check_scenes(GpuRecord& record, const std::string& folder) {
     for (const std::string& name : golden::scene_names(folder + "/scenes")) {
         const SceneDescription scene = read_scene(folder + "/scenes/" + name + ".json");
-        const auto golden = nlohmann::json::parse(std::ifstream(folder + "/golden/" + name + "/golden.json"));
         const FrameSettings settings = golden::settings_for(scene);
-        check<float>(record, "scenes/" + name, scene, settings, golden["float"]["hash"]);
-        check<double>(record, "scenes/" + name, scene, settings, golden["double"]["hash"]);
+        check<float>(record, "scenes/" + name, scene, settings, golden::expected(folder, name, "float").film_hash);
+        check<double>(record, "scenes/" + name, scene, settings, golden::expected(folder, name, "double").film_hash);
         check_adaptive(record, "scenes/" + name, scene, settings, 0.01);
     }
 }

@@ -1,4 +1,4 @@
-// The golden images: their names, and how make_golden and the tests render and compare them.
+// The golden images: how tests render and compare them.
 #pragma once
 
 #include <algorithm>
@@ -19,19 +19,12 @@
 namespace cistula::golden {
 
 template <class Real>
-Film render_brute(const SceneDescription& description) {
-    const auto renderer = make_host_renderer<Real>(compile_scene<Real>(description), HostIntersector::brute);
-    return render_with(*renderer, description, settings_for(description));
-}
-
-template <class Real>
 Film render_embree(const SceneDescription& description, const EmbreeOptions& options = {}) {
     const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(description), options);
     return render_with(*renderer, description, settings_for(description));
 }
 
-/// The largest difference of R, G and B between two pictures of one size, and its pixel: the first by name of the
-/// channel and place.
+/// The largest difference of two pictures of one size, and its pixel: the first by name of the channel and place.
 struct Difference {
     double worst = 0;
     std::string channel;
@@ -39,12 +32,11 @@ struct Difference {
     size_t differing = 0;
 };
 
-inline Difference compare(const LayeredPicture& a, const LayeredPicture& b, bool colors_only) {
+inline Difference compare(const LayeredPicture& a, const LayeredPicture& b) {
     Difference result;
     auto channels = a.channels;
     std::sort(channels.begin(), channels.end(), [](const auto& x, const auto& y) { return x.name < y.name; });
     for (const auto& channel : channels) {
-        if (colors_only && channel.name != "R" && channel.name != "G" && channel.name != "B") continue;
         const auto other =
             std::find_if(b.channels.begin(), b.channels.end(), [&](const auto& c) { return c.name == channel.name; });
         if (other == b.channels.end() || other->values.size() != channel.values.size()) {

@@ -7,6 +7,7 @@
 #include "apps/common/output_name.h"
 #include "apps/render/options.h"
 #include "apps/render_compare/options.h"
+#include "apps/render_compare/suite_options.h"
 #include "apps/render_report/options.h"
 #include "apps/render_view/options.h"
 #include "checks.h"
@@ -24,7 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (const std::string& word : words) arguments.push_back(word.c_str());
     const auto count = static_cast<int>(arguments.size());
     try {
-        if (words[0] == "render-compare") {
+        if (words[0] == "render-compare" && count > 1 && words[1] == "suite") {
+            parse_suite_options(count - 1, arguments.data() + 1);
+        } else if (words[0] == "render-compare") {
             parse_compare_options(count, arguments.data());
         } else if (words[0] == "render-view") {
             parse_view_options(count, arguments.data());

@@ -8,11 +8,9 @@
 #include <filesystem>
 #include <functional>
 
-#include "apps/common/backends.h"
 #include "apps/render_compare/fixture.h"
 #include "scene/base/error.h"
 #include "scene/image/exr.h"
-#include "testing/support/gpu.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {
@@ -206,8 +204,6 @@ TEST_F(RenderCompare, RefusesInOneLine) {
     expect_refused({"a.exr", "a.exr", "--diff", "./a.exr"}, ExitCode::usage, "the first image and --diff");
     expect_refused({"b.exr", "a.exr", "--json", file("a.exr")}, ExitCode::usage, "the second image and --json");
     expect_refused({"a.exr", "a.exr", "--diff", "d.exr", "--json", "d.exr"}, ExitCode::usage, "--diff and --json");
-    expect_refused({"a.exr", "a.exr", "--backend", "cuda"}, ExitCode::usage, "--backend: belongs to --golden");
-    expect_refused({"a.exr", "a.exr", "--precision", "float"}, ExitCode::usage, "--precision: belongs to --golden");
     expect_refused({"a.exr", "none.exr"}, ExitCode::file, "none.exr: cannot read");
     ASSERT_EQ(mkfifo(file("pipe.exr").c_str(), 0600), 0);
     for (const char* pipe : {"pipe.exr", "/dev/null"})
@@ -224,81 +220,6 @@ TEST_F(RenderCompare, RefusesInOneLine) {
     EXPECT_TRUE(contains(help, "Exit codes: 0 the comparison holds"));
     EXPECT_EQ(help.find_first_of("{}"), std::string::npos) << help;
     EXPECT_EQ(expect_code(0, {"--version"}), "render-compare (Cistula) " CISTULA_VERSION "\n");
-}
-
-/// A golden/ of one scene, in the working directory of the program.
-class RenderCompareGolden : public RenderCompare {
-  protected:
-    RenderCompareGolden() {
-        std::filesystem::create_directory_symlink(source + "/scenes", file("scenes"));
-        std::filesystem::create_directory(file("golden"));
-        std::filesystem::copy(source + "/golden/seed", file("golden/seed"));
-    }
-};
-
-TEST_F(RenderCompareGolden, HoldsOnTheCpu) {
-    const std::string text = expect_code(0, {"--golden", "--json", "g.json"});
-    EXPECT_TRUE(contains(text, "seed         float     equal    equal\n")) << text;
-    EXPECT_TRUE(contains(text, "seed         double    equal    equal\n")) << text;
-    EXPECT_TRUE(contains(text, "\nequal: all 2 renders\n")) << text;
-    const auto result = nlohmann::json::parse(bytes_of(file("g.json")));
-    EXPECT_EQ(result.at("parity"), nlohmann::json({{"compared", 2}, {"differing", 0}}));
-    EXPECT_EQ(result.at("context").at("backend"), "embree");
-    EXPECT_EQ(result.at("cases")[1].at("precision"), "double");
-    EXPECT_EQ(result.at("cases")[1].at("floats"), 320 * 180 * 13);
-    const std::string one = expect_code(0, {"--golden", file("golden"), "--precision", "double"});
-    EXPECT_TRUE(contains(one, "equal: all 1 renders\n")) << one;
-    EXPECT_EQ(expect_code(0, {"--golden", "scenes/../golden", "-q", "--precision", "float"}), "");
-}
-
-TEST_F(RenderCompareGolden, SeesOtherIntegersAndOtherFloats) {
-    auto record = nlohmann::json::parse(bytes_of(file("golden/seed/golden.json")));
-    const std::string good = record.dump();
-    std::string hash = record["float"]["hash"];
-    hash[7] = hash[7] == '0' ? '1' : '0';
-    record["float"]["hash"] = hash;
-    put_bytes(file("golden/seed/golden.json"), record.dump());
-    const std::string integers = expect_code(1, {"--golden"});
-    EXPECT_TRUE(contains(integers, "seed         float     differs  equal\n")) << integers;
-    EXPECT_TRUE(contains(integers, "seed         double    equal    equal\n")) << integers;
-    EXPECT_TRUE(contains(integers, "\ndiffer: 1 of 2 renders\n")) << integers;
-
-    put_bytes(file("golden/seed/golden.json"), good);
-    LayeredPicture picture = read_exr(file("golden/seed/double.exr"));
-    for (Channel& channel : picture.channels)
-        if (channel.name == "G") channel.values[320 * 3 + 17] = 9;
-    write_exr(file("golden/seed/double.exr"), picture);
-    const std::string floats = expect_code(1, {"--golden", "--json", "g.json"});
-    EXPECT_TRUE(contains(floats, "seed         float     equal    equal\n")) << floats;
-    EXPECT_TRUE(contains(floats, "differ: 1 of 748800 floats differ; worst: G at (17, 3): 9 / ")) << floats;
-    EXPECT_EQ(nlohmann::json::parse(bytes_of(file("g.json"))).at("cases")[1].at("floats_differing"), 1);
-}
-
-TEST_F(RenderCompareGolden, RefusesInOneLine) {
-    expect_refused({"--golden", "nowhere"}, ExitCode::file, "nowhere: holds no golden images");
-    expect_refused({"--golden", "scenes"}, ExitCode::file, "run in Cistula's source tree");
-    expect_refused({"--golden", "golden", "a.exr"}, ExitCode::usage, "a.exr: --golden takes one folder and no images");
-    expect_refused({"--golden", "--fail", "1"}, ExitCode::usage, "--fail: golden images are equal in every bit or not");
-    expect_refused({"--golden", "--diff", "d.exr"}, ExitCode::usage, "--diff: belongs to two images");
-    expect_refused({"--golden", "--device", "0"}, ExitCode::usage, "add --backend cuda");
-    expect_refused({"--golden", "--precision", "half"}, ExitCode::usage, "float or double or both");
-    put_bytes(file("golden/seed/golden.json"), "{}");
-    EXPECT_EQ(run({"--golden"}).code, static_cast<int>(ExitCode::file));
-    std::filesystem::rename(file("golden/seed"), file("golden/other"));
-    EXPECT_EQ(run({"--golden"}).code, static_cast<int>(ExitCode::file));
-}
-
-TEST_F(RenderCompareGolden, CudaHolds) {
-    CISTULA_NEEDS_GPU();
-    EXPECT_TRUE(contains(expect_code(0, {"--golden", "--backend", "cuda"}), "equal: all 2 renders"));
-}
-
-TEST_F(RenderCompareGolden, CudaIsRefusedAndNeverReplaced) {
-    const bool missing = !test::missing_gpu().empty();
-    expect_refused({"--golden", "--backend", "cuda", "--device", missing ? "0" : "4096"}, ExitCode::device,
-                   !has_cuda_backend() ? "no CUDA backend"
-                   : missing           ? ""
-                                       : "there is no such GPU");
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+#include "scene/image/stored_picture.h"
+
+#include <algorithm>
+
+namespace cistula {
+
+PixelWindow intersection(const PixelWindow& a, const PixelWindow& b) {
+    const auto end = [](int start, int size) { return static_cast<int64_t>(start) + size; };
+    const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+    const int64_t width = std::min(end(a.x, a.width), end(b.x, b.width)) - x;
+    const int64_t height = std::min(end(a.y, a.height), end(b.y, b.height)) - y;
+    if (width <= 0 || height <= 0) return {x, y, 0, 0};
+    return {x, y, static_cast<int>(width), static_cast<int>(height)};
+}
+
+const StoredChannel* StoredPicture::channel(const std::string& wanted) const {
+    const auto found =
+        std::find_if(channels.begin(), channels.end(), [&](const StoredChannel& one) { return one.name == wanted; });
+    return found == channels.end() ? nullptr : &*found;
+}
+
+std::string_view type_name(StoredType type) {
+    switch (type) {
+        case StoredType::half:
+            return "half";
+        case StoredType::float_:
+            return "float";
+        case StoredType::double_:
+            return "double";
+        case StoredType::uint:
+            return "uint";
+        case StoredType::uint8:
+            return "uint8";
+        case StoredType::uint16:
+            return "uint16";
+        case StoredType::uint32:
+            return "uint32";
+        case StoredType::int8:
+            return "int8";
+        case StoredType::int16:
+            return "int16";
+        case StoredType::int32:
+            break;
+    }
+    return "int32";
+}
+
+double largest_code(StoredType type) {
+    switch (type) {
+        case StoredType::uint8:
+            return UINT8_MAX;
+        case StoredType::uint16:
+            return UINT16_MAX;
+        case StoredType::uint32:
+            return UINT32_MAX;
+        case StoredType::int8:
+            return INT8_MAX;
+        case StoredType::int16:
+            return INT16_MAX;
+        case StoredType::int32:
+            return INT32_MAX;
+        default:
+            return 0;
+    }
+}
+
+}  // namespace cistula
