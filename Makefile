@@ -72,13 +72,14 @@ check-all: lint ## before a release: lint, all tests, the benchmarks built, the 
 	@$(MAKE) --no-print-directory test-quick PRESET=clang
 	@$(MAKE) --no-print-directory fuzz SECONDS=10
 
-test-report: ## measure a small report, open it in headless Chromium and look for what is wrong; screenshots into out/report
+test-report: ## measure a small report, open it and a suite's page in headless Chromium and look for what is wrong; screenshots into out/report
 	$(call setup,packages.txt tests/report-packages.txt)
 	$(call configure,$(PRESET))
-	@cmake --build $(BUILD) --target render-report
+	@cmake --build $(BUILD) --target render-report render-compare
 	@mkdir -p out/report
 	$(BUILD)/bin/render-report scenes/benchmark.json scenes/platonic.json --quick --res 96x54 --scaling -o out/report/small.html
 	tests/report-check out/report/small.html $(wildcard docs/report/*.html) --screenshots out/report
+	tests/check_suite_page.sh . $(BUILD) out/report
 
 # Pythons of build/clients, filled by pip from the lists in tests/clients
 define client_pythons

@@ -13,6 +13,7 @@
 #include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
 #include "apps/common/layer_list.h"
+#include "apps/common/pixel_report.h"
 #include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
@@ -20,7 +21,6 @@
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "explain.h"
 #include "options.h"
-#include "pixel_report.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
 #include "scene/base/out_of_memory.h"
@@ -309,7 +309,8 @@ void report_pixel(const RenderOptions& options, const SceneDescription& scene, S
     print_warnings(compiled->warnings, options);
     const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, options.pixel.x, options.pixel.y);
     const SceneNames names = name_scene(scene);
-    const PixelReport report{options, scene, names, settings, camera, tree, compiled->hash};
+    const PixelReport report{options.pixel.x, options.pixel.y, options.precision, scene, names, settings, camera, tree,
+                             compiled->hash};
     if (options.json != "-") print(pixel_text(report, options.verbose));
     if (options.json == "-")
         print(pixel_json(report));

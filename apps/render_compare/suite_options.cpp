@@ -43,6 +43,9 @@ void declare(CLI::App& app, SuiteTexts& texts) {
     app.add_flag("--fail-fast", texts.fail_fast, "begin no further case after one that failed");
     app.add_option("--junit", texts.junit, "write the results as JUnit XML")->type_name("FILE");
     app.add_option("--json", texts.json, "write the results as JSON")->type_name("FILE");
+    app.add_option("--html", texts.html,
+                   "write the results, with what differs, as a page that needs nothing else: DIR/index.html")
+        ->type_name("DIR");
     app.add_flag("--list", texts.list, "print the cases, each with a tab and its tags, and exit");
     app.add_flag("-q,--quiet", texts.quiet, "errors only; the exit code tells");
     app.set_help_flag("-h,--help", "print this and exit");
@@ -106,7 +109,7 @@ SuiteOptions parse_suite_options(int argc, const char* const* argv) {
     options.quiet = texts.quiet;
     options.junit = texts.junit;
     options.json = texts.json;
-    options.html = texts.html;
+    if (!texts.html.empty()) options.html = (std::filesystem::path(texts.html) / "index.html").string();
     return options;
 }
 
@@ -159,7 +162,8 @@ void require_other_files(const Suite& suite, const SuiteOptions& options, const 
     files.reads(suite.path, "the suite");
     std::error_code ignored;
     // A file that is not there yet is none that a scene names.
-    const bool replaces = options.update || fs::exists(options.junit, ignored) || fs::exists(options.json, ignored);
+    const bool replaces = options.update || fs::exists(options.junit, ignored) || fs::exists(options.json, ignored) ||
+                          fs::exists(options.html, ignored);
     std::set<std::string> scenes;
     for (const SuiteCase& one : suite.cases)
         if (scenes.insert(one.scene_path(suite.folder)).second)
@@ -178,6 +182,7 @@ void require_other_files(const Suite& suite, const SuiteOptions& options, const 
         }
     files.writes(options.junit, "--junit");
     files.writes(options.json, "--json");
+    files.writes(options.html, "--html");
 }
 
 }  // namespace cistula

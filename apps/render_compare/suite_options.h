@@ -18,7 +18,7 @@ struct SuiteOptions {
     DeviceChoice devices;
     int jobs = 1;
     bool update = false, list = false, fail_fast = false, quiet = false;
-    std::string junit, json, html;  // files and a folder; empty: none
+    std::string junit, json, html;  // files; empty: none
 };
 
 /// Parses the words after `suite`. Throws Error (usage).

@@ -7,6 +7,7 @@
 #include "apps/common/command_line.h"
 #include "apps/common/output_name.h"
 #include "scene/base/atomic_file.h"
+#include "suite_page.h"
 #include "suite_report.h"
 #include "suite_update.h"
 
@@ -29,6 +30,7 @@ void probe(const std::string& path) {
 void write_reports(const Suite& suite, const std::vector<SuiteResult>& results,
                    const std::vector<SuiteBackend>& backends, const SuiteCounts& counts, const SuiteOptions& options) {
     if (!options.junit.empty()) write_file_atomically(options.junit, junit_xml(suite, results));
+    if (!options.html.empty()) write_file_atomically(options.html, suite_page(suite, results, counts));
     if (!options.json.empty())
         write_file_atomically(
             options.json,
@@ -57,7 +59,7 @@ int run_suite(int argc, const char* const* argv) {
     }
     require_other_files(suite, options, chosen);
     const std::vector<SuiteBackend> backends = find_backends(chosen, options);
-    for (const std::string& path : {options.junit, options.json}) probe(path);
+    for (const std::string& path : {options.junit, options.json, options.html}) probe(path);
 
     size_t name_width = 8;
     for (const SuiteCase* one : chosen) name_width = std::max(name_width, one->name.size());
@@ -67,10 +69,11 @@ int run_suite(int argc, const char* const* argv) {
     say(table_head(suite, backends, name_width));
     SuiteUpdate update(suite);
     SuiteWork work;
-    if (options.update)
-        work.judged = [&](const SuiteFrame& frame, const LayeredPicture* golden, SuiteResult& result) {
-            update.record(frame, golden, result);
-        };
+    work.judged = [&](const SuiteFrame& frame, const LayeredPicture* golden, SuiteResult& result) {
+        if (!options.html.empty() && result.failed())
+            result.page = failure_html(result, suite.folder, golden, frame.picture);
+        if (options.update) update.record(frame, golden, result);
+    };
     work.finished = [&](const std::vector<SuiteResult>& results) {
         say(table_rows(results, name_width));
         if (options.update) update.finish(results);

@@ -21,18 +21,6 @@ const char* precision_text(const SuiteResult& result) {
     return result.precision ? precision_name(*result.precision) : "-";
 }
 
-/// What the table shows of an outcome before the verdict.
-std::string result_text(const SuiteResult& result) {
-    switch (result.outcome) {
-        case Outcome::skipped:
-            return "skipped: " + result.verdict;
-        case Outcome::broken:
-            return "failed: " + result.verdict;
-        default:
-            return result.verdict;
-    }
-}
-
 /// Text within XML: nothing in it is markup, and no character is one that XML lacks.
 std::string xml(const std::string& text) {
     std::string out;
@@ -102,6 +90,17 @@ std::string variant_text(const SuiteResult& result) {
     if (result.of->backends.size() > 1) text = backend_name(result.backend);
     if (result.of->frames.size() > 1) text += fmt::format("{}frame {}", text.empty() ? "" : ", ", result.frame);
     return text.empty() ? "" : fmt::format(" [{}]", text);
+}
+
+std::string result_text(const SuiteResult& result) {
+    switch (result.outcome) {
+        case Outcome::skipped:
+            return "skipped: " + result.verdict;
+        case Outcome::broken:
+            return "failed: " + result.verdict;
+        default:
+            return result.verdict;
+    }
 }
 
 SuiteCounts count_results(const std::vector<SuiteResult>& results, size_t chosen) {

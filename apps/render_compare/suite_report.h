@@ -25,6 +25,9 @@ std::string summary_text(const SuiteCounts& counts);
 /// What tells a result apart from others of its case: " [cuda, frame 3]", or nothing.
 std::string variant_text(const SuiteResult& result);
 
+/// An outcome and its verdict in words.
+std::string result_text(const SuiteResult& result);
+
 std::string junit_xml(const Suite& suite, const std::vector<SuiteResult>& results);
 nlohmann::ordered_json suite_json(const Suite& suite, const std::vector<SuiteResult>& results,
                                   const std::vector<SuiteBackend>& backends, const SuiteCounts& counts);

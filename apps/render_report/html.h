@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/page_parts.h"
 #include "record.h"
 
 namespace cistula::report {
-
-std::string escaped(const std::string& text);
 
 /// A time with its unit: "0.77 ms", "12.3 ms", "1.24 s".
 std::string time_text(double milliseconds);
@@ -26,25 +25,7 @@ std::string percent_text(double share);
 /// A setting in words: "1×1", "double, 4×4 samples, depth 8, cutoff 0.002".
 std::string setting_text(const Setting& setting);
 
-/// A table in a scrollable box. Cells are HTML; columns whose head begins with '>' are numbers.
-class Table {
-  public:
-    explicit Table(std::vector<std::string> heads, std::string caption = "");
-    void row(const std::vector<std::string>& cells, const std::string& css = "");
-    bool empty() const { return body_.empty(); }
-    std::string html() const;
-
-  private:
-    std::vector<std::string> heads_;
-    std::string caption_, body_;
-};
-
-/// A figure with its caption (HTML).
-std::string figure(const std::string& content, const std::string& caption, const std::string& css = "");
 std::string image_tag(const Image& image, const std::string& description);
-/// A command line that a click selects as a whole.
-std::string command_html(const std::string& command);
-
 /// A scene of a record, with values that several sections use.
 struct Shown {
     const Record* record = nullptr;

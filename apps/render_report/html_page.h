@@ -11,6 +11,4 @@ namespace cistula::report {
 /// The page as one self-contained HTML file, without scripts, for light and dark color schemes.
 std::string report_page(const std::vector<Record>& records);
 
-extern const char* const page_style;
-
 }  // namespace cistula::report

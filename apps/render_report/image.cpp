@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/common/page_parts.h"
 #include "scene/image/png.h"
 
 namespace cistula::report {
@@ -43,19 +44,6 @@ Image to_heat_image(int width, int height, const std::vector<double>& values) {
     }
     const uint32_t columns = static_cast<uint32_t>(width), rows = static_cast<uint32_t>(height);
     return image_of(columns, rows, encode_indexed_png(columns, rows, pixels, colors));
-}
-
-std::string base64(const std::string& bytes) {
-    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (size_t i = 0; i < bytes.size(); i += 3) {
-        uint32_t group = 0;
-        for (size_t k = 0; k < 3; ++k)
-            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
 }
 
 }  // namespace cistula::report

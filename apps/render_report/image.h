@@ -21,6 +21,4 @@ Image to_heat_image(int width, int height, const std::vector<double>& values);
 /// The color at position `place` of the scale, from 0 to 1: red, green, blue.
 std::array<uint8_t, 3> heat_color(double place);
 
-std::string base64(const std::string& bytes);
-
 }  // namespace cistula::report

@@ -1,4 +1,4 @@
-// Small charts as inline SVG. Colors are CSS classes (s0 to s6, see html_style.cpp), so that the page chooses them for
+// Small charts as inline SVG. Colors are CSS classes (s0 to s6, see page_style.cpp), so that the page chooses them for
 // light and dark.
 #pragma once
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/render/pixel_report.h"
+#include "apps/common/pixel_report.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "scene/compile/scene_names.h"
 #include "scene/image/exr.h"

@@ -303,6 +303,35 @@ TEST_F(SuiteProgram, SeveralAtOnceSayTheSameInTheSameOrder) {
     EXPECT_EQ(json("r.json").at("not_begun"), 8);
 }
 
+TEST_F(SuiteProgram, ThePageShowsWhatDiffersAndWhy) {
+    cases({R"("name": "grid", "golden": "grid.exr", "supersample": 2)", R"("name": "scene", "golden": "scene.exr")",
+           R"("name": "bare", "golden": "bare.exr")", R"("name": "value", "golden": "value.exr")",
+           R"("name": "good", "golden": "good.exr")"});
+    for (const char* name : {"grid", "scene", "bare", "value", "good"}) render({}, "s/" + std::string(name) + ".exr");
+    const auto brighter = [](LayeredPicture& picture) { picture.channels[0].values[24 * 3 + 5] = 7; };
+    change("s/bare.exr", [&](LayeredPicture& picture) {
+        brighter(picture);
+        picture.attributes.clear();
+    });
+    change("s/scene.exr", [&](LayeredPicture& picture) {
+        brighter(picture);
+        picture.attributes["cistula:sceneHash"] = std::string("another");
+    });
+    change("s/value.exr", brighter);
+    expect(1, {"--html", "page"});
+    const std::string page = text("page/index.html");
+    EXPECT_EQ(page.find("http"), std::string::npos);
+    expect_has(page, "src=\"data:image/png;base64,");
+    expect_has(page, "<a href=\"#failure4\">value</a>");
+    EXPECT_EQ(page.find("failure5"), std::string::npos);
+    expect_has(page, "; depth 3, cutoff 0, float, one sample");  // of the golden image of `grid`, by its header
+    expect_has(page, "; depth 3, cutoff 0, float, 4 samples");
+    expect_has(page, "<h3>Pixel 5,3</h3>");
+    expect_has(page, "its header does not name a scene.</p>");
+    expect_has(page, "it shows the scene, or the camera, as it was before a change.</p>");
+    expect_has(page, "this version gets others from the scene and the settings that its header names.</p>");
+}
+
 TEST_F(SuiteProgram, ABackendThatIsNotThereIsSkippedOrRefused) {
     if (test::missing_gpu().empty()) GTEST_SKIP() << "this machine has a GPU";
     cases({R"("name": "both", "golden": "a.exr", "backends": ["cuda", "embree"])",

@@ -1,6 +1,6 @@
-#include "html_page.h"
+#include "apps/common/page_parts.h"
 
-namespace cistula::report {
+namespace cistula {
 
 const char* const page_style = R"(
 :root { color-scheme: light dark;
@@ -70,4 +70,4 @@ dt { color: var(--soft); font-size: .85rem; } dd { margin: 0; overflow-wrap: any
 @media print { nav { display: none; } section { break-inside: auto; } figure { break-inside: avoid; } }
 )";
 
-}  // namespace cistula::report
+}  // namespace cistula

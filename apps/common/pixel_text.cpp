@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pixel_report.h"
+#include "apps/common/pixel_report.h"
 #include "scene/base/shown_text.h"
 
 namespace cistula {
@@ -343,13 +343,14 @@ void write_totals(const PixelReport& report, std::string& text) {
 
 std::string pixel_text(const PixelReport& raw, bool verbose) {
     const SceneNames names = shown_names(raw.names);
-    const PixelReport report{raw.options, raw.scene, names, raw.settings, raw.camera, raw.tree, raw.scene_hash};
+    const PixelReport report{raw.x,        raw.y,      raw.precision, raw.scene,     names,
+                             raw.settings, raw.camera, raw.tree,      raw.scene_hash};
     const FrameSettings& settings = report.settings;
     const int k = settings.supersample;
     std::string text = fmt::format("{}, frame {}: pixel {},{} of {}x{}; depth {}, cutoff {}, {}, {}\n\n",
-                                   one_line(report.scene.source), report.camera.frame, report.options.pixel.x,
-                                   report.options.pixel.y, settings.full_width, settings.full_height, settings.depth,
-                                   settings.cutoff, report.options.precision == Precision::double_ ? "double" : "float",
+                                   one_line(report.scene.source), report.camera.frame, report.x, report.y,
+                                   settings.full_width, settings.full_height, settings.depth, settings.cutoff,
+                                   report.precision == Precision::double_ ? "double" : "float",
                                    k == 1 ? std::string("one sample") : fmt::format("{} samples", k * k));
     const size_t middle = middle_sample(k);
     bool folded = false;

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/common/describe_flags.h"
-#include "pixel_report.h"
+#include "apps/common/pixel_report.h"
 
 namespace cistula {
 namespace {
@@ -44,12 +44,12 @@ class PixelJson {
             {"cistula_version", CISTULA_VERSION},
             {"frame", report_.camera.frame},
             {"time", report_.camera.time},
-            {"pixel", {report_.options.pixel.x, report_.options.pixel.y}},
+            {"pixel", {report_.x, report_.y}},
             {"resolution", {settings.full_width, settings.full_height}},
             {"supersample", settings.supersample},
             {"depth", settings.depth},
             {"cutoff", settings.cutoff},
-            {"precision", report_.options.precision == Precision::double_ ? "double" : "float"},
+            {"precision", report_.precision == Precision::double_ ? "double" : "float"},
             {"sum_unit", number(radiance_of({1, 1, 1}, film).x)},
             {"samples", std::move(samples)},
             {"totals", totals()},

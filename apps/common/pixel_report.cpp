@@ -1,4 +1,4 @@
-#include "pixel_report.h"
+#include "apps/common/pixel_report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,14 +3,16 @@
 
 #include <string>
 
-#include "options.h"
 #include "scene/compile/scene_names.h"
+#include "scene/film/film_picture.h"
 #include "scene/film/pixel_tree.h"
+#include "scene/film/renderer.h"
 
 namespace cistula {
 
 struct PixelReport {
-    const RenderOptions& options;
+    int x, y;  // from the top left of the full frame
+    Precision precision;
     const SceneDescription& scene;
     const SceneNames& names;
     const FrameSettings& settings;
