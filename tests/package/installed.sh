@@ -30,6 +30,7 @@ completed() {
     printf '%s\n' "${COMPREPLY[@]}"
 }
 [ -z "$(completed render scene.js)" ] || fail "a scene's name is completed as an option"
+[ "$(completed "$prefix/bin/render-compare" suite golden --juni)" = --junit ] || fail "options of render-compare suite are not completed"
 
 manuals=0
 for program in "$prefix"/bin/*; do
