@@ -16,7 +16,9 @@
 #include "apps/common/describe_flags.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/frame_list.h"
+#include "apps/common/progress_record.h"
 #include "apps/common/render_frame.h"
+#include "apps/common/snapshots.h"
 #include "apps/common/timing.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
@@ -24,14 +26,6 @@
 
 namespace cistula {
 namespace {
-
-/// What the header of a frame's file says, beyond what its channels say.
-Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
-    Attributes attributes =
-        header_attributes(job.scene_hash, job.settings, job.options.precision, camera, job.options.intersection);
-    add_film_attributes(job.scene.film, attributes);
-    return attributes;
-}
 
 /// The files of a frame, without values: their windows, channels and attributes.
 std::vector<FrameFile> expected_files(const FilmJob& job, const CameraFrame& camera) {
@@ -117,6 +111,7 @@ class FramesToRender {
             }
             remove_stale(job_, camera);
             resumed_.push_back(camera.frame);
+            report_.record({"kept", camera.frame, job_.output.for_frame(camera.frame)});
         }
         return std::nullopt;
     }
@@ -173,6 +168,13 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
 
 }  // namespace
 
+Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
+    Attributes attributes =
+        header_attributes(job.scene_hash, job.settings, job.options.precision, camera, job.options.intersection);
+    add_film_attributes(job.scene.film, attributes);
+    return attributes;
+}
+
 // Every core compresses that has no rays to trace. A GPU renders much faster than frames are compressed, so several
 // frames are written at once, and a few cores share each: with one frame per core, cores would idle until as many
 // frames are rendered, and again while the last ones are written. At least two frames, so that one is encoded while the
@@ -200,15 +202,20 @@ std::vector<std::string> layers_with_files(const FilmJob& job) {
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
     const FilmOptions& options = job.options;
     std::set<std::string> notes;  // printed so far
+    const bool silent = options.quiet && !is_for_programs(options.progress);
+    FilmProgress report(silent ? ProgressStyle::none : options.progress, progress);
     FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options, job.frames.size()),
                        progress.stop, [&](const FrameStats& frame) {
                            stats.totals.add(frame);
                            if (job.written) job.written(frame);
+                           report.record({"written", frame.frame, frame.file});
                        });
     size_t rendered = 0;
     FrameSettings settings = job.settings;
+    report.begin(job.frames.size());
     {
-        FilmProgress report(options.quiet ? ProgressStyle::none : options.progress, progress);
+        std::optional<Snapshots> snapshots;
+        if (job.snapshot_signal) snapshots.emplace(job, *job.snapshot_signal, progress.tiles, report);
         FramesToRender frames(job, progress.stop, stats.resumed, report);
         std::optional<CameraFrame> next;
         while (true) {
@@ -227,8 +234,10 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             reserve(finished.film, pixels);
             if (next) renderer.expect(*next, settings);
             bool whole = false;
+            if (snapshots) snapshots->begin_frame(camera);
             const double seconds =
                 seconds_of([&] { whole = render_frame(renderer, camera, settings, finished.film, progress); });
+            if (snapshots) snapshots->end_frame();
             for (const std::string& note : renderer.notes())
                 if (!options.quiet && notes.insert(note).second) report.say("render: " + note);
             if (!whole) break;
@@ -256,11 +265,13 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             ++rendered;
         }
     }
+    report.end();
     writer.finish();
     if (!options.quiet && !stats.resumed.empty())
-        note(fmt::format("render: {} of {} frames are complete and stay as they are", stats.resumed.size(),
-                         job.frames.size()));
+        report.say(fmt::format("render: {} of {} frames are complete and stay as they are", stats.resumed.size(),
+                               job.frames.size()));
     const size_t done = stats.resumed.size() + stats.totals.frames;
+    report.record({"end", -1, "", -1, fmt::format("{} of {} frames written", done, job.frames.size())});
     if (done == job.frames.size()) return;  // an interruption after the last frame has no effect
     fail_interrupted(job, done, rendered);
 }

@@ -11,6 +11,7 @@
 #include "apps/common/frame_writer.h"
 #include "apps/common/output_name.h"
 #include "apps/common/stats.h"
+#include "apps/common/user_signal.h"
 #include "scene/description/description.h"
 #include "scene/film/renderer.h"
 
@@ -32,7 +33,12 @@ struct FilmJob {
     /// warning or nothing, and throws for what keeps them from being rendered or written. The first stretch is the
     /// caller's.
     std::function<std::string(const std::vector<int>&)> look_ahead = {};
+    /// Asks for snapshots of the frame in work (snapshots.h); null: nothing does.
+    UserSignal* snapshot_signal = nullptr;
 };
+
+/// What the header of a frame's file says, beyond what its channels say.
+Attributes attributes_of(const FilmJob& job, const CameraFrame& camera);
 
 /// The layers that have files of their own.
 std::vector<std::string> layers_with_files(const FilmJob& job);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/common/progress_record.h"
+
 namespace cistula {
 namespace {
 
@@ -53,7 +55,12 @@ std::string progress_line(const ProgressState& state) {
 }
 
 FilmProgress::FilmProgress(ProgressStyle style, const RenderProgress& progress)
-    : progress_(progress), line_(style, [this](int columns) { return text(columns); }) {}
+    : style_(style), progress_(progress), line_(style, [this](int columns) { return text(columns); }) {}
+
+void FilmProgress::begin(size_t count) {
+    line_.update([&] { count_ = count; });
+    record({"begin"});
+}
 
 void FilmProgress::begin_frame(int frame, size_t index, size_t count, uint64_t pixels) {
     line_.update([&] {
@@ -64,11 +71,30 @@ void FilmProgress::begin_frame(int frame, size_t index, size_t count, uint64_t p
         frame_start_ = Clock::now();
         in_frame_ = true;
     });
+    record({"frame", frame});
 }
 
 void FilmProgress::end_frame() {
     line_.milestone(progress_line(state()));
+    line_.record(state_record(style_, state()));
     line_.update([&] { in_frame_ = false; });
+}
+
+void FilmProgress::end() {
+    line_.update([&] { in_frame_ = false; });
+    line_.aside([] {});
+}
+
+void FilmProgress::say(const std::string& line) {
+    line_.say(line);
+    record({"message", -1, "", -1, line});
+}
+
+void FilmProgress::record(const FilmEvent& event) {
+    if (!is_for_programs(style_)) return;
+    ProgressState now;
+    line_.update([&] { now = state(); });
+    if (const std::string lines = event_record(style_, event, now); !lines.empty()) line_.record(lines);
 }
 
 ProgressState FilmProgress::state() const {
@@ -85,6 +111,7 @@ ProgressState FilmProgress::state() const {
 
 std::string FilmProgress::text(int columns) const {
     if (!in_frame_) return "";
+    if (is_for_programs(style_)) return state_record(style_, state());
     return columns > 0 ? progress_bar(state(), columns) : progress_line(state());
 }
 

@@ -29,17 +29,29 @@ std::string format_rate(double rays_per_second);
 std::string progress_bar(const ProgressState& state, int columns);
 std::string progress_line(const ProgressState& state);
 
-/// Shows a film's progress from a RenderProgress: a bar on a terminal, a line now and then elsewhere.
+struct FilmEvent;
+
+/// Shows a film's progress from a RenderProgress: a bar on a terminal, a line now and then elsewhere, or records for
+/// programs. All members may be called on any thread.
 class FilmProgress {
   public:
     FilmProgress(ProgressStyle style, const RenderProgress& progress);
+
+    /// Begins a film of so many frames, of which some may be complete.
+    void begin(size_t count);
 
     /// Begins frame number `frame`, which is at `index` of the `count` frames to render.
     void begin_frame(int frame, size_t index, size_t count, uint64_t pixels);
     void end_frame();
 
+    /// Takes the bar away when no frame is left to render.
+    void end();
+
     /// Prints a line on standard error and redraws the bar below it.
-    void say(const std::string& line) { line_.say(line); }
+    void say(const std::string& line);
+
+    /// Prints a record where the style is for programs.
+    void record(const FilmEvent& event);
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -47,6 +59,7 @@ class FilmProgress {
     ProgressState state() const;
     std::string text(int columns) const;
 
+    const ProgressStyle style_;
     const RenderProgress& progress_;
     const Clock::time_point start_ = Clock::now();
     bool in_frame_ = false;

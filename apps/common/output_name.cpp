@@ -134,10 +134,15 @@ std::vector<int> frames_named_in(const std::vector<std::string>& paths, const Fr
     return {named.begin(), named.end()};
 }
 
+std::string snapshot_of(const OutputName& image, int frame) {
+    return image.text().empty() ? "" : image.for_layer(frame, "snapshot");
+}
+
 void require_different_files(RunFiles others, const OutputName& image, const OutputName& preview,
                              const std::vector<int>& frames, const std::vector<std::string>& layers) {
     for (const int frame : frames) {
         others.writes(image.for_frame(frame), "an image");
+        others.writes(snapshot_of(image, frame), "a snapshot");
         for (const std::string& layer : layers) others.writes(image.for_layer(frame, layer), "a layer's image");
         others.writes(preview.for_frame(frame), "a preview");
     }

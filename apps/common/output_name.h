@@ -61,8 +61,11 @@ void make_directories(const OutputName& name, const std::vector<int>& frames);
 /// Creates the directory of a single file if it is missing. Throws Error (file) if that fails.
 void make_directory_of(const std::string& path);
 
-/// Throws Error (usage) if two files are one: `others`, the images and previews of these frames, and the files of
-/// layers that have their own.
+/// The file of a snapshot of a frame in work, beside its own: beauty.snapshot.0001.exr.
+std::string snapshot_of(const OutputName& image, int frame);
+
+/// Throws Error (usage) if two files are one: `others`, the images, snapshots and previews of these frames, and the
+/// files of layers that have their own.
 void require_different_files(RunFiles others, const OutputName& image, const OutputName& preview,
                              const std::vector<int>& frames, const std::vector<std::string>& layers = {});
 

@@ -21,6 +21,12 @@ int terminal_columns() {
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
+/// What reads records gets each as soon as it is there.
+void print_record(const std::string& lines) {
+    std::fputs((lines + "\n").c_str(), stdout);
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 bool is_terminal() {
@@ -36,6 +42,7 @@ std::string format_duration(double seconds) {
 
 StatusLine::StatusLine(ProgressStyle style, std::function<std::string(int columns)> text)
     : output_(style == ProgressStyle::none    ? Output::none
+              : is_for_programs(style)        ? Output::records
               : style == ProgressStyle::plain ? Output::lines
               : is_terminal()                 ? Output::drawn
                                               : Output::sparse_lines),
@@ -61,13 +68,24 @@ void StatusLine::milestone(const std::string& line) {
     if (output_ == Output::lines) say(line);
 }
 
+void StatusLine::record(const std::string& lines) {
+    const std::lock_guard lock(mutex_);
+    if (output_ == Output::records) print_record(lines);
+}
+
 void StatusLine::watch() {
-    const auto period = std::chrono::milliseconds(output_ == Output::drawn ? 100 : 500);
+    const auto period = std::chrono::milliseconds(output_ == Output::drawn     ? 100
+                                                  : output_ == Output::records ? 1000
+                                                                               : 500);
     std::unique_lock lock(mutex_);
     while (!wake_.wait_for(lock, period, [this] { return stop_; })) show();
 }
 
 void StatusLine::show() {
+    if (output_ == Output::records) {
+        if (const std::string text = text_(0); !text.empty()) print_record(text);
+        return;
+    }
     const bool drawn = output_ == Output::drawn;
     const auto silence = std::chrono::seconds(output_ == Output::lines ? 10 : 30);
     if (!drawn && Clock::now() - last_line_ < silence) return;

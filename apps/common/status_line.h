@@ -11,8 +11,13 @@
 namespace cistula {
 
 /// How a program shows its progress. `automatic`: on a terminal a line that is redrawn, elsewhere a line every 30 s.
-/// `plain`: a line every 10 s and at milestones.
-enum class ProgressStyle { automatic, plain, none };
+/// `plain`: a line every 10 s and at milestones. `json` and `openjd`: records for other programs on standard output.
+enum class ProgressStyle { automatic, plain, none, json, openjd };
+
+/// Whether a style is for other programs to read.
+constexpr bool is_for_programs(ProgressStyle style) {
+    return style == ProgressStyle::json || style == ProgressStyle::openjd;
+}
 
 /// Whether standard error is a terminal on which a line can be redrawn.
 bool is_terminal();
@@ -24,7 +29,8 @@ std::string format_duration(double seconds);
 class StatusLine {
   public:
     /// `text` returns the line without a line end: on a terminal its first `columns` characters are shown; `columns` is
-    /// 0 where there is room for all. An empty line is not shown. The data that `text` reads must outlive this object
+    /// 0 where there is room for all. An empty line is not shown. In a style for programs it is a record, printed every
+    /// second. The data that `text` reads must outlive this object
     /// and be changed in update() only.
     StatusLine(ProgressStyle style, std::function<std::string(int columns)> text);
     ~StatusLine();
@@ -50,9 +56,12 @@ class StatusLine {
     /// Prints a line on standard error if the style is plain.
     void milestone(const std::string& line);
 
+    /// Prints lines on standard output if the style is for programs. A failure changes nothing.
+    void record(const std::string& lines);
+
   private:
     using Clock = std::chrono::steady_clock;
-    enum class Output { drawn, lines, sparse_lines, none };
+    enum class Output { drawn, lines, sparse_lines, records, none };
 
     void watch();
     void show();   // requires mutex_

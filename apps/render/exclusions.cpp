@@ -29,6 +29,7 @@ struct Need {
 void refuse_exclusions(const OptionTexts& texts) {
     const OptionTexts defaults;
     const std::string measure = texts.explain == "measure" ? texts.explain : "";
+    const std::string records = texts.progress == "json" || texts.progress == "openjd" ? texts.progress : "";
     constexpr const char* no_image = "no image is written";
     const Exclusion exclusions[] = {
         {"--pixel", texts.pixel, "-o", !texts.output.empty(), no_image},
@@ -50,6 +51,7 @@ void refuse_exclusions(const OptionTexts& texts) {
          "the CPU follows the rays, and every backend gives the same bits"},
         {"--pixel", texts.pixel, "--intersector", texts.intersector != defaults.intersector,
          "the rays of the exact image are followed"},
+        {"--progress", records, "--explain", !texts.explain.empty(), "it tells of frames that are written"},
         {"--layers", texts.layers, "--intersector", texts.intersector != defaults.intersector,
          "they are parts of the exact image"},
         {"--lanes", texts.lanes, "--backend cuda", texts.backend == "cuda", "a thread of a GPU traces one ray"},

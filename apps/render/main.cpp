@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -14,9 +15,11 @@
 #include "apps/common/interrupt.h"
 #include "apps/common/layer_list.h"
 #include "apps/common/pixel_report.h"
+#include "apps/common/progress_record.h"
 #include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
+#include "apps/common/user_signal.h"
 #include "apps/common/view_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "explain.h"
@@ -188,6 +191,8 @@ void advise_on_memory(const RenderOptions& options, const FrameSettings& setting
 void render_scene(RenderOptions options) {
     const bool explain = options.action == Action::explain;
     const ChosenDevices devices = explain ? ChosenDevices() : choose_devices(options.backend, options.devices);
+    std::optional<UserSignal> snapshot_signal;
+    if (!explain) snapshot_signal.emplace();
     RunStats stats;
     stats.devices = devices.names;
     stats.driver = devices.driver;
@@ -243,6 +248,7 @@ void render_scene(RenderOptions options) {
                              stats.scene_hash));
         FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
         job.layer_names = prepared.layer_names;
+        job.snapshot_signal = &*snapshot_signal;
         require_light_layers(options.channels, *job.layer_names);
         outputs.layers = layers_with_files(job);
         if (!outputs.layers.empty()) {  // their names are known only now
@@ -361,13 +367,32 @@ void run(const RenderOptions& options) {
     }
 }
 
+/// Runs, and tells programs that read the progress of an error that ends it.
+void run_and_record(const RenderOptions& options) {
+    const auto record = [&](const std::exception& error, ExitCode code) {
+        const std::string lines = failure_record(options.progress, error.what(), code);
+        if (lines.empty()) return;
+        std::fputs((lines + "\n").c_str(), stdout);
+        std::fflush(stdout);
+    };
+    try {
+        run(options);
+    } catch (const Error& error) {
+        record(error, error.code());
+        throw;
+    } catch (const std::exception& error) {
+        record(error, ExitCode::failed);
+        throw;
+    }
+}
+
 }  // namespace
 }  // namespace cistula
 
 int main(int argc, char** argv) {
     using namespace cistula;
     return run_program("render", "a smaller --res or --crop needs less", [&] {
-        run(parse_options(argc, argv));
+        run_and_record(parse_options(argc, argv));
         return static_cast<int>(ExitCode::done);
     });
 }

@@ -96,7 +96,9 @@ void declare(CLI::App& app, OptionTexts& texts) {
         ->type_name("X,Y");
     app.add_option("--json", texts.json, "with --pixel: the same as JSON; - is standard output")->type_name("FILE");
     app.add_flag("--resume", texts.resume, "skip frames whose file is complete and of the same scene and settings");
-    app.add_option("--progress", texts.progress, "auto, plain or none")->type_name("STYLE");
+    app.add_option("--progress", texts.progress,
+                   "auto, plain or none; or, for programs, on standard output: json, or openjd (Open Job Description)")
+        ->type_name("STYLE");
     app.add_flag("-q,--quiet", texts.quiet, "errors only");
     app.add_flag("-v,--verbose", texts.verbose, "also times, hashes and effects");
     app.add_flag("--print-template", texts.print_template, "print the seed's text input and exit");
@@ -155,9 +157,12 @@ RenderOptions checked(const OptionTexts& texts) {
         {{"auto", std::nullopt}, {"float", Precision::single_}, {"double", Precision::double_}});
     options.precision = options.wanted_precision.value_or(Precision::single_);
     options.all_effects = chosen<bool>("--effects", texts.effects, {{"auto", false}, {"all", true}});
-    options.progress = chosen<ProgressStyle>(
-        "--progress", texts.progress,
-        {{"auto", ProgressStyle::automatic}, {"plain", ProgressStyle::plain}, {"none", ProgressStyle::none}});
+    options.progress = chosen<ProgressStyle>("--progress", texts.progress,
+                                             {{"auto", ProgressStyle::automatic},
+                                              {"plain", ProgressStyle::plain},
+                                              {"none", ProgressStyle::none},
+                                              {"json", ProgressStyle::json},
+                                              {"openjd", ProgressStyle::openjd}});
     if (!texts.frames.empty()) options.frames = parse_frames(texts.frames);
     if (!texts.resolution.empty()) options.resolution = parse_size(texts.resolution);
     if (!texts.crop.empty()) options.crop = parse_crop(texts.crop);

@@ -186,6 +186,16 @@ class FrameTask {
         });
     }
 
+    /// Shows finished tiles to observers as long as it exists.
+    struct ShownTiles {
+        ShownTiles(FinishedTiles& to, const Film& film, int side) : tiles(to) { tiles.begin(film, side); }
+        ~ShownTiles() { tiles.end(); }
+        ShownTiles(const ShownTiles&) = delete;
+        ShownTiles& operator=(const ShownTiles&) = delete;
+
+        FinishedTiles& tiles;
+    };
+
     /// Calls render(tile, counts) for each tile of the film; false if it was stopped.
     template <class Render>
     bool for_each_tile(const Render& render) {
@@ -193,6 +203,7 @@ class FrameTask {
         const int tile = settings_.tile;
         const int columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
         std::mutex totals;
+        const ShownTiles shown(progress_.tiles, film_, tile);
         tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
             use_default_rounding();
             for (int64_t t = range.begin(); t != range.end(); ++t) {
@@ -206,6 +217,7 @@ class FrameTask {
                 const std::lock_guard<std::mutex> lock(totals);
                 film_.rays.add(counts.rays);
                 film_.flags |= counts.flags;
+                progress_.tiles.finish(pixels);
             }
         });
         return !progress_.stop.load();

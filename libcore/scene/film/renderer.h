@@ -9,6 +9,7 @@
 
 #include "scene/description/camera_path.h"
 #include "scene/film/film.h"
+#include "scene/film/finished_tiles.h"
 
 namespace cistula {
 
@@ -52,8 +53,9 @@ struct FrameSettings {
 struct RenderProgress {
     std::atomic<uint64_t> pixels_done{0};
     std::atomic<uint64_t> rays{0};
-    alignas(64) std::atomic<bool> stop{
-        false};  // set it to make the render return soon. On its own cache line, since every ray tree reads it
+    /// Set it to make the render return soon. On its own cache line, since every ray tree reads it.
+    alignas(64) std::atomic<bool> stop{false};
+    FinishedTiles tiles;  // by renderers on the host; others fill a film when it is done
 };
 
 /// Times of the last frame in seconds, of the slowest device that took part.

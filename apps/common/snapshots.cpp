@@ -1,0 +1,90 @@
+#include "apps/common/snapshots.h"
+
+#include <fmt/format.h>
+
+#include "apps/common/progress_record.h"
+#include "scene/base/out_of_memory.h"
+#include "scene/film/film_picture.h"
+#include "scene/film/split_picture.h"
+#include "scene/image/exr.h"
+#include "scene/image/raw_picture.h"
+
+namespace cistula {
+namespace {
+
+/// Sets the pixels that are not done to 0.
+void clear_others(LayeredPicture& picture, const std::vector<bool>& done) {
+    for (LayeredPicture::Channel& channel : picture.channels)
+        for (size_t i = 0; i < done.size(); ++i)
+            if (!done[i]) channel.values[i] = 0;
+}
+
+}  // namespace
+
+Snapshots::Snapshots(const FilmJob& job, UserSignal& signal, const FinishedTiles& tiles, FilmProgress& report)
+    : job_(job), signal_(signal), tiles_(tiles), report_(report), thread_([this] {
+          while (signal_.wait()) write();
+      }) {}
+
+Snapshots::~Snapshots() {
+    signal_.close();
+    thread_.join();
+}
+
+void Snapshots::begin_frame(const CameraFrame& camera) {
+    const std::lock_guard lock(mutex_);
+    camera_ = camera;
+}
+
+void Snapshots::end_frame() {
+    const std::lock_guard lock(mutex_);
+    camera_.reset();
+}
+
+void Snapshots::say(const std::string& what) {
+    if (!job_.options.quiet) report_.say("render: " + what);
+}
+
+void Snapshots::write() {
+    std::optional<CameraFrame> camera;
+    std::optional<PartialFilm> part;
+    try {
+        {
+            const std::lock_guard lock(mutex_);
+            camera = camera_;
+            if (camera) part = tiles_.copy();
+        }
+        if (!camera) return say("no snapshot: no frame is in work");
+        if (!part || part->fraction == 0)
+            return say(fmt::format("no snapshot: {} frame {}",
+                                   job_.options.backend == Backend::cuda
+                                       ? "a GPU gives its pixels back when all are done, as those of"
+                                       : "no pixel is done of",
+                                   camera->frame));
+        write(*camera, std::move(*part));
+    } catch (const std::exception& error) {
+        end_if_out_of_memory(error);
+        say(fmt::format("no snapshot: {}", error.what()));
+    }
+}
+
+void Snapshots::write(const CameraFrame& camera, PartialFilm part) {
+    const std::string path = snapshot_of(job_.output, camera.frame);
+    if (file_kind(path) == FileKind::raw) {
+        write_raw_picture(path, to_color(part.film));
+    } else {
+        LayeredPicture picture = to_layers(part.film, job_.options.channels);
+        clear_others(picture, part.done);
+        picture.attributes.merge(attributes_of(job_, camera));
+        picture.attributes[snapshot_attribute] = part.fraction;
+        set_container_flag(picture);
+        if (job_.options.split == Split::parts)
+            write_exr(path, split_by_layer(std::move(picture), Split::parts));
+        else
+            write_exr(path, picture);
+    }
+    say(fmt::format("snapshot of frame {} at {:.0f} %: {}", camera.frame, 100 * part.fraction, path));
+    report_.record({"snapshot", camera.frame, path, part.fraction});
+}
+
+}  // namespace cistula
