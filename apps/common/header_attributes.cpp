@@ -1,5 +1,6 @@
 #include "apps/common/header_attributes.h"
 
+#include <algorithm>
 #include <array>
 
 namespace cistula {
@@ -17,6 +18,22 @@ void add_target_attributes(const TargetReport& report, Attributes& attributes) {
     attributes[off_pixels] = static_cast<int>(report.off);
 }
 
+Attributes without_target_attributes(Attributes attributes) {
+    for (const char* result : {proven_truncation, checked_pixels, off_pixels}) attributes.erase(result);
+    return attributes;
+}
+
+void join_target_attributes(const Attributes& more, Attributes& attributes) {
+    for (auto& [name, value] : attributes) {
+        const auto other = more.find(name);
+        if (other == more.end() || other->second.index() != value.index()) continue;
+        if (name == proven_truncation)
+            value = std::max(std::get<double>(value), std::get<double>(other->second));
+        else if (name == checked_pixels || name == off_pixels)
+            value = std::get<int>(value) + std::get<int>(other->second);
+    }
+}
+
 bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected) {
     const auto windows = [](const LayeredPicture& p) {
         return std::array{p.width, p.height, p.x, p.y, p.display_width, p.display_height};
@@ -26,10 +43,9 @@ bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected
         for (const LayeredPicture::Channel& channel : p.channels) names[channel.name] = channel.half;
         return names;
     };
-    Attributes settings = picture.attributes;
-    for (const char* result : {proven_truncation, checked_pixels, off_pixels}) settings.erase(result);
     return windows(picture) == windows(expected) && picture.compression == expected.compression &&
-           channels(picture) == channels(expected) && settings == expected.attributes;
+           channels(picture) == channels(expected) &&
+           without_target_attributes(picture.attributes) == expected.attributes;
 }
 
 }  // namespace cistula

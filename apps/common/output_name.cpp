@@ -43,6 +43,7 @@ OutputName::OutputName(std::string_view text, std::string_view option) : text_(t
         part = &suffix_;
     };
     for (size_t i = 0; i < text.size();) {
+        if (!has_pattern()) place_ = i;
         if (text[i] == '#') {
             size_t end = i;
             while (end < text.size() && text[end] == '#') ++end;
@@ -75,17 +76,23 @@ std::string OutputName::for_frame(int frame) const {
     return has_pattern() ? fmt::format("{}{:0{}d}{}", prefix_, frame, digits_, suffix_) : prefix_;
 }
 
-std::string OutputName::for_layer(int frame, const std::string& layer) const {
+OutputName OutputName::named(const std::string& word) const {
+    OutputName name = *this;
     if (has_pattern() && suffix_.find('/') == std::string::npos) {
-        OutputName name = *this;
         const char before = prefix_.empty() ? '/' : prefix_.back();
         const bool separates = std::string_view("._- ").find(before) != std::string_view::npos;
-        if (!separates && before != '/') name.prefix_ += '.';
-        name.prefix_ += layer + (separates ? before : '.');
-        return name.for_frame(frame);
+        std::string added = word + (separates ? before : '.');
+        if (!separates && before != '/') added.insert(0, 1, '.');
+        name.prefix_ += added;
+        name.text_.insert(place_, added);
+        name.place_ += added.size();
+    } else {
+        std::string& last = has_pattern() ? name.suffix_ : name.prefix_;
+        const size_t extension = fs::path(last).extension().string().size();
+        last.insert(last.size() - extension, '.' + word);
+        name.text_.insert(text_.size() - extension, '.' + word);
     }
-    const std::string path = for_frame(frame), extension = fs::path(path).extension().string();
-    return path.substr(0, path.size() - extension.size()) + '.' + layer + extension;
+    return name;
 }
 
 FileKind file_kind(const std::string& path) {

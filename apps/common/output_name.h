@@ -24,14 +24,17 @@ class OutputName {
     bool has_pattern() const { return digits_ >= 0; }
     std::string for_frame(int frame) const;
 
-    /// The name of a file that a layer has for itself: the layer stands before the frame number or the extension, as in
-    /// beauty.diffuse.0001.exr and beauty.diffuse.exr.
-    std::string for_layer(int frame, const std::string& layer) const;
+    /// This name with another word before the frame number or the extension: beauty.tile07.####.exr, beauty.tile07.exr.
+    OutputName named(const std::string& word) const;
+
+    /// The name of a file that a layer has for itself: beauty.diffuse.0001.exr, beauty.diffuse.exr.
+    std::string for_layer(int frame, const std::string& layer) const { return named(layer).for_frame(frame); }
     const std::string& text() const { return text_; }
 
   private:
     std::string text_, prefix_, suffix_;
-    int digits_ = -1;  // least number of digits; -1: not a pattern
+    int digits_ = -1;   // least number of digits; -1: not a pattern
+    size_t place_ = 0;  // of the pattern in the text
 };
 
 enum class FileKind {

@@ -16,6 +16,7 @@
 #include "apps/common/layer_list.h"
 #include "apps/common/pixel_report.h"
 #include "apps/common/progress_record.h"
+#include "apps/common/render_options.h"
 #include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
@@ -23,7 +24,6 @@
 #include "apps/common/view_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "explain.h"
-#include "options.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
 #include "scene/base/out_of_memory.h"
@@ -104,6 +104,7 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
     Outputs outputs;
     const std::string name = options.output.empty() ? default_output(scene, options.frames.size()) : options.output;
     outputs.image = OutputName(name, "-o");
+    if (options.tile) outputs.image = outputs.image.named(tile_name(options.tiles, *options.tile));
     outputs.frames = frames_to_render(outputs.image, options.frames, scene.film.frames);
     if (file_kind(name) == FileKind::raw) {
         const auto refuse = [&](const std::string& option, const char* why) {
@@ -115,6 +116,7 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
         if (c.transparent) refuse("--background transparent", "raw frames have no alpha");
         if (c.space != &color_spaces().front()) refuse("--colorspace", "raw frames are sRGB");
         if (c.compression != Compression::zip) refuse("--compression", "raw frames have none");
+        if (options.tile) refuse("--tile", "raw frames do not say what part they are");
         if (options.resume) refuse("--resume", "raw frames do not say what they show");
     }
     if (!options.preview.empty()) {

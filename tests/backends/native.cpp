@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "apps/common/header_attributes.h"
-#include "apps/render/options.h"
+#include "apps/common/render_options.h"
 #include "backend_embree/native/native_triangles.h"
 #include "cistula/numerics/trigonometry.h"
 #include "testing/support/expect_error.h"

@@ -1,13 +1,14 @@
-// Command lines, one word a line. The first line is the program's name: render, render-compare, render-view or
-// render-report.
+// Command lines, one word a line. The first line is the program's name: render, render-compare, render-view,
+// render-merge, or render-report.
 #include <algorithm>
 #include <string_view>
 #include <vector>
 
 #include "apps/common/output_name.h"
-#include "apps/render/options.h"
+#include "apps/common/render_options.h"
 #include "apps/render_compare/options.h"
 #include "apps/render_compare/suite_options.h"
+#include "apps/render_merge/options.h"
 #include "apps/render_report/options.h"
 #include "apps/render_view/options.h"
 #include "checks.h"
@@ -31,6 +32,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             parse_compare_options(count, arguments.data());
         } else if (words[0] == "render-view") {
             parse_view_options(count, arguments.data());
+        } else if (words[0] == "render-merge") {
+            parse_merge_options(count, arguments.data());
         } else if (words[0] == "render-report") {
             report::parse_report_options(count, arguments.data());
         } else {

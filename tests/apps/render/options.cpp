@@ -1,4 +1,4 @@
-#include "apps/render/options.h"
+#include "apps/common/render_options.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

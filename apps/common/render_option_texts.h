@@ -9,7 +9,7 @@ namespace cistula {
 
 /// The options' texts as CLI11 stores them; empty for options not given that have no default.
 struct OptionTexts {
-    std::string scene, output, preview, stats, frames, resolution, crop, supersample, depth, lanes, cutoff,
+    std::string scene, output, preview, stats, frames, resolution, crop, tiles, tile, supersample, depth, lanes, cutoff,
         target_error, max_samples, threads, layers, z_far, dwa_level, device, pixel, json, explain, max_texture_gb;
     std::string backend = "embree", precision = "auto", intersector = "exact", effects = "auto", bits = "float",
                 progress = "auto", color_space = "lin_rec709_scene", background = "opaque", compression = "zip",

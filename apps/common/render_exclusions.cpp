@@ -1,4 +1,4 @@
-#include "exclusions.h"
+#include "apps/common/render_exclusions.h"
 
 #include <fmt/format.h>
 
@@ -51,6 +51,12 @@ void refuse_exclusions(const OptionTexts& texts) {
          "the CPU follows the rays, and every backend gives the same bits"},
         {"--pixel", texts.pixel, "--intersector", texts.intersector != defaults.intersector,
          "the rays of the exact image are followed"},
+        {"--tile", texts.tile, "--preview", !texts.preview.empty(),
+         "it is of whole frames; render-merge --preview makes it"},
+        {"--tile", texts.tile, "--compression dwaa and dwab", texts.compression.substr(0, 3) == "dwa",
+         "a tile would lose something else than the whole frame does"},
+        {"--tile", texts.tile, "--explain", !texts.explain.empty(), "it tells of whole frames"},
+        {"--pixel", texts.pixel, "--tile", !texts.tile.empty(), "the pixel counts from the top left of the full frame"},
         {"--progress", records, "--explain", !texts.explain.empty(), "it tells of frames that are written"},
         {"--layers", texts.layers, "--intersector", texts.intersector != defaults.intersector,
          "they are parts of the exact image"},
@@ -72,6 +78,8 @@ void refuse_exclusions(const OptionTexts& texts) {
         {"--exposure", texts.view.exposure, has_preview, for_preview},
         {"--view", texts.view.view, has_preview, for_preview},
         {"--bloom", texts.view.bloom, has_preview, for_preview},
+        {"--tile", texts.tile, !texts.tiles.empty(), "needs --tiles CxR, the grid that it is one of"},
+        {"--tiles", texts.tiles, !texts.tile.empty(), "is for --tile N, the one of them to render"},
         {"--json", texts.json, !texts.pixel.empty(),
          "is for --pixel X,Y; of a render, --stats FILE.json tells the times"},
         {"--max-samples", texts.max_samples, !texts.target_error.empty(),

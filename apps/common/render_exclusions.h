@@ -1,7 +1,7 @@
 // Options of `render` that exclude or require one another.
 #pragma once
 
-#include "option_texts.h"
+#include "apps/common/render_option_texts.h"
 
 namespace cistula {
 

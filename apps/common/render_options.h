@@ -1,4 +1,4 @@
-// The command line of `render`, parsed and checked as far as possible without the scene.
+// The command line of `render`, parsed and checked as far as possible without the scene. `render-farm` takes it, too.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,14 @@
 #include "apps/common/film_options.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/picture_size.h"
+#include "apps/common/render_option_texts.h"
+#include "apps/common/tiles.h"
 #include "scene/film/film_picture.h"
 #include "scene/film/renderer.h"
+
+namespace CLI {
+class App;
+}
 
 namespace cistula {
 
@@ -32,8 +38,10 @@ struct RenderOptions : FilmOptions {
     DeviceChoice devices;  // for the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
-    ChosenPixel pixel;  // for Action::pixel
-    std::string json;   // for Action::pixel: a file, "-" or empty
+    TileGrid tiles;           // over the crop or the full frame
+    std::optional<int> tile;  // the one to render; none: all pixels
+    ChosenPixel pixel;        // for Action::pixel
+    std::string json;         // for Action::pixel: a file, "-" or empty
     std::optional<int> supersample, depth;
     std::optional<double> cutoff, target_error;
     std::optional<int> max_samples;         // for a target error
@@ -44,6 +52,12 @@ struct RenderOptions : FilmOptions {
 };
 
 inline constexpr int largest_supersample = 64;  // k
+
+/// Adds render's options to a command line.
+void declare_render_options(CLI::App& app, OptionTexts& texts);
+
+/// The parsed options. Throws Error (usage) as parse_options() does.
+RenderOptions checked_options(const OptionTexts& texts);
 
 /// Parses the command line. Throws Error (usage); the message names the option, what is wrong and what would be right.
 RenderOptions parse_options(int argc, const char* const* argv);

@@ -1,4 +1,4 @@
-#include "options.h"
+#include "apps/common/render_options.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 #include "apps/common/command_line.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/layer_list.h"
+#include "apps/common/render_exclusions.h"
 #include "cistula/model/effects.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
-#include "exclusions.h"
 #include "scene/base/suggest.h"
 #include "scene/film/frame_settings.h"
 #include "scene/readers/read_scene.h"
@@ -22,7 +22,31 @@
 namespace cistula {
 namespace {
 
-void declare(CLI::App& app, OptionTexts& texts) {
+const ColorSpace* parse_color_space(const std::string& text) {
+    if (const ColorSpace* space = find_color_space(text)) return space;
+    std::vector<std::string_view> names;
+    for (const ColorSpace& space : color_spaces()) names.push_back(space.id);
+    fail_usage(fmt::format("--colorspace {}: there is no such space; {}", text, nearest_first(text, names, "spaces")));
+}
+
+float parse_z_far(const std::string& text) {
+    if (text == "inf") return std::numeric_limits<float>::infinity();
+    const auto value = whole_number<double>(text);
+    if (!value || !(static_cast<float>(*value) > 0) || !(*value <= double(std::numeric_limits<float>::max())))
+        fail_usage(fmt::format("--z-far {}: must be a number above 0 in single precision, or inf", one_line(text)));
+    return static_cast<float>(*value);
+}
+
+float parse_dwa_level(const std::string& text) {
+    const auto value = whole_number<double>(text);
+    if (!value || !(*value >= 0 && *value <= 1000))
+        fail_usage(fmt::format("--dwa-level {}: must be a number from 0 to 1000", one_line(text)));
+    return static_cast<float>(*value);
+}
+
+}  // namespace
+
+void declare_render_options(CLI::App& app, OptionTexts& texts) {
     app.add_option("SCENE", texts.scene, "scene file: JSON or the seed's text; - reads standard input")->type_name("");
     app.add_option("-o,--output", texts.output,
                    "image: .exr, or .out/.data for the seed's raw frames; #### or %04d is the frame number")
@@ -36,6 +60,10 @@ void declare(CLI::App& app, OptionTexts& texts) {
     app.add_flag("--list-devices", texts.list_devices, "print the GPUs, or why there is none, and exit");
     app.add_option("--res", texts.resolution, "full frame in pixels")->type_name("WxH");
     app.add_option("--crop", texts.crop, "render these pixels only; the file's data window")->type_name("WxH+X+Y");
+    app.add_option("--tiles", texts.tiles, "with --tile: the grid of tiles that the frame, or the crop, is cut into")
+        ->type_name("CxR");
+    app.add_option("--tile", texts.tile, "render this tile alone, counted from 0; render-merge joins them")
+        ->type_name("N");
     app.add_option("--supersample", texts.supersample, "k: a k x k grid of samples per pixel")->type_name("K");
     app.add_option("--depth", texts.depth, "surfaces shaded along a path, 1 to 1024")->type_name("N");
     app.add_option("--cutoff", texts.cutoff, "radiance that dropping faint branches may cost a pixel; 0: none")
@@ -106,29 +134,7 @@ void declare(CLI::App& app, OptionTexts& texts) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
-const ColorSpace* parse_color_space(const std::string& text) {
-    if (const ColorSpace* space = find_color_space(text)) return space;
-    std::vector<std::string_view> names;
-    for (const ColorSpace& space : color_spaces()) names.push_back(space.id);
-    fail_usage(fmt::format("--colorspace {}: there is no such space; {}", text, nearest_first(text, names, "spaces")));
-}
-
-float parse_z_far(const std::string& text) {
-    if (text == "inf") return std::numeric_limits<float>::infinity();
-    const auto value = whole_number<double>(text);
-    if (!value || !(static_cast<float>(*value) > 0) || !(*value <= double(std::numeric_limits<float>::max())))
-        fail_usage(fmt::format("--z-far {}: must be a number above 0 in single precision, or inf", one_line(text)));
-    return static_cast<float>(*value);
-}
-
-float parse_dwa_level(const std::string& text) {
-    const auto value = whole_number<double>(text);
-    if (!value || !(*value >= 0 && *value <= 1000))
-        fail_usage(fmt::format("--dwa-level {}: must be a number from 0 to 1000", one_line(text)));
-    return static_cast<float>(*value);
-}
-
-RenderOptions checked(const OptionTexts& texts) {
+RenderOptions checked_options(const OptionTexts& texts) {
     RenderOptions options;
     if (texts.version) options.action = Action::print_version;
     if (texts.print_template) options.action = Action::print_template;
@@ -166,6 +172,9 @@ RenderOptions checked(const OptionTexts& texts) {
     if (!texts.frames.empty()) options.frames = parse_frames(texts.frames);
     if (!texts.resolution.empty()) options.resolution = parse_size(texts.resolution);
     if (!texts.crop.empty()) options.crop = parse_crop(texts.crop);
+    if (!texts.tiles.empty()) options.tiles = parse_tiles(texts.tiles);
+    if (!texts.tile.empty() && !texts.tiles.empty())
+        options.tile = integer_option("--tile", texts.tile, 0, options.tiles.count() - 1);
     if (!texts.pixel.empty()) {
         options.pixel = parse_pixel(texts.pixel);
         options.action = Action::pixel;
@@ -223,12 +232,10 @@ RenderOptions checked(const OptionTexts& texts) {
     return options;
 }
 
-}  // namespace
-
 RenderOptions parse_options(int argc, const char* const* argv) {
     CLI::App app;
     OptionTexts texts;
-    declare(app, texts);
+    declare_render_options(app, texts);
     const bool whole = parse_command_line(app, argc, argv, [&](const std::string& extra) {
         return fmt::format("{}: one scene at a time, and {} is it already", extra, texts.scene);
     });
@@ -237,14 +244,14 @@ RenderOptions parse_options(int argc, const char* const* argv) {
         options.action = Action::print_help;
         return options;
     }
-    return checked(texts);
+    return checked_options(texts);
 }
 
 std::string help_text() {
     CLI::App app("Renders a scene to OpenEXR: the same bits on every machine and with any number of threads.",
                  "render");
     OptionTexts texts;
-    declare(app, texts);
+    declare_render_options(app, texts);
     app.footer(R"(
 Examples:
   render scenes/platonic.json -o platonic.exr --preview platonic.png
@@ -301,6 +308,7 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)
         fail_usage(fmt::format("--crop {}x{}+{}+{}: leaves the frame, which is {}x{}", crop.width, crop.height, crop.x,
                                crop.y, settings.full_width, settings.full_height));
+    if (options.tile) settings.crop = tile_rect(crop, options.tiles, *options.tile);
     const ChosenPixel& pixel = options.pixel;
     if (options.action == Action::pixel && (pixel.x >= settings.full_width || pixel.y >= settings.full_height))
         fail_usage(fmt::format("--pixel {},{}: is outside of the frame, which is {}x{}; its last pixel is {},{}",

@@ -1,0 +1,34 @@
+// Tiles of a frame: the parts that jobs of their own render, on whatever machines, and that render-merge puts together.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "scene/film/film.h"
+
+namespace cistula {
+
+/// A grid of tiles over the pixels of a frame. They are numbered from 0, row by row from the top left.
+struct TileGrid {
+    int columns = 1, rows = 1;
+
+    int count() const { return columns * rows; }
+    bool operator==(const TileGrid&) const = default;
+};
+
+inline constexpr int most_tiles = 10'000;
+
+/// Parses the grid given to --tiles, "CxR". Throws Error (usage).
+TileGrid parse_tiles(std::string_view text);
+
+/// The pixels of a tile, of a grid over these. Sizes differ by one pixel at most; every pixel is in one tile. Throws
+/// Error (usage) if there are fewer columns or rows of pixels than of tiles.
+PixelRect tile_rect(const PixelRect& whole, const TileGrid& grid, int number);
+
+/// What stands in the name of a tile's file, as a layer's name does: beauty.tile07.0001.exr.
+std::string tile_name(const TileGrid& grid, int number);
+
+/// A rectangle as --crop takes it: "64x32+128+96".
+std::string format_rect(const PixelRect& rect);
+
+}  // namespace cistula

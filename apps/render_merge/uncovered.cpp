@@ -1,0 +1,44 @@
+#include "uncovered.h"
+
+#include <algorithm>
+
+namespace cistula {
+namespace {
+
+/// Adds what of `rect` lies outside of `hole`, which is inside of it: above, below, left and right.
+void add_around(const PixelRect& rect, const PixelRect& hole, std::vector<PixelRect>& to) {
+    const auto add = [&](int x, int y, int width, int height) {
+        if (width > 0 && height > 0) to.push_back({x, y, width, height});
+    };
+    const int right = hole.x + hole.width, below = hole.y + hole.height;
+    add(rect.x, rect.y, rect.width, hole.y - rect.y);
+    add(rect.x, below, rect.width, rect.y + rect.height - below);
+    add(rect.x, hole.y, hole.x - rect.x, hole.height);
+    add(right, hole.y, rect.x + rect.width - right, hole.height);
+}
+
+}  // namespace
+
+std::optional<PixelRect> shared_pixels(const PixelRect& a, const PixelRect& b) {
+    const int left = std::max(a.x, b.x), right = std::min(a.x + a.width, b.x + b.width);
+    const int top = std::max(a.y, b.y), bottom = std::min(a.y + a.height, b.y + b.height);
+    if (left >= right || top >= bottom) return std::nullopt;
+    return PixelRect{left, top, right - left, bottom - top};
+}
+
+std::vector<PixelRect> uncovered(const PixelRect& window, const std::vector<PixelRect>& rects) {
+    std::vector<PixelRect> left = {window};
+    for (const PixelRect& rect : rects) {
+        std::vector<PixelRect> next;
+        for (const PixelRect& part : left) {
+            if (const auto shared = shared_pixels(part, rect))
+                add_around(part, *shared, next);
+            else
+                next.push_back(part);
+        }
+        left = std::move(next);
+    }
+    return left;
+}
+
+}  // namespace cistula
