@@ -55,12 +55,11 @@ void Snapshots::write() {
             if (camera) part = tiles_.copy();
         }
         if (!camera) return say("no snapshot: no frame is in work");
-        if (!part || part->fraction == 0)
-            return say(fmt::format("no snapshot: {} frame {}",
-                                   job_.options.backend == Backend::cuda
-                                       ? "a GPU gives its pixels back when all are done, as those of"
-                                       : "no pixel is done of",
+        if (job_.options.backend == Backend::cuda)
+            return say(fmt::format("no snapshot: frame {} is on a GPU, which gives its pixels back when all are done",
                                    camera->frame));
+        if (!part || part->fraction == 0)
+            return say(fmt::format("no snapshot: no pixel of frame {} is done", camera->frame));
         write(*camera, std::move(*part));
     } catch (const std::exception& error) {
         end_if_out_of_memory(error);

@@ -1,5 +1,5 @@
 // Command lines, one word a line. The first line is the program's name: render, render-compare, render-view,
-// render-merge, or render-report.
+// render-merge, render-farm or render-report.
 #include <algorithm>
 #include <string_view>
 #include <vector>
@@ -8,6 +8,7 @@
 #include "apps/common/render_options.h"
 #include "apps/render_compare/options.h"
 #include "apps/render_compare/suite_options.h"
+#include "apps/render_farm/options.h"
 #include "apps/render_merge/options.h"
 #include "apps/render_report/options.h"
 #include "apps/render_view/options.h"
@@ -34,6 +35,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             parse_view_options(count, arguments.data());
         } else if (words[0] == "render-merge") {
             parse_merge_options(count, arguments.data());
+        } else if (words[0] == "render-farm") {
+            parse_farm_options(count, arguments.data());
         } else if (words[0] == "render-report") {
             report::parse_report_options(count, arguments.data());
         } else {

@@ -1,0 +1,150 @@
+// render-farm: writes a film as tasks for many machines.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <filesystem>
+
+#include "apps/common/command_line.h"
+#include "apps/common/film_loop.h"
+#include "apps/common/interrupt.h"
+#include "job_files.h"
+#include "measure.h"
+#include "options.h"
+#include "scene/base/atomic_file.h"
+#include "scene/base/error.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/precision_choice.h"
+#include "scene/compile/scene_source.h"
+
+namespace cistula {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The scene as tasks render it: a renderer for small frames, and what names depend on.
+struct PreparedFilm {
+    std::unique_ptr<Renderer> renderer;
+    std::shared_ptr<const LayerNames> layer_names;
+};
+
+template <class Real>
+PreparedFilm prepare_film(SceneSource source, const RenderOptions& options) {
+    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
+    return {make_renderer<Real>(Backend::embree, compiled, {}, options.intersection), compiled->layer_names};
+}
+
+/// The name of a job: letters, digits and a few signs of the scene's name.
+std::string job_name(const std::string& scene) {
+    constexpr size_t longest = 60;
+    std::string name;
+    for (const char c : fs::path(scene).stem().string().substr(0, longest))
+        name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
+    return name.empty() || name[0] == '-' ? "film" + name : name;
+}
+
+std::string folder_of_programs() {
+    std::error_code error;
+    return fs::read_symlink("/proc/self/exe", error).parent_path().string();
+}
+
+void check_output(const RenderOptions& options, const OutputName& output, const FrameList& frames) {
+    if (file_kind(output.text()) == FileKind::raw)
+        throw Error(ExitCode::usage,
+                    fmt::format("-o {}: tasks go on from what is complete, and raw frames do not say what they show; "
+                                "name it *.exr",
+                                output.text()));
+    if (options.preview.empty()) return;
+    const OutputName preview(options.preview, "--preview");
+    if (frames.size() > 1 && !preview.has_pattern())
+        throw Error(ExitCode::usage, fmt::format("--preview {}: holds one frame of {}; put #### into the name",
+                                                 options.preview, frames.size()));
+}
+
+/// The names of the film's images, as sha256sum reads them from xargs -0: a zero byte after each.
+std::string names_of_files(const OutputName& output, const FrameList& frames, const std::vector<std::string>& layers) {
+    std::string text;
+    const auto add = [&](const std::string& path) { text += path + '\0'; };
+    for (size_t i = 0; i < frames.size(); ++i) {
+        add(output.for_frame(frames[i]));
+        for (const std::string& layer : layers) add(output.for_layer(frames[i], layer));
+    }
+    return text;
+}
+
+void write_job(const FarmOptions& farm) {
+    RenderOptions options = farm.render;
+    const SceneDescription scene = read_scene(options);
+    const FrameSettings settings = frame_settings(options, scene);
+    const OutputName output(options.output.empty() ? default_output(scene, options.frames.size()) : options.output,
+                            "-o");
+    const FrameList frames = frames_to_render(output, options.frames, scene.film.frames);
+    check_output(options, output, frames);
+    const TileGrid grid = farm.tiles.value_or(TileGrid());
+    (void)tile_rect(settings.crop, grid, 0);
+
+    StepProgress progress(farm.quiet ? ProgressStyle::none : ProgressStyle::automatic);
+    InterruptGuard guard;
+    guard.watch(progress.render.stop);
+    const std::optional<tbb::global_control> limit =
+        options.threads > 0
+            ? std::optional<tbb::global_control>(std::in_place, tbb::global_control::max_allowed_parallelism,
+                                                 static_cast<size_t>(options.threads))
+            : std::nullopt;
+    SceneSource source = gather_scene(scene);
+    options.precision = choose_precision(options.wanted_precision, smallest_part(source)).precision;
+    const PreparedFilm film = options.precision == Precision::double_ ? prepare_film<double>(std::move(source), options)
+                                                                      : prepare_film<float>(std::move(source), options);
+    require_light_layers(options.channels, *film.layer_names);
+    const MeasuredFrames measured = measure_tiles(*film.renderer, scene, settings, frames, grid, progress);
+
+    const OutputName none;
+    FilmJob job{options, scene, "", settings, output, none, frames};
+    job.layer_names = film.layer_names;
+    FarmJob farm_job{job_name(options.scene),
+                     fs::current_path().string(),
+                     folder_of_programs(),
+                     options.scene,
+                     output.text(),
+                     farm.passed,
+                     farm.merged,
+                     farm.tiles,
+                     frames,
+                     {}};
+    farm_job.tasks = plan_tasks(frames, static_cast<size_t>(grid.count()), measured, farm.task_seconds,
+                                static_cast<size_t>(farm.most_tasks));
+    const std::string folder = farm.folder.empty() ? farm_job.name + ".farm" : farm.folder;
+    double seconds = 0;
+    for (const FarmTask& task : farm_job.tasks) seconds += task.seconds;
+    std::vector<JobFile> files = job_files(farm_job);
+    files.push_back({"files.txt", names_of_files(output, frames, layers_with_files(job))});
+    for (const JobFile& file : files) {
+        const std::string path = (fs::path(folder) / file.name).string();
+        make_directory_of(path);
+        write_file_atomically(path, file.text);
+    }
+    if (!farm.quiet)
+        progress.say(fmt::format("render-farm: {}: {} tasks, {} frames, {} tiles each; about {} on this machine",
+                                 folder, farm_job.tasks.size(), frames.size(), grid.count(), format_duration(seconds)));
+}
+
+void run(const FarmOptions& options) {
+    switch (options.action) {
+        case FarmAction::print_help:
+            return print(farm_help_text());
+        case FarmAction::print_version:
+            return print("render-farm (Cistula) " CISTULA_VERSION "\n");
+        case FarmAction::write:
+            return write_job(options);
+    }
+}
+
+}  // namespace
+}  // namespace cistula
+
+int main(int argc, char** argv) {
+    using namespace cistula;
+    return run_program("render-farm", "a smaller --res needs less", [&] {
+        run(parse_farm_options(argc, argv));
+        return static_cast<int>(ExitCode::done);
+    });
+}
