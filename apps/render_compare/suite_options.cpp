@@ -51,20 +51,20 @@ void declare(CLI::App& app, SuiteTexts& texts) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
-bool fits(const std::string& pattern, const std::string& text) {
+bool matches(const std::string& pattern, const std::string& text) {
     return fnmatch(pattern.c_str(), text.c_str(), FNM_NOESCAPE) == 0;
 }
 
-bool fits(const std::string& pattern, const SuiteCase& one) {
-    return fits(pattern, one.name) ||
-           std::any_of(one.tags.begin(), one.tags.end(), [&](const auto& tag) { return fits(pattern, tag); });
+bool chooses(const std::string& pattern, const SuiteCase& one) {
+    return matches(pattern, one.name) ||
+           std::any_of(one.tags.begin(), one.tags.end(), [&](const auto& tag) { return matches(pattern, tag); });
 }
 
 /// Throws unless some case has the name or, for a pattern, fits.
 void require_known(const Suite& suite, const std::string& text, const char* what, bool is_pattern) {
     std::vector<std::string_view> known;
     for (const SuiteCase& one : suite.cases) {
-        if (is_pattern ? fits(text, one) : text == one.name) return;
+        if (is_pattern ? chooses(text, one) : text == one.name) return;
         known.push_back(one.name);
     }
     if (is_pattern)
@@ -144,7 +144,7 @@ std::vector<const SuiteCase*> chosen_cases(const Suite& suite, const SuiteOption
         const auto& filters = options.filters;
         if (!names.empty() && std::find(names.begin(), names.end(), one.name) == names.end()) continue;
         if (!filters.empty() &&
-            std::none_of(filters.begin(), filters.end(), [&](const auto& pattern) { return fits(pattern, one); }))
+            std::none_of(filters.begin(), filters.end(), [&](const auto& pattern) { return chooses(pattern, one); }))
             continue;
         if (!backends_of(one, options).empty()) chosen.push_back(&one);
     }

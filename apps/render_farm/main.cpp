@@ -7,6 +7,7 @@
 #include "apps/common/command_line.h"
 #include "apps/common/film_loop.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/layer_list.h"
 #include "job_files.h"
 #include "measure.h"
 #include "options.h"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "backend_embree/embree/embree_renderer.h"
+#include "cistula/geometry/ray.h"
 #include "testing/generated_scene.h"
 #include "testing/support/golden.h"
 #include "testing/support/read_text.h"

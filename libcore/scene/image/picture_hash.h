@@ -1,78 +1,22 @@
-// Pictures as they stand in their files: every part and level, each value in the type that the file gives it.
+// Pictures as their files store them: values of the channels' types, and a hash of all that is stored but the header's
+// text.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <map>
 #include <string>
-#include <string_view>
-#include <variant>
-#include <vector>
+
+#include "scene/image/picture.h"
 
 namespace cistula {
 
-/// A rectangle of pixels in the pixel space of a file.
-struct PixelWindow {
-    int x = 0, y = 0, width = 0, height = 0;
+/// Rounds the values of half channels to halves, to nearest even, as write_exr does: the picture then has the bits that
+/// read_exr would read.
+void round_to_stored(LayeredPicture& picture);
 
-    size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
-
-    /// The number of one of its pixels, row-major.
-    size_t index(int column, int row) const {
-        return static_cast<size_t>(row - y) * static_cast<size_t>(width) + static_cast<size_t>(column - x);
-    }
-    bool operator==(const PixelWindow&) const = default;
-    auto operator<=>(const PixelWindow&) const = default;
-};
-
-/// The pixels that both have; width and height are 0 where there are none.
-PixelWindow intersection(const PixelWindow& a, const PixelWindow& b);
-
-/// Type of the values of a channel. Those of `uint8` to `int32` are codes, which stand for fractions of the largest of
-/// their type, as in PNG and TIFF; `uint`, of OpenEXR, is a number itself.
-enum class StoredType { half, float_, double_, uint, uint8, uint16, uint32, int8, int16, int32 };
-
-std::string_view type_name(StoredType type);
-
-/// The largest code of a type; 0 where its values are no codes.
-double largest_code(StoredType type);
-
-/// A channel with a value for each pixel of its picture's data window, row-major from the top left. A subsampled one
-/// repeats its values.
-struct StoredChannel {
-    std::string name;
-    StoredType type = StoredType::float_;
-    int x_sampling = 1, y_sampling = 1;  // pixels of the file's pixel space for one value of the file
-    std::variant<std::vector<float>, std::vector<double>, std::vector<uint32_t>, std::vector<int32_t>> values;
-};
-
-/// An attribute of a header.
-struct StoredAttribute {
-    std::string type;   // "string", "m44f"
-    std::string value;  // the bytes in the file, or what tells them apart
-    std::string text;   // for people
-
-    bool operator==(const StoredAttribute& other) const { return type == other.type && value == other.value; }
-};
-
-/// A part of a file, at one of its levels.
-struct StoredPicture {
-    std::string name;              // of the part; "": none
-    int x_level = 0, y_level = 0;  // of a mip map or a rip map; 0: the whole resolution
-    PixelWindow data, display;
-    std::vector<StoredChannel> channels;
-    std::map<std::string, StoredAttribute> attributes;  // but for what is said above, and for how the file is packed
-    std::map<std::string, std::string> packing;         // for people: "compression": "zip"
-
-    bool is_whole() const { return x_level == 0 && y_level == 0; }
-
-    /// The channel of that name, or null.
-    const StoredChannel* channel(const std::string& wanted) const;
-};
-
-struct StoredFile {
-    std::string format;                   // "openexr", "png"
-    std::vector<StoredPicture> pictures;  // parts in the order of the file; a part's levels follow each other
-};
+/// 128-bit FNV-1a of a picture as 32 hexadecimal digits. What enters, integers lowest byte first: width, height, x and
+/// y of the data window, width and height of the display window, the number of channels, each in 32 bits; then every
+/// channel in the order of the names' bytes: the length of its name in 32 bits, the name, its type in 8 bits as OpenEXR
+/// numbers them (half 1, float 2), and the bits of all values, row by row from the top left, in 16 or 32 bits each.
+/// Attributes and compression do not enter. Half channels must hold halves (round_to_stored).
+std::string picture_hash(const LayeredPicture& picture);
 
 }  // namespace cistula

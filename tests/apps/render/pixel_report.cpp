@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/common/pixel_report.h"
+#include "apps/common/render_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "scene/compile/scene_names.h"
 #include "scene/image/exr.h"
