@@ -10,6 +10,7 @@ list(TRANSFORM _headers REPLACE "^#include \"([^\"]+)\".*" "\\1")
 list(APPEND _headers cistula.h scene/base/shown_text.h scene/compile/effect_reason.h scene/compile/hull.h scene/description/mesh_source.h
     scene/film/film_layers.h
     scene/film/film_memory.h
+    scene/film/finished_tiles.h
     scene/image/color_space.h)
 foreach(_header IN LISTS _headers)
     cmake_path(GET _header PARENT_PATH _folder)
