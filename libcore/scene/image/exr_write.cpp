@@ -142,7 +142,7 @@ Imf::Header header_of(const LayeredPicture& picture) {
     const Imath::Box2i data(Imath::V2i(picture.x, picture.y),
                             Imath::V2i(picture.x + picture.width - 1, picture.y + picture.height - 1));
     Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, compression_of(picture.compression));
-    header.zipCompressionLevel() = 1;  // docs/decisions/0041-quick-zip.md
+    header.zipCompressionLevel() = 1;  // docs/decisions/0039-quick-zip.md
     header.dwaCompressionLevel() = picture.dwa_level;
     for (const auto& [name, value] : picture.attributes) {
         if (const auto* text = std::get_if<std::string>(&value))
