@@ -1,5 +1,7 @@
 #include "apps/common/header_attributes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -11,6 +13,15 @@ constexpr const char* checked_pixels = "cistula:checkedPixels";
 constexpr const char* off_pixels = "cistula:offPixels";
 
 }  // namespace
+
+std::string attribute_text(const Attributes::mapped_type& value) {
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    if (const auto* whole = std::get_if<int>(&value)) return fmt::format("{}", *whole);
+    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+    if (const auto* ratio = std::get_if<Ratio>(&value))
+        return fmt::format("{}/{}", ratio->numerator, ratio->denominator);
+    return fmt::format("{}", fmt::join(std::get<std::vector<float>>(value), " "));
+}
 
 void add_target_attributes(const TargetReport& report, Attributes& attributes) {
     attributes[proven_truncation] = report.worst_truncation;

@@ -7,6 +7,10 @@
 
 namespace cistula {
 
+/// The value of an attribute for people: the shortest text that reads back as the same number, so that equal texts are
+/// equal values, NaN and -0 included.
+std::string attribute_text(const Attributes::mapped_type& value);
+
 /// Adds what is proven and estimated of the image: provenTruncation, checkedPixels and offPixels.
 void add_target_attributes(const TargetReport& report, Attributes& attributes);
 

@@ -125,6 +125,17 @@ FrameList frames_to_render(const OutputName& output, const FrameList& given, int
     return first_frames(output.has_pattern() ? std::max(film_frames, 1) : 1);
 }
 
+OutputName preview_name(const std::string& text, const FrameList& frames) {
+    if (text.empty()) return OutputName();
+    OutputName name(text, "--preview");
+    if (std::filesystem::path(text).extension() != ".png")
+        throw Error(ExitCode::usage, fmt::format("--preview {}: a preview is a PNG; name it *.png", text));
+    if (frames.size() > 1 && !name.has_pattern())
+        throw Error(ExitCode::usage,
+                    fmt::format("--preview {}: holds one frame of {}; put #### into the name", text, frames.size()));
+    return name;
+}
+
 std::vector<int> frames_named_in(const std::vector<std::string>& paths, const FrameList& frames) {
     std::set<int> named;
     for (const std::string& path : paths) {

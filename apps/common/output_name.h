@@ -53,6 +53,9 @@ std::string default_output(const SceneDescription& scene, size_t frames_given);
 /// Error (usage) if several frames are given for a plain name.
 FrameList frames_to_render(const OutputName& output, const FrameList& given, int film_frames);
 
+/// The name of previews of these frames; an empty text is none. Throws Error (usage).
+OutputName preview_name(const std::string& text, const FrameList& frames);
+
 /// The frames of a list whose numbers stand in one of these paths, in whole or as a part of a longer number: those for
 /// which a pattern may give that path. Each once, in order.
 std::vector<int> frames_named_in(const std::vector<std::string>& paths, const FrameList& frames);

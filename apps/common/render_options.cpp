@@ -107,15 +107,7 @@ void declare_render_options(CLI::App& app, OptionTexts& texts) {
         ->type_name("NAME");
     app.add_option("--dwa-level", texts.dwa_level, "with dwaa and dwab: 0 to 1000, more is smaller; 45")
         ->type_name("L");
-    app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
-    app.add_option("--exposure", texts.view.exposure, "with --preview: stops by which it is brighter; 0")
-        ->type_name("EV");
-    app.add_option("--view", texts.view.view,
-                   "with --preview: srgb cuts off above white, filmic tells bright colors apart, or a view of "
-                   "$OCIO; srgb")
-        ->type_name("NAME");
-    app.add_option("--bloom", texts.view.bloom, "with --preview: how much light above white glows around; 0")
-        ->type_name("AMOUNT");
+    add_preview_options(app, texts.preview, texts.view);
     app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
     add_valued_flag(
         app, "--explain", texts.explain, "needs",

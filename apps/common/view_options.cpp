@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/common/command_line.h"
 
 namespace cistula {
@@ -10,6 +12,17 @@ namespace {
 const std::vector<std::string> own_views = {"srgb", "filmic"};
 
 }  // namespace
+
+void add_preview_options(CLI::App& app, std::string& preview, ViewTexts& texts) {
+    app.add_option("--preview", preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
+    app.add_option("--exposure", texts.exposure, "with --preview: stops by which it is brighter; 0")->type_name("EV");
+    app.add_option("--view", texts.view,
+                   "with --preview: srgb cuts off above white, filmic tells bright colors apart, or a view of "
+                   "$OCIO; srgb")
+        ->type_name("NAME");
+    app.add_option("--bloom", texts.bloom, "with --preview: how much light above white glows around; 0")
+        ->type_name("AMOUNT");
+}
 
 PictureView parse_view(const ViewTexts& texts) {
     PictureView view;

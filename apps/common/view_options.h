@@ -1,9 +1,13 @@
-// The options that say how colors are shown: --exposure, --view, --bloom.
+// The options that say how colors are shown: --exposure, --view, --bloom, and --preview where they are of one.
 #pragma once
 
 #include <string>
 
 #include "scene/image/picture_view.h"
+
+namespace CLI {
+class App;
+}
 
 namespace cistula {
 
@@ -11,6 +15,9 @@ namespace cistula {
 struct ViewTexts {
     std::string exposure, view, bloom;
 };
+
+/// Adds --preview and, as options of it, those above.
+void add_preview_options(CLI::App& app, std::string& preview, ViewTexts& texts);
 
 /// The parsed options; a view that is not one of our own is not looked for yet. Throws Error (usage).
 PictureView parse_view(const ViewTexts& texts);

@@ -119,15 +119,7 @@ Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene
         if (options.tile) refuse("--tile", "raw frames do not say what part they are");
         if (options.resume) refuse("--resume", "raw frames do not say what they show");
     }
-    if (!options.preview.empty()) {
-        outputs.preview = OutputName(options.preview, "--preview");
-        if (std::filesystem::path(options.preview).extension() != ".png")
-            throw Error(ExitCode::usage,
-                        fmt::format("--preview {}: a preview is a PNG; name it *.png", options.preview));
-        if (outputs.frames.size() > 1 && !outputs.preview.has_pattern())
-            throw Error(ExitCode::usage, fmt::format("--preview {}: holds one frame of {}; put #### into the name",
-                                                     options.preview, outputs.frames.size()));
-    }
+    outputs.preview = preview_name(options.preview, outputs.frames);
     return outputs;
 }
 

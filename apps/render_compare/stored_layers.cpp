@@ -1,27 +1,15 @@
 #include "stored_layers.h"
 
-#include <fmt/format.h>
-
 #include <iterator>
+
+#include "apps/common/header_attributes.h"
 
 namespace cistula {
 namespace {
 
-using Attribute = decltype(LayeredPicture::attributes)::mapped_type;
-
-/// The shortest text that reads back as the same number, so that equal texts are equal values, NaN and -0 included.
-std::string to_text(const Attribute& value) {
-    if (const auto* text = std::get_if<std::string>(&value)) return *text;
-    if (const auto* whole = std::get_if<int>(&value)) return fmt::format("{}", *whole);
-    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-    if (const auto* ratio = std::get_if<Ratio>(&value))
-        return fmt::format("{}/{}", ratio->numerator, ratio->denominator);
-    return fmt::format("{}", fmt::join(std::get<std::vector<float>>(value), " "));
-}
-
-std::string type_of(const Attribute& value) {
+std::string type_of(const Attributes::mapped_type& value) {
     constexpr const char* types[] = {"string", "int", "double", "floats", "rational"};
-    static_assert(std::size(types) == std::variant_size_v<Attribute>);
+    static_assert(std::size(types) == std::variant_size_v<Attributes::mapped_type>);
     return types[value.index()];
 }
 
@@ -35,7 +23,7 @@ StoredFile stored_layers(const LayeredPicture& picture) {
         stored.channels.push_back(
             {channel.name, channel.half ? StoredType::half : StoredType::float_, 1, 1, channel.values});
     for (const auto& [name, value] : picture.attributes) {
-        const std::string text = to_text(value);
+        const std::string text = attribute_text(value);
         stored.attributes[name] = {type_of(value), text, text};
     }
     return {"openexr", {std::move(stored)}};

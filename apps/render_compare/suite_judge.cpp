@@ -7,6 +7,7 @@
 
 #include "report.h"
 #include "scene/image/picture_hash.h"
+#include "scene/image/picture_lookup.h"
 
 namespace cistula {
 namespace {
@@ -56,8 +57,7 @@ LayeredPicture header_of(const LayeredPicture& picture) {
 }
 
 std::string text_attribute(const LayeredPicture& picture, const char* name) {
-    const auto found = picture.attributes.find(name);
-    const auto* text = found == picture.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
+    const auto* text = attribute_of<std::string>(picture, name);
     return text ? *text : "";
 }
 

@@ -13,25 +13,14 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/scene_names.h"
 #include "scene/image/picture_hash.h"
+#include "scene/image/picture_lookup.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula {
 namespace {
 
-const LayeredPicture::Channel* channel_of(const LayeredPicture& picture, const std::string& name) {
-    const auto found = std::find_if(picture.channels.begin(), picture.channels.end(),
-                                    [&](const LayeredPicture::Channel& channel) { return channel.name == name; });
-    return found == picture.channels.end() ? nullptr : &*found;
-}
-
-template <class T>
-const T* attribute(const LayeredPicture& picture, const char* name) {
-    const auto found = picture.attributes.find(name);
-    return found == picture.attributes.end() ? nullptr : std::get_if<T>(&found->second);
-}
-
 bool has_same(const LayeredPicture& a, const LayeredPicture& b, const char* name) {
-    const auto *first = attribute<std::string>(a, name), *second = attribute<std::string>(b, name);
+    const auto *first = attribute_of<std::string>(a, name), *second = attribute_of<std::string>(b, name);
     return first && second && *first == *second;
 }
 
@@ -79,9 +68,10 @@ bool gives(const Followed& followed, const LayeredPicture& picture, const SuiteP
 
 /// The settings that the header of a golden image names, and its precision; false if it names too few.
 bool read_header(const LayeredPicture& golden, FrameSettings& settings, Precision& precision) {
-    const auto *depth = attribute<int>(golden, "cistula:depth"), *grid = attribute<int>(golden, "cistula:supersample");
-    const auto* cutoff = attribute<double>(golden, "cistula:cutoff");
-    const auto* in = attribute<std::string>(golden, "cistula:precision");
+    const auto *depth = attribute_of<int>(golden, "cistula:depth"),
+               *grid = attribute_of<int>(golden, "cistula:supersample");
+    const auto* cutoff = attribute_of<double>(golden, "cistula:cutoff");
+    const auto* in = attribute_of<std::string>(golden, "cistula:precision");
     if (!depth || !grid || !cutoff || !in || *depth < 1 || *depth > 1024 || *grid < 1 || *grid > 64) return false;
     settings.depth = *depth;
     settings.supersample = *grid;
@@ -94,12 +84,12 @@ void explain_golden(const SuiteCase& one, const SceneDescription& scene, FrameSe
                     const LayeredPicture& golden, const LayeredPicture& fresh, const SuitePixel& pixel,
                     SuitePixelWhy& why) {
     Precision precision = Precision::single_;
-    if (!attribute<std::string>(golden, "cistula:sceneHash")) {
+    if (!attribute_of<std::string>(golden, "cistula:sceneHash")) {
         why.golden_note = "only its values are known: its header does not name a scene";
     } else if (!has_same(golden, fresh, "cistula:sceneHash") || !has_same(golden, fresh, "cistula:cameraHash")) {
         why.golden_note = "only its values are known: it shows the scene, or the camera, as it was before a change";
-    } else if (attribute<double>(golden, "cistula:targetError") ||
-               attribute<std::string>(golden, "cistula:intersector") || !read_header(golden, settings, precision)) {
+    } else if (attribute_of<double>(golden, "cistula:targetError") ||
+               attribute_of<std::string>(golden, "cistula:intersector") || !read_header(golden, settings, precision)) {
         why.golden_note = "only its values are known: its header names no grid of samples to follow";
     } else {
         Followed followed = follow_pixel(one, scene, settings, precision, frame, pixel);

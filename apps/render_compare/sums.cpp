@@ -9,6 +9,7 @@
 
 #include "scene/description/light_group.h"
 #include "scene/film/film_picture.h"
+#include "scene/image/picture_lookup.h"
 
 namespace cistula {
 namespace {
@@ -84,8 +85,7 @@ std::vector<DivisionSums> division_sums(const LayeredPicture& picture) {
         const std::string layer = name.substr(0, name.size() - red.size());
         if (std::find(lights.begin(), lights.end(), layer) == lights.end()) lights.push_back(layer);
     }
-    const auto stated = picture.attributes.find(light_layer_count);
-    const int* const count = stated == picture.attributes.end() ? nullptr : std::get_if<int>(&stated->second);
+    const int* const count = attribute_of<int>(picture, light_layer_count);
     if (!count || static_cast<size_t>(*count) == lights.size()) add("light", lights);
     return divisions;
 }

@@ -54,11 +54,7 @@ void check_output(const RenderOptions& options, const OutputName& output, const 
                     fmt::format("-o {}: tasks go on from what is complete, and raw frames do not say what they show; "
                                 "name it *.exr",
                                 output.text()));
-    if (options.preview.empty()) return;
-    const OutputName preview(options.preview, "--preview");
-    if (frames.size() > 1 && !preview.has_pattern())
-        throw Error(ExitCode::usage, fmt::format("--preview {}: holds one frame of {}; put #### into the name",
-                                                 options.preview, frames.size()));
+    preview_name(options.preview, frames);
 }
 
 /// The names of the film's images, as sha256sum reads them from xargs -0: a zero byte after each.

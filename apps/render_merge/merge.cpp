@@ -24,12 +24,8 @@ PixelRect rect_of(const LayeredPicture& picture) {
 }
 
 std::string text_of(const Attributes::mapped_type& value) {
-    if (const auto* text = std::get_if<std::string>(&value)) return quoted(std::string_view(*text));
-    if (const auto* whole = std::get_if<int>(&value)) return std::to_string(*whole);
-    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-    if (const auto* ratio = std::get_if<Ratio>(&value))
-        return fmt::format("{}/{}", ratio->numerator, ratio->denominator);
-    return fmt::format("{}", fmt::join(std::get<std::vector<float>>(value), " "));
+    const std::string text = attribute_text(value);
+    return std::holds_alternative<std::string>(value) ? quoted(std::string_view(text)) : text;
 }
 
 /// What two headers differ in; empty if nothing.

@@ -29,27 +29,10 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("-f,--frames", texts.frames, "with --tiles: the frames, e.g. 0-299x5,7")->type_name("LIST");
     app.add_option("--crop", texts.crop, "the pixels to be covered, where render had this crop; the full frame")
         ->type_name("WxH+X+Y");
-    app.add_option("--preview", texts.preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
-    app.add_option("--exposure", texts.view.exposure, "with --preview: stops by which it is brighter; 0")
-        ->type_name("EV");
-    app.add_option("--view", texts.view.view,
-                   "with --preview: srgb cuts off above white, filmic tells bright colors apart, or a view of "
-                   "$OCIO; srgb")
-        ->type_name("NAME");
-    app.add_option("--bloom", texts.view.bloom, "with --preview: how much light above white glows around; 0")
-        ->type_name("AMOUNT");
+    add_preview_options(app, texts.preview, texts.view);
     app.add_flag("-q,--quiet", texts.quiet, "errors only");
     app.add_flag("--version", texts.version, "print the version and exit");
     app.set_help_flag("-h,--help", "print this and exit");
-}
-
-OutputName preview_name(const std::string& text, const FrameList& frames) {
-    if (lower_extension(text) != ".png")
-        fail_usage(fmt::format("--preview {}: a preview is a PNG; name it *.png", text));
-    OutputName name(text, "--preview");
-    if (frames.size() > 1 && !name.has_pattern())
-        fail_usage(fmt::format("--preview {}: holds one frame of {}; put #### into the name", text, frames.size()));
-    return name;
 }
 
 }  // namespace
@@ -90,7 +73,7 @@ MergeOptions parse_merge_options(int argc, const char* const* argv) {
         if (!text.empty() && texts.preview.empty())
             fail_usage(
                 fmt::format("{} {}: is for --preview FILE.png; the image keeps the scene's light", option, text));
-    if (!texts.preview.empty()) options.preview = preview_name(texts.preview, options.frames);
+    options.preview = preview_name(texts.preview, options.frames);
     options.quiet = texts.quiet;
     return options;
 }

@@ -5,26 +5,24 @@
 #include "scene/base/error.h"
 #include "scene/image/color_space.h"
 #include "scene/image/picture_io.h"
+#include "scene/image/picture_lookup.h"
 
 namespace cistula {
 namespace {
 
 const std::vector<float>& channel(const LayeredPicture& frame, const char* name, const std::string& path) {
-    for (const LayeredPicture::Channel& channel : frame.channels)
-        if (channel.name == name) return channel.values;
+    if (const LayeredPicture::Channel* found = channel_of(frame, name)) return found->values;
     throw Error(ExitCode::usage, fmt::format("--preview {}: the tiles have no channel {}", path, name));
 }
 
 }  // namespace
 
 void write_merged_preview(const std::string& path, const LayeredPicture& frame, const PictureView& view) {
-    const auto& attributes = frame.attributes;
     const auto refuse = [&](const char* what) {
         throw Error(ExitCode::usage, fmt::format("--preview {}: {}; render-view shows the merged file", path, what));
     };
-    if (attributes.count("cistula:background") != 0) refuse("the tiles' background was left out");
-    const auto space = attributes.find("colorInteropID");
-    const auto* id = space == attributes.end() ? nullptr : std::get_if<std::string>(&space->second);
+    if (frame.attributes.count("cistula:background") != 0) refuse("the tiles' background was left out");
+    const auto* id = attribute_of<std::string>(frame, "colorInteropID");
     if (id != nullptr && *id != color_spaces().front().id) refuse("the tiles are of another color space");
     const std::vector<float>&r = channel(frame, "R", path), &g = channel(frame, "G", path),
           &b = channel(frame, "B", path);

@@ -2,6 +2,7 @@
 
 #include "backend_embree/embree/embree_tree.h"
 #include "backend_embree/host/frame_loop.h"
+#include "scene/compile/constant_scene.h"
 #include "scene/compile/lane_scene.h"
 
 namespace cistula {
@@ -19,7 +20,7 @@ class EmbreeRenderer : public Renderer {
         : scene_(std::move(scene)), view_(scene_->view()), options_(options), tree_(std::move(tree)) {
         if (tree_) return;
         if (!options.always_tree) {
-            plain_ = make_constant_renderer<Real>(scene_);
+            if (takes_loop(view_)) plain_ = make_constant_renderer<Real>(scene_);
             if (!plain_) in_lanes_ = lane_scene(view_);
         }
         if (!plain_ && !in_lanes_) build_tree();

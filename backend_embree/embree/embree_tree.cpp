@@ -3,15 +3,9 @@
 #include <vector>
 
 #include "backend_embree/host/frame_loop.h"
+#include "scene/compile/constant_scene.h"
 
 namespace cistula {
-
-namespace {
-
-/// The maximum number of primitives for which a plain loop is faster than any tree.
-constexpr uint32_t plain_loop_primitives = 16;
-
-}  // namespace
 
 template <class Real>
 EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options)
@@ -54,7 +48,7 @@ EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& 
 
 template <class Real>
 std::shared_ptr<const EmbreeTree<Real>> embree_tree(const SceneView<Real>& scene, const EmbreeOptions& options) {
-    if (!options.always_tree && scene.convex.size + scene.clusters.size <= plain_loop_primitives) return nullptr;
+    if (!options.always_tree && takes_loop(scene)) return nullptr;
     return std::make_shared<const EmbreeTree<Real>>(scene, options);
 }
 

@@ -7,6 +7,15 @@
 
 namespace cistula {
 
+/// The maximum number of primitives for which a loop over all of them is faster than any tree.
+inline constexpr uint32_t most_in_loop = 16;
+
+/// Whether a scene has no more.
+template <class Real>
+bool takes_loop(const SceneView<Real>& scene) {
+    return scene.convex.size + scene.clusters.size <= most_in_loop;
+}
+
 /// The ConstantScene of a view readable here, with everything precomputed for it. Null if the scene is too large, or if
 /// a ray may be inside more than one solid or inside a mesh, which SingleInterior rules out. `there`: the scene where
 /// kernels read it.

@@ -5,14 +5,12 @@
 #include "cistula/shading/contact.h"
 #include "scene/compile/arrays.h"
 #include "scene/compile/compiled_scene.h"
+#include "scene/compile/constant_scene.h"
 #include "scene/compile/scene_copies.h"
 #include "scene/compile/shadow_plan.h"
 
 namespace cistula {
 namespace {
-
-/// The maximum number of primitives for which a loop is faster than a tree.
-constexpr uint32_t most_in_loop = 16;
 
 template <class Real>
 bool fits_lanes(const SceneView<Real>& scene) {
@@ -95,7 +93,7 @@ void OwnedLaneScene<Real>::copy_parts() {
 
 template <class Real>
 void OwnedLaneScene<Real>::find_tree() {
-    if (scene_.convex.size + scene_.clusters.size <= most_in_loop) {
+    if (takes_loop(scene_)) {
         scene_.tree = {};
         scene_.tree_items = {};
         if (!fits_plan(scene_)) return;
