@@ -35,8 +35,4 @@ std::string tile_name(const TileGrid& grid, int number) {
     return fmt::format("tile{:0{}}", number, fmt::formatted_size("{}", grid.count() - 1));
 }
 
-std::string format_rect(const PixelRect& rect) {
-    return fmt::format("{}x{}+{}+{}", rect.width, rect.height, rect.x, rect.y);
-}
-
 }  // namespace cistula

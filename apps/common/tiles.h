@@ -28,7 +28,4 @@ PixelRect tile_rect(const PixelRect& whole, const TileGrid& grid, int number);
 /// What stands in the name of a tile's file, as a layer's name does: beauty.tile07.0001.exr.
 std::string tile_name(const TileGrid& grid, int number);
 
-/// A rectangle as --crop takes it: "64x32+128+96".
-std::string format_rect(const PixelRect& rect);
-
 }  // namespace cistula

@@ -45,7 +45,7 @@ uint64_t bits_of(Value value) {
 /// Calls `visit(x, y, i)` for the pixels that count, i in the region's window.
 template <class Visit>
 void for_each_pixel(const Region& region, Visit visit) {
-    const PixelWindow& window = region.window;
+    const PixelRect& window = region.window;
     size_t i = 0;
     for (int y = window.y; y - window.y < window.height; ++y)
         for (int x = window.x; x - window.x < window.width; ++x, ++i)

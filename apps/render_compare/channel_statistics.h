@@ -45,7 +45,7 @@ struct ChannelStatistics {
 /// A channel of a picture.
 struct PlacedChannel {
     const StoredChannel& channel;
-    const PixelWindow& data;
+    const PixelRect& data;
 };
 
 /// Statistics over a region, which lies in both data windows. `worst_of_pixels`, row-major over the region's window,

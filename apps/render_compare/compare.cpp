@@ -65,7 +65,7 @@ class Comparer {
 
   private:
     /// Pixels of parts with one window are one pixel, whatever the number of parts.
-    using Place = std::tuple<PixelWindow, int, int>;
+    using Place = std::tuple<PixelRect, int, int>;
     struct Pixels {
         Region region;
         std::vector<double> worst;
@@ -114,7 +114,7 @@ class Comparer {
             result_.structure.push_back(subject + "no pixel is in both data windows");
         else if (selection_.has_region() && region.pixels() < std::max(pair.a->data.pixels(), pair.b->data.pixels()))
             result_.not_compared.push_back(
-                fmt::format("{}pixels other than {} of {}", subject, region.pixels(), window_text(region.window)));
+                fmt::format("{}pixels other than {} of {}", subject, region.pixels(), format_rect(region.window)));
         compare_channels(pair, region);
     }
 

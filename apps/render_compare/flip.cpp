@@ -139,14 +139,14 @@ bool has_only_floats(const Colors& colors) {
 
 /// Calls `visit(i, index)` for the pixels of the window: their number and their place in the picture's values.
 template <class Visit>
-void for_each_pixel(const StoredPicture& picture, const PixelWindow& window, Visit visit) {
+void for_each_pixel(const StoredPicture& picture, const PixelRect& window, Visit visit) {
     size_t i = 0;
     for (int y = window.y; y - window.y < window.height; ++y)
         for (int x = window.x; x - window.x < window.width; ++x, ++i) visit(i, picture.data.index(x, y));
 }
 
 void write_floats(const std::string& path, const StoredPicture& picture, const Colors& colors,
-                  const PixelWindow& window) {
+                  const PixelRect& window) {
     LayeredPicture written;
     written.width = written.display_width = window.width;
     written.height = written.display_height = window.height;
@@ -162,8 +162,7 @@ void write_floats(const std::string& path, const StoredPicture& picture, const C
     write_exr(path, written);
 }
 
-void write_codes(const std::string& path, const StoredPicture& picture, const Colors& colors,
-                 const PixelWindow& window) {
+void write_codes(const std::string& path, const StoredPicture& picture, const Colors& colors, const PixelRect& window) {
     ColorPicture written{static_cast<uint32_t>(window.width), static_cast<uint32_t>(window.height), {}};
     written.texels.resize(window.pixels());
     for_each_pixel(picture, window, [&](size_t i, size_t index) {
@@ -181,7 +180,7 @@ FlipResult measure(const StoredFile& a, const StoredFile& b, const Selection& se
     for (const PicturePair& pair : pairs.pairs) {
         const std::optional<Colors> first = colors_of(*pair.a), second = colors_of(*pair.b);
         if (!pair.a->is_whole() || !first || !second) continue;
-        const PixelWindow window = region_of(*pair.a, *pair.b, selection, pair.subject()).window;
+        const PixelRect window = region_of(*pair.a, *pair.b, selection, pair.subject()).window;
         if (window.pixels() == 0) throw FlipAbsent("no pixel has a partner");
         const bool codes = has_only(*first, StoredType::uint8) && has_only(*second, StoredType::uint8);
         if (!codes && (!has_only_floats(*first) || !has_only_floats(*second)))

@@ -52,8 +52,8 @@ std::string type_text(const StoredChannel& channel) {
 
 std::vector<std::string> differing_windows(const PicturePair& pair) {
     std::vector<std::string> lines;
-    const auto add = [&](const char* what, const PixelWindow& a, const PixelWindow& b) {
-        if (a != b) lines.push_back(fmt::format("{}{}: {} / {}", pair.subject(), what, window_text(a), window_text(b)));
+    const auto add = [&](const char* what, const PixelRect& a, const PixelRect& b) {
+        if (a != b) lines.push_back(fmt::format("{}{}: {} / {}", pair.subject(), what, format_rect(a), format_rect(b)));
     };
     add("data window", pair.a->data, pair.b->data);
     add("display window", pair.a->display, pair.b->display);

@@ -56,12 +56,9 @@ void refuse_selection(const Texts& texts, const char* why) {
 }
 
 /// X,Y,W,H, in which X and Y may be negative, or what --crop of render takes.
-PixelWindow parse_window(const std::string& text) {
+PixelRect parse_window(const std::string& text) {
     const std::vector<std::string_view> parts = parts_at_commas(text);
-    if (parts.size() == 1) {
-        const PixelRect crop = parse_crop(text);
-        return {crop.x, crop.y, crop.width, crop.height};
-    }
+    if (parts.size() == 1) return parse_crop(text);
     std::vector<int> numbers;
     for (const std::string_view part : parts)
         if (const auto number = whole_number<int>(part)) numbers.push_back(*number);

@@ -17,16 +17,12 @@ bool fits(const std::string& pattern, const std::string& name) {
     return dot != name.npos && fnmatch(pattern.c_str(), name.substr(0, dot).c_str(), 0) == 0;
 }
 
-bool contains(const PixelWindow& outer, const PixelWindow& inner) {
-    return intersection(outer, inner) == inner;
-}
-
 void add_mask(Region& region, const Mask& mask, const std::string& subject) {
     if (!contains(mask.window, region.window))
         fail_usage(fmt::format("{}--mask: has the pixels {}, and {} are compared; give a mask with all of them",
-                               subject, window_text(mask.window), window_text(region.window)));
+                               subject, format_rect(mask.window), format_rect(region.window)));
     region.counts.reserve(region.window.pixels());
-    const PixelWindow& window = region.window;
+    const PixelRect& window = region.window;
     for (int y = window.y; y - window.y < window.height; ++y) {
         const auto row = mask.counts.begin() + static_cast<std::ptrdiff_t>(y - mask.window.y) * mask.window.width +
                          (window.x - mask.window.x);
@@ -34,17 +30,13 @@ void add_mask(Region& region, const Mask& mask, const std::string& subject) {
     }
     if (region.pixels() == 0)
         fail_usage(fmt::format("{}--mask: counts none of the pixels {}; those count where it is above 0", subject,
-                               window_text(window)));
+                               format_rect(window)));
 }
 
 }  // namespace
 
 size_t Region::pixels() const {
     return counts.empty() ? window.pixels() : std::accumulate(counts.begin(), counts.end(), size_t{0});
-}
-
-std::string window_text(const PixelWindow& window) {
-    return fmt::format("{}x{}{:+}{:+}", window.width, window.height, window.x, window.y);
 }
 
 bool is_selected(const std::vector<std::string>& patterns, const std::string& name, const std::string& shown) {
@@ -72,12 +64,12 @@ Region region_of(const StoredPicture& a, const StoredPicture& b, const Selection
     Region region{a.data, {}};
     if (selection.intersection) region.window = intersection(a.data, b.data);
     if (selection.crop) {
-        const PixelWindow& crop = *selection.crop;
+        const PixelRect& crop = *selection.crop;
         if (!selection.intersection)
             for (const auto& [which, data] : {std::pair("first", a.data), std::pair("second", b.data)})
                 if (!contains(data, crop))
                     fail_usage(fmt::format("{}--crop {}: leaves the data window of the {} image, {}", subject,
-                                           window_text(crop), which, window_text(data)));
+                                           format_rect(crop), which, format_rect(data)));
         region.window = selection.intersection ? intersection(region.window, crop) : crop;
     }
     if (!selection.excuses_windows() && a.data != b.data) return {};

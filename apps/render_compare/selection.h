@@ -13,7 +13,7 @@ namespace cistula {
 
 /// Pixels that count, in a window.
 struct Mask {
-    PixelWindow window;
+    PixelRect window;
     std::vector<uint8_t> counts;  // row-major; 1: it counts
 };
 
@@ -21,7 +21,7 @@ struct Mask {
 struct Selection {
     std::vector<std::string> layers;  // patterns of channels' and layers' names; empty: all
     bool intersection = false;        // only pixels that both data windows have
-    std::optional<PixelWindow> crop;  // only those of a rectangle in pixel space
+    std::optional<PixelRect> crop;    // only those of a rectangle in pixel space
     std::optional<Mask> mask;         // only those that count there
     bool ssim = false;                // a metric that takes long
 
@@ -32,7 +32,7 @@ struct Selection {
 
 /// Pixels that are compared.
 struct Region {
-    PixelWindow window;
+    PixelRect window;
     std::vector<uint8_t> counts;  // row-major; 1: it is compared; empty: all are
 
     bool counts_at(size_t pixel) const { return counts.empty() || counts[pixel] != 0; }
@@ -51,8 +51,5 @@ Mask mask_of(const StoredPicture& picture);
 /// and the mask does not have all pixels or counts none.
 Region region_of(const StoredPicture& a, const StoredPicture& b, const Selection& selection,
                  const std::string& subject);
-
-/// A window in messages: "640x480+0+0".
-std::string window_text(const PixelWindow& window);
 
 }  // namespace cistula

@@ -31,7 +31,7 @@ bool is_shown(const StoredChannel& channel) {
 }
 
 /// A row of a region as shades from 0 to 1.
-void read_row(const PlacedChannel& placed, const PixelWindow& window, int row, std::vector<double>& shades) {
+void read_row(const PlacedChannel& placed, const PixelRect& window, int row, std::vector<double>& shades) {
     const size_t first = placed.data.index(window.x, window.y + row);
     const double largest = largest_code(placed.channel.type);
     std::visit(
@@ -119,7 +119,7 @@ class Rows {
 }  // namespace
 
 std::optional<double> ssim_of(const PlacedChannel& a, const PlacedChannel& b, const Region& region) {
-    const PixelWindow& window = region.window;
+    const PixelRect& window = region.window;
     if (!is_shown(a.channel) || !is_shown(b.channel) || window.width < side || window.height < side)
         return std::nullopt;
     Rows rows(a, b, region);

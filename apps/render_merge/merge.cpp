@@ -76,8 +76,7 @@ void Merge::begin(const std::string& path, const std::vector<PicturePart>& tile)
              "its compression loses something, and not what that of the whole frame does; render tiles with another");
     const PixelRect frame{0, 0, first.display_width, first.display_height};
     if (!window_) window_ = frame;
-    const std::optional<PixelRect> inside = shared_pixels(*window_, frame);
-    if (inside != window_)
+    if (!contains(frame, *window_))
         throw Error(ExitCode::usage, fmt::format("--crop {}: leaves the frame, which is {}x{}", format_rect(*window_),
                                                  frame.width, frame.height));
     parts_ = tile;
@@ -93,12 +92,12 @@ void Merge::begin(const std::string& path, const std::vector<PicturePart>& tile)
 }
 
 void Merge::check_window(const std::string& path, const PixelRect& rect) const {
-    if (shared_pixels(rect, *window_) != rect)
+    if (!contains(*window_, rect))
         fail(path,
              fmt::format("its pixels, {}, leave those to be covered, {}", format_rect(rect), format_rect(*window_)));
     for (const Placed& other : placed_)
-        if (const auto shared = shared_pixels(rect, other.rect))
-            fail(path, fmt::format("its pixels {} are also in {}; leave one out", format_rect(*shared), other.path));
+        if (const PixelRect shared = intersection(rect, other.rect); !shared.is_empty())
+            fail(path, fmt::format("its pixels {} are also in {}; leave one out", format_rect(shared), other.path));
 }
 
 void Merge::check(const std::string& path, const std::vector<PicturePart>& tile) const {

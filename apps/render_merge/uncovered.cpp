@@ -1,7 +1,5 @@
 #include "uncovered.h"
 
-#include <algorithm>
-
 namespace cistula {
 namespace {
 
@@ -19,20 +17,13 @@ void add_around(const PixelRect& rect, const PixelRect& hole, std::vector<PixelR
 
 }  // namespace
 
-std::optional<PixelRect> shared_pixels(const PixelRect& a, const PixelRect& b) {
-    const int left = std::max(a.x, b.x), right = std::min(a.x + a.width, b.x + b.width);
-    const int top = std::max(a.y, b.y), bottom = std::min(a.y + a.height, b.y + b.height);
-    if (left >= right || top >= bottom) return std::nullopt;
-    return PixelRect{left, top, right - left, bottom - top};
-}
-
 std::vector<PixelRect> uncovered(const PixelRect& window, const std::vector<PixelRect>& rects) {
     std::vector<PixelRect> left = {window};
     for (const PixelRect& rect : rects) {
         std::vector<PixelRect> next;
         for (const PixelRect& part : left) {
-            if (const auto shared = shared_pixels(part, rect))
-                add_around(part, *shared, next);
+            if (const PixelRect shared = intersection(part, rect); !shared.is_empty())
+                add_around(part, shared, next);
             else
                 next.push_back(part);
         }

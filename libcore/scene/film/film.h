@@ -6,16 +6,10 @@
 #include <vector>
 
 #include "cistula/model/pixel_record.h"
+#include "scene/base/pixel_rect.h"
 #include "scene/film/film_layers.h"
 
 namespace cistula {
-
-/// A rectangle of pixels; (0, 0) is the top left of the full frame.
-struct PixelRect {
-    int x = 0, y = 0, width = 0, height = 0;
-
-    bool operator==(const PixelRect&) const = default;
-};
 
 /// One rendered frame (or its crop). pixels is row-major over rect.
 struct Film {

@@ -25,7 +25,7 @@ ExrChannel::Type type_of(Imf::PixelType type) {
     }
 }
 
-PixelWindow window_of(const Imath::Box2i& box) {
+PixelRect window_of(const Imath::Box2i& box) {
     return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
 }
 
@@ -73,7 +73,7 @@ std::vector<ExrLevel> levels_of(Imf::MultiPartInputFile& file, int part) {
 /// of its pixels.
 template <class Value>
 Imf::Slice slice(Imf::PixelType type, std::vector<Value>& values, const Imath::Box2i& data, const ExrChannel& channel) {
-    const PixelWindow window = window_of(data);
+    const PixelRect window = window_of(data);
     values.resize(window.pixels());
     const size_t x_stride = static_cast<size_t>(channel.x_sampling) * sizeof(Value);
     const size_t y_stride = static_cast<size_t>(channel.y_sampling) * sizeof(Value) * static_cast<size_t>(window.width);
@@ -143,12 +143,12 @@ ExrFile::ExrFile(const std::string& path) : path_(path) {
 ExrFile::~ExrFile() = default;
 
 std::vector<ExrChannel> ExrFile::read(size_t part, const std::vector<size_t>& channels) const {
-    PixelWindow window;
+    PixelRect window;
     return read(part, channels, {}, window);
 }
 
 std::vector<ExrChannel> ExrFile::read(size_t part, const std::vector<size_t>& channels, ExrLevel level,
-                                      PixelWindow& window) const {
+                                      PixelRect& window) const {
     return with_file_errors(path_, [&] {
         std::vector<ExrChannel> read;
         for (const size_t channel : channels) read.push_back(parts_[part].channels[channel]);

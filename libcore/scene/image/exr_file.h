@@ -36,7 +36,7 @@ struct ExrPart {
     std::string name;           // files of one part need not have one
     int width = 0, height = 0;  // of the data window
     int full_height = 0;        // of the display window
-    PixelWindow data, display;
+    PixelRect data, display;
     std::vector<ExrLevel> levels;  // {0, 0} is the whole resolution, and first
     decltype(LayeredPicture::attributes) attributes;
     std::map<std::string, StoredAttribute> header;  // all attributes but those that windows and channels are
@@ -60,7 +60,7 @@ class ExrFile {
 
     /// Those of a level, whose data window this is.
     std::vector<ExrChannel> read(size_t part, const std::vector<size_t>& channels, ExrLevel level,
-                                 PixelWindow& window) const;
+                                 PixelRect& window) const;
 
   private:
     struct Open;

@@ -9,24 +9,9 @@
 #include <variant>
 #include <vector>
 
+#include "scene/base/pixel_rect.h"
+
 namespace cistula {
-
-/// A rectangle of pixels in the pixel space of a file.
-struct PixelWindow {
-    int x = 0, y = 0, width = 0, height = 0;
-
-    size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
-
-    /// The number of one of its pixels, row-major.
-    size_t index(int column, int row) const {
-        return static_cast<size_t>(row - y) * static_cast<size_t>(width) + static_cast<size_t>(column - x);
-    }
-    bool operator==(const PixelWindow&) const = default;
-    auto operator<=>(const PixelWindow&) const = default;
-};
-
-/// The pixels that both have; width and height are 0 where there are none.
-PixelWindow intersection(const PixelWindow& a, const PixelWindow& b);
 
 /// Type of the values of a channel. Those of `uint8` to `int32` are codes, which stand for fractions of the largest of
 /// their type, as in PNG and TIFF; `uint`, of OpenEXR, is a number itself.
@@ -59,7 +44,7 @@ struct StoredAttribute {
 struct StoredPicture {
     std::string name;              // of the part; "": none
     int x_level = 0, y_level = 0;  // of a mip map or a rip map; 0: the whole resolution
-    PixelWindow data, display;
+    PixelRect data, display;
     std::vector<StoredChannel> channels;
     std::map<std::string, StoredAttribute> attributes;  // but for what is said above, and for how the file is packed
     std::map<std::string, std::string> packing;         // for people: "compression": "zip"

@@ -53,7 +53,7 @@ TEST(Tiles, CoverEveryPixelOnce) {
             for (int i = 0; i < grid.count(); ++i) {
                 tiles.push_back(tile_rect(whole, grid, i));
                 pixels += int64_t{tiles.back().width} * tiles.back().height;
-                EXPECT_EQ(shared_pixels(tiles.back(), whole), tiles.back());
+                EXPECT_EQ(intersection(tiles.back(), whole), tiles.back());
             }
             EXPECT_EQ(pixels, int64_t{whole.width} * whole.height);
             EXPECT_TRUE(uncovered(whole, tiles).empty());
@@ -73,7 +73,7 @@ TEST(Uncovered, FindsWhatIsLeft) {
     int pixels = 0;
     for (const PixelRect& rect : ring) pixels += rect.width * rect.height;
     EXPECT_EQ(pixels, 8 * 6 - 3 * 2);
-    EXPECT_FALSE(shared_pixels({0, 0, 4, 4}, {4, 0, 4, 4}));
+    EXPECT_TRUE(intersection({0, 0, 4, 4}, {4, 0, 4, 4}).is_empty());
 }
 
 TEST_F(RenderMerge, TilesMakeTheWholeByteForByte) {

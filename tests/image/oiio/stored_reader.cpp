@@ -35,8 +35,8 @@ TEST(StoredReader, EveryTypeKeepsItsValues) {
         const StoredFile file = reader.read(scratch.file("a.tif"));
         EXPECT_EQ(file.format, "tiff");
         ASSERT_EQ(file.pictures.size(), 1u);
-        EXPECT_EQ(file.pictures[0].data, (PixelWindow{0, 0, 3, 2}));
-        EXPECT_EQ(file.pictures[0].display, (PixelWindow{0, 0, 3, 2}));
+        EXPECT_EQ(file.pictures[0].data, (PixelRect{0, 0, 3, 2}));
+        EXPECT_EQ(file.pictures[0].display, (PixelRect{0, 0, 3, 2}));
         ASSERT_EQ(file.pictures[0].channels.size(), 1u);
         const StoredChannel& channel = file.pictures[0].channels[0];
         EXPECT_EQ(channel.type, type);
