@@ -103,7 +103,8 @@ class WarpPixels {
     }
 
     /// Lets pixels that have all samples of their round decide which samples they want next, and writes the sums of
-    /// those that are finished. stands_for(x, y, record, slot, weight) is told of their samples if it is `wanted`.
+    /// those that are finished. stands_for(x, y, record, slot, weight, threshold) is told of their samples if it is
+    /// `wanted`.
     template <class StandsFor>
     __device__ void finish_round(const StandsFor& stands_for) {
         const bool ready = wanted_ != 0 && given_ == wanted_;
@@ -134,7 +135,8 @@ class WarpPixels {
             PixelRecord cell = PixelRecord();
             storage_[pixel].pixel.accumulate(i, [&](int slot, int weight) {
                 storage_[pixel].samples[slot].give(cell, weight, Plus());
-                if constexpr (StandsFor::wanted) stands_for(x, y, place, slot, weight);
+                if constexpr (StandsFor::wanted)
+                    stands_for(x, y, place, slot, weight, storage_[pixel].samples[slot].threshold);
             });
             cell.give(to, AtomicAdd());
         }
@@ -190,10 +192,10 @@ struct IntoLayers {
     PixelWork& own;
     Stack& stack;
 
-    __device__ void operator()(int x, int y, unsigned int record, int slot, int weight) const {
+    __device__ void operator()(int x, int y, unsigned int record, int slot, int weight, float threshold) const {
         add_layers(
             PixelTask<E, Intersector, Stack>{scene, job.frame, intersector, x, y, own, stack, job.layers_of(record)},
-            slot, weight);
+            slot, weight, threshold);
     }
 };
 
@@ -216,10 +218,11 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
         pixels.refill();
         const bool ends = stack.stopped();  // read early: the load takes a while
         const bool any = pixels.take_samples([&](int x, int y, LatticeStorage& pixel, int slot, PixelRecord& record) {
+            TreeThreshold threshold{LatticePixel::first_threshold(job.frame.tree, pixel.samples, slot)};
             const uint32_t hash =
                 take_sample(PixelTask<E, Intersector, Stack>{scene, job.frame, intersector, x, y, own, stack}, slot,
-                            gradual, taken);
-            pixel.samples[slot].keep(taken, hash);
+                            gradual, threshold, taken);
+            pixel.samples[slot].keep(taken, hash, threshold.share);
             AtomicAdd()(record.rays, taken.rays);
             if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
         });

@@ -147,7 +147,9 @@ class FrameTask {
                 PixelTask layered = task_for<Layered>(x, y, own, stack);
                 layered.layers = layers_of(pixel);
                 render_adaptive_pixel(task_for<E>(x, y, own, stack), gradual, pixel,
-                                      [&](int slot, int weight) { add_layers(layered, slot, weight); });
+                                      [&](int slot, int weight, float threshold) {
+                                          add_layers(layered, slot, weight, threshold);
+                                      });
             });
         }
     }

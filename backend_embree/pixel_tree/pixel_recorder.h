@@ -109,7 +109,38 @@ inline void sum_up(std::vector<PixelBranch>& branches) {
             }
 }
 
-/// The trees of pixel (x, y), sample by sample. `flags` and the records are those of render_pixel.
+/// The tree of sample `sample` of pixel (x, y), traced with a threshold. `flags` and the record are those of
+/// render_sample.
+template <class Real, class Intersector>
+SampleTree record_sample(const BranchReader<Real, Intersector>& reader, const SceneView<Real>& scene,
+                         const Intersector& intersector, const FrameView& frame, int x, int y, int sample,
+                         float threshold, uint32_t& flags) {
+    const GridSample place = grid_sample(sample, frame.supersample);
+    SampleTree tree;
+    tree.row = place.row;
+    tree.column = place.column;
+    PixelWork work;
+    SampleRecorder<Real, Intersector> recorder(reader, tree.record, work, tree);
+    const ObservedIntersector<Real, Intersector> observed{intersector, recorder};
+    ObservedStack<Real, Intersector> stack(recorder);
+    const PixelTask<BranchEffects, ObservedIntersector<Real, Intersector>, ObservedStack<Real, Intersector>> task{
+        scene, frame, observed, x, y, work, stack};
+    begin_pixel(tree.record);
+    render_sample(task, threshold, place, tree.record);
+    end_pixel(tree.record, work);
+    tree.rays = work.rays;
+    flags |= work.flags;
+    PixelBranch& primary = tree.branches.front();
+    primary.direction = sample_direction(frame, x, y, place);
+    if (tree.rays.total() == 1 && primary.end == BranchEnd::background) {  // the ray may miss the scene
+        primary.distance = RealTraits<double>::infinity;
+        primary.adds = colors_of(tree.record.radiance);
+    }
+    sum_up(tree.branches);
+    return tree;
+}
+
+/// The trees of pixel (x, y), sample by sample, traced with the thresholds that hold (tree_threshold.h).
 template <class Real, class Intersector>
 PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real>& scene,
                        const Intersector& intersector, const CameraFrame& camera, const FrameSettings& settings, int x,
@@ -117,32 +148,14 @@ PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real
     FrameView frame = frame_view(compiled, camera, settings);
     if (!find_camera_solids(scene, intersector, frame)) flags |= flag_media_overflow;
     const BranchReader<Real, Intersector> reader(compiled, scene, intersector, frame);
-    const int k = settings.supersample;
     PixelTree pixel;
-    for (int sample = 0; sample < k * k; ++sample) {
-        SampleTree& tree = pixel.samples.emplace_back();
-        tree.row = sample / k;
-        tree.column = sample % k;
-        PixelWork work;
-        SampleRecorder<Real, Intersector> recorder(reader, tree.record, work, tree);
-        const ObservedIntersector<Real, Intersector> observed{intersector, recorder};
-        ObservedStack<Real, Intersector> stack(recorder);
-        const PixelTask<BranchEffects, ObservedIntersector<Real, Intersector>, ObservedStack<Real, Intersector>> task{
-            scene, frame, observed, x, y, work, stack};
-        render_pixel(task, SampleRange{sample, k * k}, tree.record);
-        tree.rays = work.rays;
-        PixelBranch& primary = tree.branches.front();
-        const Vec3<double> direction =
-            camera_direction(frame.camera, double(2 * (x * k + tree.column) + 1 - frame.width * k),
-                             double(2 * (y * k + tree.row) + 1 - frame.height * k), frame.half_sample);
-        primary.origin = camera.camera.position;
-        primary.direction = direction;
-        if (tree.rays.total() == 1 && primary.end == BranchEnd::background) {  // the ray may miss the scene
-            primary.distance = RealTraits<double>::infinity;
-            primary.adds = colors_of(tree.record.radiance);
-        }
-        sum_up(tree.branches);
-        flags |= work.flags;
+    for (int sample = 0; sample < settings.supersample * settings.supersample; ++sample) {
+        TreeThreshold threshold{frame.tree.threshold};
+        SampleTree tree;
+        do tree = record_sample(reader, scene, intersector, frame, x, y, sample, threshold.share, flags);
+        while (!threshold.holds(frame.tree, tree.record.pruned));
+        tree.branches.front().origin = camera.camera.position;
+        pixel.samples.push_back(std::move(tree));
     }
     return pixel;
 }

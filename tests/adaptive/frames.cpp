@@ -227,7 +227,7 @@ TEST(Adaptive, TreesWithoutEndAreGivenUpAndTheLedgerSaysSo) {
     const SceneDescription scene = test::shipped_scene("hard/furnace");
     FrameSettings settings = small(scene, 24, 14);
     settings.depth = largest_depth;
-    settings.target_error = 0.01;
+    settings.target_error = 0.0005;
     expect_same_on_all_paths<float>(scene, settings, "furnace");
     const Film film = golden::render_with(*make_embree_renderer<float>(test::compile<float>(scene)), scene, settings);
     size_t beyond = 0;

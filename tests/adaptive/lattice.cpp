@@ -34,7 +34,7 @@ PixelRecord sampled(const LatticeSettings& settings, const Value& value, const H
             }
             sample.hits = 1;
             sample.rays = rays(column, row);
-            samples[slot].keep(sample, hash(column, row));
+            samples[slot].keep(sample, hash(column, row), 0);
             if (LatticePixel::is_chosen(slot)) record.id = 100 + slot;
         }
         for (int i = pixel.cells(); i-- > 0;) pixel.judge(settings, samples, i);  // in any order

@@ -56,7 +56,7 @@ TYPED_TEST(Stop, WithinATileOfManySamples) {
 TYPED_TEST(Stop, WithinAnAdaptivePixel) {
     FrameSettings settings = test::endless_settings(96, 54);
     settings.target_error = 1e-6;
-    settings.crop = {40, 25, 1, 1};
+    settings.crop = {40, 25, 3, 3};
     this->check(*make_embree_renderer<TypeParam>(this->compiled), settings);
 }
 

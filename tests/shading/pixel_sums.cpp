@@ -1,7 +1,7 @@
 // pixel_sums.h: what is added, what is left out, and what counts as a fault.
 #include <gtest/gtest.h>
 
-#include "cistula/transport/pixel_sums.h"
+#include "cistula/transport/tree_threshold.h"
 
 namespace cistula {
 namespace {
@@ -16,11 +16,10 @@ template <class Real>
 class PixelSumsTest : public testing::Test {
   protected:
     /// A sample's of a pixel of one sample.
-    PixelSums<Real> sums(int64_t budget = 0) {
+    PixelSums<Real> sums(float threshold = 0x1p-62f) {
         settings_.fixed_scale = 0x1p62f;
         settings_.fixed_unit = 0x1p-62f;
-        settings_.budget = budget;
-        return {settings_, bounds_, record_, flags_};
+        return {settings_, bounds_, record_, flags_, threshold};
     }
 
     static constexpr int64_t one = int64_t(1) << 62;
@@ -93,21 +92,56 @@ TYPED_TEST(PixelSumsTest, BoundsAreRoundedUp) {
     EXPECT_EQ(this->flags_, 0u);
 }
 
-// A tenth of what is left, and never more than the budget altogether.
-TYPED_TEST(PixelSumsTest, ABudgetIsSpentByTenths) {
+TYPED_TEST(PixelSumsTest, BranchesUpToTheThresholdAreDropped) {
     using Real = TypeParam;
-    constexpr int64_t budget = int64_t(1) << 40;
-    PixelSums<Real> sums = this->sums(budget);
-    EXPECT_TRUE(sums.afford(Real(0x1p-25)));   // 2^37 units of 2^40 are more than a tenth
-    EXPECT_FALSE(sums.afford(Real(0x1p-26)));  // 2^36 are less
-    EXPECT_EQ(this->record_.pruned[0], int64_t(1) << 36);
-    EXPECT_EQ(this->record_.pruned[1], int64_t(1) << 35);
-    int dropped = 1;
-    while (dropped < 1000 && !sums.afford(Real(0x1p-26))) ++dropped;
-    EXPECT_LT(this->record_.pruned[0], budget);
-    EXPECT_LT(dropped, 16);
+    PixelSums<Real> sums = this->sums(0x1p-22f);
+    EXPECT_TRUE(sums.afford(Real(0x1.000002p-22)));
+    EXPECT_EQ(this->record_.pruned[0], 0);
+    for (int drops = 1; drops <= 3; ++drops) {
+        EXPECT_FALSE(sums.afford(Real(0x1p-22)));
+        EXPECT_EQ(this->record_.pruned[0], drops * (int64_t(1) << 40));
+        EXPECT_EQ(this->record_.pruned[1], drops * (int64_t(1) << 39));
+    }
     EXPECT_FALSE(this->sums().afford(Real(0x1p-62)));  // at most one unit
     EXPECT_TRUE(this->sums().afford(Real(0x1p-61)));
+    const Real nan = std::numeric_limits<Real>::quiet_NaN();
+    EXPECT_TRUE(sums.afford(Vec3<Real>(nan, Real(0.5), Real(0))));
+    EXPECT_FALSE(sums.afford(Vec3<Real>(nan, Real(0x1p-30), Real(0))));
+    EXPECT_NE(this->flags_ & flag_not_finite, 0u);
+}
+
+TEST(TreeThreshold, BeginsWithAPowerOfTwoOfAnEighthOfTheBudget) {
+    constexpr float unit = 0x1p-62f;
+    EXPECT_EQ(TreeThreshold::first(0, unit), unit);
+    EXPECT_EQ(TreeThreshold::first(15, unit), unit);
+    EXPECT_EQ(TreeThreshold::first(16, unit), 2 * unit);
+    EXPECT_EQ(TreeThreshold::first(31, unit), 2 * unit);
+    EXPECT_EQ(TreeThreshold::first(int64_t(1) << 62, unit), 0.125f);
+}
+
+TEST(TreeThreshold, ShrinksUntilTheBudgetHolds) {
+    TreeSettings settings;
+    settings.fixed_unit = 0x1p-62f;
+    settings.budget = 1000;
+    TreeThreshold threshold{TreeThreshold::first(settings.budget, settings.fixed_unit)};
+    EXPECT_EQ(threshold.share, 0x1p-56f);
+    EXPECT_TRUE(threshold.holds(settings, {0, 1000, 1000}));
+    EXPECT_FALSE(threshold.holds(settings, {0, 0, 1001}));
+    EXPECT_EQ(threshold.share, 0x1p-59f);
+    EXPECT_FALSE(threshold.holds(settings, {1001, 0, 0}));
+    EXPECT_EQ(threshold.share, settings.fixed_unit);
+    EXPECT_TRUE(threshold.holds(settings, {5000, 0, 0}));  // it cannot shrink more
+}
+
+TEST(TreeThreshold, GrowsForTreesThatAreTooLargeWhateverTheBudget) {
+    TreeSettings settings;
+    settings.fixed_unit = 0x1p-62f;
+    settings.budget = 1000;
+    TreeThreshold threshold{0x1p-56f};
+    threshold.grow();
+    EXPECT_EQ(threshold.share, 0x1p-54f);
+    EXPECT_TRUE(threshold.holds(settings, {5000, 0, 0}));
+    EXPECT_EQ(threshold.share, 0x1p-54f);
 }
 
 }  // namespace

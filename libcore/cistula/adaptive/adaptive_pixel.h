@@ -7,62 +7,47 @@
 
 namespace cistula {
 
-/// The budget with which a tree is traced again that had more than most_branches.
-CISTULA_INLINE int64_t larger_budget(int64_t budget) {
-    return 4 * max_or_second(budget, int64_t(1));
-}
-
 /// Renders sample `slot` of a pixel into `record` and returns its path hash. If its tree has more than most_branches,
-/// it is traced again with a larger budget, and so on; the ledger contains what that drops. `gradual`:
+/// it is traced again with a larger threshold, and so on; the ledger contains what that drops. Trees that are traced
+/// again leave no trace, and their rays do not count. `threshold`: the first, and then the one that held. `gradual`:
 /// shades_gradually(scene), computed once. task.work is the thread's own.
 template <class E, class Intersector, class Stack>
 CISTULA_HOST_NOINLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task, int slot, bool gradual,
-                                           PixelRecord& record) {
+                                           TreeThreshold& threshold, PixelRecord& record) {
     using Real = typename PixelTask<E, Intersector, Stack>::Real;
     using Hashing = HashingStack<Stack, Real>;
-    const uint32_t before = task.work.rays.total();
-    TreeSettings settings = task.frame.tree;
-    for (;; settings.budget = larger_budget(settings.budget)) {
+    const PixelRays before = task.work.rays;
+    for (;;) {
+        task.work.rays = before;
         begin_pixel(record);
         PathHash hash;
         Hashing stack(task.stack, hash, Real(task.frame.lattice.significant));
         const HashingIntersector<Intersector> intersector{task.intersector, hash, gradual};
         const PixelTask<E, HashingIntersector<Intersector>, Hashing> hashed{task.scene, task.frame, intersector, task.x,
                                                                             task.y,     task.work,  stack};
-        render_sample(hashed, settings, {slot % lattice_side, slot / lattice_side, true}, record);
-        record.rays = task.work.rays.total() - before;
-        if (!stack.drop()) return hash.value;
+        render_sample(hashed, threshold.share, {slot % lattice_side, slot / lattice_side, true}, record);
+        record.rays = task.work.rays.total() - before.total();
+        const bool is_too_large = stack.drop();
         if (task.stack.stopped()) return hash.value;
+        if (is_too_large)
+            threshold.grow();
+        else if (threshold.holds(task.frame.tree, record.pruned))
+            return hash.value;
     }
 }
 
 /// Enters sample `slot` into the pixel's layers as if it represented `weight` samples of the lattice, by tracing it
-/// again. E: with fills_layers. False if its tree has more than most_branches.
+/// again with the threshold that held. E: with fills_layers.
 template <class E, class Intersector, class Stack>
-CISTULA_NOINLINE bool trace_layers(const PixelTask<E, Intersector, Stack>& task, const TreeSettings& settings, int slot,
-                                   int weight) {
-    using Real = typename PixelTask<E, Intersector, Stack>::Real;
-    using Limited = HashingStack<Stack, Real>;
-    PathHash unused;
-    Limited stack(task.stack, unused, Real(task.frame.lattice.significant));
+CISTULA_NOINLINE void add_layers(const PixelTask<E, Intersector, Stack>& task, int slot, int weight, float threshold) {
     PixelWork work;
     PixelRecord record;
     begin_pixel(record);
-    const PixelTask<E, Intersector, Limited> traced{task.scene, task.frame, task.intersector,           task.x, task.y,
-                                                    work,       stack,      {task.layers.words, weight}};
-    render_sample(traced, settings, {slot % lattice_side, slot / lattice_side, LatticePixel::is_chosen(slot)}, record);
+    const PixelTask<E, Intersector, Stack> traced{task.scene, task.frame, task.intersector, task.x,
+                                                  task.y,     work,       task.stack,       task.layers};
+    render_sample(traced, threshold, {slot % lattice_side, slot / lattice_side, LatticePixel::is_chosen(slot)}, record,
+                  weight);
     task.work.flags |= work.flags & flag_objects_overflow;
-    return !stack.drop();
-}
-
-/// Enters a sample into the pixel's layers, with the budget that take_sample came to.
-template <class E, class Intersector, class Stack>
-CISTULA_INLINE void add_layers(const PixelTask<E, Intersector, Stack>& task, int slot, int weight) {
-    TreeSettings settings = task.frame.tree;
-    while (!trace_layers(task, settings, slot, weight) && !task.stack.stopped()) {
-        trace_layers(task, settings, slot, -weight);  // takes back what it added
-        settings.budget = larger_budget(settings.budget);
-    }
 }
 
 /// Copies the data that belong to a single sample: id, depth and normal.
@@ -72,37 +57,71 @@ CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel)
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
 }
 
-/// What sample_adaptively tells of a sample that represents `weight` samples: nothing.
+/// An observer of the samples that count in the end and of the lattice samples that each represents: it does nothing.
 struct IgnoredWeights {
-    CISTULA_INLINE void operator()(int, int) const {}
+    CISTULA_INLINE void operator()(int, int, float) const {}
 };
 
-/// Takes all samples that the pixel wants into `record`, with local storage for them. take(slot, taken) renders a
-/// sample into `taken` and returns its path hash; stands_for(slot, weight) is told of those that count in the end.
+/// A pixel that takes its samples in rounds, with storage for them.
+class AdaptivePixel {
+  public:
+    CISTULA_INLINE void begin(bool checked, PixelRecord& record) {
+        record = PixelRecord();
+        pixel_.begin(checked);
+    }
+    /// The slots of the samples that this round wants; none if the pixel is done.
+    CISTULA_INLINE int wanted() const { return pixel_.wanted(); }
+    CISTULA_INLINE int wanted(int i) const { return pixel_.wanted(i); }
+
+    /// The threshold with which a sample is traced first.
+    CISTULA_INLINE float first_threshold(const TreeSettings& settings, int slot) const {
+        return LatticePixel::first_threshold(settings, samples_, slot);
+    }
+
+    /// Stores a sample that this round wants, and the threshold that held.
+    CISTULA_INLINE void keep(int slot, const PixelRecord& taken, uint32_t hash, float threshold, PixelRecord& record) {
+        samples_[slot].keep(taken, hash, threshold);
+        record.rays += taken.rays;
+        if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
+    }
+    /// Ends a round, once all its samples are stored.
+    CISTULA_INLINE void end_round(const LatticeSettings& settings) {
+        for (int i = 0; i < pixel_.cells(); ++i) pixel_.judge(settings, samples_, i);
+        pixel_.divide(settings, samples_);
+    }
+    /// Completes the record of a pixel that is done. stands_for(slot, weight, threshold) is told of the samples that
+    /// count.
+    template <class StandsFor>
+    CISTULA_INLINE void finish(PixelRecord& record, const StandsFor& stands_for) const {
+        for (int i = 0; i < pixel_.cells(); ++i)
+            pixel_.accumulate(i, [&](int slot, int weight) {
+                samples_[slot].give(record, weight, Plus());
+                stands_for(slot, weight, samples_[slot].threshold);
+            });
+        pixel_.describe(record);
+    }
+
+  private:
+    LatticeSample samples_[lattice_samples];
+    LatticePixel pixel_;
+};
+
+/// Takes all samples that a pixel wants into `record`. take(slot, threshold, taken) renders a sample into `taken`,
+/// beginning with a threshold, sets the one that held, and returns the path hash; stands_for is that of
+/// AdaptivePixel::finish.
 template <class Take, class StandsFor = IgnoredWeights>
-CISTULA_INLINE void sample_adaptively(const LatticeSettings& settings, bool checked, PixelRecord& record,
-                                      const Take& take, const StandsFor& stands_for = {}) {
-    LatticeSample samples[lattice_samples];
+CISTULA_INLINE void sample_adaptively(const FrameView& frame, bool checked, PixelRecord& record, const Take& take,
+                                      const StandsFor& stands_for = {}) {
+    AdaptivePixel pixel;
     PixelRecord taken;
-    LatticePixel pixel;
-    record = PixelRecord();
-    for (pixel.begin(checked); pixel.wanted() > 0;) {
+    for (pixel.begin(checked, record); pixel.wanted() > 0; pixel.end_round(frame.lattice))
         for (int i = 0; i < pixel.wanted(); ++i) {
             const int slot = pixel.wanted(i);
-            const uint32_t hash = take(slot, taken);
-            samples[slot].keep(taken, hash);
-            record.rays += taken.rays;
-            if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
+            TreeThreshold threshold{pixel.first_threshold(frame.tree, slot)};
+            const uint32_t hash = take(slot, threshold, taken);
+            pixel.keep(slot, taken, hash, threshold.share, record);
         }
-        for (int i = 0; i < pixel.cells(); ++i) pixel.judge(settings, samples, i);
-        pixel.divide(settings, samples);
-    }
-    for (int i = 0; i < pixel.cells(); ++i)
-        pixel.accumulate(i, [&](int slot, int weight) {
-            samples[slot].give(record, weight, Plus());
-            stands_for(slot, weight);
-        });
-    pixel.describe(record);
+    pixel.finish(record, stands_for);
 }
 
 /// Renders a pixel of a frame with a target error. `stands_for` is that of sample_adaptively.
@@ -110,8 +129,11 @@ template <class E, class Intersector, class Stack, class StandsFor = IgnoredWeig
 CISTULA_INLINE void render_adaptive_pixel(const PixelTask<E, Intersector, Stack>& task, bool gradual,
                                           PixelRecord& record, const StandsFor& stands_for = {}) {
     sample_adaptively(
-        task.frame.lattice, is_checked(task.x, task.y), record,
-        [&](int slot, PixelRecord& taken) { return take_sample(task, slot, gradual, taken); }, stands_for);
+        task.frame, is_checked(task.x, task.y), record,
+        [&](int slot, TreeThreshold& threshold, PixelRecord& taken) {
+            return take_sample(task, slot, gradual, threshold, taken);
+        },
+        stands_for);
 }
 
 }  // namespace cistula

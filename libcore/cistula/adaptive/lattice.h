@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cistula/adaptive/adaptive_rules.h"
+#include "cistula/transport/tree_threshold.h"
 
 namespace cistula {
 
@@ -104,6 +105,18 @@ class LatticePixel {
         record.unmet = tally_.unmet;
         record.checked = tally_.check != Check::none;
         record.off = tally_.check == Check::off;
+    }
+
+    /// The threshold with which a sample's tree is traced first: of a pixel's first samples the frame's; of others the
+    /// greatest that those held, so that few trees are traced again.
+    CISTULA_INLINE static float first_threshold(const TreeSettings& settings, const LatticeSample* samples, int slot) {
+        const LatticeCell whole = LatticeCell::whole_pixel();
+        bool is_first = slot == lattice_middle;
+        for (int c = 0; c < 4; ++c) is_first |= slot == whole.corner(c);
+        if (is_first) return settings.threshold;
+        float greatest = samples[lattice_middle].threshold;
+        for (int c = 0; c < 4; ++c) greatest = max_or_second(samples[whole.corner(c)].threshold, greatest);
+        return greatest;
     }
 
     /// Whether this sample gives the pixel's id, depth and normal.

@@ -15,11 +15,12 @@ struct LatticeSample {
     int64_t radiance[3], pruned[3], cut[3];
     uint32_t hits, rays;
     uint32_t path_hash;  // hash of its ray tree (path_hash.h)
+    float threshold;     // that its tree held (tree_threshold.h)
 
     /// A channel's radiance in units of 2^-color_bits.
     CISTULA_INLINE int64_t color(int channel) const { return radiance[channel] >> color_shift; }
 
-    CISTULA_INLINE void keep(const PixelRecord& record, uint32_t hash) {
+    CISTULA_INLINE void keep(const PixelRecord& record, uint32_t hash, float threshold_held) {
         for (int c = 0; c < 3; ++c) {
             radiance[c] = record.radiance[c];
             pruned[c] = record.pruned[c];
@@ -28,6 +29,7 @@ struct LatticeSample {
         hits = record.hits;
         rays = record.rays;
         path_hash = hash;
+        threshold = threshold_held;
     }
 
     /// Calls add(to, value) for the sample's sums, as if it represented `weight` samples of the lattice.

@@ -22,6 +22,17 @@ struct PathHash {
     }
 };
 
+/// Adds the texel at a hit to a hash.
+template <class Scene, class Real>
+CISTULA_INLINE void add_texel(PathHash& hash, const Scene& scene, const Hit<Real>& hit) {
+    const Solid& solid = scene.solids[key_solid(hit.key)];
+    const int32_t texture = scene.materials[solid.material].texture;
+    if (texture < 0) return;
+    const Texture& of = scene.textures[uint32_t(texture)];
+    const Vec2<Real> texel = first_texel(of, texture_uv(scene, hit));
+    hash.add(bits_as<uint32_t>(float(texel.x)), bits_as<uint32_t>(float(texel.y)), solid.material);
+}
+
 /// An intersector that adds the faces and texels that are hit and the transmittance toward lights to a hash; of a
 /// transmittance that varies gradually only whether it is above zero.
 template <class Inner>
@@ -39,7 +50,7 @@ struct HashingIntersector {
         // A primary ray that hits nothing counts like one that misses the scene.
         if (hash.counts && (hit.found() || ray.from_solid != no_solid))
             hash.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
-        if (hash.counts && hit.found()) add_texel(hit);
+        if (hash.counts && hit.found()) add_texel(hash, inner.scene, hit);
         return hit;
     }
 
@@ -55,20 +66,15 @@ struct HashingIntersector {
     }
 
   private:
-    CISTULA_INLINE void add_texel(const Hit<Real>& hit) const {
-        const auto& scene = inner.scene;
-        const Solid& solid = scene.solids[key_solid(hit.key)];
-        const int32_t texture = scene.materials[solid.material].texture;
-        if (texture < 0) return;
-        const Texture& of = scene.textures[uint32_t(texture)];
-        const Vec2<Real> texel = first_texel(of, texture_uv(scene, hit));
-        hash.add(bits_as<uint32_t>(float(texel.x)), bits_as<uint32_t>(float(texel.y)), solid.material);
-    }
-
     CISTULA_INLINE uint32_t told_apart(Real share) const {
         return gradual ? (share > Real(0) ? 1u : 0u) : bits_as<uint32_t>(float(share));
     }
 };
+
+template <class Inner>
+CISTULA_INLINE const Inner& unobserved(const HashingIntersector<Inner>& intersector) {
+    return intersector.inner;
+}
 
 /// The maximum number of branches followed in a tree while a frame has a target. A tree that loses little light at
 /// every bounce and splits often is practically endless; more of it is then dropped (take_sample).

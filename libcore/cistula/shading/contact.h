@@ -204,7 +204,7 @@ CISTULA_NOINLINE void count_meshes(const Scene& scene, const Intersector& inters
     Ray<Real, Media> probe = ray;
     probe.accept_both_sides();
     for (;;) {
-        const Hit<Real> hit = intersector.closest(probe);
+        const Hit<Real> hit = unobserved(intersector).closest(probe);
         if (!hit.found()) break;
         const uint32_t solid = key_solid(hit.key);
         const int change = media_change(key_kind(hit.key));

@@ -60,6 +60,13 @@ CISTULA_INLINE bool is_opaque(const SceneView<Real>& scene, uint32_t solid) {
     return !(material.transmission > Real(0)) && material.fresnel == 0;
 }
 
+/// The intersector for crossings that are looked for beside those that a ray meets: one that observes rays is not to
+/// notice.
+template <class Intersector>
+CISTULA_INLINE const Intersector& unobserved(const Intersector& intersector) {
+    return intersector;
+}
+
 /// Collects the crossings at exactly the same t, up to a sheet, and chooses what is shaded: an opaque solid that begins
 /// there and is the medium beyond, else the highest solid that begins or ends there (docs/rules.md, 11, line 6). Not
 /// inlined: few events have more than one crossing.
@@ -72,7 +79,7 @@ CISTULA_NOINLINE void gather_shared(const SceneView<Real>& scene, const Intersec
     while (event.count < SurfaceEvent<Real, Media>::capacity) {
         probe.media = event.beyond;
         probe.after = event.last();
-        const Hit<Real> next = intersector.closest(probe);
+        const Hit<Real> next = unobserved(intersector).closest(probe);
         if (!(next.t == event.taken[0].t) || key_kind(next.key) == CrossingKind::sheet) break;
         hits[event.count] = next;
         event.take(next);

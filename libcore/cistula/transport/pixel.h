@@ -4,6 +4,7 @@
 #include "cistula/model/camera.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
+#include "cistula/transport/tree_threshold.h"
 
 namespace cistula {
 
@@ -189,7 +190,7 @@ struct LayeredFirstSeen {
               Vec3<Real>(Real(0)), 0);
     }
 
-  private:
+    /// Enters a hit into the layers. `index`: PixelRecord::id of what is hit, less 1.
     CISTULA_INLINE void enter(uint32_t index, const Vec3<Real>& point, Real t, const Vec2<Real>& uv,
                               const Vec3<Real>& albedo, uint32_t material) const {
         if (plan.objects >= 0 &&
@@ -252,17 +253,20 @@ CISTULA_INLINE GridSample grid_sample(int i, int k) {
     return {column, row, column == k / 2 && row == k / 2};
 }
 
-/// Renders a sample and adds it to the record. `settings`: frame.tree, or a copy with a budget of the sample's own.
+/// Renders a sample with a threshold (tree_threshold.h) and adds it to the record, and to the pixel's layers `weight`
+/// times.
 template <class E, class Intersector, class Stack>
-CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, const TreeSettings& settings,
-                                  const GridSample& sample, PixelRecord& record) {
+CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, float threshold,
+                                  const GridSample& sample, PixelRecord& record, [[maybe_unused]] int weight = 1) {
     using Task = PixelTask<E, Intersector, Stack>;
     using Real = typename Task::Real;
     const FrameView& frame = task.frame;
+    const TreeSettings& settings = frame.tree;
     Ray<Real, typename Task::Media> ray;
     const Vec3<double> direction = sample_direction(frame, task.x, task.y, sample);
-    SumsOf<Real, E> sums(settings, task.scene, record, task.work.flags);
-    if constexpr (E::has(fills_layers)) sums.divide(frame.layers, task.layers, task.scene.light_groups);
+    SumsOf<Real, E> sums(settings, task.scene, record, task.work.flags, threshold);
+    [[maybe_unused]] const PixelLayers layers{task.layers.words, weight};
+    if constexpr (E::has(fills_layers)) sums.divide(frame.layers, layers, task.scene.light_groups);
     ++task.work.rays.primary;
     double start;
     if (!primary_ray(task.scene, frame, direction, ray, start)) {
@@ -277,8 +281,8 @@ CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, 
                                               task.stack);
     const FirstSeen<Real> seen{frame, task.work, record, sample.middle};
     if constexpr (E::has(fills_layers))
-        tree.trace(ray, LayeredFirstSeen<Real, typename Task::Scene>{seen, task.scene, frame.layers, task.layers,
-                                                                     task.work.flags});
+        tree.trace(
+            ray, LayeredFirstSeen<Real, typename Task::Scene>{seen, task.scene, frame.layers, layers, task.work.flags});
     else
         tree.trace(ray, seen);
 }
@@ -293,10 +297,29 @@ CISTULA_INLINE void end_pixel(PixelRecord& record, const PixelWork& work) {
     record.samples = work.rays.primary;
 }
 
-/// Renders sample i, counted row by row in the k x k grid, and adds it to the record.
+/// Renders sample i, counted row by row in the k x k grid, and adds it to the record. In frames with a cutoff trees
+/// that lose too much are traced again; they leave no trace, and their rays do not count.
 template <class E, class Intersector, class Stack>
 CISTULA_INLINE void add_sample(const PixelTask<E, Intersector, Stack>& task, int i, PixelRecord& record) {
-    render_sample(task, task.frame.tree, grid_sample(i, task.frame.supersample), record);
+    const TreeSettings& settings = task.frame.tree;
+    const GridSample sample = grid_sample(i, task.frame.supersample);
+    const bool has_cutoff = settings.budget != 0;
+    PixelRecord before;
+    PixelRays rays;
+    if (has_cutoff) before = record, rays = task.work.rays;
+    TreeThreshold threshold{settings.threshold}, next = threshold;
+    for (int weight = 1;; weight = E::has(fills_layers) ? -weight : 1) {
+        render_sample(task, threshold.share, sample, record, weight);
+        if (!has_cutoff || task.stack.stopped()) return;
+        if (weight > 0) {
+            int64_t dropped[3];
+            for (int c = 0; c < 3; ++c) dropped[c] = record.pruned[c] - before.pruned[c];
+            if (next.holds(settings, dropped)) return;
+        }
+        record = before;
+        task.work.rays = rays;
+        if (weight < 0 || !E::has(fills_layers)) threshold = next;  // layers are first taken back
+    }
 }
 
 /// Renders samples of a pixel's k x k grid of centers into its record.

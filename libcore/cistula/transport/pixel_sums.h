@@ -12,7 +12,8 @@ struct TreeSettings {
     int depth = 4;          // maximum number of surfaces shaded along a path
     float fixed_scale = 1;  // 2^s of the sums (docs/rules.md, 8), exact in either Real
     float fixed_unit = 1;   // 2^-s
-    int64_t budget = 0;     // truncation allowed per sample, in units of the sums
+    int64_t budget = 0;     // truncation allowed per sample, in units of the sums; 0: no cutoff
+    float threshold = 1;    // the first of a sample (tree_threshold.h)
 };
 
 /// The bits of a number as an integer. For numbers in [0, 1] integers have the same order; all others (-0 and NaN
@@ -42,13 +43,18 @@ class PixelSums {
   public:
     /// Sums of one sample. Weights are a share per channel, or one for all.
     template <class Scene>
-    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
+    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags,
+                             float threshold)
         : settings_(settings),
           bound_(scene.bound),
           largest_bound_(scene.largest_bound),
           record_(record),
           flags_(flags),
-          left_(settings.budget) {}
+          threshold_(threshold) {}
+    /// Sums without a cutoff.
+    template <class Scene>
+    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
+        : PixelSums(settings, scene, record, flags, settings.fixed_unit) {}
 
     CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource = LightSource::background, bool = true) {
         const Vec3<Real> units = in_units(radiance, Real(settings_.fixed_scale), flags_);
@@ -60,16 +66,15 @@ class PixelSums {
         add(radiance);
     }
 
-    /// Whether to follow a branch with this throughput; if not, its bound is added to the ledger. A branch is dropped
-    /// if its bound is at most a tenth of the remaining budget, or at most one unit of the sums.
+    /// Whether to follow a branch with this throughput; if its bound is no greater than the threshold, it is not, and
+    /// the bound is added to the ledger.
     template <class Throughput>
     CISTULA_INLINE bool afford(const Throughput& weight) {
-        if (left_ == 0 && clearly_counts(weight)) return true;
+        if (clearly_counts(weight)) return true;
         int64_t most[3];
         const int64_t worst = most_of(bounded(weight), Real(settings_.fixed_scale), flags_, most);
-        if (worst > 1 && worst > left_ / 10) return true;
+        if (worst > whole_of(threshold_ * Real(settings_.fixed_scale))) return true;
         for (int c = 0; c < 3; ++c) record_.pruned[c] += most[c];
-        left_ = worst < left_ ? left_ - worst : 0;
         return false;
     }
 
@@ -96,7 +101,7 @@ class PixelSums {
     }
 
   private:
-    /// Whether the branch could add more than one unit of the sums. False for values that are not finite or exceed the
+    /// Whether the branch could add more than the threshold. False for values that are not finite or exceed the
     /// bound, which most_of handles.
     CISTULA_INLINE bool clearly_counts(const Vec3<Real>& weight) const {
         return counts(greatest_word(weight * bound_));
@@ -105,7 +110,7 @@ class PixelSums {
 
     template <class Word>
     CISTULA_INLINE bool counts(Word most) const {
-        return most <= word_of(Real(1)) && most > word_of(Real(settings_.fixed_unit));
+        return most <= word_of(Real(1)) && most > word_of(threshold_);
     }
 
     /// The bound on what a branch can add. The slack of 2^-10 in B covers the rounding of all weights below it.
@@ -140,7 +145,7 @@ class PixelSums {
     const Real& largest_bound_;
     PixelRecord& record_;
     uint32_t& flags_;
-    int64_t left_;
+    const Real threshold_;  // a share of the bound
 };
 
 }  // namespace cistula

@@ -45,7 +45,7 @@ BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameVi
     PixelRecord& record = pixel.record;
     begin_pixel(record);
     if (adaptive) {
-        sample_adaptively(frame.lattice, checked, record, [&](int, PixelRecord& taken) {
+        sample_adaptively(frame, checked, record, [&](int, const TreeThreshold&, PixelRecord& taken) {
             begin_pixel(taken);
             add_sample(taken);
             return 0u;

@@ -56,6 +56,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     // A budget above the radiance bound prunes everything either way.
     const double budget = min_or_second(elementary::scaled(settings.truncation(), -scene.radiance_exponent), 16.0);
     frame.tree.budget = int64_t(floor_of(min_or_second(budget * fixed_scale(shift), 0x1p62)));
+    frame.tree.threshold = TreeThreshold::first(frame.tree.budget, frame.tree.fixed_unit);
     if (settings.adaptive()) set_lattice(scene, settings, frame.lattice);
     frame.layers = layer_plan(settings.layers, scene.layer_names->light_groups.size());
     return frame;
