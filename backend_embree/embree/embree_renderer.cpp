@@ -30,6 +30,7 @@ class EmbreeRenderer : public Renderer {
                 RenderProgress& progress) override {
         used_plain_ = plain_ && !settings.layers.any();
         if (used_plain_) return plain_->render(camera, settings, film, progress);
+        if (plain_ && !in_lanes_) in_lanes_ = lane_scene(view_);
         EmbreeIntersector<Real> intersector{view_, tree_ ? tree_->scene() : nullptr};
         FrameTask task(*scene_, intersector, camera, settings, film, progress,
                        in_lanes_ ? &in_lanes_->scene() : nullptr);
@@ -60,7 +61,7 @@ class EmbreeRenderer : public Renderer {
     SceneView<Real> view_;
     EmbreeOptions options_;
     std::shared_ptr<const EmbreeTree<Real>> tree_;  // built when a frame needs it, or before all if every frame does
-    std::unique_ptr<Renderer> plain_;  // set if a loop over few primitives replaces the tree, which layers need
+    std::unique_ptr<Renderer> plain_;  // set if a loop over few primitives replaces the tree in frames without layers
     std::unique_ptr<const OwnedLaneScene<Real>> in_lanes_;  // set if rays may be traced in lanes
     // Of the last frame:
     bool used_plain_ = false;

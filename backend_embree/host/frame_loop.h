@@ -9,8 +9,7 @@
 #include <mutex>
 #include <utility>
 
-#include "backend_embree/lanes/lane_renderer.h"
-#include "cistula/adaptive/adaptive_pixel.h"
+#include "backend_embree/lanes/pixels_by_sample.h"
 #include "cistula/lanes/lane_scene.h"
 #include "cistula/traversal/bvh.h"
 #include "scene/base/default_rounding.h"
@@ -68,8 +67,9 @@ class FrameTask {
         if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = effect_mask_count - 1;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
-        if (in_lanes != nullptr && !settings.layers.any() && !settings.adaptive() && mask_ < effect_mask_count)
-            tiles_ = tile_functions<Real>(frame_, settings.lanes);
+        if (in_lanes == nullptr || mask_ == unshadowed_mask) return;
+        tiles_ = tile_functions<Real>(settings.lanes);
+        if (tiles_ != nullptr && goes_by_sample() && !settings.layers.any()) mask_ = effect_mask_count - 1;
     }
 
     /// The effects that are compiled into the code that runs (mask_to_run; all of them for references).
@@ -80,10 +80,10 @@ class FrameTask {
 
     /// Renders the frame; false if it was stopped.
     bool run() {
+        if (tiles_ != nullptr) return goes_by_sample() ? render_samples_in_lanes() : render_in_lanes();
         if (settings_.layers.any())
             return settings_.adaptive() ? render_adaptive_layers() : render_mask<layered_mask>();
         if (settings_.adaptive()) return render_adaptive();
-        if (tiles_ != nullptr) return render_in_lanes();
         if constexpr (!runs_every_mask<Intersector>) {
             return mask_ == unshadowed_mask ? render_mask<unshadowed_mask>() : render_mask<effect_mask_count - 1>();
         } else {
@@ -128,8 +128,25 @@ class FrameTask {
     bool render_in_lanes() {
         return for_each_tile([&](const PixelRect& tile, Counts& counts) {
             TileRenderer renderer(*tiles_, mask_, lane_scene_, frame_);
-            for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) { renderer.add(x, y, pixel); });
+            for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) {
+                const int samples = frame_.supersample * frame_.supersample;
+                renderer.add({x, y, 0, samples, {frame_.tree.threshold}, &pixel, layers_of(pixel)});
+            });
             renderer.render(progress_.stop, counts.rays, counts.flags);
+        });
+    }
+
+    /// Whether each sample is rendered by itself: in frames with a cutoff or a target error.
+    bool goes_by_sample() const { return frame_.tree.budget != 0 || settings_.adaptive(); }
+
+    /// Renders sample by sample, many rays at once.
+    bool render_samples_in_lanes() {
+        return for_each_tile([&](const PixelRect& tile, Counts& counts) {
+            PixelsBySample pixels(*tiles_, lane_scene_, frame_);
+            for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) {
+                pixels.add(x, y, pixel, layers_of(pixel).words);
+            });
+            pixels.render(progress_.stop, counts.rays, counts.flags);
         });
     }
 
@@ -146,10 +163,9 @@ class FrameTask {
                 Stack<E> stack(storage, RenderStop{progress_.stop});
                 PixelTask layered = task_for<Layered>(x, y, own, stack);
                 layered.layers = layers_of(pixel);
-                render_adaptive_pixel(task_for<E>(x, y, own, stack), gradual, pixel,
-                                      [&](int slot, int weight, float threshold) {
-                                          add_layers(layered, slot, weight, threshold);
-                                      });
+                render_adaptive_pixel(
+                    task_for<E>(x, y, own, stack), gradual, pixel,
+                    [&](int slot, int weight, float threshold) { add_layers(layered, slot, weight, threshold); });
             });
         }
     }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "backend_embree/lanes/tile_functions.h"
+#include "cistula/lanes/lane_pixel.h"
 #include "cistula/transport/pixel.h"
 
 namespace cistula {
@@ -12,13 +13,16 @@ namespace cistula {
 /// Renders tiles, one after the other.
 class TileRenderer {
   public:
-    /// `mask`: index in effect_masks. The scene, a LaneScene of the precision of `functions`, and the frame must
-    /// outlive the renderer.
+    /// The scene, a LaneScene of the precision of `functions`, and the frame must outlive the renderer. `mask`: index
+    /// in effect_masks.
     TileRenderer(const TileFunctions& functions, int mask, const void* scene, const FrameView& frame)
         : functions_(functions), tile_(functions.make(mask, scene, &frame), functions.destroy) {}
+    /// A renderer of samples by themselves.
+    TileRenderer(const TileFunctions& functions, const void* scene, const FrameView& frame)
+        : functions_(functions), tile_(functions.make_by_sample(scene, &frame), functions.destroy) {}
 
-    /// Adds a pixel of the frame to the tile.
-    void add(int x, int y, PixelRecord& record) { functions_.add(tile_.get(), x, y, &record); }
+    /// Adds samples to the tile. The records must outlive its rendering.
+    void add(const LanePixel& pixel) { functions_.add(tile_.get(), &pixel); }
     /// Renders the tile's pixels, unless it is stopped, adds what they count, and begins a new tile.
     void render(const std::atomic<bool>& stop, RayCounts& rays, uint32_t& flags) {
         functions_.render(tile_.get(), &stop, &rays, &flags);
@@ -29,9 +33,8 @@ class TileRenderer {
     std::unique_ptr<void, void (*)(void*)> tile_;
 };
 
-/// The tile renderers for a frame with at most so many lanes (0: any number); null if the frame is traced one ray at a
-/// time: with one lane, or with a cutoff, whose budget is spent in the order of one stack.
+/// The tile renderers with at most so many lanes (0: any number); null if that is one.
 template <class Real>
-const TileFunctions* tile_functions(const FrameView& frame, int most_lanes);
+const TileFunctions* tile_functions(int most_lanes);
 
 }  // namespace cistula

@@ -30,15 +30,14 @@ const TileFunctions* avx2_copy() {
 }  // namespace
 
 template <class Real>
-const TileFunctions* tile_functions(const FrameView& frame, int most_lanes) {
+const TileFunctions* tile_functions(int most_lanes) {
     static const TileFunctions* const copies[] = {avx512_copy<Real>(), avx2_copy<Real>()};
-    if (frame.tree.budget != 0) return nullptr;
     for (const TileFunctions* copy : copies)
         if (copy != nullptr && (most_lanes == 0 || copy->lanes <= most_lanes)) return copy;
     return nullptr;
 }
 
-template const TileFunctions* tile_functions<float>(const FrameView&, int);
-template const TileFunctions* tile_functions<double>(const FrameView&, int);
+template const TileFunctions* tile_functions<float>(int);
+template const TileFunctions* tile_functions<double>(int);
 
 }  // namespace cistula

@@ -11,7 +11,8 @@ extern "C" {
 struct TileFunctions {
     int lanes;
     void* (*make)(int mask, const void* scene, const void* frame);
-    void (*add)(void* tile, int x, int y, void* record);
+    void* (*make_by_sample)(const void* scene, const void* frame);  // with all effects
+    void (*add)(void* tile, const void* pixel);
     void (*render)(void* tile, const void* stop, void* rays, uint32_t* flags);
     void (*destroy)(void* tile);
 };

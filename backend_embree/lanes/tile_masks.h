@@ -1,4 +1,4 @@
-// The tile renderers of one number type and instruction set, for every effect mask.
+// The tile renderers of one number type and instruction set, for every effect mask that scenes are rendered with.
 #pragma once
 
 #include <array>
@@ -14,22 +14,22 @@ namespace cistula {
 class AnyTile {
   public:
     virtual ~AnyTile() = default;
-    virtual void add(int x, int y, PixelRecord& record) = 0;
+    virtual void add(const LanePixel& pixel) = 0;
     virtual void render(const std::atomic<bool>& stop, RayCounts& rays, uint32_t& flags) = 0;
 };
 
-template <class Real, class E>
+template <class Real, class E, bool by_sample = false>
 class MaskTile : public AnyTile {
   public:
     MaskTile(const LaneScene<ScalarOf<Real>>& scene, const FrameView& frame) : tile_(scene, frame) {}
 
-    void add(int x, int y, PixelRecord& record) override { tile_.add(x, y, record); }
+    void add(const LanePixel& pixel) override { tile_.add(pixel); }
     void render(const std::atomic<bool>& stop, RayCounts& rays, uint32_t& flags) override {
         tile_.render([&] { return stop.load(std::memory_order_relaxed); }, rays, flags);
     }
 
   private:
-    LaneTile<Real, E> tile_;
+    LaneTile<Real, E, by_sample> tile_;
 };
 
 template <class Real>
@@ -40,26 +40,33 @@ AnyTile* make_mask_tile(int mask, const LaneScene<ScalarOf<Real>>& scene, const 
             return new MaskTile<Real, Effects<effect_masks[i]>>(s, f);
         }...};
     }
-    (std::make_index_sequence<effect_mask_count>());
+    (std::make_index_sequence<layered_mask + 1>());
     return table[size_t(mask)](scene, frame);
 }
 
 /// The functions of a number type of lanes.
 template <class Real>
 constexpr TileFunctions tile_functions_of() {
-    return {LaneTraits<Real>::lanes,
-            [](int mask, const void* scene, const void* frame) -> void* {
-                return make_mask_tile<Real>(mask, *static_cast<const LaneScene<ScalarOf<Real>>*>(scene),
-                                            *static_cast<const FrameView*>(frame));
-            },
-            [](void* tile, int x, int y, void* record) {
-                static_cast<AnyTile*>(tile)->add(x, y, *static_cast<PixelRecord*>(record));
-            },
-            [](void* tile, const void* stop, void* rays, uint32_t* flags) {
-                static_cast<AnyTile*>(tile)->render(*static_cast<const std::atomic<bool>*>(stop),
-                                                    *static_cast<RayCounts*>(rays), *flags);
-            },
-            [](void* tile) { delete static_cast<AnyTile*>(tile); }};
+    using Scene = LaneScene<ScalarOf<Real>>;
+    TileFunctions functions{};
+    functions.lanes = LaneTraits<Real>::lanes;
+    functions.make = [](int mask, const void* scene, const void* frame) -> void* {
+        return make_mask_tile<Real>(mask, *static_cast<const Scene*>(scene), *static_cast<const FrameView*>(frame));
+    };
+    functions.make_by_sample = [](const void* scene, const void* frame) -> void* {
+        AnyTile* tile = new MaskTile<Real, Effects<all_effects>, true>(*static_cast<const Scene*>(scene),
+                                                                       *static_cast<const FrameView*>(frame));
+        return tile;
+    };
+    functions.add = [](void* tile, const void* pixel) {
+        static_cast<AnyTile*>(tile)->add(*static_cast<const LanePixel*>(pixel));
+    };
+    functions.render = [](void* tile, const void* stop, void* rays, uint32_t* flags) {
+        static_cast<AnyTile*>(tile)->render(*static_cast<const std::atomic<bool>*>(stop),
+                                            *static_cast<RayCounts*>(rays), *flags);
+    };
+    functions.destroy = [](void* tile) { delete static_cast<AnyTile*>(tile); };
+    return functions;
 }
 
 }  // namespace cistula

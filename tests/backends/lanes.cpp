@@ -8,6 +8,8 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "cistula/geometry/ray.h"
 #include "testing/generated_scene.h"
+#include "testing/support/endless_scene.h"
+#include "testing/support/film_layers.h"
 #include "testing/support/golden.h"
 #include "testing/support/read_text.h"
 #include "testing/support/shipped_scenes.h"
@@ -32,6 +34,8 @@ class LaneTest : public ::testing::Test {
             EXPECT_LE(renderer->lanes(), lanes);
             EXPECT_EQ(film_hash(film), film_hash(expected)) << name << ", " << lanes << " lanes";
             EXPECT_EQ(film.flags, expected.flags) << name;
+            EXPECT_TRUE(film.layers.plan == expected.layers.plan) << name;
+            EXPECT_TRUE(words_of(film) == words_of(expected)) << name << ", " << lanes << " lanes";
             for (const auto kind :
                  {&RayCounts::primary, &RayCounts::reflected, &RayCounts::transmitted, &RayCounts::shadow})
                 EXPECT_EQ(film.rays.*kind, expected.rays.*kind) << name << ", " << lanes << " lanes";
@@ -42,6 +46,12 @@ class LaneTest : public ::testing::Test {
     size_t in_lanes() const { return in_lanes_.size(); }
 
   private:
+    /// All words of the film's layers, where tables of objects have no order.
+    static std::vector<int64_t> words_of(const Film& film) {
+        if (film.layers.plan.objects >= 0) return test::ordered_words(film);
+        return {film.layers.words.begin(), film.layers.words.end()};
+    }
+
     std::set<std::string> in_lanes_;
 };
 
@@ -68,8 +78,8 @@ TYPED_TEST(LaneTest, GeneratedScenesAreEqual) {
     for (uint64_t seed = 0; seed < generated_scene_count; ++seed) {
         const SceneDescription scene = generated_scene(seed);
         FrameSettings settings = generated_settings(scene);
-        settings.cutoff = seed % 8 == 0 ? settings.cutoff : 0;
-        settings.target_error = 0;
+        settings.target_error = seed % 4 == 1 ? 0.03 : 0;
+        if (settings.adaptive()) settings.set_size(15, 9);
         settings.depth = std::min(settings.depth, 10);
         this->compare(scene, settings, "scene " + std::to_string(seed));
     }
@@ -129,16 +139,133 @@ TYPED_TEST(LaneTest, MeshesAreTracedOneRayAfterTheOther) {
     EXPECT_EQ(renderer->lanes(), 1);
 }
 
-TYPED_TEST(LaneTest, ACutoffIsSpentByOneRayAfterTheOther) {
-    const SceneDescription scene = test::shipped_scene("benchmark");
+TYPED_TEST(LaneTest, CutoffsAndTargetsAreEqual) {
+    for (const char* name : {"benchmark", "platonic", "infinity", "seed", "glass", "hard/critical-angle", "hard/media",
+                             "hard/glass-on-floor", "hard/decal"}) {
+        const SceneDescription scene = test::shipped_scene(name);
+        FrameSettings settings = golden::settings_for(scene);
+        settings.set_size(49, 31);
+        settings.depth = std::min(settings.depth, 12);
+        settings.supersample = 2;
+        settings.cutoff = 0.004;
+        this->compare(scene, settings, std::string(name) + " with a cutoff");
+        settings.layers = test::all_layers();
+        this->compare(scene, settings, std::string(name) + " with a cutoff and layers");
+        settings.set_size(29, 17);
+        settings.cutoff = 0;
+        settings.target_error = 0.01;
+        this->compare(scene, settings, std::string(name) + " with a target and layers");
+        settings.layers = LayerRequest();
+        this->compare(scene, settings, std::string(name) + " with a target");
+        settings.target_error = 0.1;
+        settings.max_samples = 24;
+        this->compare(scene, settings, std::string(name) + " with few samples");
+    }
+    EXPECT_EQ(this->in_lanes(), 45u);
+}
+
+/// Trees of more than most_branches, which are traced again with larger budgets.
+TYPED_TEST(LaneTest, TreesWithoutEndAreEqual) {
+    const SceneDescription scene = test::room_of_mirrors();
+    FrameSettings settings = test::endless_settings(6, 4);
+    settings.target_error = 0.02;
+    this->compare(scene, settings, "mirrors");
+    settings.layers = test::all_layers();
+    this->compare(scene, settings, "mirrors with layers");
+    EXPECT_EQ(this->in_lanes(), 2u);
+}
+
+/// All layers, with room for all objects of the shipped scenes.
+LayerRequest all_layers() {
+    LayerRequest layers = test::all_layers();
+    layers.object_entries = 64;
+    return layers;
+}
+
+TYPED_TEST(LaneTest, LayersOfShippedScenesAreEqual) {
+    // Textures, visible lights, refraction, shared planes, several lights.
+    for (const char* name : {"benchmark", "platonic", "infinity", "seed", "glass", "hard/critical-angle", "hard/media",
+                             "hard/glass-on-floor", "hard/corner", "hard/decal", "hard/camera-on-floor"}) {
+        const SceneDescription scene = test::shipped_scene(name);
+        FrameSettings settings = golden::settings_for(scene);
+        settings.set_size(71, 43);  // no multiple of a tile, nor of a register
+        settings.supersample = 2;
+        settings.depth = std::min(settings.depth, 12);
+        settings.cutoff = 0;
+        settings.layers = all_layers();
+        this->compare(scene, settings, name);
+    }
+    EXPECT_EQ(this->in_lanes(), 11u);
+}
+
+/// The scene is so small in the picture that some rays, though near it, do not even enter the sphere around it.
+TYPED_TEST(LaneTest, LayersOfRaysThatMissTheSceneAreEqual) {
+    SceneDescription scene = test::shipped_scene("glass");
+    scene.camera.position = 20.0 * scene.camera.position;
+    scene.camera.field_of_view = 150;
     FrameSettings settings = golden::settings_for(scene);
-    settings.set_size(32, 20);
+    settings.set_size(64, 64);
+    settings.supersample = 3;
+    settings.layers = all_layers();
+    this->compare(scene, settings, "glass from afar");
+    EXPECT_EQ(this->in_lanes(), 1u);
+}
+
+TYPED_TEST(LaneTest, LayersOfEachKindAloneAreEqual) {
+    SceneDescription scene = test::shipped_scene("seed");
+    for (auto& light : scene.lights) light.group = "all";
+    scene.lights[0].group = "first";
+    FrameSettings settings = golden::settings_for(scene);
+    settings.set_size(64, 40);
+    settings.supersample = 3;
+    for (const auto kind :
+         {&LayerRequest::path, &LayerRequest::light, &LayerRequest::first_hit, &LayerRequest::objects}) {
+        settings.layers = LayerRequest();
+        settings.layers.*kind = true;
+        this->compare(scene, settings, "seed");
+    }
+    EXPECT_EQ(this->in_lanes(), 1u);
+}
+
+TYPED_TEST(LaneTest, LayersOfGeneratedScenesAreEqual) {
+    for (uint64_t seed = 0; seed < generated_scene_count; seed += 2) {
+        const SceneDescription scene = generated_scene(seed);
+        FrameSettings settings = generated_settings(scene);
+        settings.target_error = seed % 8 == 2 ? 0.03 : 0;
+        if (settings.adaptive()) settings.set_size(15, 9);
+        settings.depth = std::min(settings.depth, 10);
+        settings.layers = all_layers();
+        this->compare(scene, settings, "scene " + std::to_string(seed));
+    }
+    EXPECT_GE(this->in_lanes(), 10u);
+}
+
+TYPED_TEST(LaneTest, LayersOfTreesAndSharedPlanesAreEqual) {
+    for (const int tiles : {2, 12}) {
+        const SceneDescription scene = tiled_scene(tiles, 0, 3);
+        FrameSettings settings = golden::settings_for(scene);
+        settings.supersample = 2;
+        settings.layers = all_layers();
+        settings.layers.object_entries = 256;
+        this->compare(scene, settings, fmt::format("{}", tiles));
+    }
+    EXPECT_EQ(this->in_lanes(), 2u);
+}
+
+TYPED_TEST(LaneTest, ObjectsBeyondAPixelsTableAreToldOf) {
+    const SceneDescription scene = tiled_scene(12, 0, 1);
     const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
-    golden::render_with(*renderer, scene, settings);
-    EXPECT_GT(renderer->lanes(), 1);
-    settings.cutoff = 0.01;
-    golden::render_with(*renderer, scene, settings);
-    EXPECT_EQ(renderer->lanes(), 1);
+    for (const int entries : {1, 64})
+        for (const int lanes : {1, 16}) {
+            FrameSettings settings = golden::settings_for(scene);
+            settings.supersample = 3;
+            settings.lanes = lanes;
+            settings.layers.objects = true;
+            settings.layers.object_entries = entries;
+            EXPECT_EQ(golden::render_with(*renderer, scene, settings).flags, entries == 1 ? flag_objects_overflow : 0u)
+                << entries << " entries, " << lanes << " lanes";
+            EXPECT_EQ(renderer->lanes() > 1, lanes > 1);
+        }
 }
 
 }  // namespace

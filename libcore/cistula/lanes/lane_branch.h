@@ -12,9 +12,11 @@ namespace cistula {
 /// A register's worth of branches of one depth, all mirrored or all transmitted.
 template <class Real, class Media, class Weight>
 struct LaneBranch {
+    static constexpr int by_mirror = 1 << 29;  // a bit beside the pixel
+
     Ray<Real, Media> ray;
     Weight weight{Real(1)};
-    IndexOf<Real> pixel = 0;  // in the tile
+    IndexOf<Real> pixel = 0;  // in the tile; with layers also by_mirror, of what the first surface mirrors
     MaskOf<Real> no_light_ahead = false;
     uint32_t depth = 0;
     bool mirrored = false;
@@ -78,7 +80,7 @@ class LaneQueue<LaneBranch<Lanes<T, n>, Media, Weight>> {
     }
 
   private:
-    static constexpr int dark = 1 << 30;  // bit of no_light_ahead beside the pixel
+    static constexpr int dark = 2 * Entry::by_mirror;  // bit of no_light_ahead beside the pixel
     static constexpr int rows = 3 + 3 + sizeof(Weight) / sizeof(Real) + 6;
 
     /// Calls visit(value) for every value that is stored as it is.

@@ -1,16 +1,11 @@
 // Sums of the pixels of a tile, to which lanes add: integers, so that the order of rays leaves no trace.
 #pragma once
 
+#include "cistula/lanes/lane_pixel.h"
 #include "cistula/lanes/lanes.h"
 #include "cistula/transport/layered_sums.h"
 
 namespace cistula {
-
-/// A pixel of a tile that lanes render.
-struct LanePixel {
-    PixelRecord* record;
-    uint32_t rays;  // of all kinds
-};
 
 /// floor(a), or ceil(a), as integers, for a in [0, 2^63).
 template <bool above, int n>
@@ -41,11 +36,12 @@ class LaneSums {
 
     template <class Scene>
     LaneSums(const TreeSettings& settings, const Scene& scene, LanePixel* pixels, uint32_t& flags)
-        : settings_(settings), bounds_{scene.bound, scene.largest_bound}, pixels_(pixels), flags_(flags) {}
+        : pixels_(pixels), settings_(settings), bounds_{scene.bound, scene.largest_bound}, flags_(flags) {}
 
-    /// Begins with branches of these pixels, and ends with them.
-    CISTULA_INLINE void begin(const IndexOf<Real>& pixel) {
-        pixel_ = pixel;
+    /// Begins with these branches, and ends with them.
+    template <class Branch>
+    CISTULA_INLINE void begin(const Branch& branch) {
+        pixel_ = branch.pixel & IndexOf<Real>(Branch::by_mirror - 1);
         rays_ = 0;
         cuts_ = false;
         for (int c = 0; c < 3; ++c) radiance_[c] = cut_[c] = int64_t(0);
@@ -57,22 +53,27 @@ class LaneSums {
     }
 
     CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource, const Mask& who) {
-        const Vec3<Real> units = in_units(radiance, who);
-        for (int c = 0; c < 3; ++c) radiance_[c] += integers_of<false>(Lanes<double, lanes>(units[c]));
+        Integers added[3];
+        add_units(radiance, who, added);
+    }
+    /// Adds what is at the end of branches. Which of them meet visible lights matters to LayeredLaneSums alone.
+    CISTULA_INLINE void add_end(const Vec3<Real>& radiance, const Mask&, const Mask& who) {
+        add(radiance, LightSource::background, who);
     }
     template <class Diffuse>
     CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t, const Diffuse&, const Mask& who) {
         add(radiance, LightSource::background, who);
     }
 
-    /// The branches to follow; the bounds of others are added to the ledger (PixelSums::afford without a budget).
+    /// The branches to follow; the bounds of others are added to the ledger (PixelSums::afford).
     template <class Weight>
     CISTULA_INLINE Mask afford(const Weight& weight, const Mask& who) {
         const Real most = largest_component(bounded(weight));
-        const Mask counts = (most <= Real(1)) & (most > Real(T(settings_.fixed_unit)));
+        const Mask counts = (most <= Real(1)) & (most > thresholds_of(who));
         Mask followed = who & counts;
         for_each_lane(who & !counts, [&](int lane) {
-            PixelSums<T> sums(settings_, bounds_, *pixels_[pixel_[lane]].record, flags_);
+            const LanePixel& pixel = pixels_[pixel_[lane]];
+            PixelSums<T> sums(settings_, bounds_, *pixel.record, flags_, pixel.threshold.share);
             if (sums.afford(lane_of(weight, lane))) followed |= Mask::of_bits(1u << lane);
         });
         return followed;
@@ -87,8 +88,28 @@ class LaneSums {
 
     CISTULA_INLINE void flag(uint32_t bits) { flags_ |= bits; }
 
+    /// The rays that were counted since begin().
+    CISTULA_INLINE const IndexOf<Real>& rays() const { return rays_; }
     /// Counts rays.
     CISTULA_INLINE void count(const Mask& who) { rays_ -= minus_one_where(who); }
+
+  protected:
+    using Integers = Lanes<int64_t, lanes>;
+
+    /// A radiance in units of the sums; 0 in other lanes.
+    CISTULA_INLINE void units_of(const Vec3<Real>& radiance, const Mask& who, Integers (&to)[3]) {
+        const Vec3<Real> units = in_units(radiance, who);
+        for (int c = 0; c < 3; ++c) to[c] = integers_of<false>(Lanes<double, lanes>(units[c]));
+    }
+    /// Adds a radiance, and tells how many units that is.
+    CISTULA_INLINE void add_units(const Vec3<Real>& radiance, const Mask& who, Integers (&added)[3]) {
+        units_of(radiance, who, added);
+        for (int c = 0; c < 3; ++c) radiance_[c] += added[c];
+    }
+
+    LanePixel* const pixels_;
+    IndexOf<Real> pixel_ = 0;
+    Integers radiance_[3];
 
   private:
     /// The part of a scene that PixelSums reads.
@@ -101,6 +122,14 @@ class LaneSums {
     CISTULA_INLINE Vec3<Real> bounded(const Weight& weight) const {
         return {channel(weight, 0) * bounds_.bound.x, channel(weight, 1) * bounds_.bound.y,
                 channel(weight, 2) * bounds_.bound.z};
+    }
+
+    /// The thresholds of samples (tree_threshold.h).
+    CISTULA_INLINE Real thresholds_of(const Mask& who) const {
+        LaneArray<Real> thresholds(Real(T(settings_.fixed_unit)));
+        if (settings_.budget != 0)
+            for_each_lane(who, [&](int lane) { thresholds.of[lane] = T(pixels_[pixel_[lane]].threshold.share); });
+        return thresholds.all();
     }
 
     /// PixelSums::in_units in lanes; 0 in others.
@@ -117,7 +146,6 @@ class LaneSums {
         return units;
     }
 
-    using Integers = Lanes<int64_t, lanes>;
     CISTULA_INLINE void give(const Integers (&from)[3], const Mask& who, int64_t (PixelRecord::*to)[3]) {
         alignas(lane_bytes) int64_t whole[3][lanes];
         for (int c = 0; c < 3; ++c) memcpy(whole[c], &from[c], sizeof from[c]);
@@ -129,10 +157,9 @@ class LaneSums {
 
     const TreeSettings& settings_;
     const Bounds bounds_;
-    LanePixel* pixels_;
     uint32_t& flags_;
-    IndexOf<Real> pixel_ = 0, rays_ = 0;
-    Integers radiance_[3], cut_[3];
+    IndexOf<Real> rays_ = 0;
+    Integers cut_[3];
     Mask cuts_ = false;
 };
 

@@ -4,10 +4,11 @@
 
 #include "cistula/lanes/lane_absorption.h"
 #include "cistula/lanes/lane_branch.h"
-#include "cistula/lanes/lane_intersector.h"
+#include "cistula/lanes/lane_first_seen.h"
+#include "cistula/lanes/lane_hash.h"
 #include "cistula/lanes/lane_lights.h"
-#include "cistula/lanes/lane_sums.h"
 #include "cistula/lanes/lane_surface.h"
+#include "cistula/lanes/layered_lane_sums.h"
 #include "cistula/transport/pixel.h"
 
 namespace cistula {
@@ -25,113 +26,130 @@ struct LaneRays {
     }
 };
 
-/// What the primary rays in a register meet first.
-template <class Real>
-struct LaneFirstSeen {
-    static constexpr int lanes = LaneTraits<Real>::lanes;
-    using T = ScalarOf<Real>;
-
-    const LaneScene<T>& scene;
-    const FrameView& frame;
-    LanePixel* of[lanes];
-    PixelWork work[lanes];  // start and facing of samples in the middle of their pixels
-    uint32_t middle = 0;    // the lanes of these
-
-    CISTULA_INLINE void surface(const Hit<Real>& hit, const Surface<Real>& s, const MaskOf<Real>& who) const {
-        for_each_lane(who, [&](int lane) {
-            Hit<T> one;
-            one.t = hit.t[lane];
-            one.key = make_key(CrossingKind::enter, scene.numbers[uint32_t(key_solid(hit.key)[lane])], 0);
-            Surface<T> met;
-            met.normal = lane_of(s.normal, lane);
-            seen(lane).surface(one, met);
-        });
-    }
-    template <class Media>
-    CISTULA_INLINE void light(const LaneScene<T>&, const VisibleLightHit<Real>& hit, const Ray<Real, Media>& ray,
-                              const MaskOf<Real>& who) const {
-        for_each_lane(who, [&](int lane) {
-            seen(lane).light(scene, VisibleLightHit<T>{hit.t[lane], uint32_t(hit.light[lane])}, lane_of(ray, lane));
-        });
-    }
-
-  private:
-    CISTULA_INLINE FirstSeen<T> seen(int lane) const {
-        return {frame, work[lane], *of[lane]->record, (middle >> lane & 1u) != 0};
-    }
-};
-
-/// The pixels of a tile. E: the effects that are compiled in.
-template <class Real, class E>
+/// A tile of samples to render. E: the effects that are compiled in. `by_sample`: each sample is rendered by itself, as
+/// frames with a cutoff or a target error need it.
+template <class Real, class E, bool by_sample = false>
 class LaneTile {
   public:
     using T = ScalarOf<Real>;
-    using Intersector = LaneIntersector<Real>;
+    using Intersector = std::conditional_t<by_sample, HashingLanes<Real>, LaneIntersector<Real>>;
     using Media = typename Intersector::Media;
     using Scene = typename Intersector::Scene;
     using Entry = BranchOf<Real, E, Media>;
     using Mask = MaskOf<Real>;
     static constexpr int lanes = LaneTraits<Real>::lanes;
 
-    LaneTile(const Scene& scene, const FrameView& frame) : scene_(scene), frame_(frame) {}
+    LaneTile(const Scene& scene, const FrameView& frame)
+        : scene_(scene), frame_(frame), adaptive_(frame.lattice.target != 0), gradual_(shades_gradually(scene)) {}
 
-    /// Adds a pixel of the frame to those to be rendered.
-    void add(int x, int y, PixelRecord& record) {
-        begin_pixel(record);
-        places_.push_back({x, y});
-        pixels_.push_back({&record, 0});
+    /// Adds samples to those to be rendered. Layers are filled by effects with fills_layers.
+    void add(const LanePixel& pixel) {
+        begin_pixel(*pixel.record);
+        pixels_.push_back(pixel);
     }
 
-    /// Renders the pixels that were added, unless stopped(), and adds the counts.
+    /// Renders what was added, unless stopped(), and adds the counts.
     template <class Stopped>
     void render(const Stopped& stopped, RayCounts& counts, uint32_t& flags) {
-        const Intersector intersector{scene_};
-        LaneSums<Real> sums(frame_.tree, scene_, pixels_.data(), flags);
+        LanePathHash<Real> hash;
+        const Intersector intersector = intersector_with(hash);
+        SumsOf<Real, E> sums(frame_.tree, scene_, pixels_.data(), flags);
+        if constexpr (E::has(fills_layers)) sums.divide(frame_.layers, scene_.light_groups);
         LaneRays<Real> rays{RayCounts(), sums};
         RayTree<Real, E, Intersector, LaneQueues<Entry>, LaneRays<Real>> tree(scene_, intersector, frame_.tree.depth,
                                                                               sums, rays, queues_);
         next_ = 0;
+        next_sample_ = 0;
         for (uint32_t turns = 1;; ++turns) {
-            if (turns % turns_between_stops == 0 && stopped()) return queues_.clear();
+            if (turns % turns_between_stops == 0 && stopped()) return clear();
             Entry branch;
             Mask who = false;
-            LaneFirstSeen<Real> first{scene_, frame_, {}, {}};
-            if (queues_.has_full() || next_ == samples()) {
+            LaneFirstSeen<Real, E> first{scene_, frame_, flags, {}, {}};
+            if (queues_.has_full() || next_ == pixels_.size()) {
                 who = queues_.pop(branch);
                 if (!any(who)) break;
-                sums.begin(branch.pixel);
+                sums.begin(branch);
+                if constexpr (by_sample) who = within_limit(branch, who);
                 who = sums.afford(branch.weight, who);
                 if (!any(who)) continue;
                 (branch.mirrored ? rays.counts.reflected : rays.counts.transmitted) += rays.count(who);
             } else {
                 branch = Entry();
                 who = take_primaries(branch, first, flags);
-                sums.begin(branch.pixel);
+                sums.begin(branch);
                 if (!any(who)) continue;
                 sums.count(who);
             }
+            if constexpr (by_sample) hash.begin(largest_component(branch.weight) >= least_weight(), adaptive_);
             find_start_plane<E>(scene_, branch.ray);
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
             tree.follow(branch, who, first);
             sums.end(who);
+            if constexpr (by_sample) add_to_samples(branch, hash, sums.rays(), who);
         }
-        rays.counts.primary = samples();
-        counts.add(rays.counts);
         for (LanePixel& pixel : pixels_) {
             pixel.record->rays = pixel.rays;
-            pixel.record->samples = uint32_t(per_pixel());
+            pixel.record->samples = uint32_t(pixel.count);
+            rays.counts.primary += uint64_t(pixel.count);
         }
-        places_.clear();
-        pixels_.clear();
+        if constexpr (by_sample) rays.counts = end_samples();
+        counts.add(rays.counts);
+        clear();
     }
 
   private:
-    struct Place {
-        int x, y;
-    };
+    void clear() {
+        pixels_.clear();
+        queues_.clear();
+    }
 
-    size_t per_pixel() const { return size_t(frame_.supersample) * size_t(frame_.supersample); }
-    size_t samples() const { return pixels_.size() * per_pixel(); }
+    CISTULA_INLINE Intersector intersector_with(LanePathHash<Real>& hash) const {
+        if constexpr (by_sample)
+            return {{scene_}, hash, gradual_};
+        else
+            return {scene_};
+    }
+
+    /// The least weight of branches that count in path hashes.
+    CISTULA_INLINE Real least_weight() const { return Real(T(frame_.lattice.significant)); }
+
+    /// Counts branches for their samples, and returns where these have no more than they may.
+    CISTULA_INLINE Mask within_limit(const Entry& branch, const Mask& who) {
+        if (!adaptive_) return who;
+        uint32_t left = 0;
+        for_each_lane(
+            who, [&](int lane) { left |= uint32_t(++pixels_[branch.pixel[lane]].branches <= most_branches) << lane; });
+        return Mask::of_bits(left);
+    }
+
+    /// Adds the hashes of branches and the counts of their rays to their samples. `rays`: each branch and its shadow
+    /// rays.
+    CISTULA_INLINE void add_to_samples(const Entry& branch, const LanePathHash<Real>& hash, const IndexOf<Real>& rays,
+                                       const Mask& who) {
+        for_each_lane(who, [&](int lane) {
+            LanePixel& pixel = pixels_[branch.pixel[lane]];
+            pixel.path_hash += uint32_t(hash.value[lane]);
+            pixel.reflected += branch.mirrored;
+            pixel.shadow += uint32_t(rays[lane]) - 1;
+        });
+    }
+
+    /// Completes samples, and returns the counts of those whose thresholds hold.
+    RayCounts end_samples() const {
+        RayCounts counts;
+        for (const LanePixel& pixel : pixels_) {
+            LaneSample& sample = *pixel.sample;
+            sample.threshold = pixel.threshold;
+            sample.path_hash = pixel.path_hash;
+            const bool is_too_large = pixel.branches > most_branches;
+            if (is_too_large) sample.threshold.grow();
+            sample.holds = !is_too_large && sample.threshold.holds(frame_.tree, pixel.record->pruned);
+            if (sample.holds)
+                counts.add(
+                    PixelRays{1, pixel.reflected, pixel.rays - 1 - pixel.reflected - pixel.shadow, pixel.shadow});
+        }
+        return counts;
+    }
 
     /// The solids of an interior list, which has the scene's own numbers.
     InteriorSet interior_set(const InteriorList& list) const {
@@ -141,20 +159,35 @@ class LaneTile {
         return set;
     }
 
+    /// The next sample of what was added, and its pixel's number.
+    GridSample take_sample(size_t& number) {
+        number = next_;
+        const LanePixel& pixel = pixels_[next_];
+        GridSample sample = grid_sample(pixel.first + next_sample_, frame_.supersample);
+        if (by_sample && adaptive_) sample.middle = true;  // each has an id, a depth and a normal
+        if (++next_sample_ == pixel.count) {
+            next_sample_ = 0;
+            ++next_;
+        }
+        return sample;
+    }
+
     /// Sets the next primary rays, and returns where they are. Those that miss the scene are done here.
-    Mask take_primaries(Entry& branch, LaneFirstSeen<Real>& first, uint32_t& flags) {
+    Mask take_primaries(Entry& branch, LaneFirstSeen<Real, E>& first, uint32_t& flags) {
         LaneVectors<Real> origins, directions;
         LaneArray<IndexOf<Real>> media, numbers;
         int count = 0;
-        for (; count < lanes && next_ < samples(); ++next_) {
-            const size_t number = next_ / per_pixel();
+        while (count < lanes && next_ < pixels_.size()) {
+            size_t number;
+            const GridSample sample = take_sample(number);
             LanePixel& pixel = pixels_[number];
-            const GridSample sample = grid_sample(int(next_ % per_pixel()), frame_.supersample);
-            const Vec3<double> direction = sample_direction(frame_, places_[number].x, places_[number].y, sample);
+            const Vec3<double> direction = sample_direction(frame_, pixel.x, pixel.y, sample);
             Ray<T> ray;
             double start;
             if (!primary_ray(scene_, frame_, direction, ray, start)) {
-                PixelSums<T>(frame_.tree, scene_, *pixel.record, flags).add(scene_.background);
+                SumsOf<T, E> sums(frame_.tree, scene_, *pixel.record, flags);
+                if constexpr (E::has(fills_layers)) sums.divide(frame_.layers, pixel.layers, scene_.light_groups);
+                sums.add(scene_.background, LightSource::background);
                 ++pixel.rays;
                 continue;
             }
@@ -185,10 +218,11 @@ class LaneTile {
 
     const Scene& scene_;
     const FrameView& frame_;
-    std::vector<Place> places_;
+    const bool adaptive_, gradual_;
     std::vector<LanePixel> pixels_;
     LaneQueues<Entry> queues_;
-    size_t next_ = 0;  // sample, pixel by pixel
+    size_t next_ = 0;      // of pixels_
+    int next_sample_ = 0;  // of its samples
 };
 
 }  // namespace cistula

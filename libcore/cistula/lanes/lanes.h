@@ -89,7 +89,7 @@ struct Lanes {
 
     friend CISTULA_INLINE Lanes operator+(Lanes a, Lanes b) { return Lanes(Vector(Wrapping(a.v) + Wrapping(b.v))); }
     friend CISTULA_INLINE Lanes operator-(Lanes a, Lanes b) { return Lanes(Vector(Wrapping(a.v) - Wrapping(b.v))); }
-    friend CISTULA_INLINE Lanes operator*(Lanes a, Lanes b) { return Lanes(a.v * b.v); }
+    friend CISTULA_INLINE Lanes operator*(Lanes a, Lanes b) { return Lanes(Vector(Wrapping(a.v) * Wrapping(b.v))); }
     friend CISTULA_INLINE Lanes operator/(Lanes a, Lanes b) { return Lanes(a.v / b.v); }
     friend CISTULA_INLINE Lanes operator-(Lanes a) { return Lanes(-a.v); }
     friend CISTULA_INLINE Lanes operator&(Lanes a, Lanes b) { return Lanes(a.v & b.v); }

@@ -84,7 +84,7 @@ class NextSurface {
             const MaskOf<Real> ends = left & (light.found() | !hit.found());
             if (any(ends)) {
                 absorption.dim(scene_, branch.ray.media, select(light.found(), light.t, hit.t), branch.weight, ends);
-                sums_.add(branch.weight * light_or_background(light, ends), LightSource::background, ends);
+                sums_.add_end(branch.weight * light_or_background(light, ends), light.found(), ends);
                 assign_where(ends, visible.t, light.t);
                 assign_where(ends, visible.light, light.light);
             }
@@ -126,7 +126,7 @@ class NextSurface {
         Ray<Real, Media> probe = ray;
         probe.accept_both_sides();
         for (;;) {
-            const Hit<Real> next = intersector_.closest(probe);
+            const Hit<Real> next = unobserved(intersector_).closest(probe);
             if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
             if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) sums_.flag(flag_media_overflow);
             absorption.cross(scene_, next.key, next.t);

@@ -120,13 +120,13 @@ class RayTree {
         const Real mirrored_size = total(mirrored),
                    through_size = E::has(effect_transmission) ? total(through) : Real(0);
         if constexpr (in_lanes<Real>) {
-            const MaskOf<Real> mirrors = who & (mirrored_size > Real(0)), passes = who & (through_size > Real(0));
+            const MaskOf<Real> reflects = who & (mirrored_size > Real(0)), passes = who & (through_size > Real(0));
             if (int(branch.depth) + 1 >= depth_) {
-                sums_.cut(mirrored, mirrors);
+                sums_.cut(mirrored, reflects);
                 if constexpr (E::has(effect_transmission)) sums_.cut(through, passes);
                 return;
             }
-            if (any(mirrors)) stack_.push(mirrored_child(branch, event, s, mirrored), mirrors);
+            if (any(reflects)) stack_.push(mirrored_child(branch, event, s, mirrored), reflects);
             if constexpr (E::has(effect_transmission))
                 if (any(passes)) stack_.push(transmitted_child(branch, event, s, split, through, passes), passes);
             return;
