@@ -13,6 +13,7 @@
 #include "cistula/lanes/lane_scene.h"
 #include "cistula/traversal/bvh.h"
 #include "scene/base/default_rounding.h"
+#include "scene/compile/lane_scene.h"
 #include "scene/film/put_pixels.h"
 #include "scene/frame/frame_hints.h"
 #include "scene/frame/frame_view.h"
@@ -62,13 +63,17 @@ class FrameTask {
           frame_((use_default_rounding(), frame_view(compiled, camera, settings))),
           hints_(frame_hints(compiled, frame_, settings)) {
         prepare_film(film, settings, compiled, camera);
-        if (!find_camera_solids(scene_, intersector, frame_)) film.flags |= flag_media_overflow;
+        if (!(in_lanes != nullptr ? find_camera_solids(*in_lanes, frame_)
+                                  : find_camera_solids(scene_, intersector, frame_)))
+            film.flags |= flag_media_overflow;
         mask_ = mask_to_run(compiled.effects, settings, frame_);
         if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = effect_mask_count - 1;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
-        if (in_lanes == nullptr || mask_ == unshadowed_mask) return;
+        if (in_lanes == nullptr || mask_ == unshadowed_mask || !camera_fits_lanes(frame_)) return;
+        if (in_lanes->meshes != 0 && goes_by_sample()) return;
         tiles_ = tile_functions<Real>(settings.lanes);
+        if (tiles_ != nullptr && tiles_->lanes < in_lanes->least_lanes) tiles_ = nullptr;
         if (tiles_ != nullptr && goes_by_sample() && !settings.layers.any()) mask_ = effect_mask_count - 1;
     }
 
@@ -103,6 +108,14 @@ class FrameTask {
     template <class E>
     PixelTask<E, Intersector, Stack<E>> task_for(int x, int y, PixelWork& own, Stack<E>& stack) const {
         return {scene_, frame_, intersector_, x, y, own, stack};
+    }
+
+    /// Whether no solid contains the camera more than once.
+    static bool camera_fits_lanes(const FrameView& frame) {
+        bool fits = true;
+        for (int i = 0; i < 1 << frame.camera_planes; ++i)
+            frame.camera_sides[i].media.for_each([&](uint32_t, int count) { fits &= count == 1; });
+        return fits;
     }
 
     bool stopped() const { return progress_.stop.load(std::memory_order_relaxed); }

@@ -111,7 +111,10 @@ class PixelsBySample {
     /// Enters samples into the layers, by tracing them again.
     void fill_layers(const std::atomic<bool>& stop, uint32_t& flags) {
         if (!layered_ || stop) return;
-        for (Taken& taken : taken_) add_to(*layered_, taken, {pixel(taken.pixel).layers, taken.weight});
+        for (Taken& taken : taken_) {
+            taken.sample.threshold.has_grown = true;  // it has held
+            add_to(*layered_, taken, {pixel(taken.pixel).layers, taken.weight});
+        }
         RayCounts counted;
         uint32_t flagged = 0;
         layered_->render(stop, counted, flagged);

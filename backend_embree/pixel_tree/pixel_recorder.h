@@ -109,14 +109,13 @@ inline void sum_up(std::vector<PixelBranch>& branches) {
             }
 }
 
-/// The tree of sample `sample` of pixel (x, y), traced with a threshold. `flags` and the record are those of
-/// render_sample.
+/// Records the tree of sample `sample` of pixel (x, y). `flags`, the record and the result are those of render_sample.
 template <class Real, class Intersector>
-SampleTree record_sample(const BranchReader<Real, Intersector>& reader, const SceneView<Real>& scene,
-                         const Intersector& intersector, const FrameView& frame, int x, int y, int sample,
-                         float threshold, uint32_t& flags) {
+bool record_sample(const BranchReader<Real, Intersector>& reader, const SceneView<Real>& scene,
+                   const Intersector& intersector, const FrameView& frame, int x, int y, int sample,
+                   const TreeThreshold& threshold, SampleTree& tree, uint32_t& flags) {
     const GridSample place = grid_sample(sample, frame.supersample);
-    SampleTree tree;
+    tree = SampleTree();
     tree.row = place.row;
     tree.column = place.column;
     PixelWork work;
@@ -126,7 +125,7 @@ SampleTree record_sample(const BranchReader<Real, Intersector>& reader, const Sc
     const PixelTask<BranchEffects, ObservedIntersector<Real, Intersector>, ObservedStack<Real, Intersector>> task{
         scene, frame, observed, x, y, work, stack};
     begin_pixel(tree.record);
-    render_sample(task, threshold, place, tree.record);
+    const bool holds = render_sample(task, threshold, place, tree.record);
     end_pixel(tree.record, work);
     tree.rays = work.rays;
     flags |= work.flags;
@@ -137,7 +136,7 @@ SampleTree record_sample(const BranchReader<Real, Intersector>& reader, const Sc
         primary.adds = colors_of(tree.record.radiance);
     }
     sum_up(tree.branches);
-    return tree;
+    return holds;
 }
 
 /// The trees of pixel (x, y), sample by sample, traced with the thresholds that hold (tree_threshold.h).
@@ -152,8 +151,8 @@ PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real
     for (int sample = 0; sample < settings.supersample * settings.supersample; ++sample) {
         TreeThreshold threshold{frame.tree.threshold};
         SampleTree tree;
-        do tree = record_sample(reader, scene, intersector, frame, x, y, sample, threshold.share, flags);
-        while (!threshold.holds(frame.tree, tree.record.pruned));
+        while (!record_sample(reader, scene, intersector, frame, x, y, sample, threshold, tree, flags))
+            threshold.shrink();
         tree.branches.front().origin = camera.camera.position;
         pixel.samples.push_back(std::move(tree));
     }

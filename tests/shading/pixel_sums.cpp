@@ -1,7 +1,7 @@
 // pixel_sums.h: what is added, what is left out, and what counts as a fault.
 #include <gtest/gtest.h>
 
-#include "cistula/transport/tree_threshold.h"
+#include "cistula/transport/pixel_sums.h"
 
 namespace cistula {
 namespace {
@@ -16,10 +16,10 @@ template <class Real>
 class PixelSumsTest : public testing::Test {
   protected:
     /// A sample's of a pixel of one sample.
-    PixelSums<Real> sums(float threshold = 0x1p-62f) {
+    PixelSums<Real> sums(float threshold = 0x1p-62f, int64_t budget = endless_budget) {
         settings_.fixed_scale = 0x1p62f;
         settings_.fixed_unit = 0x1p-62f;
-        return {settings_, bounds_, record_, flags_, threshold};
+        return {settings_, bounds_, record_, flags_, threshold, budget};
     }
 
     static constexpr int64_t one = int64_t(1) << 62;
@@ -102,12 +102,24 @@ TYPED_TEST(PixelSumsTest, BranchesUpToTheThresholdAreDropped) {
         EXPECT_EQ(this->record_.pruned[0], drops * (int64_t(1) << 40));
         EXPECT_EQ(this->record_.pruned[1], drops * (int64_t(1) << 39));
     }
+    EXPECT_EQ(sums.left(), endless_budget);
     EXPECT_FALSE(this->sums().afford(Real(0x1p-62)));  // at most one unit
     EXPECT_TRUE(this->sums().afford(Real(0x1p-61)));
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     EXPECT_TRUE(sums.afford(Vec3<Real>(nan, Real(0.5), Real(0))));
     EXPECT_FALSE(sums.afford(Vec3<Real>(nan, Real(0x1p-30), Real(0))));
     EXPECT_NE(this->flags_ & flag_not_finite, 0u);
+}
+
+TYPED_TEST(PixelSumsTest, ATreeThatLosesMoreThanItsBudgetIsOver) {
+    using Real = TypeParam;
+    PixelSums<Real> sums = this->sums(0x1p-22f, int64_t(3) << 40);
+    for (int drops = 1; drops <= 3; ++drops) {
+        EXPECT_FALSE(sums.afford(Vec3<Real>(Real(0x1p-24), Real(0x1p-21), Real(0))));  // its greatest channel counts
+        EXPECT_EQ(sums.left(), int64_t(3 - drops) << 40);
+    }
+    EXPECT_FALSE(sums.afford(Real(0x1p-62)));
+    EXPECT_LT(sums.left(), 0);
 }
 
 TEST(TreeThreshold, BeginsWithAPowerOfTwoOfAnEighthOfTheBudget) {
@@ -119,29 +131,23 @@ TEST(TreeThreshold, BeginsWithAPowerOfTwoOfAnEighthOfTheBudget) {
     EXPECT_EQ(TreeThreshold::first(int64_t(1) << 62, unit), 0.125f);
 }
 
-TEST(TreeThreshold, ShrinksUntilTheBudgetHolds) {
+TEST(TreeThreshold, LimitsWhatATreeLosesUntilItHasGrownOrIsOneUnit) {
     TreeSettings settings;
     settings.fixed_unit = 0x1p-62f;
     settings.budget = 1000;
-    TreeThreshold threshold{TreeThreshold::first(settings.budget, settings.fixed_unit)};
-    EXPECT_EQ(threshold.share, 0x1p-56f);
-    EXPECT_TRUE(threshold.holds(settings, {0, 1000, 1000}));
-    EXPECT_FALSE(threshold.holds(settings, {0, 0, 1001}));
-    EXPECT_EQ(threshold.share, 0x1p-59f);
-    EXPECT_FALSE(threshold.holds(settings, {1001, 0, 0}));
-    EXPECT_EQ(threshold.share, settings.fixed_unit);
-    EXPECT_TRUE(threshold.holds(settings, {5000, 0, 0}));  // it cannot shrink more
-}
-
-TEST(TreeThreshold, GrowsForTreesThatAreTooLargeWhateverTheBudget) {
-    TreeSettings settings;
-    settings.fixed_unit = 0x1p-62f;
-    settings.budget = 1000;
-    TreeThreshold threshold{0x1p-56f};
+    TreeThreshold threshold{0x1p-58f};
+    EXPECT_EQ(threshold.left(settings), 1000);
+    threshold.shrink();
+    EXPECT_EQ(threshold.of_branches(settings), 0x1p-61f);
+    EXPECT_EQ(threshold.left(settings), 1000);
+    threshold.shrink();
+    EXPECT_EQ(threshold.of_branches(settings), 0x1p-62f);
+    EXPECT_EQ(threshold.left(settings), endless_budget);
     threshold.grow();
-    EXPECT_EQ(threshold.share, 0x1p-54f);
-    EXPECT_TRUE(threshold.holds(settings, {5000, 0, 0}));
-    EXPECT_EQ(threshold.share, 0x1p-54f);
+    EXPECT_EQ(threshold.of_branches(settings), 0x1p-61f);
+    EXPECT_EQ(threshold.left(settings), endless_budget);
+    threshold.grow();
+    EXPECT_EQ(threshold.of_branches(settings), 0x1p-58f);
 }
 
 }  // namespace

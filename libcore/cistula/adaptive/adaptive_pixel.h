@@ -25,14 +25,16 @@ CISTULA_HOST_NOINLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack
         const HashingIntersector<Intersector> intersector{task.intersector, hash, gradual};
         const PixelTask<E, HashingIntersector<Intersector>, Hashing> hashed{task.scene, task.frame, intersector, task.x,
                                                                             task.y,     task.work,  stack};
-        render_sample(hashed, threshold.share, {slot % lattice_side, slot / lattice_side, true}, record);
+        const bool holds = render_sample(hashed, threshold, {slot % lattice_side, slot / lattice_side, true}, record);
         record.rays = task.work.rays.total() - before.total();
         const bool is_too_large = stack.drop();
         if (task.stack.stopped()) return hash.value;
         if (is_too_large)
             threshold.grow();
-        else if (threshold.holds(task.frame.tree, record.pruned))
+        else if (holds)
             return hash.value;
+        else
+            threshold.shrink();
     }
 }
 
@@ -45,8 +47,8 @@ CISTULA_NOINLINE void add_layers(const PixelTask<E, Intersector, Stack>& task, i
     begin_pixel(record);
     const PixelTask<E, Intersector, Stack> traced{task.scene, task.frame, task.intersector, task.x,
                                                   task.y,     work,       task.stack,       task.layers};
-    render_sample(traced, threshold, {slot % lattice_side, slot / lattice_side, LatticePixel::is_chosen(slot)}, record,
-                  weight);
+    const GridSample sample{slot % lattice_side, slot / lattice_side, LatticePixel::is_chosen(slot)};
+    render_sample(traced, {threshold, true}, sample, record, weight);
     task.work.flags |= work.flags & flag_objects_overflow;
 }
 

@@ -11,11 +11,19 @@ namespace cistula {
 /// The intersector of single rays over a LaneScene.
 template <class Real>
 struct SingleIntersector {
+    using Media = InteriorList;
+    using Scene = SceneView<Real>;
     const SceneView<Real>& scene;
 
+    template <class E = Effects<all_effects>>
     CISTULA_NOINLINE Hit<Real> closest(const Ray<Real>& ray) const {
-        if (scene.tree.empty()) return BruteIntersector<Real>{scene}.closest(ray);
-        return BvhIntersector<Real>{scene}.closest(ray);
+        if (scene.tree.empty()) return BruteIntersector<Real>{scene}.template closest<E>(ray);
+        return BvhIntersector<Real>{scene}.template closest<E>(ray);
+    }
+    template <class E>
+    CISTULA_NOINLINE Throughput<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
+        if (scene.tree.empty()) return BruteIntersector<Real>{scene}.template transmittance<E>(shadow);
+        return BvhIntersector<Real>{scene}.template transmittance<E>(shadow);
     }
 };
 
@@ -94,21 +102,36 @@ CISTULA_INLINE IndexOf<Lanes<T, n>> faces_left(const LaneScene<T>& scene, uint32
     return left;
 }
 
-/// The events of hits where `who` holds (surface_event.h). Crossings that share a plane are gathered lane by lane.
+/// The rays that cross a mesh from the wrong side, or have passed such crossings: their counts are neither 0 nor 1.
+template <class Real, class Media>
+CISTULA_INLINE MaskOf<Real> is_miscounted(const Ray<Real, Media>& ray, const Hit<Real>& hit) {
+    const MaskOf<Real> is_inside = ray.media.contains(key_solid(hit.key));
+    return (hit.wrong_side_t <= hit.t) | (is_kind(hit.key, CrossingKind::enter) & is_inside) |
+           (is_kind(hit.key, CrossingKind::leave) & !is_inside);
+}
+
+/// Finds the events of hits where `who` holds (surface_event.h), and returns the rays whose media lanes cannot hold.
+/// Crossings that share a plane are gathered lane by lane.
 template <class E, class T, int n>
-CISTULA_INLINE void resolve_event(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
-                                  const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& who,
-                                  SurfaceEvent<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& event) {
+CISTULA_INLINE MaskOf<Lanes<T, n>> resolve_event(const LaneScene<T>& scene,
+                                                 const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
+                                                 const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& who,
+                                                 SurfaceEvent<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& event) {
+    MaskOf<Lanes<T, n>> strays = false;
     event.begin(ray, hit);
+    if constexpr (E::has(effect_transmission | effect_insides))  // else no ray goes on behind a crossing
+        if (scene.meshes != 0) strays = who & is_miscounted(ray, hit);
     if constexpr (E::has(effect_contacts)) {
         using Index = IndexOf<Lanes<T, n>>;
-        if (scene.shared_planes.empty()) return;
-        const auto bodies = who & !is_kind(hit.key, CrossingKind::sheet);
-        if (!any(bodies)) return;
+        if (scene.shared_planes.empty()) return strays;
+        const auto bodies = who & !strays & !is_kind(hit.key, CrossingKind::sheet);
+        if (!any(bodies)) return strays;
         const Index planes = planes_of<Lanes<T, n>>(scene, key_solid(hit.key), key_face(hit.key));
-        for_each_lane(bodies & (planes != Index(ScalarOf<Index>(no_plane))),
-                      [&](int lane) { gather_in_lane(scene, ray, hit, lane, event); });
+        for_each_lane(bodies & (planes != Index(ScalarOf<Index>(no_plane))), [&](int lane) {
+            if (!gather_in_lane(scene, ray, hit, lane, event)) strays |= MaskOf<Lanes<T, n>>::of_bits(1u << lane);
+        });
     }
+    return strays;
 }
 
 /// A lane of a hit as that of a single ray.
@@ -124,9 +147,9 @@ CISTULA_INLINE Hit<T> lane_of(const Hit<Lanes<T, n>>& hit, int lane) {
     return one;
 }
 
-/// Collects the crossings at a lane's hit (gather_shared).
+/// Collects the crossings at a lane's hit (gather_shared). False if the media beyond do not fit a lane.
 template <class T, int n>
-CISTULA_NOINLINE void gather_in_lane(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
+CISTULA_NOINLINE bool gather_in_lane(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
                                      const Hit<Lanes<T, n>>& hit, int lane,
                                      SurfaceEvent<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& event) {
     using Keys = KeyFormat<Lanes<T, n>>;
@@ -135,6 +158,7 @@ CISTULA_NOINLINE void gather_in_lane(const LaneScene<T>& scene, const Ray<Lanes<
     SurfaceEvent<T> gathered;
     gathered.begin(one, lane_of(hit, lane));
     gather_shared(view, SingleIntersector<T>{view}, one, gathered);
+    if (!InteriorSet::holds(gathered.beyond)) return false;
     const auto only = MaskOf<Lanes<T, n>>::of_bits(1u << lane);
     const Hit<T>& shaded = gathered.hit;
     event.hit.take(only, shaded.t, Keys::of_single(shaded.key), shaded.u, shaded.v, int32_t(shaded.slot),
@@ -144,6 +168,48 @@ CISTULA_NOINLINE void gather_in_lane(const LaneScene<T>& scene, const Ray<Lanes<
     event.beyond.bits.set(lane, int32_t(InteriorSet::of(gathered.beyond).bits));
     assign_where(only, event.fits, MaskOf<Lanes<T, n>>(gathered.fits));
     assign_where(only, event.changes, MaskOf<Lanes<T, n>>(gathered.changes));
+    return true;
+}
+
+/// The farthest that a start may be from the hit, in units of a plane's slack: beyond all pushes off near planes.
+template <class T>
+inline constexpr T farthest_start = T(64) * near_start<T>;
+
+/// Hits of `who` near shared planes where a mesh with a face there may be around new rays (ContactStart).
+template <class T, int n>
+CISTULA_NOINLINE MaskOf<Lanes<T, n>> find_meshes_at_starts(const LaneScene<T>& scene, const Vec3<Lanes<T, n>>& met,
+                                                           const IndexOf<Lanes<T, n>>& solids,
+                                                           const MaskOf<Lanes<T, n>>& who) {
+    using Real = Lanes<T, n>;
+    constexpr T start_reach = T(0x1p-8);  // of squares of distances, for starts that near the hits
+    MaskOf<Real> found = false;
+    for_each_value(who, solids, [&](uint32_t index, const MaskOf<Real>& same) {
+        const Solid& solid = scene.solids[index];
+        for (uint32_t i = 0; i < solid.near_count; ++i) {
+            const SharedPlane<T>& plane = scene.shared_planes[scene.near_planes[solid.first_near + i]];
+            if (plane.mesh_count == 0) continue;
+            const MaskOf<Real> near =
+                same & !(magnitude(distance_from(plane, met)) > Real(farthest_start<T> * plane.slack));
+            for (uint32_t m = 0; m < plane.mesh_count && any(near); ++m) {
+                const uint32_t mesh = scene.plane_solids[plane.first_solid + plane.solid_count + m];
+                const BoundingSphere<T> sphere = BoundingSphere<T>::of(scene.solids[mesh]);
+                const Vec3<Real> off = met - spread<Real>(sphere.center);
+                found |= near & !(dot(off, off) > Real(sphere.padded_square + start_reach));
+            }
+        }
+    });
+    return found;
+}
+
+/// Hits of `who` from which new rays may have to count the meshes around them (count_meshes), and perhaps others.
+template <class E, class T, int n>
+CISTULA_INLINE MaskOf<Lanes<T, n>> meshes_at_starts(const LaneScene<T>& scene,
+                                                    const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
+                                                    const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& who) {
+    if constexpr (E::has(effect_contacts))
+        if (scene.meshes != 0 && !scene.shared_planes.empty())
+            return find_meshes_at_starts(scene, along(ray.origin, hit.t, ray.direction), key_solid(hit.key), who);
+    return false;
 }
 
 /// Corrects the start of a lane's ray (start_at_contact).

@@ -8,8 +8,8 @@
 
 namespace cistula {
 
-/// Records first hits lane by lane, in pixels and, with fills_layers among effects E, in their layers.
-template <class Real, class E>
+/// Records first hits lane by lane, in pixels and, with `layers`, in their layers.
+template <class Real, bool layers>
 struct LaneFirstSeen {
     static constexpr int lanes = LaneTraits<Real>::lanes;
     using T = ScalarOf<Real>;
@@ -30,7 +30,7 @@ struct LaneFirstSeen {
             Surface<T> met;
             met.normal = lane_of(s.normal, lane);
             seen(lane).surface(one, met);
-            if constexpr (E::has(fills_layers)) {
+            if constexpr (layers) {
                 const auto material = uint32_t(s.material.number[lane]);
                 const bool textured = scene.materials[material].texture >= 0;
                 const Vec2<T> uv = textured ? texture_uv(scene, lane_of(hit, lane)) : Vec2<T>();
@@ -43,7 +43,7 @@ struct LaneFirstSeen {
                               const MaskOf<Real>& who) const {
         for_each_lane(who, [&](int lane) {
             const VisibleLightHit<T> one{hit.t[lane], uint32_t(hit.light[lane])};
-            if constexpr (E::has(fills_layers))
+            if constexpr (layers)
                 layered(lane).light(scene, one, lane_of(ray, lane));
             else
                 seen(lane).light(scene, one, lane_of(ray, lane));

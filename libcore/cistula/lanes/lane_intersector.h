@@ -39,6 +39,8 @@ struct LaneIntersector {
     CISTULA_NOINLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow, const Mask& who) const {
         ShadowSum<E, Real> sum;
         assign_where(!(who & is_finite(shadow.ray)), sum.opaque, Index(7));
+        if constexpr (E::has(effect_absorption))
+            if (scene.meshes != 0) shadow_start(scene, shadow, who, sum);
         const Index beside = beside_start<E>(shadow.ray);
         if (scene.tree.empty())
             shadow_in_loop(shadow, who, beside, sum);
@@ -63,7 +65,7 @@ struct LaneIntersector {
         for (uint32_t i = 0; E::solids && i < scene.convex_copies.size; ++i)
             closest_solid<E>(i, ray, who, free, beside, best);
         for (uint32_t i = 0; E::triangles && i < scene.clusters.size; ++i) {
-            const Mask reaches = free & !misses_flat_sheet(scene, i, ray, best.t);
+            const Mask reaches = reaching(i, ray, free, best.t);
             if (any(reaches))
                 closest_in_cluster(i, ray, LaneTriangleRay<Real>(ray.origin, ray.direction), reaches, best);
         }
@@ -72,8 +74,9 @@ struct LaneIntersector {
     template <class E>
     CISTULA_INLINE void closest_in_tree(const Ray<Real, Media>& ray, const Mask& enclosed, const Mask& free,
                                         const Index& beside, Hit<Real>& best) const {
-        for_each_value(enclosed, ray.media.bits, [&](uint32_t set, const Mask& same) {
-            closest_solid<E>(InteriorSet{set}.highest(), ray, same, false, beside, best);
+        for_each_value(enclosed, ray.media.bits & Index(int(scene.isolated)), [&](uint32_t set, const Mask& same) {
+            const uint32_t solid = InteriorSet{set}.highest();
+            closest_solid<E>(scene.convex_before(solid), ray, same, false, beside, best);
         });
         if (!any(free)) return;
         const LaneTriangleRay<Real> triangle_ray(ray.origin, ray.direction);
@@ -83,16 +86,24 @@ struct LaneIntersector {
             [&](uint32_t primitive, const Mask& near) {
                 if (is_solid<E>(scene, primitive)) return closest_solid<E>(primitive, ray, near, near, beside, best);
                 const uint32_t cluster = primitive - scene.convex.size;
-                const Mask reaches = near & !misses_flat_sheet(scene, cluster, ray, best.t);
+                const Mask reaches = reaching(cluster, ray, near, best.t);
                 if (any(reaches)) closest_in_cluster(cluster, ray, triangle_ray, reaches, best);
             });
     }
 
-    /// `free`: the rays of `who` that may hit it from outside.
+    /// The rays of `who` that may reach a cluster's triangles up to `limit`.
+    CISTULA_INLINE Mask reaching(uint32_t cluster, const Ray<Real, Media>& ray, const Mask& who,
+                                 const Real& limit) const {
+        if (scene.planes[cluster].flat == 0) return who;
+        return who & !misses_flat_sheet(scene, cluster, ray, limit);
+    }
+
+    /// A convex solid, by its place among them. `free`: the rays of `who` that may hit it from outside.
     template <class E>
-    CISTULA_INLINE void closest_solid(uint32_t index, const Ray<Real, Media>& ray, const Mask& who, const Mask& free,
+    CISTULA_INLINE void closest_solid(uint32_t place, const Ray<Real, Media>& ray, const Mask& who, const Mask& free,
                                       const Index& beside, Hit<Real>& best) const {
-        const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[index];
+        const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[place];
+        const uint32_t index = next.index;
         Mask inside = false;
         if constexpr (E::has(effect_insides)) inside = who & ray.media.contains(index);
         const Mask near = free & (!inside) & !misses_bounds(next.sphere, ray.origin, ray.direction, best.t);
@@ -142,7 +153,7 @@ struct LaneIntersector {
             open = !sum.is_blocked();
         }
         for (uint32_t i = 0; E::triangles && i < scene.clusters.size && any(open); ++i) {
-            Mask reaches = open & !misses_flat_sheet(scene, i, ray, shadow.distance);
+            Mask reaches = reaching(i, ray, open, shadow.distance);
             if (scene.plan != nullptr) reaches &= (near & int32_t(1u << (ShadowPlan::first_cluster + i))) != 0;
             if (any(reaches)) shadow_cluster(i, shadow, LaneTriangleRay<Real>(ray.origin, ray.direction), reaches, sum);
             open = !sum.is_blocked();
@@ -162,19 +173,20 @@ struct LaneIntersector {
                 if (is_solid<E>(scene, primitive))
                     return shadow_solid(primitive, shadow, near, true, false, beside, sum);
                 const uint32_t cluster = primitive - scene.convex.size;
-                const Mask reaches = near & !misses_flat_sheet(scene, cluster, ray, shadow.distance);
+                const Mask reaches = reaching(cluster, ray, near, shadow.distance);
                 if (any(reaches)) shadow_cluster(cluster, shadow, triangle_ray, reaches, sum);
             });
     }
 
-    /// Adds a convex solid. `near`: whether it may lie on the way of rays from outside; `beyond`: whether the light is
-    /// well outside of it.
+    /// Adds a convex solid, by its place among them. `near`: whether it may lie on the way of rays from outside;
+    /// `beyond`: whether the light is well outside of it.
     template <class E>
-    CISTULA_INLINE void shadow_solid(uint32_t index, const ShadowRay<Real, Media>& shadow, const Mask& who,
+    CISTULA_INLINE void shadow_solid(uint32_t place, const ShadowRay<Real, Media>& shadow, const Mask& who,
                                      const Mask& near, bool beyond, const Index& beside,
                                      ShadowSum<E, Real>& sum) const {
         const Ray<Real, Media>& ray = shadow.ray;
-        const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[index];
+        const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[place];
+        const uint32_t index = next.index;
         Mask inside = false, outside = true;
         if constexpr (E::has(effect_insides)) {
             const Mask contains = ray.media.contains(index);
@@ -215,11 +227,15 @@ struct LaneIntersector {
                                            const LaneTriangleRay<Real>& triangle_ray, const Mask& who,
                                            Hit<Real>& best) const {
         const auto& cluster = scene.clusters[index];
-        for_each_crossing(cluster, triangle_ray, who,
-                          [&](uint32_t triangle, const Mask& accepted, const TriangleCrossing<Real>& c) {
-                              closest_crossing(scene, accepted, cluster.solid, cluster.triangle[triangle],
-                                               index * uint32_t(cluster_lanes) + triangle, c, ray, best);
-                          });
+        const bool is_mesh = scene.is_mesh(cluster.solid);
+        for_each_crossing(
+            cluster, triangle_ray, who, [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
+                const uint32_t triangle = cluster.triangle[lane], slot = index * uint32_t(cluster_lanes) + lane;
+                if (is_mesh)
+                    closest_mesh_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
+                else
+                    closest_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
+            });
     }
 
     template <class E>

@@ -7,7 +7,7 @@
 
 namespace cistula {
 
-/// The convex solids of a LaneScene that contain a point, a bit each.
+/// The closed solids of a LaneScene that contain a point, a bit each.
 struct InteriorSet {
     uint32_t bits = 0;
 
@@ -23,6 +23,12 @@ struct InteriorSet {
         list.for_each([&](uint32_t solid, int) { set.bits |= 1u << solid; });
         return set;
     }
+    /// Whether all counts of a list are 1.
+    CISTULA_INLINE static bool holds(const InteriorList& list) {
+        bool holds = true;
+        list.for_each([&](uint32_t, int count) { holds &= count == 1; });
+        return holds;
+    }
     CISTULA_INLINE InteriorList list() const {
         InteriorList list;
         for_each([&](uint32_t solid, int count) { list.add(solid, count); });
@@ -33,7 +39,7 @@ struct InteriorSet {
     CISTULA_INLINE uint32_t highest() const { return 31u - uint32_t(__builtin_clz(bits)); }
 };
 
-/// InteriorSets in lanes.
+/// InteriorSets in lanes. A ray whose count of a mesh is neither 0 nor 1 is traced by itself (lane_single.h).
 template <class Real>
 struct LaneMedia {
     static constexpr bool contacts = true, meshes = false;
@@ -53,7 +59,7 @@ struct LaneMedia {
         return highest;
     }
 
-    /// Records that a convex solid is entered or left. False, without a change, where that is impossible or the solids
+    /// Records that a closed solid is entered or left. False, without a change, where that is impossible or the solids
     /// are more than an InteriorList holds.
     CISTULA_INLINE Mask cross(const Mask& enters, const Mask& leaves, const Index& solid) {
         const Index bit = bit_of(solid);

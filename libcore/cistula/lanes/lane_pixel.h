@@ -9,7 +9,7 @@ namespace cistula {
 
 /// What lanes learn of a sample that is rendered by itself, beside its record.
 struct LaneSample {
-    TreeThreshold threshold;  // if it does not hold: the next one to try
+    TreeThreshold threshold;  // if it did not hold: the next one to try
     bool holds = false;
     uint32_t path_hash = 0;  // of frames with a target error
 };
@@ -23,6 +23,7 @@ struct LanePixel {
     PixelLayers layers = {};                                          // of effects with fills_layers
     LaneSample* sample = nullptr;                                     // if it is one by itself
     uint32_t rays = 0;                                                // of all kinds
+    int64_t left = 0;                                                 // of the budget
     uint32_t reflected = 0, shadow = 0, branches = 0, path_hash = 0;  // of a sample by itself
 };
 

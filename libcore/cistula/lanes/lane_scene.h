@@ -19,22 +19,30 @@ struct PlaneBodies {
     CISTULA_INLINE uint32_t all() const { return above | below; }
 };
 
-/// A scene whose closed solids are all convex and at most 31. Its solids are numbered anew, the
-/// convex ones first, so that a bit each says which of them a ray is inside: solid i < convex.size is convex[i]. The
-/// order within either kind is kept, and with it that of crossings at equal t.
+/// A scene with at most 31 closed solids, of which only opaque meshes have faces in others' planes. Its solids are
+/// numbered anew, closed ones before sheets, so that a bit each says which of them a ray is inside. The order within
+/// either kind is kept, and with it that of crossings at equal t.
 template <class Real>
 struct LaneScene : SceneView<Real> {
-    static constexpr uint32_t most_convex = 31;
+    static constexpr uint32_t most_closed = 31;
 
     Span<IndexedSolid<Real>> convex_copies;  // of `convex`, to avoid an indirection
     Span<SheetPlane<Real>> planes;           // of the clusters
     Span<TriangleSides<Real>> sides;         // by slot
     CachedTransmittance<Real> cached_transmittances[4];
     const ShadowPlan* plan = nullptr;           // of a scene that is small enough for one
-    uint32_t isolated = 0;                      // bit i: no other primitive comes near convex solid i
+    uint32_t closed = 0;                        // solids i < closed are closed, others sheets
+    int least_lanes = 1;                        // with fewer, one ray after the other is faster
+    uint32_t meshes = 0, isolated = 0;          // bit i: solid i is a closed mesh; convex, nothing else near it
     Span<uint32_t> clear_solids, transmitting;  // of each solid, 1 if its material is clear; if it transmits
     Span<uint32_t> numbers;                     // of the solids in the scene's own order
     Span<PlaneBodies> plane_bodies;             // of each of shared_planes
+
+    CISTULA_INLINE bool is_mesh(uint32_t solid) const { return solid < closed && (meshes >> solid & 1u) != 0; }
+    /// The place of a convex solid among them: how many come before it.
+    CISTULA_INLINE uint32_t convex_before(uint32_t solid) const {
+        return solid - uint32_t(__builtin_popcount(meshes & ((1u << solid) - 1u)));
+    }
 };
 
 }  // namespace cistula

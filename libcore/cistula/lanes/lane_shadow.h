@@ -32,6 +32,49 @@ CISTULA_INLINE Lanes<Real, n> transmittance_of(const LaneScene<Real>& scene, con
     return shares.all();
 }
 
+/// Adds the absorption of a mesh that a lane enters (sign 1) or leaves (sign -1) at t (ShadowSum::absorb_rest).
+template <class E, class Real, class Media, class Scene>
+CISTULA_INLINE void absorb_in_lane(const Scene& scene, const Solid& solid, const ShadowRay<Real, Media>& shadow,
+                                   int lane, ScalarOf<Real> t, int sign, ShadowSum<E, Real>& sum) {
+    ShadowSum<E> one;
+    one.absorb_rest(scene.materials[solid.material], shadow.distance[lane], t, sign, scene.extent);
+    for (int c = 0; c < one.channels; ++c) sum.path[c * LaneTraits<Real>::lanes + lane].sum += one.path[c].sum;
+}
+
+/// Adds the absorption of the crossings of a triangle at t, where `who` holds, if it belongs to a mesh.
+template <class E, class Real, class Media, class Scene>
+CISTULA_INLINE void absorb_crossings(const Scene& scene, const Solid& solid, const ShadowRay<Real, Media>& shadow,
+                                     const Real& t, const MaskOf<Real>& enters, const MaskOf<Real>& who,
+                                     ShadowSum<E, Real>& sum) {
+    if (solid.kind != SolidKind::mesh) return;
+    const uint32_t entering = enters.bits();
+    for_each_lane(who, [&](int lane) {
+        absorb_in_lane(scene, solid, shadow, lane, t[lane], (entering >> lane & 1u) != 0 ? 1 : -1, sum);
+    });
+}
+
+/// Adds the absorption of the meshes that contain the rays' origins.
+template <class E, class Real, class Media, class Scene>
+CISTULA_NOINLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& who,
+                                   ShadowSum<E, Real>& sum) {
+    for_each_lane(who, [&](int lane) {
+        InteriorSet{shadow.ray.media.of(lane).bits & scene.meshes}.for_each([&](uint32_t solid, int) {
+            absorb_in_lane(scene, scene.solids[solid], shadow, lane, ScalarOf<Real>(0), 1, sum);
+        });
+    });
+}
+
+/// Adds the absorption inside meshes to the losses of a channel.
+template <class E, class Real, class Scene>
+CISTULA_INLINE void add_path_losses(const Scene& scene, const ShadowSum<E, Real>& sum, int channel,
+                                    LossOf<Real>& loss) {
+    if (scene.meshes == 0) return;
+    constexpr int lanes = LaneTraits<Real>::lanes;
+    for (int lane = 0; lane < lanes; ++lane)
+        if (const PathSum& path = sum.path[channel * lanes + lane]; path.sum != 0)
+            loss.set(lane, int64_t(saturating_add(uint64_t(loss[lane]), path.loss())));
+}
+
 /// Where rays start whose light lies on faces of a convex solid: inside all of them, or outside one.
 template <class E, class Real, class Media, class Scene>
 CISTULA_INLINE void light_sides(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,

@@ -72,9 +72,11 @@ class LaneSums {
         const Mask counts = (most <= Real(1)) & (most > thresholds_of(who));
         Mask followed = who & counts;
         for_each_lane(who & !counts, [&](int lane) {
-            const LanePixel& pixel = pixels_[pixel_[lane]];
-            PixelSums<T> sums(settings_, bounds_, *pixel.record, flags_, pixel.threshold.share);
+            LanePixel& pixel = pixels_[pixel_[lane]];
+            PixelSums<T> sums(settings_, bounds_, *pixel.record, flags_, pixel.threshold.of_branches(settings_),
+                              pixel.left);
             if (sums.afford(lane_of(weight, lane))) followed |= Mask::of_bits(1u << lane);
+            pixel.left = sums.left();
         });
         return followed;
     }
@@ -128,7 +130,9 @@ class LaneSums {
     CISTULA_INLINE Real thresholds_of(const Mask& who) const {
         LaneArray<Real> thresholds(Real(T(settings_.fixed_unit)));
         if (settings_.budget != 0)
-            for_each_lane(who, [&](int lane) { thresholds.of[lane] = T(pixels_[pixel_[lane]].threshold.share); });
+            for_each_lane(who, [&](int lane) {
+                thresholds.of[lane] = T(pixels_[pixel_[lane]].threshold.of_branches(settings_));
+            });
         return thresholds.all();
     }
 

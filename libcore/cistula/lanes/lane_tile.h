@@ -7,6 +7,7 @@
 #include "cistula/lanes/lane_first_seen.h"
 #include "cistula/lanes/lane_hash.h"
 #include "cistula/lanes/lane_lights.h"
+#include "cistula/lanes/lane_single.h"
 #include "cistula/lanes/lane_surface.h"
 #include "cistula/lanes/layered_lane_sums.h"
 #include "cistula/transport/pixel.h"
@@ -37,6 +38,7 @@ class LaneTile {
     using Scene = typename Intersector::Scene;
     using Entry = BranchOf<Real, E, Media>;
     using Mask = MaskOf<Real>;
+    using First = LaneFirstSeen<Real, E::has(fills_layers)>;
     static constexpr int lanes = LaneTraits<Real>::lanes;
 
     LaneTile(const Scene& scene, const FrameView& frame)
@@ -46,6 +48,7 @@ class LaneTile {
     void add(const LanePixel& pixel) {
         begin_pixel(*pixel.record);
         pixels_.push_back(pixel);
+        pixels_.back().left = pixel.threshold.left(frame_.tree);
     }
 
     /// Renders what was added, unless stopped(), and adds the counts.
@@ -60,16 +63,17 @@ class LaneTile {
                                                                               sums, rays, queues_);
         next_ = 0;
         next_sample_ = 0;
+        Entry kept;  // the branches as they were before they were followed
         for (uint32_t turns = 1;; ++turns) {
             if (turns % turns_between_stops == 0 && stopped()) return clear();
             Entry branch;
             Mask who = false;
-            LaneFirstSeen<Real, E> first{scene_, frame_, flags, {}, {}};
+            First first{scene_, frame_, flags, {}, {}};
             if (queues_.has_full() || next_ == pixels_.size()) {
                 who = queues_.pop(branch);
                 if (!any(who)) break;
                 sums.begin(branch);
-                if constexpr (by_sample) who = within_limit(branch, who);
+                if constexpr (by_sample) who = of_kept_samples(branch, who);
                 who = sums.afford(branch.weight, who);
                 if (!any(who)) continue;
                 (branch.mirrored ? rays.counts.reflected : rays.counts.transmitted) += rays.count(who);
@@ -83,9 +87,13 @@ class LaneTile {
             if constexpr (by_sample) hash.begin(largest_component(branch.weight) >= least_weight(), adaptive_);
             find_start_plane<E>(scene_, branch.ray);
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
-            tree.follow(branch, who, first);
+            if (scene_.meshes != 0) kept = branch;
+            const Mask single = tree.follow(branch, who, first);
             sums.end(who);
-            if constexpr (by_sample) add_to_samples(branch, hash, sums.rays(), who);
+            if constexpr (by_sample)
+                add_to_samples(branch, hash, sums.rays(), who);
+            else if (any(single))
+                trace_singly(kept, single, first, stopped, rays.counts, flags);
         }
         for (LanePixel& pixel : pixels_) {
             pixel.record->rays = pixel.rays;
@@ -103,6 +111,26 @@ class LaneTile {
         queues_.clear();
     }
 
+    /// Traces branches by themselves, and adds the counts.
+    template <class Stopped>
+    CISTULA_NOINLINE void trace_singly(const Entry& branch, const Mask& who, const First& first, const Stopped& stopped,
+                                       RayCounts& counts, uint32_t& flags) {
+        for_each_lane(who, [&](int lane) {
+            LanePixel& pixel = pixels_[size_t(branch.pixel[lane] & (Entry::by_mirror - 1))];
+            SumsOf<T, E> sums(frame_.tree, scene_, *pixel.record, flags);
+            if constexpr (E::has(fills_layers)) {
+                sums.divide(frame_.layers, pixel.layers, scene_.light_groups);
+                if (branch.depth > 0) sums.enter((branch.pixel[lane] & Entry::by_mirror) != 0);
+            }
+            PixelRays rays;
+            Branch<T> one = single_branch(branch, lane);
+            trace_single<Real>(scene_, frame_.tree.depth, one, sums, rays,
+                               SingleFirstSeen<Real, First>{scene_, first, lane}, StopQuestion::by(stopped));
+            counts.add(rays);
+            pixel.rays += rays.total();
+        });
+    }
+
     CISTULA_INLINE Intersector intersector_with(LanePathHash<Real>& hash) const {
         if constexpr (by_sample)
             return {{scene_}, hash, gradual_};
@@ -113,13 +141,18 @@ class LaneTile {
     /// The least weight of branches that count in path hashes.
     CISTULA_INLINE Real least_weight() const { return Real(T(frame_.lattice.significant)); }
 
-    /// Counts branches for their samples, and returns where these have no more than they may.
-    CISTULA_INLINE Mask within_limit(const Entry& branch, const Mask& who) {
-        if (!adaptive_) return who;
-        uint32_t left = 0;
-        for_each_lane(
-            who, [&](int lane) { left |= uint32_t(++pixels_[branch.pixel[lane]].branches <= most_branches) << lane; });
-        return Mask::of_bits(left);
+    /// Counts branches for their samples, and returns those of samples that are not given up.
+    CISTULA_INLINE Mask of_kept_samples(const Entry& branch, const Mask& who) {
+        uint32_t kept = 0;
+        for_each_lane(who, [&](int lane) {
+            LanePixel& pixel = pixels_[branch.pixel[lane]];
+            ++pixel.branches;
+            kept |= uint32_t(pixel.left >= 0 && !is_too_large(pixel)) << lane;
+        });
+        return Mask::of_bits(kept);
+    }
+    CISTULA_INLINE bool is_too_large(const LanePixel& pixel) const {
+        return adaptive_ && pixel.branches > most_branches;
     }
 
     /// Adds the hashes of branches and the counts of their rays to their samples. `rays`: each branch and its shadow
@@ -141,9 +174,11 @@ class LaneTile {
             LaneSample& sample = *pixel.sample;
             sample.threshold = pixel.threshold;
             sample.path_hash = pixel.path_hash;
-            const bool is_too_large = pixel.branches > most_branches;
-            if (is_too_large) sample.threshold.grow();
-            sample.holds = !is_too_large && sample.threshold.holds(frame_.tree, pixel.record->pruned);
+            sample.holds = pixel.left >= 0 && !is_too_large(pixel);
+            if (is_too_large(pixel))
+                sample.threshold.grow();
+            else if (pixel.left < 0)
+                sample.threshold.shrink();
             if (sample.holds)
                 counts.add(
                     PixelRays{1, pixel.reflected, pixel.rays - 1 - pixel.reflected - pixel.shadow, pixel.shadow});
@@ -154,7 +189,7 @@ class LaneTile {
     /// The solids of an interior list, which has the scene's own numbers.
     InteriorSet interior_set(const InteriorList& list) const {
         InteriorSet set;
-        for (uint32_t i = 0; !list.empty() && i < scene_.convex.size; ++i)
+        for (uint32_t i = 0; !list.empty() && i < scene_.closed; ++i)
             set.bits |= uint32_t(list.contains(scene_.numbers[i])) << i;
         return set;
     }
@@ -173,7 +208,7 @@ class LaneTile {
     }
 
     /// Sets the next primary rays, and returns where they are. Those that miss the scene are done here.
-    Mask take_primaries(Entry& branch, LaneFirstSeen<Real, E>& first, uint32_t& flags) {
+    Mask take_primaries(Entry& branch, First& first, uint32_t& flags) {
         LaneVectors<Real> origins, directions;
         LaneArray<IndexOf<Real>> media, numbers;
         int count = 0;

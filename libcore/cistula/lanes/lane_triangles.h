@@ -59,4 +59,25 @@ CISTULA_INLINE void for_each_crossing(const Cluster<ScalarOf<Real>>& cluster, co
     });
 }
 
+/// Takes accepted crossings of a closed mesh, where `who` holds, as `best` if they are the rays' next
+/// (closest_crossing).
+template <class Real, class Media, class Scene>
+CISTULA_INLINE void closest_mesh_crossing(const Scene& scene, const MaskOf<Real>& who, uint32_t solid,
+                                          uint32_t triangle, uint32_t slot, const TriangleCrossing<Real>& c,
+                                          const Ray<Real, Media>& ray, Hit<Real>& best) {
+    using Mask = MaskOf<Real>;
+    const Real t = crossing_time(scene, triangle, c.t, ray);
+    const Mask starts_there = (ray.from_solid == int(solid)) & (ray.from_face == int(triangle));
+    const Mask enters = c.enters(), is_inside = ray.media.contains(solid);
+    const Mask wrong = (ray.after.t <= Real(-1)) & ((enters & is_inside) | !(enters | is_inside));
+    const Mask meets = who & (t >= Real(0)) & !starts_there;
+    assign_where(meets & wrong, best.wrong_side_t, min_no_nan(t, best.wrong_side_t));
+    using Keys = KeyFormat<Real>;
+    const auto face = KeyOf<Real>(int32_t(triangle));
+    const KeyOf<Real> key =
+        select(enters, Keys::make(CrossingKind::enter, solid, face), Keys::make(CrossingKind::leave, solid, face));
+    const Mask first = meets & !wrong & ray.after.before(t, key) & best.improves(t, key);
+    if (any(first)) best.take(first, t, key, c.u(), c.v(), int32_t(slot), enters);
+}
+
 }  // namespace cistula

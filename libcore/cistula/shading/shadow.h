@@ -25,8 +25,8 @@ struct ShadowSum {
     using Loss = LossOf<Lanes>;
     using Bits = IndexOf<Lanes>;
     Loss loss[channels] = {};
-    PathSum path[channels];  // absorption inside meshes
-    Bits opaque = 0;         // bit c: channel c is blocked
+    PathSum path[channels * LaneTraits<Lanes>::lanes];  // absorption inside meshes, of each lane by itself
+    Bits opaque = 0;                                    // bit c: channel c is blocked
 
     CISTULA_INLINE MaskOf<Lanes> is_blocked() const { return opaque == 7u; }
 
@@ -76,7 +76,9 @@ struct ShadowSum {
         for (int c = 0; c < channels; ++c) {
             if constexpr (E::has(effect_transparent_shadows)) {
                 Loss total = loss[c];
-                if constexpr (E::has(effect_absorption) && !in_lanes<Lanes>)
+                if constexpr (E::has(effect_absorption) && in_lanes<Lanes>)
+                    add_path_losses(scene, *this, c, total);
+                else if constexpr (E::has(effect_absorption))
                     total = saturating_add(total, path[c].loss());
                 if (any(total != known)) known = total, known_transmittance = transmittance_of(scene, total);
             }
@@ -229,7 +231,9 @@ CISTULA_INLINE void shadow_crossing(const Scene& scene, const MaskOf<Real>& who,
     const Solid& solid = scene.solids[index];
     const auto& material = scene.materials[solid.material];
     sum.cross(material, before);
-    if constexpr (E::has(effect_absorption) && !in_lanes<Real>)
+    if constexpr (E::has(effect_absorption) && in_lanes<Real>)
+        absorb_crossings(scene, solid, shadow, t, c.enters(), before, sum);
+    else if constexpr (E::has(effect_absorption))
         if (solid.kind == SolidKind::mesh)
             sum.absorb_rest(material, shadow.distance, t, c.enters() ? 1 : -1, scene.extent);
 }

@@ -71,9 +71,10 @@ class NextSurface {
         ray.after = event.last();
     }
 
-    /// The branches in lanes that meet a surface.
+    /// The branches in lanes that meet a surface. `single`: those whose media lanes cannot hold; nothing was added for
+    /// them.
     CISTULA_INLINE MaskOf<Real> find(Entry& branch, const MaskOf<Real>& who, SurfaceEvent<Real, Media>& event,
-                                     VisibleLightHit<Real>& visible) {
+                                     VisibleLightHit<Real>& visible, MaskOf<Real>& single) {
         Absorption<E::has(effect_absorption), Real> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t, who);
         MaskOf<Real> met = false, left = who;
@@ -90,7 +91,9 @@ class NextSurface {
             }
             SurfaceEvent<Real, Media> next;
             left = left & !ends;
-            resolve_event<E>(scene_, branch.ray, hit, left, next);
+            const MaskOf<Real> strays = resolve_event<E>(scene_, branch.ray, hit, left, next);
+            single |= strays;
+            left = left & !strays;
             if (any(left & !next.fits)) sums_.flag(flag_media_overflow);
             const MaskOf<Real> passes = left & invisible(branch.ray, next), stops = left & !passes;
             absorption.dim(scene_, branch.ray.media, next.hit.t, branch.weight, stops);

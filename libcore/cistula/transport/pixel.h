@@ -4,7 +4,6 @@
 #include "cistula/model/camera.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
-#include "cistula/transport/tree_threshold.h"
 
 namespace cistula {
 
@@ -253,10 +252,10 @@ CISTULA_INLINE GridSample grid_sample(int i, int k) {
     return {column, row, column == k / 2 && row == k / 2};
 }
 
-/// Renders a sample with a threshold (tree_threshold.h) and adds it to the record, and to the pixel's layers `weight`
-/// times.
+/// Renders a sample and adds it to the record, and to the pixel's layers `weight` times. False if it lost too much for
+/// its threshold, and was given up.
 template <class E, class Intersector, class Stack>
-CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, float threshold,
+CISTULA_INLINE bool render_sample(const PixelTask<E, Intersector, Stack>& task, const TreeThreshold& threshold,
                                   const GridSample& sample, PixelRecord& record, [[maybe_unused]] int weight = 1) {
     using Task = PixelTask<E, Intersector, Stack>;
     using Real = typename Task::Real;
@@ -264,14 +263,15 @@ CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, 
     const TreeSettings& settings = frame.tree;
     Ray<Real, typename Task::Media> ray;
     const Vec3<double> direction = sample_direction(frame, task.x, task.y, sample);
-    SumsOf<Real, E> sums(settings, task.scene, record, task.work.flags, threshold);
+    SumsOf<Real, E> sums(settings, task.scene, record, task.work.flags, threshold.of_branches(settings),
+                         threshold.left(settings));
     [[maybe_unused]] const PixelLayers layers{task.layers.words, weight};
     if constexpr (E::has(fills_layers)) sums.divide(frame.layers, layers, task.scene.light_groups);
     ++task.work.rays.primary;
     double start;
     if (!primary_ray(task.scene, frame, direction, ray, start)) {
         sums.add(task.scene.background, LightSource::background);
-        return;
+        return true;
     }
     if (sample.middle) {
         task.work.start = start;
@@ -285,6 +285,7 @@ CISTULA_INLINE void render_sample(const PixelTask<E, Intersector, Stack>& task, 
             ray, LayeredFirstSeen<Real, typename Task::Scene>{seen, task.scene, frame.layers, layers, task.work.flags});
     else
         tree.trace(ray, seen);
+    return sums.left() >= 0;
 }
 
 /// Initializes a pixel's record before its first sample; end_pixel completes it after the last.
@@ -307,18 +308,18 @@ CISTULA_INLINE void add_sample(const PixelTask<E, Intersector, Stack>& task, int
     PixelRecord before;
     PixelRays rays;
     if (has_cutoff) before = record, rays = task.work.rays;
-    TreeThreshold threshold{settings.threshold}, next = threshold;
-    for (int weight = 1;; weight = E::has(fills_layers) ? -weight : 1) {
-        render_sample(task, threshold.share, sample, record, weight);
-        if (!has_cutoff || task.stack.stopped()) return;
-        if (weight > 0) {
-            int64_t dropped[3];
-            for (int c = 0; c < 3; ++c) dropped[c] = record.pruned[c] - before.pruned[c];
-            if (next.holds(settings, dropped)) return;
-        }
+    TreeThreshold threshold{settings.threshold};
+    for (int weight = 1;;) {
+        const bool holds = render_sample(task, threshold, sample, record, weight);
+        if (!has_cutoff || (holds && weight > 0) || task.stack.stopped()) return;
         record = before;
         task.work.rays = rays;
-        if (weight < 0 || !E::has(fills_layers)) threshold = next;  // layers are first taken back
+        if (E::has(fills_layers) && weight > 0) {
+            weight = -1;  // takes back what entered the layers
+        } else {
+            weight = 1;
+            threshold.shrink();
+        }
     }
 }
 

@@ -4,17 +4,9 @@
 #include "cistula/model/layers.h"
 #include "cistula/numerics/fixed_sum.h"
 #include "cistula/numerics/vec.h"
+#include "cistula/transport/tree_threshold.h"
 
 namespace cistula {
-
-/// A frame's settings for every ray tree.
-struct TreeSettings {
-    int depth = 4;          // maximum number of surfaces shaded along a path
-    float fixed_scale = 1;  // 2^s of the sums (docs/rules.md, 8), exact in either Real
-    float fixed_unit = 1;   // 2^-s
-    int64_t budget = 0;     // truncation allowed per sample, in units of the sums; 0: no cutoff
-    float threshold = 1;    // the first of a sample (tree_threshold.h)
-};
 
 /// The bits of a number as an integer. For numbers in [0, 1] integers have the same order; all others (-0 and NaN
 /// included) give greater integers.
@@ -41,20 +33,22 @@ CISTULA_INLINE bool clear_fault(Real& units, Real scale) {
 template <class Real>
 class PixelSums {
   public:
-    /// Sums of one sample. Weights are a share per channel, or one for all.
+    /// Sums of one sample, whose branches have a threshold and may lose `left`. Weights are a share per channel, or one
+    /// for all.
     template <class Scene>
     CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags,
-                             float threshold)
+                             float threshold, int64_t left)
         : settings_(settings),
           bound_(scene.bound),
           largest_bound_(scene.largest_bound),
           record_(record),
           flags_(flags),
-          threshold_(threshold) {}
+          threshold_(threshold),
+          left_(left) {}
     /// Sums without a cutoff.
     template <class Scene>
     CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
-        : PixelSums(settings, scene, record, flags, settings.fixed_unit) {}
+        : PixelSums(settings, scene, record, flags, settings.fixed_unit, endless_budget) {}
 
     CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource = LightSource::background, bool = true) {
         const Vec3<Real> units = in_units(radiance, Real(settings_.fixed_scale), flags_);
@@ -75,8 +69,11 @@ class PixelSums {
         const int64_t worst = most_of(bounded(weight), Real(settings_.fixed_scale), flags_, most);
         if (worst > whole_of(threshold_ * Real(settings_.fixed_scale))) return true;
         for (int c = 0; c < 3; ++c) record_.pruned[c] += most[c];
+        if (left_ != endless_budget) left_ -= worst;
         return false;
     }
+    /// What is left of the budget; below 0: the tree has lost too much.
+    CISTULA_INLINE int64_t left() const { return left_; }
 
     /// Adds the bound of a branch beyond the depth limit to the ledger.
     template <class Throughput>
@@ -146,6 +143,7 @@ class PixelSums {
     PixelRecord& record_;
     uint32_t& flags_;
     const Real threshold_;  // a share of the bound
+    int64_t left_;
 };
 
 }  // namespace cistula

@@ -60,30 +60,61 @@ class RayTree {
         } while (next(branch));
     }
 
-    /// Follows branches in lanes to their surfaces, where `who` holds, and pushes their children. Branches of depth 0
-    /// report what they hit: first.surface(hit, surface, who) and first.light(scene, hit, ray, who).
+    /// Traces a branch of a tree and all that comes from it, as trace() does.
     template <class First>
-    CISTULA_INLINE void follow(Entry& branch, const MaskOf<Real>& who, const First& first) {
+    CISTULA_INLINE void trace_branch(Entry& branch, const First& first) {
+        const uint32_t depth = branch.depth;
+        uint32_t turns = 0;
+        do {
+            if (++turns % turns_between_stops == 0 && stack_.stopped()) return stack_.clear();
+            const bool at_first = depth == 0 && turns == 1;
+            SurfaceEvent<Real, Media> event;
+            VisibleLightHit<Real> light;
+            if (line_.find(branch, event, light)) {
+                const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
+                if (at_first) first.surface(event.hit, s);
+                shade(branch, true, event, s);
+            } else if (at_first && light.found()) {
+                first.light(scene_, light, branch.ray);
+            }
+        } while (next(branch));
+    }
+
+    /// Follows branches in lanes to their surfaces, where `who` holds, and pushes their children. Branches of depth 0
+    /// report what they hit: first.surface(hit, surface, who) and first.light(scene, hit, ray, who). Returns those of
+    /// which nothing was done, since they must be traced by themselves (lane_single.h).
+    template <class First>
+    CISTULA_INLINE MaskOf<Real> follow(Entry& branch, const MaskOf<Real>& who, const First& first) {
         SurfaceEvent<Real, Media> event;
         VisibleLightHit<Real> light;
-        const MaskOf<Real> met = line_.find(branch, who, event, light);
+        MaskOf<Real> single = false;
+        MaskOf<Real> met = line_.find(branch, who, event, light, single);
+        const MaskOf<Real> among_meshes = meshes_at_starts<E>(scene_, branch.ray, event.hit, met);
+        single |= among_meshes;
+        met = met & !among_meshes;
         if constexpr (E::has(effect_visible_lights))
             if (branch.depth == 0) first.light(scene_, light, branch.ray, who & light.found());
-        if (!any(met)) return;
+        if (!any(met)) return single;
         Surface<Real> s;
         surfaces_at<E>(scene_, branch.ray, event.hit, met, s);
         if (branch.depth == 0) first.surface(event.hit, s, met);
         correct_starts<E>(scene_, branch.ray, event, s.normal, false, met, s.viewer_side, s.viewer_media);
         shade(branch, met, event, s);
+        return single;
     }
 
   private:
-    /// Pops branches until one is worth tracing; false if there is none.
+    /// Pops branches until one is worth tracing; false if there is none, or if the tree has lost too much.
     CISTULA_INLINE bool next(Entry& branch) {
         if constexpr (E::has(effect_reflection | effect_transmission)) {
-            do {
+            for (;;) {
                 if (!stack_.pop(branch)) return false;
-            } while (!sums_.afford(branch.weight));
+                if (sums_.afford(branch.weight)) break;
+                if (sums_.left() < 0) {
+                    stack_.clear();
+                    return false;
+                }
+            }
             find_start_plane<E>(scene_, branch.ray);
             // All that comes from one of the first surface's children is followed before the other.
             if constexpr (E::has(fills_layers))

@@ -8,6 +8,8 @@
 
 namespace cistula {
 
+struct FrameView;
+
 /// A LaneScene with the arrays that it does not share with the view from which it was made.
 template <class Real>
 class OwnedLaneScene {
@@ -37,8 +39,13 @@ class OwnedLaneScene {
     ShadowPlan plan_;
 };
 
-/// The LaneScene of a view; null if the scene does not fit: it has closed meshes, or too many solids or triangles.
+/// The LaneScene of a view; null if the scene does not fit: it has too many solids or triangles, or
+/// transparent meshes with faces in the planes of others.
 template <class Real>
 std::unique_ptr<const OwnedLaneScene<Real>> lane_scene(const SceneView<Real>& scene);
+
+/// Finds the solids around the camera (pixel.h) by a scene for lanes; the frame gets the scene's own numbers.
+template <class Real>
+bool find_camera_solids(const LaneScene<Real>& scene, FrameView& frame);
 
 }  // namespace cistula
