@@ -203,7 +203,7 @@ template <class Real, DevicePath path, bool layered>
 __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(adaptive_shape, path))
     render_adaptive(const __grid_constant__ FrameJob job,
                     const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
-    using E = Effects<all_effects>;
+    using E = Effects<effect_masks[limited_mask]>;
     using Stack = DeviceStack<Real, E, path>;
     __shared__ Uninitialized<BlockStorage<adaptive_shape.threads()>> memory;
     PixelWork& own = memory.get().work[threadIdx.x] = PixelWork();

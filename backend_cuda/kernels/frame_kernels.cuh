@@ -79,9 +79,9 @@ unsigned int filling_blocks(const Kernel& kernel, int threads) {
     return unsigned(multiprocessors) * unsigned(max_or_second(blocks, 1));
 }
 
-/// Whether adaptive sampling is compiled for this mask: for all effects only, with and without layers.
+/// Whether adaptive sampling is compiled for this mask: for all effects with a budget only, with and without layers.
 constexpr bool samples_adaptively(int mask) {
-    return mask == effect_mask_count - 1 || mask == layered_mask;
+    return mask == limited_mask || mask == layered_mask;
 }
 
 template <class Real, int mask>

@@ -67,14 +67,13 @@ class FrameTask {
                                   : find_camera_solids(scene_, intersector, frame_)))
             film.flags |= flag_media_overflow;
         mask_ = mask_to_run(compiled.effects, settings, frame_);
-        if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = effect_mask_count - 1;
+        if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = limited_mask;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
         if (in_lanes == nullptr || mask_ == unshadowed_mask || !camera_fits_lanes(frame_)) return;
         if (in_lanes->meshes != 0 && goes_by_sample()) return;
         tiles_ = tile_functions<Real>(settings.lanes);
         if (tiles_ != nullptr && tiles_->lanes < in_lanes->least_lanes) tiles_ = nullptr;
-        if (tiles_ != nullptr && goes_by_sample() && !settings.layers.any()) mask_ = effect_mask_count - 1;
     }
 
     /// The effects that are compiled into the code that runs (mask_to_run; all of them for references).
@@ -90,7 +89,7 @@ class FrameTask {
             return settings_.adaptive() ? render_adaptive_layers() : render_mask<layered_mask>();
         if (settings_.adaptive()) return render_adaptive();
         if constexpr (!runs_every_mask<Intersector>) {
-            return mask_ == unshadowed_mask ? render_mask<unshadowed_mask>() : render_mask<effect_mask_count - 1>();
+            return mask_ == unshadowed_mask ? render_mask<unshadowed_mask>() : render_mask<limited_mask>();
         } else {
             using Render = bool (FrameTask::*)();
             static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
@@ -168,7 +167,7 @@ class FrameTask {
         if constexpr (!fills_film_layers<Intersector>) {
             return false;  // never called
         } else {
-            using E = Effects<all_effects>;
+            using E = Effects<effect_masks[limited_mask]>;
             using Layered = Effects<effect_masks[layered_mask]>;
             const bool gradual = shades_gradually(scene_);
             return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
@@ -188,7 +187,7 @@ class FrameTask {
     }
 
     bool render_adaptive() {
-        using E = Effects<all_effects>;
+        using E = Effects<effect_masks[limited_mask]>;
         const bool gradual = shades_gradually(scene_);
         return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
             typename Stack<E>::Storage storage;

@@ -32,6 +32,7 @@ class MaskTile : public AnyTile {
     LaneTile<Real, E, by_sample> tile_;
 };
 
+/// The tile of a mask without a budget, or of layered_mask.
 template <class Real>
 AnyTile* make_mask_tile(int mask, const LaneScene<ScalarOf<Real>>& scene, const FrameView& frame) {
     using Make = AnyTile* (*)(const LaneScene<ScalarOf<Real>>&, const FrameView&);
@@ -40,7 +41,8 @@ AnyTile* make_mask_tile(int mask, const LaneScene<ScalarOf<Real>>& scene, const 
             return new MaskTile<Real, Effects<effect_masks[i]>>(s, f);
         }...};
     }
-    (std::make_index_sequence<layered_mask + 1>());
+    (std::make_index_sequence<effect_mask_count>());
+    if (mask == layered_mask) return new MaskTile<Real, Effects<effect_masks[layered_mask]>>(scene, frame);
     return table[size_t(mask)](scene, frame);
 }
 
@@ -54,8 +56,8 @@ constexpr TileFunctions tile_functions_of() {
         return make_mask_tile<Real>(mask, *static_cast<const Scene*>(scene), *static_cast<const FrameView*>(frame));
     };
     functions.make_by_sample = [](const void* scene, const void* frame) -> void* {
-        AnyTile* tile = new MaskTile<Real, Effects<all_effects>, true>(*static_cast<const Scene*>(scene),
-                                                                       *static_cast<const FrameView*>(frame));
+        AnyTile* tile = new MaskTile<Real, Effects<effect_masks[limited_mask]>, true>(
+            *static_cast<const Scene*>(scene), *static_cast<const FrameView*>(frame));
         return tile;
     };
     functions.add = [](void* tile, const void* pixel) {

@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-using BranchEffects = Effects<all_effects>;
+using BranchEffects = Effects<effect_masks[limited_mask]>;
 
 inline FixedColor colors_of(const int64_t (&sums)[3]) {
     return {sums[0], sums[1], sums[2]};

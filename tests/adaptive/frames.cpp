@@ -76,7 +76,7 @@ TEST(Adaptive, IsTheSameOnAllIntersectorsTilesAndCrops) {
 /// Adaptive pixels with a lesser mask than the renderers run.
 template <class Real, uint32_t mask>
 void expect_same_with_mask(const SceneDescription& scene, const std::string& what) {
-    using E = Effects<mask>;
+    using E = Effects<mask | keeps_budget>;
     FrameSettings settings = small(scene, 48, 27);
     settings.target_error = 0.01;
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);

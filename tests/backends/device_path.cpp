@@ -61,7 +61,7 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
     else if (least <= middle)
         render_shared<Real, Effects<effect_masks[middle]>>(scene, frame, intersector, film);
     else
-        render_shared<Real, Effects<all_effects>>(scene, frame, intersector, film);
+        render_shared<Real, Effects<effect_masks[limited_mask]>>(scene, frame, intersector, film);
     return film;
 }
 

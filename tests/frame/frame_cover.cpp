@@ -37,7 +37,7 @@ void expect_sound(const CompiledScene<Real>& scene, const SceneView<Real>& view,
             for (int x = begin; x < end; ++x) {
                 PixelRecord record;
                 PixelWork work;
-                using E = Effects<all_effects>;
+                using E = Effects<effect_masks[limited_mask]>;
                 using Stack = StackOf<Real, E, InteriorList>;
                 typename Stack::Storage storage;
                 Stack stack(storage);

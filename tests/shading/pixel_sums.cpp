@@ -16,10 +16,14 @@ template <class Real>
 class PixelSumsTest : public testing::Test {
   protected:
     /// A sample's of a pixel of one sample.
-    PixelSums<Real> sums(float threshold = 0x1p-62f, int64_t budget = endless_budget) {
+    PixelSums<Real> sums() {
         settings_.fixed_scale = 0x1p62f;
         settings_.fixed_unit = 0x1p-62f;
-        return {settings_, bounds_, record_, flags_, threshold, budget};
+        return {settings_, bounds_, record_, flags_};
+    }
+    PixelSums<Real, true> limited_sums(float threshold, int64_t budget = endless_budget) {
+        sums();
+        return {settings_, bounds_, record_, flags_, TreeLimit<Real, true>(threshold, budget)};
     }
 
     static constexpr int64_t one = int64_t(1) << 62;
@@ -94,7 +98,7 @@ TYPED_TEST(PixelSumsTest, BoundsAreRoundedUp) {
 
 TYPED_TEST(PixelSumsTest, BranchesUpToTheThresholdAreDropped) {
     using Real = TypeParam;
-    PixelSums<Real> sums = this->sums(0x1p-22f);
+    PixelSums<Real, true> sums = this->limited_sums(0x1p-22f);
     EXPECT_TRUE(sums.afford(Real(0x1.000002p-22)));
     EXPECT_EQ(this->record_.pruned[0], 0);
     for (int drops = 1; drops <= 3; ++drops) {
@@ -113,13 +117,13 @@ TYPED_TEST(PixelSumsTest, BranchesUpToTheThresholdAreDropped) {
 
 TYPED_TEST(PixelSumsTest, ATreeThatLosesMoreThanItsBudgetIsOver) {
     using Real = TypeParam;
-    PixelSums<Real> sums = this->sums(0x1p-22f, int64_t(3) << 40);
+    PixelSums<Real, true> sums = this->limited_sums(0x1p-22f, int64_t(3) << 40);
     for (int drops = 1; drops <= 3; ++drops) {
         EXPECT_FALSE(sums.afford(Vec3<Real>(Real(0x1p-24), Real(0x1p-21), Real(0))));  // its greatest channel counts
         EXPECT_EQ(sums.left(), int64_t(3 - drops) << 40);
     }
     EXPECT_FALSE(sums.afford(Real(0x1p-62)));
-    EXPECT_LT(sums.left(), 0);
+    EXPECT_EQ(sums.left(), -1);
 }
 
 TEST(TreeThreshold, BeginsWithAPowerOfTwoOfAnEighthOfTheBudget) {

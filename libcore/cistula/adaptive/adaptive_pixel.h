@@ -16,6 +16,7 @@ CISTULA_HOST_NOINLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack
                                            TreeThreshold& threshold, PixelRecord& record) {
     using Real = typename PixelTask<E, Intersector, Stack>::Real;
     using Hashing = HashingStack<Stack, Real>;
+    static_assert(E::has(keeps_budget));
     const PixelRays before = task.work.rays;
     for (;;) {
         task.work.rays = before;

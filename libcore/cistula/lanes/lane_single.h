@@ -79,7 +79,7 @@ CISTULA_NOINLINE void trace_single(const LaneScene<ScalarOf<Real>>& scene, int d
                                    Sums& sums, PixelRays& rays, const SingleFirstSeen<Real, First>& first,
                                    const StopQuestion& stopped) {
     using T = ScalarOf<Real>;
-    using All = Effects<all_effects | (std::is_same_v<Sums, LayeredSums<T>> ? fills_layers : 0)>;
+    using All = Effects<all_effects | (std::is_same_v<Sums, LayeredSums<T>> ? keeps_budget | fills_layers : 0)>;
     using Stack = StoppableStack<BranchStack<Branch<T>>, StopQuestion>;
     const SceneView<T>& view = scene;
     const SingleIntersector<T> intersector{view};

@@ -73,8 +73,8 @@ class LaneSums {
         Mask followed = who & counts;
         for_each_lane(who & !counts, [&](int lane) {
             LanePixel& pixel = pixels_[pixel_[lane]];
-            PixelSums<T> sums(settings_, bounds_, *pixel.record, flags_, pixel.threshold.of_branches(settings_),
-                              pixel.left);
+            const TreeLimit<T, true> limit(pixel.threshold.of_branches(settings_), pixel.left);
+            PixelSums<T, true> sums(settings_, bounds_, *pixel.record, flags_, limit);
             if (sums.afford(lane_of(weight, lane))) followed |= Mask::of_bits(1u << lane);
             pixel.left = sums.left();
         });
@@ -167,8 +167,8 @@ class LaneSums {
     Mask cuts_ = false;
 };
 
-template <class T, int n>
-struct SumsType<Lanes<T, n>, false> {
+template <class T, int n, bool limited>
+struct SumsType<Lanes<T, n>, false, limited> {
     using Type = LaneSums<Lanes<T, n>>;
 };
 

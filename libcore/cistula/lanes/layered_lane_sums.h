@@ -113,8 +113,8 @@ class LayeredLaneSums : public LaneSums<Real> {
     Integers lights_[3], diffuse_[3];  // of point lights; their diffuse parts, at the first surface
 };
 
-template <class T, int n>
-struct SumsType<Lanes<T, n>, true> {
+template <class T, int n, bool limited>
+struct SumsType<Lanes<T, n>, true, limited> {
     using Type = LayeredLaneSums<Lanes<T, n>>;
 };
 

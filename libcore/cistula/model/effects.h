@@ -32,6 +32,8 @@ inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// A bit of masks whose code also fills the layers of a film (layers.h). No scene calls for it.
 inline constexpr uint32_t fills_layers = 1u << effect_count;
+/// A bit of masks whose code keeps a budget of truncation (tree_threshold.h), which a cutoff or a target error is.
+inline constexpr uint32_t keeps_budget = 1u << (effect_count + 1);
 
 /// Effect names, in the order of the bits, as in --explain, --stats and the documentation.
 inline constexpr const char* effect_names[effect_count] = {
@@ -69,14 +71,17 @@ inline constexpr uint32_t effect_masks[] = {
     clear_bodies,
     clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
     all_effects,
-    all_effects | fills_layers,
-    all_effects & ~(effect_opaque_shadows | effect_transparent_shadows),  // never chosen: measures shadows' cost
+    all_effects | keeps_budget,
+    all_effects | keeps_budget | fills_layers,
+    // Never chosen: measures shadows' cost.
+    (all_effects & ~(effect_opaque_shadows | effect_transparent_shadows)) | keeps_budget,
 };
 inline constexpr int compiled_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
 inline constexpr int unshadowed_mask = compiled_mask_count - 1;
 inline constexpr int layered_mask = compiled_mask_count - 2;
-/// The number of masks that scenes are rendered with, without layers; the last of them is all_effects.
-inline constexpr int effect_mask_count = layered_mask;
+inline constexpr int limited_mask = compiled_mask_count - 3;
+/// The number of masks that scenes are rendered with, without a budget and layers; the last of them is all_effects.
+inline constexpr int effect_mask_count = limited_mask;
 static_assert(effect_masks[effect_mask_count - 1] == all_effects);
 
 /// The index in effect_masks of the smallest mask that contains `required`.

@@ -12,9 +12,9 @@ namespace cistula {
 /// Sums that also enter a pixel's layers. Each contribution is rounded to units once and goes, whole, into one layer of
 /// each division, so the layers of a division add up to the pixel's radiance exactly.
 template <class Real>
-class LayeredSums : public PixelSums<Real> {
+class LayeredSums : public PixelSums<Real, true> {
   public:
-    using PixelSums<Real>::PixelSums;
+    using PixelSums<Real, true>::PixelSums;
 
     /// Sets where layers go. `groups`: the light group of each of the scene's lights.
     CISTULA_INLINE void divide(const LayerPlan& plan, const PixelLayers& layers, const Span<uint32_t>& groups) {
@@ -69,12 +69,12 @@ class LayeredSums : public PixelSums<Real> {
 };
 
 /// The type of sums, which lanes specialize.
-template <class Real, bool layers>
+template <class Real, bool layers, bool limited>
 struct SumsType {
-    using Type = std::conditional_t<layers, LayeredSums<Real>, PixelSums<Real>>;
+    using Type = std::conditional_t<layers, LayeredSums<Real>, PixelSums<Real, limited>>;
 };
 /// The sums of trees that are rendered with effects E.
 template <class Real, class E>
-using SumsOf = typename SumsType<Real, E::has(fills_layers)>::Type;
+using SumsOf = typename SumsType<Real, E::has(fills_layers), E::has(keeps_budget)>::Type;
 
 }  // namespace cistula

@@ -252,6 +252,16 @@ CISTULA_INLINE GridSample grid_sample(int i, int k) {
     return {column, row, column == k / 2 && row == k / 2};
 }
 
+/// What a sample's tree may lose.
+template <class Real, class E>
+CISTULA_INLINE TreeLimit<Real, E::has(keeps_budget)> limit_of(const TreeSettings& settings,
+                                                              [[maybe_unused]] const TreeThreshold& threshold) {
+    if constexpr (E::has(keeps_budget))
+        return {threshold.of_branches(settings), threshold.left(settings)};
+    else
+        return TreeLimit<Real, false>(settings);
+}
+
 /// Renders a sample and adds it to the record, and to the pixel's layers `weight` times. False if it lost too much for
 /// its threshold, and was given up.
 template <class E, class Intersector, class Stack>
@@ -263,8 +273,7 @@ CISTULA_INLINE bool render_sample(const PixelTask<E, Intersector, Stack>& task, 
     const TreeSettings& settings = frame.tree;
     Ray<Real, typename Task::Media> ray;
     const Vec3<double> direction = sample_direction(frame, task.x, task.y, sample);
-    SumsOf<Real, E> sums(settings, task.scene, record, task.work.flags, threshold.of_branches(settings),
-                         threshold.left(settings));
+    SumsOf<Real, E> sums(settings, task.scene, record, task.work.flags, limit_of<Real, E>(settings, threshold));
     [[maybe_unused]] const PixelLayers layers{task.layers.words, weight};
     if constexpr (E::has(fills_layers)) sums.divide(frame.layers, layers, task.scene.light_groups);
     ++task.work.rays.primary;
@@ -285,7 +294,8 @@ CISTULA_INLINE bool render_sample(const PixelTask<E, Intersector, Stack>& task, 
             ray, LayeredFirstSeen<Real, typename Task::Scene>{seen, task.scene, frame.layers, layers, task.work.flags});
     else
         tree.trace(ray, seen);
-    return sums.left() >= 0;
+    if constexpr (E::has(keeps_budget)) return sums.left() >= 0;
+    return true;
 }
 
 /// Initializes a pixel's record before its first sample; end_pixel completes it after the last.
@@ -298,20 +308,17 @@ CISTULA_INLINE void end_pixel(PixelRecord& record, const PixelWork& work) {
     record.samples = work.rays.primary;
 }
 
-/// Renders sample i, counted row by row in the k x k grid, and adds it to the record. In frames with a cutoff trees
-/// that lose too much are traced again; they leave no trace, and their rays do not count.
+/// Renders a sample, and as often again as it loses too much. What was given up leaves no trace, and its rays do not
+/// count.
 template <class E, class Intersector, class Stack>
-CISTULA_INLINE void add_sample(const PixelTask<E, Intersector, Stack>& task, int i, PixelRecord& record) {
-    const TreeSettings& settings = task.frame.tree;
-    const GridSample sample = grid_sample(i, task.frame.supersample);
-    const bool has_cutoff = settings.budget != 0;
-    PixelRecord before;
-    PixelRays rays;
-    if (has_cutoff) before = record, rays = task.work.rays;
-    TreeThreshold threshold{settings.threshold};
+CISTULA_INLINE void render_within_budget(const PixelTask<E, Intersector, Stack>& task, const GridSample& sample,
+                                         PixelRecord& record) {
+    const PixelRecord before = record;
+    const PixelRays rays = task.work.rays;
+    TreeThreshold threshold{task.frame.tree.threshold};
     for (int weight = 1;;) {
         const bool holds = render_sample(task, threshold, sample, record, weight);
-        if (!has_cutoff || (holds && weight > 0) || task.stack.stopped()) return;
+        if ((holds && weight > 0) || task.stack.stopped()) return;
         record = before;
         task.work.rays = rays;
         if (E::has(fills_layers) && weight > 0) {
@@ -321,6 +328,16 @@ CISTULA_INLINE void add_sample(const PixelTask<E, Intersector, Stack>& task, int
             threshold.shrink();
         }
     }
+}
+
+/// Renders sample i, counted row by row in the k x k grid, and adds it to the record.
+template <class E, class Intersector, class Stack>
+CISTULA_INLINE void add_sample(const PixelTask<E, Intersector, Stack>& task, int i, PixelRecord& record) {
+    const GridSample sample = grid_sample(i, task.frame.supersample);
+    if constexpr (E::has(keeps_budget))
+        render_within_budget(task, sample, record);
+    else
+        render_sample(task, {task.frame.tree.threshold}, sample, record);
 }
 
 /// Renders samples of a pixel's k x k grid of centers into its record.

@@ -30,25 +30,55 @@ CISTULA_INLINE bool clear_fault(Real& units, Real scale) {
     return is_fault;
 }
 
+/// What a tree may lose to truncation: nothing but branches of one unit of the sums at most.
+template <class Real, bool limited>
+class TreeLimit {
+  public:
+    CISTULA_INLINE explicit TreeLimit(const TreeSettings& settings) : settings_(settings) {}
+
+    CISTULA_INLINE Real threshold() const { return Real(settings_.fixed_unit); }
+    CISTULA_INLINE void spend(int64_t) {}
+
+  private:
+    const TreeSettings& settings_;
+};
+/// A threshold for branches, a share of the radiance bound, and what is left of the tree's budget; below 0: it has lost
+/// too much.
 template <class Real>
+class TreeLimit<Real, true> {
+  public:
+    CISTULA_INLINE explicit TreeLimit(const TreeSettings& settings)
+        : threshold_(settings.fixed_unit), left_(endless_budget) {}
+    CISTULA_INLINE TreeLimit(float threshold, int64_t left) : threshold_(threshold), left_(left) {}
+
+    CISTULA_INLINE Real threshold() const { return threshold_; }
+    CISTULA_INLINE int64_t left() const { return left_; }
+    CISTULA_INLINE void spend(int64_t units) {
+        if (left_ != endless_budget) left_ -= units;
+    }
+
+  private:
+    const Real threshold_;
+    int64_t left_;
+};
+
+/// Sums of one sample. Weights are a share per channel, or one for all. `limited`: of frames with a cutoff or a target
+/// error.
+template <class Real, bool limited = false>
 class PixelSums {
   public:
-    /// Sums of one sample, whose branches have a threshold and may lose `left`. Weights are a share per channel, or one
-    /// for all.
+    template <class Scene>
+    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
+        : PixelSums(settings, scene, record, flags, TreeLimit<Real, limited>(settings)) {}
     template <class Scene>
     CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags,
-                             float threshold, int64_t left)
+                             const TreeLimit<Real, limited>& limit)
         : settings_(settings),
           bound_(scene.bound),
           largest_bound_(scene.largest_bound),
           record_(record),
           flags_(flags),
-          threshold_(threshold),
-          left_(left) {}
-    /// Sums without a cutoff.
-    template <class Scene>
-    CISTULA_INLINE PixelSums(const TreeSettings& settings, const Scene& scene, PixelRecord& record, uint32_t& flags)
-        : PixelSums(settings, scene, record, flags, settings.fixed_unit, endless_budget) {}
+          limit_(limit) {}
 
     CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource = LightSource::background, bool = true) {
         const Vec3<Real> units = in_units(radiance, Real(settings_.fixed_scale), flags_);
@@ -67,13 +97,13 @@ class PixelSums {
         if (clearly_counts(weight)) return true;
         int64_t most[3];
         const int64_t worst = most_of(bounded(weight), Real(settings_.fixed_scale), flags_, most);
-        if (worst > whole_of(threshold_ * Real(settings_.fixed_scale))) return true;
+        if (worst > whole_of(limit_.threshold() * Real(settings_.fixed_scale))) return true;
         for (int c = 0; c < 3; ++c) record_.pruned[c] += most[c];
-        if (left_ != endless_budget) left_ -= worst;
+        limit_.spend(worst);
         return false;
     }
-    /// What is left of the budget; below 0: the tree has lost too much.
-    CISTULA_INLINE int64_t left() const { return left_; }
+    /// What is left of a limited tree's budget.
+    CISTULA_INLINE int64_t left() const { return limit_.left(); }
 
     /// Adds the bound of a branch beyond the depth limit to the ledger.
     template <class Throughput>
@@ -107,7 +137,7 @@ class PixelSums {
 
     template <class Word>
     CISTULA_INLINE bool counts(Word most) const {
-        return most <= word_of(Real(1)) && most > word_of(threshold_);
+        return most <= word_of(Real(1)) && most > word_of(limit_.threshold());
     }
 
     /// The bound on what a branch can add. The slack of 2^-10 in B covers the rounding of all weights below it.
@@ -142,8 +172,7 @@ class PixelSums {
     const Real& largest_bound_;
     PixelRecord& record_;
     uint32_t& flags_;
-    const Real threshold_;  // a share of the bound
-    int64_t left_;
+    TreeLimit<Real, limited> limit_;
 };
 
 }  // namespace cistula

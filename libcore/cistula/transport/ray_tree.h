@@ -110,10 +110,11 @@ class RayTree {
             for (;;) {
                 if (!stack_.pop(branch)) return false;
                 if (sums_.afford(branch.weight)) break;
-                if (sums_.left() < 0) {
-                    stack_.clear();
-                    return false;
-                }
+                if constexpr (E::has(keeps_budget))
+                    if (sums_.left() < 0) {
+                        stack_.clear();
+                        return false;
+                    }
             }
             find_start_plane<E>(scene_, branch.ray);
             // All that comes from one of the first surface's children is followed before the other.

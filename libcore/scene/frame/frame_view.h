@@ -67,7 +67,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
 inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
     if (settings.unshadowed) return unshadowed_mask;
     if (settings.layers.any()) return layered_mask;
-    if (settings.adaptive()) return effect_mask_count - 1;
+    if (frame.tree.budget != 0 || settings.adaptive()) return limited_mask;
     uint32_t of_camera = 0;
     for (int i = 0; i < 1 << frame.camera_planes; ++i)
         if (!frame.camera_sides[i].media.empty()) of_camera = effect_insides;
