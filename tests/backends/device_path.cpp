@@ -55,7 +55,7 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
     const Intersector intersector{scene};
     // Few masks stand for all, which spares the compiler half of its work; tests of their own compare masks.
     constexpr int opaque = 0, middle = 2;
-    const int least = least_mask(settings.effects | compiled.effects);
+    const int least = mask_to_run(compiled.effects, settings, frame);
     if (least <= opaque)
         render_shared<Real, Effects<effect_masks[opaque]>>(scene, frame, intersector, film);
     else if (least <= middle)

@@ -22,8 +22,10 @@ const std::string source = CISTULA_SOURCE_DIR;
 template <class Real>
 class EffectTest : public ::testing::Test {
   public:
-    /// Renders with the effects that the scene calls for and with all of them. The mask that ran.
+    /// Renders with the effects that the scene calls for and with all of them, without a cutoff: frames with one run
+    /// all effects. The mask that ran.
     static uint32_t compare(const SceneDescription& scene, FrameSettings settings, const std::string& name) {
+        settings.cutoff = 0;
         const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(scene), EmbreeOptions());
         const std::string chosen = film_hash(golden::render_with(*renderer, scene, settings));
         const uint32_t ran = renderer->effects();
