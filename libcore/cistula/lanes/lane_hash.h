@@ -49,6 +49,7 @@ struct HashingLanes {
     using Media = typename LaneIntersector<Real>::Media;
     using Mask = MaskOf<Real>;
     using Index = IndexOf<Real>;
+    using T = ScalarOf<Index>;
     const LaneIntersector<Real> inner;
     LanePathHash<Real>& hash;
     bool gradual;  // shades_gradually
@@ -70,7 +71,7 @@ struct HashingLanes {
             for_each_lane(counts & found, [&](int lane) {
                 PathHash one;
                 add_texel(one, inner.scene, lane_of(hit, lane));
-                hash.value.set(lane, hash.value[lane] + ScalarOf<Index>(one.value));
+                hash.value.set(lane, T(uint32_t(hash.value[lane]) + one.value));
             });
         return hit;
     }
