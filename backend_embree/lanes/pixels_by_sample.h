@@ -97,13 +97,10 @@ class PixelsBySample {
 
     /// Takes the samples that are wanted; those whose thresholds do not hold once more, and so on.
     void take_samples(const std::atomic<bool>& stop, RayCounts& rays, uint32_t& flags) {
-        for (bool again = true; again && !stop;) {
-            again = false;
-            for (Taken& taken : taken_) {
-                if (taken.sample.holds) continue;
-                add_to(renderer_, taken, {});
-                again = true;
-            }
+        const auto fails = [](const Taken& taken) { return !taken.sample.holds; };
+        while (!stop && std::any_of(taken_.begin(), taken_.end(), fails)) {
+            for (Taken& taken : taken_)
+                if (fails(taken)) add_to(renderer_, taken, {});
             renderer_.render(stop, rays, flags);
         }
     }

@@ -128,11 +128,11 @@ class LaneSums {
 
     /// The thresholds of samples (tree_threshold.h).
     CISTULA_INLINE Real thresholds_of(const Mask& who) const {
-        LaneArray<Real> thresholds(Real(T(settings_.fixed_unit)));
-        if (settings_.budget != 0)
-            for_each_lane(who, [&](int lane) {
-                thresholds.of[lane] = T(pixels_[pixel_[lane]].threshold.of_branches(settings_));
-            });
+        const Real unit(T(settings_.fixed_unit));
+        if (settings_.budget == 0) return unit;
+        LaneArray<Real> thresholds(unit);
+        for_each_lane(
+            who, [&](int lane) { thresholds.of[lane] = T(pixels_[pixel_[lane]].threshold.of_branches(settings_)); });
         return thresholds.all();
     }
 

@@ -147,9 +147,7 @@ bool find_camera_solids(const LaneScene<Real>& scene, FrameView& frame) {
                                         : find_camera_solids(view, BvhIntersector<Real>{view}, frame);
     for (int i = 0; i < 1 << frame.camera_planes; ++i) {
         InteriorList list;
-        frame.camera_sides[i].media.for_each([&](uint32_t solid, int count) {
-            for (int n = 0; n != count; n += count > 0 ? 1 : -1) list.add(scene.numbers[solid], count > 0 ? 1 : -1);
-        });
+        frame.camera_sides[i].media.for_each([&](uint32_t solid, int count) { list.add(scene.numbers[solid], count); });
         frame.camera_sides[i].media = list;
     }
     return fits;
