@@ -10,11 +10,15 @@ namespace cistula {
 template <class Real>
 EmbreeTree<Real>::EmbreeTree(const SceneView<Real>& scene, const EmbreeOptions& options)
     : device_(options.device_config) {
+    call_in_default_rounding([&] { build(scene, options); });
+}
+
+template <class Real>
+void EmbreeTree<Real>::build(const SceneView<Real>& scene, const EmbreeOptions& options) {
     // Boxes are computed before the commit, whose threads may run with flush-to-zero.
     const uint32_t primitives = scene.convex.size + scene.clusters.size;
     std::vector<PaddedBox> boxes(primitives);
     tbb::parallel_for(tbb::blocked_range<uint32_t>(0, primitives), [&](const auto& range) {
-        use_default_rounding();
         for (uint32_t p = range.begin(); p != range.end(); ++p) boxes[p] = primitive_box(scene, p);
     });
     const GeometryPointer owner(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));

@@ -21,6 +21,8 @@ class EmbreeTree {
     size_t memory() const { return device_.memory(); }
 
   private:
+    void build(const SceneView<Real>& scene, const EmbreeOptions& options);
+
     EmbreeDevice device_;
     ScenePointer scene_;
 };

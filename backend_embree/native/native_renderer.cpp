@@ -81,7 +81,7 @@ class NativeRenderer : public Renderer {
 template <class Real>
 std::unique_ptr<Renderer> make_native_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options) {
-    return std::make_unique<NativeRenderer<Real>>(std::move(scene), options);
+    return in_default_rounding([&] { return std::make_unique<NativeRenderer<Real>>(std::move(scene), options); });
 }
 
 template std::unique_ptr<Renderer> make_native_renderer(std::shared_ptr<const CompiledScene<float>>,

@@ -247,13 +247,18 @@ TYPED_TEST(Images, IndexOneIsInvisible) {
 
 /// Whatever other code left in the control registers of the calling thread and of the workers.
 TYPED_TEST(Images, ControlRegistersChangeNothing) {
-    SceneDescription scene = test::shipped_scene("mesh");
-    scene.frame = FrameOfReference{{0.1, -0.3, 0.7}, -4, 64.0};  // so that moving the camera to the frame rounds
+    const auto read = [] {
+        SceneDescription scene = test::shipped_scene("mesh");
+        scene.frame = FrameOfReference{{0.1, -0.3, 0.7}, -4, 64.0};  // so that moving the camera to the frame rounds
+        return scene;
+    };
+    const SceneDescription scene = read();
     const FrameSettings settings = small_frame(scene, 4);
-    auto compiled = compile_scene<TypeParam>(scene), treed = compile_scene<TypeParam>(scene);
-    build_primitive_tree(*treed, 1);
     const CameraFrame camera = camera_at(scene.camera, 0);
     const std::string expected = film_hash(render<TypeParam>(scene, settings));
+    const auto compiled = compile_scene<TypeParam>(scene);
+    EmbreeOptions always_tree;
+    always_tree.always_tree = true;
     const ControlRegister disturbed(disturbed_register);
     // Its workers take over the register of the thread that makes it.
     tbb::task_arena arena;
@@ -272,13 +277,24 @@ TYPED_TEST(Images, ControlRegistersChangeNothing) {
             return default_before.load();
         };
         EXPECT_EQ(disturb(), 0) << "the arena does not hand its register down, so that this test shows less";
-        const auto renderer = make_embree_renderer<TypeParam>(std::move(compiled));
-        const auto host = make_host_renderer<TypeParam>(std::move(treed), HostIntersector::bvh);
-        for (Renderer* each : {renderer.get(), host.get()}) {
+        const SceneDescription again = read();
+        const auto compile = [&] {
+            disturb();
+            auto treed = compile_scene<TypeParam>(again);
+            EXPECT_EQ(treed->hash, compiled->hash);
+            build_primitive_tree(*treed, 1);
+            EXPECT_EQ(_mm_getcsr() & control_bits, disturbed_register) << "the caller's mode is not its own any more";
+            return treed;
+        };
+        const auto in_lanes = make_embree_renderer<TypeParam>(compile());
+        const auto by_tree = make_embree_renderer<TypeParam>(compile(), always_tree);
+        const auto host = make_host_renderer<TypeParam>(compile(), HostIntersector::bvh);
+        for (Renderer* each : {in_lanes.get(), by_tree.get(), host.get()}) {
             disturb();
             Film film;
             RenderProgress progress;
             each->render(camera, settings, film, progress);
+            EXPECT_EQ(each->lanes() > 1, each == in_lanes.get());
             EXPECT_EQ(film.flags, 0u);
             EXPECT_EQ(film_hash(film), expected) << each->intersector();
         }

@@ -3,11 +3,26 @@
 
 #include <immintrin.h>
 
+#include <functional>
+#include <optional>
+
 namespace cistula {
 
 /// Sets this thread to round to nearest, without flushing to zero: other libraries may have left it otherwise.
 inline void use_default_rounding() {
     _mm_setcsr(0x1f80);
+}
+
+/// Calls `function`. It, and all that it gives to TBB's other threads, rounds to nearest without flushing to zero;
+/// afterwards this thread has its former mode again.
+void call_in_default_rounding(const std::function<void()>& function);
+
+/// What `function` returns, computed as call_in_default_rounding() calls it.
+template <class Function>
+auto in_default_rounding(const Function& function) {
+    std::optional<decltype(function())> result;
+    call_in_default_rounding([&] { result.emplace(function()); });
+    return *std::move(result);
 }
 
 }  // namespace cistula

@@ -8,6 +8,7 @@
 
 #include "cistula/geometry/ray.h"
 #include "cistula/lights/light_tree.h"
+#include "scene/base/default_rounding.h"
 #include "scene/base/error.h"
 #include "scene/base/rounded_up.h"
 #include "scene/compile/clusters.h"
@@ -428,7 +429,7 @@ std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& descr
 
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(SceneSource source) {
-    return Compiler<Real>(std::move(source)).compile();
+    return in_default_rounding([&] { return Compiler<Real>(std::move(source)).compile(); });
 }
 
 template std::unique_ptr<CompiledScene<float>> compile_scene(const SceneDescription&);

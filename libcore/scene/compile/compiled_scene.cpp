@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/base/default_rounding.h"
 #include "scene/compile/arrays.h"
 #include "scene/trees/tree_build.h"
 
@@ -120,47 +121,51 @@ PaddedBox primitive_box(const SceneView<Real>& scene, uint32_t primitive) {
 
 template <class Real>
 PrimitiveTree primitive_tree(const SceneView<Real>& scene, int quality) {
-    std::vector<RTCBuildPrimitive> primitives;
-    primitives.reserve(scene.convex.size + scene.clusters.size);
-    for (uint32_t i = 0; i < scene.convex.size + scene.clusters.size; ++i)
-        primitives.push_back(boxed_primitive(scene, i));
-    Tree tree = build_tree(primitives, quality);
-    return {std::move(tree.nodes), std::move(tree.items)};
+    return in_default_rounding([&]() -> PrimitiveTree {
+        std::vector<RTCBuildPrimitive> primitives;
+        primitives.reserve(scene.convex.size + scene.clusters.size);
+        for (uint32_t i = 0; i < scene.convex.size + scene.clusters.size; ++i)
+            primitives.push_back(boxed_primitive(scene, i));
+        Tree tree = build_tree(primitives, quality);
+        return {std::move(tree.nodes), std::move(tree.items)};
+    });
 }
 
 template <class Real>
 FacetTree<Real> facet_tree(const SceneView<Real>& scene, int quality) {
-    const double pad = 0x1p-18 * static_cast<double>(scene.extent);
-    std::vector<RTCBuildPrimitive> primitives;
-    std::vector<Facet<Real>> facets;
-    for (uint32_t i = 0; i < scene.convex.size; ++i) primitives.push_back(boxed_primitive(scene, i));
-    for (uint32_t i = 0; i < scene.clusters.size; ++i) {
-        const Cluster<Real>& cluster = scene.clusters[i];
-        for (uint32_t lane = 0; lane < cluster.count; ++lane) {
-            Facet<Real> facet{};
-            Box box;
-            for (int c = 0; c < 3; ++c) {
-                for (int axis = 0; axis < 3; ++axis) facet.corner[c][axis] = cluster.corner[c][axis][lane];
-                box.add({facet.corner[c][0], facet.corner[c][1], facet.corner[c][2]});
+    return in_default_rounding([&] {
+        const double pad = 0x1p-18 * static_cast<double>(scene.extent);
+        std::vector<RTCBuildPrimitive> primitives;
+        std::vector<Facet<Real>> facets;
+        for (uint32_t i = 0; i < scene.convex.size; ++i) primitives.push_back(boxed_primitive(scene, i));
+        for (uint32_t i = 0; i < scene.clusters.size; ++i) {
+            const Cluster<Real>& cluster = scene.clusters[i];
+            for (uint32_t lane = 0; lane < cluster.count; ++lane) {
+                Facet<Real> facet{};
+                Box box;
+                for (int c = 0; c < 3; ++c) {
+                    for (int axis = 0; axis < 3; ++axis) facet.corner[c][axis] = cluster.corner[c][axis][lane];
+                    box.add({facet.corner[c][0], facet.corner[c][1], facet.corner[c][2]});
+                }
+                facet.solid = cluster.solid;
+                facet.triangle = cluster.triangle[lane];
+                facet.slot = i * uint32_t(cluster_lanes) + lane;
+                primitives.push_back(padded_primitive(box, pad, scene.convex.size + uint32_t(facets.size())));
+                facets.push_back(facet);
             }
-            facet.solid = cluster.solid;
-            facet.triangle = cluster.triangle[lane];
-            facet.slot = i * uint32_t(cluster_lanes) + lane;
-            primitives.push_back(padded_primitive(box, pad, scene.convex.size + uint32_t(facets.size())));
-            facets.push_back(facet);
         }
-    }
-    Tree built = build_tree(primitives, quality);
-    FacetTree<Real> tree;
-    tree.nodes = std::move(built.nodes);
-    tree.items = std::move(built.items);
-    tree.facets.reserve(facets.size());
-    for (uint32_t& item : tree.items) {
-        if (item < scene.convex.size) continue;
-        tree.facets.push_back(facets[item - scene.convex.size]);
-        item = scene.convex.size + uint32_t(tree.facets.size()) - 1;
-    }
-    return tree;
+        Tree built = build_tree(primitives, quality);
+        FacetTree<Real> tree;
+        tree.nodes = std::move(built.nodes);
+        tree.items = std::move(built.items);
+        tree.facets.reserve(facets.size());
+        for (uint32_t& item : tree.items) {
+            if (item < scene.convex.size) continue;
+            tree.facets.push_back(facets[item - scene.convex.size]);
+            item = scene.convex.size + uint32_t(tree.facets.size()) - 1;
+        }
+        return tree;
+    });
 }
 
 template <class Real>

@@ -1,5 +1,6 @@
 #include "scene/compile/constant_scene.h"
 
+#include "scene/base/default_rounding.h"
 #include "scene/compile/scene_copies.h"
 #include "scene/compile/shadow_plan.h"
 
@@ -47,10 +48,12 @@ bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantS
 
 template <class Real>
 std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there) {
-    auto scene = std::make_unique<ConstantScene<Real>>();
-    if (!assign(here, there, *scene)) return nullptr;
-    plan_shadows(here, scene->plan);
-    return scene;
+    return in_default_rounding([&]() -> std::unique_ptr<ConstantScene<Real>> {
+        auto scene = std::make_unique<ConstantScene<Real>>();
+        if (!assign(here, there, *scene)) return nullptr;
+        plan_shadows(here, scene->plan);
+        return scene;
+    });
 }
 
 template <class Real>

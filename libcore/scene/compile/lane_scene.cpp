@@ -5,6 +5,7 @@
 #include "cistula/shading/contact.h"
 #include "cistula/transport/pixel.h"
 #include "cistula/traversal/bvh.h"
+#include "scene/base/default_rounding.h"
 #include "scene/compile/arrays.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/constant_scene.h"
@@ -137,7 +138,8 @@ size_t OwnedLaneScene<Real>::memory() const {
 
 template <class Real>
 std::unique_ptr<const OwnedLaneScene<Real>> lane_scene(const SceneView<Real>& scene) {
-    return fits_lanes(scene) ? std::make_unique<const OwnedLaneScene<Real>>(scene) : nullptr;
+    if (!fits_lanes(scene)) return nullptr;
+    return in_default_rounding([&] { return std::make_unique<const OwnedLaneScene<Real>>(scene); });
 }
 
 template <class Real>

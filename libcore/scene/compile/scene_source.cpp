@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "cistula/numerics/vec.h"
+#include "scene/base/default_rounding.h"
 #include "scene/compile/mesh_topology.h"
 #include "scene/description/platonic.h"
 #include "scene/readers/mesh_file.h"
@@ -195,7 +196,9 @@ std::string name_of(const SourceSolid& solid) {
     return given_name(solid.name, solid.place);
 }
 
-SceneSource gather_scene(const SceneDescription& description) {
+namespace {
+
+SceneSource gathered_scene(const SceneDescription& description) {
     SceneSource source;
     source.description = &description;
     source.materials = description.materials;
@@ -258,6 +261,12 @@ SceneSource gather_scene(const SceneDescription& description) {
                               what + "the triangles have no texture coordinates; give one uv a vertex");
     }
     return source;
+}
+
+}  // namespace
+
+SceneSource gather_scene(const SceneDescription& description) {
+    return in_default_rounding([&] { return gathered_scene(description); });
 }
 
 }  // namespace cistula

@@ -11,6 +11,7 @@
 
 #include "scene/base/blanks.h"
 #include "scene/base/decimal.h"
+#include "scene/base/default_rounding.h"
 #include "scene/base/error.h"
 #include "scene/readers/read_json.h"
 #include "scene/readers/read_text_input.h"
@@ -86,8 +87,9 @@ SceneDescription read_scene_text(const std::string& text, const std::string& sou
     check_start(text, label);
     const std::string_view plain = without_mark(text);
     const bool is_json = plain[plain.find_first_not_of(blanks)] == '{';
-    SceneDescription scene =
-        is_json ? read_json_scene(text, label, base_dir) : read_text_input(std::string(plain), label, base_dir);
+    SceneDescription scene = in_default_rounding([&] {
+        return is_json ? read_json_scene(text, label, base_dir) : read_text_input(std::string(plain), label, base_dir);
+    });
     scene.source = source_name;
     return scene;
 }
