@@ -23,7 +23,7 @@ constexpr double least_corner = 0x1p-10;  // determinant of three normals that f
 constexpr double opposite = 0x1p-20;      // 1 + cosine: pairs of faces that may be parallel
 
 /// A flat face: triangles in one plane.
-struct Facet {
+struct HullFacet {
     dvec3 area{0};  // twice the area vector
     dvec3 normal;   // outward
     double offset;
@@ -91,7 +91,7 @@ class ConvexSearch {
         return range;
     }
 
-    bool lies_in(const Facet& facet, uint32_t triangle) const {
+    bool lies_in(const HullFacet& facet, uint32_t triangle) const {
         for (const uint32_t corner : triangles_[triangle])
             if (magnitude(dot(facet.normal, points_[corner]) - facet.offset) > joined * unit_) return false;
         return dot(area_of(triangle), facet.normal) >= 0;
@@ -104,7 +104,8 @@ class ConvexSearch {
         const auto square = [&](uint32_t t) { return dot(area_of(t), area_of(t)); };
         std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return square(a) > square(b); });
         for (const uint32_t t : order) {
-            auto facet = std::find_if(facets_.begin(), facets_.end(), [&](const Facet& f) { return lies_in(f, t); });
+            auto facet =
+                std::find_if(facets_.begin(), facets_.end(), [&](const HullFacet& f) { return lies_in(f, t); });
             if (facet == facets_.end()) {
                 if (facets_.size() == 2 * most_slabs_of_edge_lights || !(square(t) > 0)) return false;
                 const dvec3 normal = normalized(area_of(t));
@@ -115,12 +116,13 @@ class ConvexSearch {
             facet->first = std::min(facet->first, t);
             facet->corners.insert(facet->corners.end(), triangles_[t].begin(), triangles_[t].end());
         }
-        std::sort(facets_.begin(), facets_.end(), [](const Facet& a, const Facet& b) { return a.first < b.first; });
+        std::sort(facets_.begin(), facets_.end(),
+                  [](const HullFacet& a, const HullFacet& b) { return a.first < b.first; });
         return true;
     }
 
     bool fit_facets() {
-        for (Facet& facet : facets_) {
+        for (HullFacet& facet : facets_) {
             facet.normal = normalized(facet.area);
             const Range off = range(facet.normal, facet.corners);
             if (!off.within(2 * flat * unit_)) return false;
@@ -134,7 +136,7 @@ class ConvexSearch {
         std::vector<bool> taken(facets_.size(), false);
         for (size_t i = 0; i < facets_.size(); ++i) {
             if (taken[i]) continue;
-            const Facet& facet = facets_[i];
+            const HullFacet& facet = facets_[i];
             PlanePair pair{facet.normal, -INFINITY, facet.offset, false};
             for (size_t j = i + 1; j < facets_.size() && pair.low == -INFINITY; ++j)
                 if (!taken[j] && make_slab(facet, facets_[j], pair)) taken[j] = true;
@@ -143,10 +145,10 @@ class ConvexSearch {
     }
 
     /// Makes a slab of two faces that are parallel, with a normal whose largest component is positive.
-    bool make_slab(const Facet& facet, const Facet& other, PlanePair& pair) const {
+    bool make_slab(const HullFacet& facet, const HullFacet& other, PlanePair& pair) const {
         if (1 + dot(facet.normal, other.normal) > opposite) return false;
         const bool ahead = largest_is_positive(facet.normal);
-        const Facet &above = ahead ? facet : other, &below = ahead ? other : facet;
+        const HullFacet &above = ahead ? facet : other, &below = ahead ? other : facet;
         const dvec3 normal = normalized(above.area - below.area);
         const Range high = range(normal, above.corners), low = range(normal, below.corners);
         if (!high.within(2 * flat * unit_) || !low.within(2 * flat * unit_)) return false;
@@ -223,7 +225,7 @@ class ConvexSearch {
     const double unit_;
     std::vector<dvec3> points_;  // welded
     std::vector<std::array<uint32_t, 3>> triangles_;
-    std::vector<Facet> facets_;
+    std::vector<HullFacet> facets_;
     std::vector<HalfSpace> half_spaces_;
     ConvexSolid solid_;
 };
