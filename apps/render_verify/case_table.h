@@ -17,10 +17,10 @@ namespace cistula::verify {
 /// A case of rays in one precision.
 template <class Real>
 struct RayMethods {
-    Tally (*tally)(HostPath, const std::byte* functor, const Setup<Real>&, RTCScene, uint64_t place,
+    Tally (*tally)(HostPath, const std::byte* functor, const Setup<Real>&, const PathNeeds<Real>&, uint64_t place,
                    uint64_t count) = nullptr;
-    void (*words)(HostPath, const std::byte* functor, const Setup<Real>&, RTCScene, uint64_t first, uint64_t count,
-                  uint64_t* out) = nullptr;
+    void (*words)(HostPath, const std::byte* functor, const Setup<Real>&, const PathNeeds<Real>&, uint64_t first,
+                  uint64_t count, uint64_t* out) = nullptr;
     DeviceMethods<Real> device;
 };
 

@@ -24,12 +24,14 @@ struct PlainIntersector {
 }  // namespace
 
 template <class Real>
-void with_intersector(HostPath path, const SceneView<Real>& scene, RTCScene tree,
+void with_intersector(HostPath path, const SceneView<Real>& scene, const PathNeeds<Real>& needs,
                       const std::function<void(const CalledIntersector<Real>&)>& body) {
     const auto call = [&](const auto& intersector) { body(CalledIntersector<Real>(intersector)); };
     switch (path) {
         case HostPath::embree:
-            return call(EmbreeIntersector<Real>{scene, tree});
+            return call(EmbreeIntersector<Real>{scene, needs.embree});
+        case HostPath::lanes:
+            return call(*needs.lanes);
         case HostPath::bvh:
             return call(BvhIntersector<Real>{scene});
         case HostPath::brute:
@@ -39,9 +41,9 @@ void with_intersector(HostPath path, const SceneView<Real>& scene, RTCScene tree
     }
 }
 
-template void with_intersector(HostPath, const SceneView<float>&, RTCScene,
+template void with_intersector(HostPath, const SceneView<float>&, const PathNeeds<float>&,
                                const std::function<void(const CalledIntersector<float>&)>&);
-template void with_intersector(HostPath, const SceneView<double>&, RTCScene,
+template void with_intersector(HostPath, const SceneView<double>&, const PathNeeds<double>&,
                                const std::function<void(const CalledIntersector<double>&)>&);
 
 }  // namespace cistula::verify

@@ -3,17 +3,24 @@
 
 #include <functional>
 
-#include "apps/render_verify/called_intersector.h"
+#include "apps/render_verify/lane_path.h"
 #include "backend_embree/embree/embree_api.h"
 
 namespace cistula::verify {
 
 /// Ways to find hits on the host. `plain`: tests every primitive and nothing else; the reference of compared cases.
-enum class HostPath { embree, bvh, brute, plain };
+enum class HostPath { embree, lanes, bvh, brute, plain };
 
-/// Calls body(intersector) with the intersector of this path; `tree` is Embree's, for its path alone.
+/// What intersectors need beside the scene, each for its own path.
 template <class Real>
-void with_intersector(HostPath path, const SceneView<Real>& scene, RTCScene tree,
+struct PathNeeds {
+    RTCScene embree = nullptr;
+    const LanePath<Real>* lanes = nullptr;
+};
+
+/// Calls body(intersector) with the intersector of this path.
+template <class Real>
+void with_intersector(HostPath path, const SceneView<Real>& scene, const PathNeeds<Real>& needs,
                       const std::function<void(const CalledIntersector<Real>&)>& body);
 
 }  // namespace cistula::verify

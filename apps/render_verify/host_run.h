@@ -21,11 +21,11 @@ Case functor_of(const std::byte* bytes) {
 }
 
 template <class Case, class Real>
-Tally tally_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& setup, RTCScene tree, uint64_t place,
-                    uint64_t count) {
+Tally tally_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& setup, const PathNeeds<Real>& needs,
+                    uint64_t place, uint64_t count) {
     const Case functor = functor_of<Case>(bytes);
     Tally all;
-    with_intersector<Real>(path, setup.scene, tree, [&](const CalledIntersector<Real>& intersector) {
+    with_intersector<Real>(path, setup.scene, needs, [&](const CalledIntersector<Real>& intersector) {
         all = tbb::parallel_reduce(
             tbb::blocked_range<uint64_t>(0, count, 64), Tally(),
             [&](const auto& range, Tally tally) {
@@ -45,10 +45,10 @@ Tally tally_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& se
 }
 
 template <class Case, class Real>
-void words_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& setup, RTCScene tree, uint64_t first,
-                   uint64_t count, uint64_t* out) {
+void words_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& setup, const PathNeeds<Real>& needs,
+                   uint64_t first, uint64_t count, uint64_t* out) {
     const Case functor = functor_of<Case>(bytes);
-    with_intersector<Real>(path, setup.scene, tree, [&](const CalledIntersector<Real>& intersector) {
+    with_intersector<Real>(path, setup.scene, needs, [&](const CalledIntersector<Real>& intersector) {
         tbb::parallel_for(tbb::blocked_range<uint64_t>(0, count, 64), [&](const auto& range) {
             use_default_rounding();
             for (uint64_t i = range.begin(); i != range.end(); ++i)

@@ -13,13 +13,14 @@ namespace cistula::verify {
 namespace {
 
 struct Texts {
-    std::string backend, precision, json, html;
+    std::string backend, precision, lanes, json, html;
     std::vector<std::string> cases;
     bool quick = false, list = false, version = false;
 };
 
 void declare(CLI::App& app, Texts& texts) {
-    app.add_option("--backend", texts.backend, "embree (the CPU: embree, bvh, brute), cuda (a GPU) or all; embree")
+    app.add_option("--backend", texts.backend,
+                   "embree (the CPU: embree, lanes, bvh, brute), cuda (a GPU) or all; embree")
         ->type_name("NAME");
     app.add_option("--precision", texts.precision, "float, double or both; both")->type_name("NAME");
     app.add_option(
@@ -29,6 +30,9 @@ void declare(CLI::App& app, Texts& texts) {
         ->type_name("NAME")
         ->expected(1)
         ->take_all();
+    app.add_option("--lanes", texts.lanes,
+                   "the most rays that `lanes` traces at once, 1 to 16; all that the processor can")
+        ->type_name("N");
     app.add_flag("--quick", texts.quick, "every case with fewer rays and smaller images");
     app.add_flag("--list", texts.list, "print the cases and exit");
     app.add_option("--json", texts.json, "write the result as JSON")->type_name("FILE");
@@ -81,7 +85,7 @@ VerifyOptions parse_verify_options(int argc, const char* const* argv, const std:
         return options;
     }
     using Kinds = std::vector<IntersectorKind>;
-    const Kinds host{IntersectorKind::embree, IntersectorKind::bvh, IntersectorKind::brute};
+    const Kinds host{IntersectorKind::embree, IntersectorKind::lanes, IntersectorKind::bvh, IntersectorKind::brute};
     const Kinds device{IntersectorKind::cuda};
     Kinds both = host;
     both.push_back(IntersectorKind::cuda);
@@ -94,6 +98,7 @@ VerifyOptions parse_verify_options(int argc, const char* const* argv, const std:
                                         {"double", {Precision::double_}},
                                         {"both", {Precision::single_, Precision::double_}}});
     options.settings.quick = texts.quick;
+    if (!texts.lanes.empty()) options.settings.lanes = integer_option("--lanes", texts.lanes, 1, 16);
     options.cases = chosen_cases(texts.cases, cases);
     options.json = texts.json;
     options.html = texts.html;

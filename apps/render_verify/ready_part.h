@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "apps/render_verify/lane_path.h"
 #include "apps/render_verify/plan.h"
 #include "apps/render_verify/setup.h"
 #include "backend_embree/embree/embree_tree.h"
@@ -46,6 +47,10 @@ class ReadyPart {
         if (!embree_) embree_ = std::make_unique<EmbreeTree<Real>>(setup_.scene, EmbreeOptions());
         return embree_->scene();
     }
+    const LanePath<Real>& lanes(int most) {
+        if (!lanes_) lanes_ = std::make_unique<LanePath<Real>>(setup_.scene, most);
+        return *lanes_;
+    }
     uint64_t plain_count(bool quick) const {
         const uint64_t primitives = setup_.scene.convex.size + setup_.scene.clusters.size;
         return std::min(part_.count,
@@ -68,6 +73,7 @@ class ReadyPart {
     std::vector<double> numbers_;
     Setup<Real> setup_;
     std::unique_ptr<EmbreeTree<Real>> embree_;
+    std::unique_ptr<LanePath<Real>> lanes_;
 };
 
 }  // namespace cistula::verify

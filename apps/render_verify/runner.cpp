@@ -22,6 +22,8 @@ HostPath path_of(IntersectorKind kind) {
     switch (kind) {
         case IntersectorKind::embree:
             return HostPath::embree;
+        case IntersectorKind::lanes:
+            return HostPath::lanes;
         case IntersectorKind::bvh:
             return HostPath::bvh;
         default:
@@ -75,6 +77,7 @@ class CaseRun {
             run_rays<double>();
         else
             run_rays<float>();
+        std::erase_if(outcomes_, [](const Outcome& o) { return o.left_out > 0 && o.tally.tried == 0; });
         return std::move(outcomes_);
     }
 
@@ -126,29 +129,39 @@ class CaseRun {
     void run_part(const Part& part, uint64_t number, ReadyPart<Real>& ready) {
         const RayMethods<Real>& methods = entry_.methods<Real>();
         const uint64_t place = number << place_shift, plain = ready.plain_count(settings_.quick);
-        const auto tree = [&](const Outcome& outcome) {
-            return outcome.intersector == IntersectorKind::embree ? ready.embree() : nullptr;
+        const auto needs = [&](const Outcome& outcome) {
+            PathNeeds<Real> all;
+            if (outcome.intersector == IntersectorKind::embree) all.embree = ready.embree();
+            if (outcome.intersector == IntersectorKind::lanes) all.lanes = &ready.lanes(settings_.lanes);
+            return all;
+        };
+        const auto is_left_out = [&](Outcome& outcome) {
+            if (outcome.intersector != IntersectorKind::lanes || ready.lanes(settings_.lanes).fits()) return false;
+            ++outcome.left_out;
+            return true;
         };
         if (!methods.words) {
             for (Outcome& outcome : outcomes_)
                 guarded(outcome, [&] {
+                    if (is_left_out(outcome)) return;
                     const bool brute = outcome.intersector == IntersectorKind::brute && !entry_.info.own_traversal;
                     outcome.tally.merge(outcome.intersector == IntersectorKind::cuda
                                             ? on_device(methods, part, ready.setup(), place)
                                             : methods.tally(path_of(outcome.intersector), part.functor.data(),
-                                                            ready.setup(), tree(outcome), place,
+                                                            ready.setup(), needs(outcome), place,
                                                             brute ? plain : part.count));
                 });
             return;
         }
         std::vector<uint64_t> expected(plain), found(plain);
-        methods.words(HostPath::plain, part.functor.data(), ready.setup(), nullptr, 0, plain, expected.data());
+        methods.words(HostPath::plain, part.functor.data(), ready.setup(), {}, 0, plain, expected.data());
         for (Outcome& outcome : outcomes_)
             guarded(outcome, [&] {
+                if (is_left_out(outcome)) return;
                 if (outcome.intersector == IntersectorKind::cuda)
                     found = words_of_device(methods, part, ready.setup(), plain);
                 else
-                    methods.words(path_of(outcome.intersector), part.functor.data(), ready.setup(), tree(outcome), 0,
+                    methods.words(path_of(outcome.intersector), part.functor.data(), ready.setup(), needs(outcome), 0,
                                   plain, found.data());
                 for (uint64_t i = 0; i < plain; ++i) {
                     outcome.tally.place = place + i;
@@ -158,7 +171,7 @@ class CaseRun {
     }
 
     template <class Real>
-    Film film_of(IntersectorKind kind, const SceneDescription& scene, const FrameSettings& settings, int frame) {
+    Film film_of(IntersectorKind kind, const SceneDescription& scene, FrameSettings settings, int frame) {
         std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(scene);
         if (kind == IntersectorKind::bvh) build_primitive_tree(*compiled);
         const std::unique_ptr<Renderer> renderer = [&] {
@@ -169,14 +182,23 @@ class CaseRun {
                     return make_host_renderer<Real>(compiled, HostIntersector::brute);
                 case IntersectorKind::cuda:
                     return make_renderer<Real>(Backend::cuda, compiled, choose_devices(Backend::cuda, {}).options);
-                default:
+                case IntersectorKind::lanes:
+                    if (settings.lanes == 0) settings.lanes = settings_.lanes;
                     return make_embree_renderer<Real>(compiled);
+                default:
+                    return make_embree_renderer<Real>(compiled, always_tree());
             }
         }();
         Film film;
         RenderProgress progress;
         renderer->render(camera_at(scene.camera, frame), settings, film, progress);
         return film;
+    }
+
+    static EmbreeOptions always_tree() {
+        EmbreeOptions options;
+        options.always_tree = true;
+        return options;
     }
 
     void run_images(Outcome& outcome) {
@@ -201,7 +223,7 @@ class CaseRun {
 }  // namespace
 
 const char* intersector_name(IntersectorKind kind) {
-    constexpr const char* names[] = {"embree", "bvh", "brute", "cuda"};
+    constexpr const char* names[] = {"embree", "lanes", "bvh", "brute", "cuda"};
     return names[size_t(kind)];
 }
 

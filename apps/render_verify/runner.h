@@ -11,7 +11,7 @@
 
 namespace cistula::verify {
 
-enum class IntersectorKind { embree, bvh, brute, cuda };
+enum class IntersectorKind { embree, lanes, bvh, brute, cuda };
 const char* intersector_name(IntersectorKind kind);
 
 /// The result of one case on one intersector in one precision.
@@ -23,6 +23,7 @@ struct Outcome {
     std::string worst_label;  // part and ray with the largest deviation; empty: none deviates
     std::string problem;      // reason why it could not be judged; it then fails
     uint64_t warned = 0;      // scenes of a `float_warns` case that float warns of, and was not judged by
+    uint64_t left_out = 0;    // parts of the case that are not traced in lanes, nor judged
     double seconds = 0;
 
     double limit() const { return info->bound.limit[precision == Precision::double_]; }
@@ -35,6 +36,7 @@ struct Outcome {
 
 struct RunSettings {
     bool quick = false;
+    int lanes = 0;  // the most of the intersector `lanes`; 0: any number
     std::vector<IntersectorKind> intersectors;
     std::vector<Precision> precisions;
 };

@@ -20,7 +20,7 @@ class Stage {
 
     const bool quick;
     const Precision precision;
-    const std::string intersector;  // "embree", "bvh", "brute", "cuda"
+    const std::string intersector;  // "embree", "lanes", "bvh", "brute", "cuda"
 
     bool in_double() const { return precision == Precision::double_; }
     /// u: half an ulp of 1.

@@ -15,6 +15,9 @@ struct TileFunctions {
     void (*add)(void* tile, const void* pixel);
     void (*render)(void* tile, const void* stop, void* rays, uint32_t* flags);
     void (*destroy)(void* tile);
+    // LaneRayQueries, of at most `lanes` rays at once.
+    void (*closest)(const void* scene, const void* rays, int count, void* hits);
+    void (*transmittance)(const void* scene, const void* shadows, int count, void* shares);
 };
 
 extern const TileFunctions cistula_float_tiles_avx2, cistula_double_tiles_avx2;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <utility>
 
+#include "backend_embree/lanes/lane_rays.h"
 #include "backend_embree/lanes/tile_functions.h"
 #include "cistula/lanes/lane_tile.h"
 
@@ -68,6 +69,16 @@ constexpr TileFunctions tile_functions_of() {
                                             *static_cast<RayCounts*>(rays), *flags);
     };
     functions.destroy = [](void* tile) { delete static_cast<AnyTile*>(tile); };
+    using T = ScalarOf<Real>;
+    functions.closest = [](const void* scene, const void* rays, int count, void* hits) {
+        LaneRayQueries<Real>::closest(*static_cast<const Scene*>(scene), static_cast<const Ray<T>*>(rays), count,
+                                      static_cast<Hit<T>*>(hits));
+    };
+    functions.transmittance = [](const void* scene, const void* shadows, int count, void* shares) {
+        LaneRayQueries<Real>::transmittance(*static_cast<const Scene*>(scene),
+                                            static_cast<const ShadowRay<T>*>(shadows), count,
+                                            static_cast<Vec3<T>*>(shares));
+    };
     return functions;
 }
 

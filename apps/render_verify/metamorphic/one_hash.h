@@ -67,13 +67,15 @@ template <class Real>
 std::vector<std::function<std::unique_ptr<Renderer>(Compiled<Real>)>> renderers(const std::string& intersector) {
     std::vector<std::function<std::unique_ptr<Renderer>(Compiled<Real>)>> all;
     if (intersector == "embree") {
-        std::vector<EmbreeOptions> variants = {{}, {"", 0, true}, {"", 1, true}, {"isa=sse2", 1, true}};
+        std::vector<EmbreeOptions> variants = {{"", 0, true}, {"", 1, true}, {"isa=sse2", 1, true}};
         if (__builtin_cpu_supports("avx2")) variants.push_back({"isa=avx2", 1, true});
         if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
             variants.push_back({"isa=avx512", 1, true});
         for (const EmbreeOptions& options : variants)
             all.push_back([options](Compiled<Real> scene) { return make_embree_renderer<Real>(scene, options); });
+    } else if (intersector == "lanes") {
+        all.push_back([](Compiled<Real> scene) { return make_embree_renderer<Real>(scene); });
     } else if (intersector == "bvh") {
         for (const int quality : {0, 1})
             for (const bool shuffled : {false, true})

@@ -64,7 +64,7 @@ struct Compared : Made<Compared> {
     static inline std::atomic<int> asked = 0;
     template <class Real, class Intersector>
     uint64_t fingerprint(const Setup<Real>&, const Intersector&, uint64_t i) const {
-        return i == 7 && ++asked == 3 ? 1 : 0;
+        return i == 7 && ++asked == 4 ? 1 : 0;
     }
 };
 /// A cube beside one that is 2^-20 of its size, and a cube alone.
@@ -131,7 +131,7 @@ TEST(Verify, AFailingRayIsExitCode1AndNamed) {
     each_ray = [](uint64_t i, Tally& tally) { tally.expect(i < 6); };
     nlohmann::json record;
     EXPECT_EQ(code_of<Counts>(&record), 1);
-    ASSERT_EQ(record["cases"].size(), 6u);  // three intersectors, two precisions
+    ASSERT_EQ(record["cases"].size(), 8u);  // four intersectors, two precisions
     for (const auto& one : record["cases"]) {
         EXPECT_EQ(one["case"], "made/counts");
         EXPECT_EQ(one["holds"], false);
@@ -210,15 +210,15 @@ TEST(Verify, AHazardThatIsNeverMetProvesNothing) {
 TEST(Verify, IntersectorsThatDifferAreFound) {
     nlohmann::json record;
     EXPECT_EQ(code_of<Compared>(&record, {"--precision", "double"}), 1);
-    ASSERT_EQ(record["cases"].size(), 3u);
+    ASSERT_EQ(record["cases"].size(), 4u);
     for (const auto& one : record["cases"]) EXPECT_EQ(one["failures"], one["intersector"] == "bvh" ? 1 : 0);
-    EXPECT_EQ(record["cases"][1]["worst_at"], "a cube, ray 7");
+    EXPECT_EQ(record["cases"][2]["worst_at"], "a cube, ray 7");
 }
 
 TEST(Verify, ImagesComeFromEveryIntersector) {
     nlohmann::json record;
     EXPECT_EQ(code_of<Images>(&record), 0);
-    ASSERT_EQ(record["cases"].size(), 6u);
+    ASSERT_EQ(record["cases"].size(), 8u);
 }
 
 TEST(Verify, TalliesDoNotDependOnTheOrder) {
@@ -264,6 +264,7 @@ TEST_F(RenderVerify, RefusesWhatItDoesNotKnow) {
     expect_refused({"--case", "*nothing*"}, ExitCode::usage, "no such case");
     expect_refused({"--backend", "embre"}, ExitCode::usage, "did you mean 'embree'?");
     expect_refused({"--precision", "half"}, ExitCode::usage, "must be float or double or both");
+    expect_refused({"--lanes", "17"}, ExitCode::usage, "--lanes");
     expect_refused({"--quik"}, ExitCode::usage, "did you mean '--quick'?");
     expect_refused({"geometry/fans"}, ExitCode::usage, "--case");
     expect_refused({"--json", "a", "--html", "./a"}, ExitCode::usage, "both --json and --html");
@@ -283,15 +284,26 @@ TEST_F(RenderVerify, HelpShowsEveryOptionAsItIsWritten) {
     EXPECT_EQ(help.out.find_first_of("{}"), std::string::npos) << help.out;
 }
 
+TEST_F(RenderVerify, LanesAreJudgedWhereThereAreAny) {
+    const Arguments arguments{"--quick", "--case", "geometry/axis-parallel"};
+    const auto with = [&](const char* lanes) {
+        Arguments more = arguments;
+        more.insert(more.end(), {"--lanes", lanes});
+        return run(more).out;
+    };
+    EXPECT_NE(with("8").find(" lanes "), std::string::npos);
+    EXPECT_EQ(with("1").find(" lanes "), std::string::npos);
+}
+
 TEST_F(RenderVerify, WritesATableARecordAndAPage) {
     const ProgramResult result = run({"--quick", "--case", "geometry/axis-parallel", "--case", "geometry/broken/*",
                                       "--precision", "double", "--json", "a.json", "--html", "a.html"});
     EXPECT_EQ(result.code, 0) << result.out << result.error;
     EXPECT_NE(result.out.find("geometry/axis-parallel"), std::string::npos);
-    EXPECT_NE(result.out.find("all 6 hold"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("all 7 hold"), std::string::npos) << result.out;
     const auto record = nlohmann::json::parse(bytes_of(file("a.json")));
     EXPECT_EQ(record["context"]["quick"], true);
-    ASSERT_EQ(record["cases"].size(), 6u);
+    ASSERT_EQ(record["cases"].size(), 7u);
     for (const auto& one : record["cases"]) {
         EXPECT_EQ(one["holds"], true);
         EXPECT_EQ(one["precision"], "double");
