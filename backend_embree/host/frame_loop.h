@@ -71,7 +71,6 @@ class FrameTask {
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
         if (in_lanes == nullptr || mask_ == unshadowed_mask || !camera_fits_lanes(frame_)) return;
-        if (in_lanes->meshes != 0 && goes_by_sample()) return;
         tiles_ = tile_functions<Real>(settings.lanes);
         if (tiles_ != nullptr && tiles_->lanes < in_lanes->least_lanes) tiles_ = nullptr;
     }

@@ -241,14 +241,6 @@ TYPED_TEST(LaneTest, SomeMeshesAreTracedOneRayAfterTheOther) {
         golden::render_with(*renderer, scene, golden::settings_for(scene));
         EXPECT_EQ(renderer->lanes(), 1);
     }
-    const SceneDescription scene = scene_of_meshes(-0.25, "[1, -5, 3]", kinds_of_glass[2]);
-    const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
-    FrameSettings settings = golden::settings_for(scene);
-    golden::render_with(*renderer, scene, settings);
-    EXPECT_GT(renderer->lanes(), 1);
-    settings.cutoff = 0.01;  // samples by themselves
-    golden::render_with(*renderer, scene, settings);
-    EXPECT_EQ(renderer->lanes(), 1);
 }
 
 TYPED_TEST(LaneTest, CutoffsAndTargetsAreEqual) {
@@ -276,6 +268,26 @@ TYPED_TEST(LaneTest, CutoffsAndTargetsAreEqual) {
     EXPECT_EQ(this->in_lanes(), 45u);
 }
 
+TYPED_TEST(LaneTest, CutoffsAndTargetsOfMeshesAreEqual) {
+    std::vector<SceneDescription> scenes{test::shipped_scene("mesh"), scene_of_contacts(3), scene_of_contacts(0.5)};
+    for (const char* position : {"[1, -5, 3]", "[-0.75, -0.75, 0.25]"})
+        for (const char* glass : kinds_of_glass) scenes.push_back(scene_of_meshes(-0.25, position, glass));
+    for (size_t i = 0; i < scenes.size(); ++i) {
+        FrameSettings settings = golden::settings_for(scenes[i]);
+        settings.set_size(49, 31);
+        settings.supersample = 2;
+        settings.depth = 12;
+        settings.cutoff = 0.004;
+        settings.layers = i % 2 == 0 ? test::all_layers() : LayerRequest();
+        this->compare(scenes[i], settings, fmt::format("scene {} with a cutoff", i));
+        settings.set_size(25, 17);
+        settings.cutoff = 0;
+        settings.target_error = 0.01;
+        this->compare(scenes[i], settings, fmt::format("scene {} with a target", i));
+    }
+    EXPECT_EQ(this->in_lanes(), 22u);
+}
+
 /// Trees of more than most_branches, which are traced again with larger budgets.
 TYPED_TEST(LaneTest, TreesWithoutEndAreEqual) {
     const SceneDescription scene = test::room_of_mirrors();
@@ -284,7 +296,17 @@ TYPED_TEST(LaneTest, TreesWithoutEndAreEqual) {
     this->compare(scene, settings, "mirrors");
     settings.layers = test::all_layers();
     this->compare(scene, settings, "mirrors with layers");
-    EXPECT_EQ(this->in_lanes(), 2u);
+    // A mesh of overlapping parts, inside of which branches are traced by themselves.
+    SceneDescription with_mesh = scene;
+    const SceneDescription meshes = scene_of_meshes(-0.25, "[1, -5, 3]", R"("transmission": 0.5, "reflection": 0.5)");
+    ObjectDescription object = meshes.objects[2];
+    for (glm::dvec3& vertex : std::get<TrianglesObject>(object.shape).vertices) vertex *= 0.3;
+    object.material = int(with_mesh.materials.size());
+    with_mesh.objects.push_back(object);
+    with_mesh.materials.push_back(meshes.materials[size_t(meshes.objects[2].material)]);
+    settings.layers = LayerRequest();
+    this->compare(with_mesh, settings, "mirrors around a mesh");
+    EXPECT_EQ(this->in_lanes(), 3u);
 }
 
 /// All layers, with room for all objects of the shipped scenes.

@@ -33,6 +33,16 @@ CISTULA_INLINE void add_texel(PathHash& hash, const Scene& scene, const Hit<Real
     hash.add(bits_as<uint32_t>(float(texel.x)), bits_as<uint32_t>(float(texel.y)), solid.material);
 }
 
+/// A solid's number, and a key, in the scene as it was compiled: an intersector's may number solids anew.
+template <class Intersector>
+CISTULA_INLINE uint32_t compiled_number(const Intersector&, uint32_t solid) {
+    return solid;
+}
+template <class Intersector>
+CISTULA_INLINE uint64_t compiled_key(const Intersector&, uint64_t key) {
+    return key;
+}
+
 /// An intersector that adds the faces and texels that are hit and the transmittance toward lights to a hash; of a
 /// transmittance that varies gradually only whether it is above zero.
 template <class Inner>
@@ -48,8 +58,10 @@ struct HashingIntersector {
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         const Hit<Real> hit = inner.template closest<E>(ray);
         // A primary ray that hits nothing counts like one that misses the scene.
-        if (hash.counts && (hit.found() || ray.from_solid != no_solid))
-            hash.add(uint32_t(hit.key), uint32_t(hit.key >> 32), ray.from_solid + 31 * ray.from_face);
+        if (hash.counts && (hit.found() || ray.from_solid != no_solid)) {
+            const uint64_t key = compiled_key(inner, hit.key);
+            hash.add(uint32_t(key), uint32_t(key >> 32), compiled_number(inner, ray.from_solid) + 31 * ray.from_face);
+        }
         if (hash.counts && hit.found()) add_texel(hash, inner.scene, hit);
         return hit;
     }

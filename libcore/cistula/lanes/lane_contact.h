@@ -13,7 +13,7 @@ template <class Real>
 struct SingleIntersector {
     using Media = InteriorList;
     using Scene = SceneView<Real>;
-    const SceneView<Real>& scene;
+    const LaneScene<Real>& scene;
 
     template <class E = Effects<all_effects>>
     CISTULA_NOINLINE Hit<Real> closest(const Ray<Real>& ray) const {
@@ -157,7 +157,7 @@ CISTULA_NOINLINE bool gather_in_lane(const LaneScene<T>& scene, const Ray<Lanes<
     const Ray<T> one = lane_of<InteriorList>(ray, lane);
     SurfaceEvent<T> gathered;
     gathered.begin(one, lane_of(hit, lane));
-    gather_shared(view, SingleIntersector<T>{view}, one, gathered);
+    gather_shared(view, SingleIntersector<T>{scene}, one, gathered);
     if (!InteriorSet::holds(gathered.beyond)) return false;
     const auto only = MaskOf<Lanes<T, n>>::of_bits(1u << lane);
     const Hit<T>& shaded = gathered.hit;
@@ -218,7 +218,7 @@ CISTULA_NOINLINE void correct_lane(const LaneScene<T>& scene, const Ray<Lanes<T,
                                    const Vec3<Lanes<T, n>>& normal, bool beyond, int lane, Vec3<Lanes<T, n>>& origin,
                                    LaneMedia<Lanes<T, n>>& media) {
     const SceneView<T>& view = scene;
-    const SingleIntersector<T> intersector{view};
+    const SingleIntersector<T> intersector{scene};
     const Ray<T> one = lane_of<InteriorList>(parent, lane);
     SurfaceEvent<T> event;  // with all crossings, of which lanes keep the last
     resolve_event<Effects<all_effects>>(view, intersector, one, intersector.closest(one), event);

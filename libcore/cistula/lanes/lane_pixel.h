@@ -25,6 +25,9 @@ struct LanePixel {
     uint32_t rays = 0;                                                // of all kinds
     int64_t left = 0;                                                 // of the budget
     uint32_t reflected = 0, shadow = 0, branches = 0, path_hash = 0;  // of a sample by itself
+
+    /// Whether the sample has more branches than a frame with a target error follows.
+    CISTULA_INLINE bool is_too_large(bool adaptive) const { return adaptive && branches > most_branches; }
 };
 
 }  // namespace cistula

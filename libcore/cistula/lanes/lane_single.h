@@ -2,8 +2,10 @@
 // the meshes around them at a contact. They are traced one after the other, with all that comes from them.
 #pragma once
 
+#include "cistula/adaptive/path_hash.h"
 #include "cistula/lanes/lane_branch.h"
 #include "cistula/lanes/lane_contact.h"
+#include "cistula/lanes/lane_pixel.h"
 #include "cistula/lights/visible_light.h"
 #include "cistula/transport/ray_tree.h"
 
@@ -72,22 +74,61 @@ struct SingleFirstSeen {
     CISTULA_INLINE MaskOf<Real> only() const { return MaskOf<Real>::of_bits(1u << lane); }
 };
 
-/// Traces a branch and all that comes from it, unless stopped, and adds to the sums and the counts. Compiled with all
-/// effects only, once for a number type and for sums with and without layers: few branches need it.
-template <class Real, class Sums, class First>
-CISTULA_NOINLINE void trace_single(const LaneScene<ScalarOf<Real>>& scene, int depth, Branch<ScalarOf<Real>>& branch,
-                                   Sums& sums, PixelRays& rays, const SingleFirstSeen<Real, First>& first,
-                                   const StopQuestion& stopped) {
-    using T = ScalarOf<Real>;
-    using All = Effects<all_effects | (std::is_same_v<Sums, LayeredSums<T>> ? keeps_budget | fills_layers : 0)>;
-    using Stack = StoppableStack<BranchStack<Branch<T>>, StopQuestion>;
-    const SceneView<T>& view = scene;
-    const SingleIntersector<T> intersector{view};
-    typename Stack::Storage storage;
-    Stack stack(storage, stopped);
-    find_start_plane<All>(view, branch.ray);
-    RayTree<T, All, SingleIntersector<T>, Stack>(view, intersector, depth, sums, rays, stack)
-        .trace_branch(branch, first);
+template <class Real>
+CISTULA_INLINE uint32_t compiled_number(const SingleIntersector<Real>& intersector, uint32_t solid) {
+    return solid == no_solid ? no_solid : intersector.scene.numbers[solid];
+}
+template <class Real>
+CISTULA_INLINE uint64_t compiled_key(const SingleIntersector<Real>& intersector, uint64_t key) {
+    return key == no_key ? no_key : make_key(key_kind(key), intersector.scene.numbers[key_solid(key)], key_face(key));
+}
+
+/// A stack of branches of a sample that is rendered by itself: counts them, and ends a tree that is too large.
+template <class Inner, class Real>
+class SampleStack {
+  public:
+    /// `significant`: the least throughput of branches that count in the hash; `adaptive`: the frame has a target.
+    SampleStack(Inner& inner, LanePixel& pixel, PathHash& hash, Real significant, bool adaptive)
+        : inner_(inner), pixel_(pixel), hash_(hash), significant_(significant), adaptive_(adaptive) {}
+
+    template <class Entry>
+    CISTULA_INLINE bool push(const Entry& branch) {
+        return inner_.push(branch);
+    }
+    template <class Entry>
+    CISTULA_INLINE bool pop(Entry& branch) {
+        if (!inner_.pop(branch)) return false;
+        ++pixel_.branches;
+        begin(branch);
+        if (!pixel_.is_too_large(adaptive_)) return true;
+        clear();
+        return false;
+    }
+    /// Begins with a branch.
+    template <class Entry>
+    CISTULA_INLINE void begin(const Entry& branch) {
+        hash_.counts = adaptive_ && largest_component(branch.weight) >= significant_;
+    }
+    CISTULA_INLINE void clear() { inner_.clear(); }
+    CISTULA_INLINE bool stopped() const { return inner_.stopped(); }
+
+  private:
+    Inner& inner_;
+    LanePixel& pixel_;
+    PathHash& hash_;
+    const Real significant_;
+    const bool adaptive_;
+};
+
+/// Traces a branch and all that comes from it, unless stopped, and adds to the sums and the counts. E: all effects, of
+/// frames with or without layers or a budget; few branches need it.
+template <class E, class Real, class Intersector, class Stack, class First>
+CISTULA_NOINLINE void trace_single(const LaneScene<Real>& scene, const Intersector& intersector, int depth,
+                                   Branch<Real>& branch, SumsOf<Real, E>& sums, PixelRays& rays, Stack& stack,
+                                   const First& first) {
+    const SceneView<Real>& view = scene;
+    find_start_plane<E>(view, branch.ray);
+    RayTree<Real, E, Intersector, Stack>(view, intersector, depth, sums, rays, stack).trace_branch(branch, first);
 }
 
 }  // namespace cistula

@@ -90,10 +90,8 @@ class LaneTile {
             if (scene_.meshes != 0) kept = branch;
             const Mask single = tree.follow(branch, who, first);
             sums.end(who);
-            if constexpr (by_sample)
-                add_to_samples(branch, hash, sums.rays(), who);
-            else if (any(single))
-                trace_singly(kept, single, first, stopped, rays.counts, flags);
+            if constexpr (by_sample) add_to_samples(branch, hash, sums.rays(), who, single);
+            if (any(single)) trace_singly(kept, single, first, stopped, rays.counts, flags);
         }
         for (LanePixel& pixel : pixels_) {
             pixel.record->rays = pixel.rays;
@@ -111,21 +109,46 @@ class LaneTile {
         queues_.clear();
     }
 
+    /// What a sample may still lose, for branches that are traced by themselves.
+    static TreeLimit<T, E::has(keeps_budget)> limit_of(const FrameView& frame, const LanePixel& pixel) {
+        if constexpr (E::has(keeps_budget))
+            return {pixel.threshold.of_branches(frame.tree), pixel.left};
+        else
+            return TreeLimit<T, false>(frame.tree);
+    }
+
     /// Traces branches by themselves, and adds the counts.
     template <class Stopped>
     CISTULA_NOINLINE void trace_singly(const Entry& branch, const Mask& who, const First& first, const Stopped& stopped,
                                        RayCounts& counts, uint32_t& flags) {
+        using All = Effects<all_effects | (E::mask & (keeps_budget | fills_layers))>;
+        using Stack = StoppableStack<BranchStack<Branch<T>>, StopQuestion>;
+        const SingleIntersector<T> intersector{scene_};
         for_each_lane(who, [&](int lane) {
             LanePixel& pixel = pixels_[size_t(branch.pixel[lane] & (Entry::by_mirror - 1))];
-            SumsOf<T, E> sums(frame_.tree, scene_, *pixel.record, flags);
+            SumsOf<T, All> sums(frame_.tree, scene_, *pixel.record, flags, limit_of(frame_, pixel));
             if constexpr (E::has(fills_layers)) {
                 sums.divide(frame_.layers, pixel.layers, scene_.light_groups);
                 if (branch.depth > 0) sums.enter((branch.pixel[lane] & Entry::by_mirror) != 0);
             }
             PixelRays rays;
             Branch<T> one = single_branch(branch, lane);
-            trace_single<Real>(scene_, frame_.tree.depth, one, sums, rays,
-                               SingleFirstSeen<Real, First>{scene_, first, lane}, StopQuestion::by(stopped));
+            const SingleFirstSeen<Real, First> seen{scene_, first, lane};
+            typename Stack::Storage storage;
+            Stack stack(storage, StopQuestion::by(stopped));
+            if constexpr (by_sample) {
+                PathHash hash;
+                SampleStack<Stack, T> counted(stack, pixel, hash, T(frame_.lattice.significant), adaptive_);
+                counted.begin(one);
+                const HashingIntersector<SingleIntersector<T>> hashing{intersector, hash, gradual_};
+                trace_single<All>(scene_, hashing, frame_.tree.depth, one, sums, rays, counted, seen);
+                pixel.left = sums.left();
+                pixel.path_hash += hash.value;
+                pixel.reflected += rays.reflected;
+                pixel.shadow += rays.shadow;
+            } else {
+                trace_single<All>(scene_, intersector, frame_.tree.depth, one, sums, rays, stack, seen);
+            }
             counts.add(rays);
             pixel.rays += rays.total();
         });
@@ -147,21 +170,19 @@ class LaneTile {
         for_each_lane(who, [&](int lane) {
             LanePixel& pixel = pixels_[branch.pixel[lane]];
             ++pixel.branches;
-            kept |= uint32_t(pixel.left >= 0 && !is_too_large(pixel)) << lane;
+            kept |= uint32_t(pixel.left >= 0 && !pixel.is_too_large(adaptive_)) << lane;
         });
         return Mask::of_bits(kept);
     }
-    CISTULA_INLINE bool is_too_large(const LanePixel& pixel) const {
-        return adaptive_ && pixel.branches > most_branches;
-    }
 
     /// Adds the hashes of branches and the counts of their rays to their samples. `rays`: each branch and its shadow
-    /// rays.
+    /// rays. `single`: those that are to be traced by themselves, of which nothing was done.
     CISTULA_INLINE void add_to_samples(const Entry& branch, const LanePathHash<Real>& hash, const IndexOf<Real>& rays,
-                                       const Mask& who) {
+                                       const Mask& who, const Mask& single) {
+        for_each_lane(who & !single,
+                      [&](int lane) { pixels_[branch.pixel[lane]].path_hash += uint32_t(hash.value[lane]); });
         for_each_lane(who, [&](int lane) {
             LanePixel& pixel = pixels_[branch.pixel[lane]];
-            pixel.path_hash += uint32_t(hash.value[lane]);
             pixel.reflected += branch.mirrored;
             pixel.shadow += uint32_t(rays[lane]) - 1;
         });
@@ -174,8 +195,9 @@ class LaneTile {
             LaneSample& sample = *pixel.sample;
             sample.threshold = pixel.threshold;
             sample.path_hash = pixel.path_hash;
-            sample.holds = pixel.left >= 0 && !is_too_large(pixel);
-            if (is_too_large(pixel))
+            const bool is_too_large = pixel.is_too_large(adaptive_);
+            sample.holds = pixel.left >= 0 && !is_too_large;
+            if (is_too_large)
                 sample.threshold.grow();
             else if (pixel.left < 0)
                 sample.threshold.shrink();
