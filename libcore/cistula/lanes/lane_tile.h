@@ -63,12 +63,11 @@ class LaneTile {
                                                                               sums, rays, queues_);
         next_ = 0;
         next_sample_ = 0;
-        Entry kept;  // the branches as they were before they were followed
+        Entry branch, kept;  // those that are followed, and as they were before
+        First first{scene_, frame_, flags, {}, {}};
         for (uint32_t turns = 1;; ++turns) {
             if (turns % turns_between_stops == 0 && stopped()) return clear();
-            Entry branch;
             Mask who = false;
-            First first{scene_, frame_, flags, {}, {}};
             if (queues_.has_full() || next_ == pixels_.size()) {
                 who = queues_.pop(branch);
                 if (!any(who)) break;
@@ -234,6 +233,7 @@ class LaneTile {
         LaneVectors<Real> origins, directions;
         LaneArray<IndexOf<Real>> media, numbers;
         int count = 0;
+        first.middle = 0;
         while (count < lanes && next_ < pixels_.size()) {
             size_t number;
             const GridSample sample = take_sample(number);

@@ -77,7 +77,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                                     const SurfaceEvent<Real, Media>& event, const Surface<Real>& surface,
                                     const Throughput<Real, E>& weight, Sums& sums, Rays& rays,
                                     const Observer& observer = {}, const MaskOf<Real>& who = true) {
-    Surface<Real> s = surface;
+    std::conditional_t<in_lanes<Real>, const Surface<Real>&, Surface<Real>> s = surface;
     const Media* around = &ray.media;
     if constexpr (in_lanes<Real>) around = &surface.viewer_media;
     [[maybe_unused]] Media corrected;

@@ -78,6 +78,7 @@ class NextSurface {
         Absorption<E::has(effect_absorption), Real> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t, who);
         MaskOf<Real> met = false, left = who;
+        SurfaceEvent<Real, Media> later;
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray, left);
             VisibleLightHit<Real> light;
@@ -89,7 +90,7 @@ class NextSurface {
                 assign_where(ends, visible.t, light.t);
                 assign_where(ends, visible.light, light.light);
             }
-            SurfaceEvent<Real, Media> next;
+            SurfaceEvent<Real, Media>& next = crossings == 0 ? event : later;
             left = left & !ends;
             const MaskOf<Real> strays = resolve_event<E>(scene_, branch.ray, hit, left, next);
             single |= strays;
@@ -97,10 +98,7 @@ class NextSurface {
             if (any(left & !next.fits)) sums_.flag(flag_media_overflow);
             const MaskOf<Real> passes = left & invisible(branch.ray, next), stops = left & !passes;
             absorption.dim(scene_, branch.ray.media, next.hit.t, branch.weight, stops);
-            if (crossings == 0)
-                event = next;
-            else
-                event.take_where(stops, next);
+            if (crossings > 0) event.take_where(stops, next);
             met |= stops;
             if (!any(passes)) return met;
             absorption.change(scene_, branch.ray.media, next.beyond, next.taken[0].t, passes);
