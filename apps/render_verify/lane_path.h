@@ -11,7 +11,7 @@
 
 #include "apps/render_verify/called_intersector.h"
 #include "backend_embree/lanes/lane_renderer.h"
-#include "cistula/lanes/lane_media.h"
+#include "cistula/lanes/lane_hit.h"
 #include "scene/compile/lane_scene.h"
 
 namespace cistula::verify {
@@ -24,7 +24,9 @@ class LanePath {
   public:
     /// The scene must outlive this, and have a tree. `most_lanes`: 0 for any number.
     LanePath(const SceneView<Real>& scene, int most_lanes)
-        : scene_(scene), functions_(tile_functions<Real>(most_lanes)), in_lanes_(lane_scene(scene)) {
+        : scene_(scene),
+          in_lanes_(lane_scene(scene)),
+          functions_(in_lanes_ ? tile_functions(in_lanes_->scene(), most_lanes) : nullptr) {
         if (!fits()) return;
         const Span<uint32_t>& numbers = in_lanes_->scene().numbers;
         places_.resize(numbers.size);
@@ -32,9 +34,7 @@ class LanePath {
     }
 
     /// Whether frames of the scene are traced in lanes.
-    bool fits() const {
-        return functions_ != nullptr && in_lanes_ != nullptr && functions_->lanes >= in_lanes_->scene().least_lanes;
-    }
+    bool fits() const { return functions_ != nullptr; }
 
     Hit<Real> closest(const Ray<Real>& ray) const {
         if (!InteriorSet::holds(ray.media)) return BvhIntersector<Real>{scene_}.closest(ray);
@@ -100,9 +100,6 @@ class LanePath {
     }
     static bool is_unit(const ShadowRay<Real>& shadow) { return is_unit(shadow.ray); }
 
-    uint64_t renumbered(uint64_t key, const uint32_t* numbers) const {
-        return make_key(key_kind(key), numbers[key_solid(key)], key_face(key));
-    }
     /// A ray with the numbers of solids in lanes.
     Ray<Real> numbered(Ray<Real> ray) const {
         if (ray.from_solid != no_solid) ray.from_solid = places_[ray.from_solid];
@@ -115,8 +112,8 @@ class LanePath {
     }
 
     const SceneView<Real>& scene_;
-    const TileFunctions* const functions_;
     const std::unique_ptr<const OwnedLaneScene<Real>> in_lanes_;
+    const TileFunctions* const functions_;
     std::vector<uint32_t> places_;  // in lanes, of the scene's solids
     mutable tbb::enumerable_thread_specific<Recent<Ray<Real>, Hit<Real>>> recent_hits_;
     mutable tbb::enumerable_thread_specific<Recent<ShadowRay<Real>, Vec3<Real>>> recent_shares_;

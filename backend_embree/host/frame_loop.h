@@ -71,8 +71,7 @@ class FrameTask {
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
         if (in_lanes == nullptr || mask_ == unshadowed_mask || !camera_fits_lanes(frame_)) return;
-        tiles_ = tile_functions<Real>(settings.lanes);
-        if (tiles_ != nullptr && tiles_->lanes < in_lanes->least_lanes) tiles_ = nullptr;
+        tiles_ = tile_functions(*in_lanes, settings.lanes);
     }
 
     /// The effects that are compiled into the code that runs (mask_to_run; all of them for references).

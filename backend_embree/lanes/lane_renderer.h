@@ -6,6 +6,7 @@
 
 #include "backend_embree/lanes/tile_functions.h"
 #include "cistula/lanes/lane_pixel.h"
+#include "cistula/lanes/lane_scene.h"
 #include "cistula/transport/pixel.h"
 
 namespace cistula {
@@ -33,8 +34,9 @@ class TileRenderer {
     std::unique_ptr<void, void (*)(void*)> tile_;
 };
 
-/// The tile renderers with at most so many lanes (0: any number); null if that is one.
+/// The tile renderers of a scene, with at most so many lanes (0: any number); null if its rays are traced one after the
+/// other.
 template <class Real>
-const TileFunctions* tile_functions(int most_lanes);
+const TileFunctions* tile_functions(const LaneScene<Real>& scene, int most_lanes);
 
 }  // namespace cistula

@@ -30,14 +30,15 @@ const TileFunctions* avx2_copy() {
 }  // namespace
 
 template <class Real>
-const TileFunctions* tile_functions(int most_lanes) {
+const TileFunctions* tile_functions(const LaneScene<Real>& scene, int most_lanes) {
     static const TileFunctions* const copies[] = {avx512_copy<Real>(), avx2_copy<Real>()};
     for (const TileFunctions* copy : copies)
-        if (copy != nullptr && (most_lanes == 0 || copy->lanes <= most_lanes)) return copy;
+        if (copy != nullptr && (most_lanes == 0 || copy->lanes <= most_lanes))
+            return copy->lanes < scene.least_lanes ? nullptr : copy;
     return nullptr;
 }
 
-template const TileFunctions* tile_functions<float>(int);
-template const TileFunctions* tile_functions<double>(int);
+template const TileFunctions* tile_functions(const LaneScene<float>&, int);
+template const TileFunctions* tile_functions(const LaneScene<double>&, int);
 
 }  // namespace cistula

@@ -60,6 +60,11 @@ CISTULA_INLINE Lanes<T, n> entries_of(const Span<uint32_t>& table, const Lanes<T
     return entries.all();
 }
 
+/// The key of a single ray with other numbers of solids.
+CISTULA_INLINE uint64_t renumbered(uint64_t key, const uint32_t* numbers) {
+    return make_key(key_kind(key), numbers[key_solid(key)], key_face(key));
+}
+
 /// A lane of a ray as a single ray.
 template <class Media = SingleInterior, class T, int n>
 CISTULA_INLINE Ray<T, Media> lane_of(const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray, int lane) {

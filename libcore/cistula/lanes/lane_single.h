@@ -80,7 +80,7 @@ CISTULA_INLINE uint32_t compiled_number(const SingleIntersector<Real>& intersect
 }
 template <class Real>
 CISTULA_INLINE uint64_t compiled_key(const SingleIntersector<Real>& intersector, uint64_t key) {
-    return key == no_key ? no_key : make_key(key_kind(key), intersector.scene.numbers[key_solid(key)], key_face(key));
+    return key == no_key ? no_key : renumbered(key, intersector.scene.numbers.data);
 }
 
 /// A stack of branches of a sample that is rendered by itself: counts them, and ends a tree that is too large.
