@@ -246,7 +246,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
                 writer.finish();
                 throw Error(ExitCode::failed,
                             fmt::format("{}: frame {} cannot be trusted and is not written: {}", job.scene.source,
-                                        camera.frame, describe_flags(finished.film.flags)));
+                                        camera.frame, describe_flags(finished.film.flags, job.scene)));
             }
             finished.image = job.output;
             finished.split = options.split;

@@ -171,10 +171,13 @@ void FrameWriter::write(Task& task) {
     });
     if (frame.strict && stats.clamped != 0)
         throw Error(ExitCode::failed, fmt::format("{}: not written: {}", path, over_largest_half(stats.clamped)));
+    stats.cut = ledger_totals(frame.film, &PixelRecord::cut);
+    if (!frame.settings.adaptive())
+        stats.depth_loss = depth_loss(stats.cut, ledger_totals(frame.film, &PixelRecord::radiance));
     if (measure_) {
         stats.hash = film_hash(frame.film);
         stats.pruned = ledger_totals(frame.film, &PixelRecord::pruned);
-        stats.cut = ledger_totals(frame.film, &PixelRecord::cut);
+        stats.units = unit_totals(frame.film);
     }
     give_film_back(task, bytes_of(layers, color, preview));
     stats.write_seconds = seconds_of([&] {

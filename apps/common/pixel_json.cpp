@@ -37,7 +37,7 @@ class PixelJson {
         const Film& film = report_.tree.film;
         Json samples = Json::array();
         for (const SampleTree& sample : report_.tree.samples) samples.push_back(sample_entry(sample));
-        const std::string flags = describe_flags(film.flags);
+        const std::string flags = describe_flags(film.flags, report_.scene);
         Json json = {
             {"scene", report_.scene.source},
             {"scene_hash", report_.scene_hash},
@@ -80,7 +80,11 @@ class PixelJson {
         return {
             {"radiance", channels("R", "G", "B")},
             {"error", channels("error.R", "error.G", "error.B")},
-            {"sums", {{"radiance", pixel.radiance}, {"pruned", pixel.pruned}, {"cut", pixel.cut}}},
+            {"sums",
+             {{"radiance", pixel.radiance},
+              {"pruned", pixel.pruned},
+              {"cut", pixel.cut},
+              {"units", report_.tree.film.units_lost(pixel)}}},
             {"coverage", number(shown(report_, "coverage"))},
             {"id", pixel.id},
             {"Z", number(shown(report_, "Z"))},

@@ -330,11 +330,10 @@ void write_totals(const PixelReport& report, std::string& text) {
     };
     text += fmt::format("\nradiance  {}\n", three("R", "G", "B"));
     const std::string ledger = three("error.R", "error.G", "error.B");
-    if (ledger == "0 0 0")
-        text += "ledger    0 0 0: nothing is missing\n";
-    else
-        text += fmt::format("ledger    {} at most is missing: {} pruned by the cutoff, {} cut at the depth\n", ledger,
-                            mean(pixel.pruned), mean(pixel.cut));
+    const Film& film = report.tree.film;
+    text += fmt::format(
+        "ledger    {} at most is missing: {} pruned by the cutoff, {} cut at the depth, {:.2g} in whole units\n",
+        ledger, mean(pixel.pruned), mean(pixel.cut), static_cast<double>(film.units_lost(pixel)) * film.unit());
     text += fmt::format("rays      {}: {} primary, {} mirrored, {} transmitted, {} shadow\n", rays.total(),
                         rays.primary, rays.reflected, rays.transmitted, rays.shadow);
 }

@@ -40,6 +40,7 @@ Json target_entry(const TargetReport& target) {
     const Json proven = {{"reached", target.proven()},
                          {"worst", target.worst_truncation},
                          {"pixels_truncated", target.truncated},
+                         {"pixels_coarse", target.coarse},
                          {"pixels_bushy", target.bushy}};
     const Json estimated = {{"pixels_checked", target.checked},
                             {"pixels_off", target.off},
@@ -73,7 +74,7 @@ Json frame_entry(const FrameStats& frame, const FrameSettings& settings, bool ha
         entry["samples"] = frame.target.samples;
         entry["target"] = target_entry(frame.target);
     }
-    entry["ledger"] = {{"pruned", ledger(frame.pruned)}, {"cut", ledger(frame.cut)}};
+    entry["ledger"] = {{"pruned", ledger(frame.pruned)}, {"cut", ledger(frame.cut)}, {"units", ledger(frame.units)}};
     return entry;
 }
 
@@ -83,20 +84,55 @@ std::string text_of(const Json& json) {
 
 }  // namespace
 
-LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) {
+namespace {
+
+/// Totals of value(pixel, channel) units over the pixels of a film.
+template <class Value>
+LedgerTotals totals_of(const Film& film, const Value& value) {
     LedgerTotals totals;
+    for (const PixelRecord& pixel : film.pixels)
+        for (size_t c = 0; c < 3; ++c) {
+            const double units = static_cast<double>(value(pixel, c));
+            totals.mean[c] += units;
+            totals.worst[c] = std::max(totals.worst[c], units);
+        }
     const double unit = film.unit();
     for (size_t c = 0; c < 3; ++c) {
-        double sum = 0, worst = 0;
-        for (const PixelRecord& pixel : film.pixels) {
-            const double value = static_cast<double>((pixel.*member)[c]) * unit;
-            sum += value;
-            worst = std::max(worst, value);
-        }
-        totals.mean[c] = film.pixels.empty() ? 0 : sum / static_cast<double>(film.pixels.size());
-        totals.worst[c] = worst;
+        totals.mean[c] *= film.pixels.empty() ? 0 : unit / static_cast<double>(film.pixels.size());
+        totals.worst[c] *= unit;
     }
     return totals;
+}
+
+double largest(const std::array<double, 3>& channels) {
+    return *std::max_element(channels.begin(), channels.end());
+}
+
+}  // namespace
+
+LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) {
+    return totals_of(film, [member](const PixelRecord& pixel, size_t c) { return (pixel.*member)[c]; });
+}
+
+LedgerTotals unit_totals(const Film& film) {
+    return totals_of(film, [&film](const PixelRecord& pixel, size_t) { return film.units_lost(pixel); });
+}
+
+DepthLoss depth_loss(const LedgerTotals& cut, const LedgerTotals& radiance) {
+    return {largest(cut.mean), largest(cut.worst), largest(radiance.mean)};
+}
+
+std::string describe_depth_loss(const FilmTotals& totals, const std::string& film, int depth) {
+    if (totals.dark_frames == 0) return "";
+    const DepthLoss& loss = totals.depth_loss;
+    const std::string where = totals.frames == 1
+                                  ? totals.first_file
+                                  : fmt::format("{}: in {} of {} frames, most in frame {}", film, totals.dark_frames,
+                                                totals.frames, totals.depth_loss_frame);
+    return fmt::format(
+        "{}: depth {} may have taken up to {:.2g} from a pixel and {:.2g} in the mean, where the picture's mean is "
+        "{:.2g}: see --depth and --layers error",
+        where, depth, loss.worst, loss.mean, loss.brightness);
 }
 
 void FilmTotals::add(const FrameStats& frame) {
@@ -108,6 +144,11 @@ void FilmTotals::add(const FrameStats& frame) {
     clamped += frame.clamped;
     clamped_frames += frame.clamped != 0;
     target.add(frame.target);
+    if (!frame.depth_loss.is_seen()) return;
+    if (dark_frames++ == 0 || frame.depth_loss.share() > depth_loss.share()) {
+        depth_loss = frame.depth_loss;
+        depth_loss_frame = frame.frame;
+    }
 }
 
 StatsFile::StatsFile(const std::string& path, const FrameSettings& settings, bool has_device)

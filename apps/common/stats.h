@@ -1,6 +1,7 @@
 // The JSON written by --stats, in Google Benchmark's format: one entry per phase and frame, and a context.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -21,6 +22,17 @@ struct LedgerTotals {
     std::array<double, 3> mean{}, worst{};
 };
 
+/// What the depth may have taken from a frame, beside its brightness: the largest channels.
+struct DepthLoss {
+    double mean = 0, worst = 0;  // of the ledger
+    double brightness = 0;       // mean radiance
+
+    /// The loss in means of the picture that count: 1 or more is seen.
+    double share() const { return std::max(64 * mean, worst) / brightness; }
+    /// Whether the mean lost a step of six bits or more, or a pixel as much as the picture has in the mean.
+    bool is_seen() const { return std::max(64 * mean, worst) > brightness; }
+};
+
 struct FrameStats {
     int frame = 0;
     std::string file, hash;  // hash: of the film's integers
@@ -29,6 +41,8 @@ struct FrameStats {
     RenderTimes device;  // zeros for backends without devices
     RayCounts rays;
     LedgerTotals pruned, cut;  // error bounds of branches pruned by the cutoff, and cut by the depth limit
+    LedgerTotals units;        // error bounds of whole units of the sums
+    DepthLoss depth_loss;      // for frames without a target error
     TargetReport target;       // for frames with a target error
     uint64_t clamped = 0;      // values of the file that were over the largest half
 };
@@ -39,6 +53,9 @@ struct FilmTotals {
     double render_seconds = 0;
     uint64_t clamped = 0, clamped_frames = 0;  // values over the largest half, frames that have any
     TargetReport target;
+    uint64_t dark_frames = 0;  // in which is seen what the depth took
+    DepthLoss depth_loss;      // of the worst of them
+    int depth_loss_frame = 0;
     std::string first_file;
 
     void add(const FrameStats& frame);
@@ -57,6 +74,16 @@ struct RunStats {
 
 /// The totals of one of the error ledgers over the pixels of a film.
 LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*ledger)[3]);
+
+/// The totals of what whole units of the sums may have taken.
+LedgerTotals unit_totals(const Film& film);
+
+/// What the depth may have taken, from the totals of `cut` and of the radiance.
+DepthLoss depth_loss(const LedgerTotals& cut, const LedgerTotals& radiance);
+
+/// One line on the frame of a film in which the depth took the most; empty where it is not seen. `film`: the name of
+/// the frames' files.
+std::string describe_depth_loss(const FilmTotals& totals, const std::string& film, int depth);
 
 /// The file of --stats, which is written while the film renders: its frames take no memory. It is complete or, without
 /// finish(), not there.

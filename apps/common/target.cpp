@@ -45,6 +45,7 @@ double rate_at_most(uint64_t off, uint64_t checked) {
 void TargetReport::add(const TargetReport& other) {
     samples += other.samples;
     truncated += other.truncated;
+    coarse += other.coarse;
     bushy += other.bushy;
     undersampled += other.undersampled;
     rounded += other.rounded;
@@ -61,15 +62,18 @@ TargetReport target_report(const Film& film, const FrameSettings& settings) {
     // its brighter side: at most twice the pixel's radiance, if the edge halves it and the other side is black.
     const double worth = 2 * film.rounding * unit / settings.target_error;
     for (const PixelRecord& pixel : film.pixels) {
+        const double lost = static_cast<double>(film.units_lost(pixel)) * unit;
         double truncation = 0, pruned = 0;
         for (int c = 0; c < 3; ++c) {
             pruned = std::max(pruned, static_cast<double>(pixel.pruned[c]) * unit);
-            truncation = std::max(truncation, static_cast<double>(pixel.pruned[c] + pixel.cut[c]) * unit);
+            truncation = std::max(truncation, static_cast<double>(pixel.pruned[c] + pixel.cut[c]) * unit + lost);
         }
+        const bool coarse = lost > settings.truncation();
         const bool truncated = truncation > settings.truncation();
         report.samples += pixel.samples;
         report.truncated += truncated;
-        report.bushy += pruned > settings.truncation();
+        report.coarse += coarse;
+        report.bushy += !coarse && pruned > settings.truncation();
         report.undersampled += pixel.unmet;
         report.checked += pixel.checked;
         report.off += pixel.off;
@@ -93,9 +97,14 @@ std::string describe_target(const TargetReport& all, uint64_t pixels, const Fram
     const std::string text =
         fmt::format("target error {:g} missed in {} of {} pixels: ", settings.target_error, all.missed, pixels);
     std::vector<std::string> reasons;
-    if (all.truncated > all.bushy)
+    if (all.truncated > all.bushy + all.coarse)
         reasons.push_back(fmt::format("{} lose more than a quarter of it below depth {}; a larger --depth may reach it",
-                                      all.truncated - all.bushy, settings.depth));
+                                      all.truncated - all.bushy - all.coarse, settings.depth));
+    if (all.coarse != 0)
+        reasons.push_back(
+            fmt::format("{} lose more than a quarter of it to whole units of the sums; no setting "
+                        "reaches it there",
+                        all.coarse));
     if (all.bushy != 0)
         reasons.push_back(fmt::format("{} have ray trees of more than {} branches; no setting reaches it there",
                                       all.bushy, most_branches));

@@ -14,7 +14,8 @@ namespace cistula {
 struct TargetReport {
     uint64_t samples = 0;         // of all pixels
     uint64_t truncated = 0;       // pixels whose error bound exceeds a quarter of the target in any channel
-    uint64_t bushy = 0;           // of these, pixels whose ray trees had more branches than are followed
+    uint64_t coarse = 0;          // of these, pixels that whole units of the sums alone may take that from
+    uint64_t bushy = 0;           // of the others, pixels whose ray trees had more branches than are followed
     uint64_t undersampled = 0;    // pixels that needed more samples than allowed
     uint64_t rounded = 0;         // pixels with edges that rounding may move by an amount worth the target
     uint64_t missed = 0;          // pixels of any of these kinds

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "scene/base/shown_text.h"
+#include "scene/compile/overlaps.h"
 
 namespace cistula {
 namespace {
@@ -20,10 +21,32 @@ std::string text_of(const EffectCosts& costs, uint32_t effect) {
     return "-";
 }
 
+constexpr size_t most_overlaps = 16;  // that are named
+
+template <class Real>
+Explanation explained(SceneSource source) {
+    const auto compiled = compile_scene<Real>(std::move(source));
+    Explanation explanation{std::move(compiled->effect_reasons), {}};
+    const std::vector<Overlap> overlaps = find_overlaps(*compiled);
+    for (size_t i = 0; i < overlaps.size() && i < most_overlaps; ++i) {
+        const std::string first = one_line(compiled->solid_names[overlaps[i].first]),
+                          second = one_line(compiled->solid_names[overlaps[i].second]);
+        explanation.overlaps.push_back(
+            fmt::format("{0} and {1} overlap: {1}, the later in the file, fills what they share.", first, second));
+    }
+    if (overlaps.size() > most_overlaps)
+        explanation.overlaps.push_back(fmt::format("So do {} other pairs.", overlaps.size() - most_overlaps));
+    return explanation;
+}
+
 }  // namespace
 
-std::string explain_table(const std::string& scene, const std::vector<EffectReason>& reasons,
-                          const EffectCosts* costs) {
+Explanation explain_scene(SceneSource source, Precision precision) {
+    return precision == Precision::double_ ? explained<double>(std::move(source)) : explained<float>(std::move(source));
+}
+
+std::string explain_table(const std::string& scene, const Explanation& explanation, const EffectCosts* costs) {
+    const std::vector<EffectReason>& reasons = explanation.effects;
     const uint32_t required = required_effects(reasons);
     const int chosen = least_mask(required);
     const uint32_t mask = effect_masks[chosen];
@@ -38,6 +61,7 @@ std::string explain_table(const std::string& scene, const std::vector<EffectReas
                              one_line(reason.because));
     table += fmt::format("\nMask {} of {} runs. Left out: {}. In without need: {}; never a bit of the image.\n",
                          chosen + 1, effect_mask_count, list_of(all_effects & ~mask), list_of(mask & ~required));
+    for (const std::string& overlap : explanation.overlaps) table += overlap + '\n';
     if (costs)
         table += fmt::format(
             "Cost: the share of the time that goes without the effect, medians of {} frames of {:.3g} ms; a few "

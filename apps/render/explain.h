@@ -9,9 +9,16 @@
 
 namespace cistula {
 
+/// What is explained of a scene.
+struct Explanation {
+    std::vector<EffectReason> effects;
+    std::vector<std::string> overlaps;  // a sentence for each two transparent bodies that overlap
+};
+Explanation explain_scene(SceneSource source, Precision precision);
+
 /// A table of effects, one per line: its name, whether the scene needs it, whether the code to be run includes it, and
-/// why. Then the compiled mask to be run and what it leaves out. With `costs` also each effect's share of the time.
-std::string explain_table(const std::string& scene, const std::vector<EffectReason>& reasons,
-                          const EffectCosts* costs = nullptr);
+/// why. Then the compiled mask to be run and what it leaves out, and which transparent bodies overlap. With `costs`
+/// also each effect's share of the time.
+std::string explain_table(const std::string& scene, const Explanation& explanation, const EffectCosts* costs = nullptr);
 
 }  // namespace cistula

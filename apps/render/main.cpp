@@ -160,6 +160,13 @@ void warn_of_clamped(const FilmTotals& totals, const OutputName& image, const Re
     print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(totals.clamped))}, options);
 }
 
+/// Prints a warning if it is seen in the written frames what the depth took.
+void warn_of_depth(const FilmTotals& totals, const OutputName& image, const FrameSettings& settings,
+                   const RenderOptions& options) {
+    const std::string warning = describe_depth_loss(totals, image.text(), settings.depth);
+    if (!warning.empty()) print_warnings({warning}, options);
+}
+
 /// Prints the target report. Throws Error (target) if pixels missed the target.
 void judge_target(const FilmTotals& totals, const FrameSettings& settings, const RenderOptions& options) {
     const std::string text = describe_target(totals.target, totals.pixels, settings, options.precision);
@@ -195,7 +202,7 @@ void render_scene(RenderOptions options) {
     if (explain) {
         SceneSource source = gather_scene(scene);
         choose_precision(options, source);
-        return print(explain_table(scene.source, explain_effects(std::move(source), options.precision)));
+        return print(explain_table(scene.source, explain_scene(std::move(source), options.precision)));
     }
 
     if (const std::string warning = open_config_view(options.view); !warning.empty())
@@ -266,6 +273,7 @@ void render_scene(RenderOptions options) {
             throw;
         }
         warn_of_clamped(stats.totals, outputs.image, options);
+        warn_of_depth(stats.totals, outputs.image, settings, options);
         write_stats();
         if (options.verbose && stats.totals.frames > 0)  // the renderer knows which effects it used
             note(fmt::format("render: effects: {}", fmt::join(names_of_effects(stats.effects), ", ")));
@@ -291,14 +299,14 @@ void measure_scene(RenderOptions options) {
     on_threads(options, [&] {
         SceneSource source = gather_scene(scene);
         choose_precision(options, source);
-        const std::vector<EffectReason> reasons = explain_effects(std::move(source), options.precision);
+        const Explanation explanation = explain_scene(std::move(source), options.precision);
         const auto make = [&](const SceneDescription& of) {
             return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
                                                            : renderer_of<float>(of, options, devices.options);
         };
         const int frame = options.frames.empty() ? 0 : options.frames.front();
-        const EffectCosts costs = measure_effects(scene, reasons, frame, settings, make, progress);
-        print(explain_table(scene.source, reasons, &costs));
+        const EffectCosts costs = measure_effects(scene, explanation.effects, frame, settings, make, progress);
+        print(explain_table(scene.source, explanation, &costs));
     });
 }
 
@@ -317,8 +325,9 @@ void report_pixel(const RenderOptions& options, const SceneDescription& scene, S
     else if (!options.json.empty())
         write_file_atomically(options.json, pixel_json(report));
     if (tree.film.flags != 0)
-        throw Error(ExitCode::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", scene.source,
-                                                  options.pixel.x, options.pixel.y, describe_flags(tree.film.flags)));
+        throw Error(ExitCode::failed,
+                    fmt::format("{}: pixel {},{} cannot be trusted: {}", scene.source, options.pixel.x, options.pixel.y,
+                                describe_flags(tree.film.flags, scene)));
 }
 
 void report_pixel(RenderOptions options) {

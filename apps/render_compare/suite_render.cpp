@@ -54,7 +54,7 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
     if (!whole) throw Error(ExitCode::interrupted, "interrupted");
     if (film.flags != 0)
         throw Error(ExitCode::failed, fmt::format("{}: frame {} cannot be trusted: {}", prepared.scene.source, frame,
-                                                  describe_flags(film.flags)));
+                                                  describe_flags(film.flags, prepared.scene)));
     uint64_t clamped = 0;
     LayeredPicture& picture = result.picture;
     picture = to_layers(film, one.channels, &clamped);

@@ -114,7 +114,7 @@ void Frames::check(const Film& film) const {
     check_interrupt(progress);
     if (film.flags != 0)
         throw Error(ExitCode::failed,
-                    fmt::format("{}: a frame cannot be trusted: {}", scene.source, describe_flags(film.flags)));
+                    fmt::format("{}: a frame cannot be trusted: {}", scene.source, describe_flags(film.flags, scene)));
 }
 
 }  // namespace cistula::report

@@ -42,7 +42,9 @@ Remainder remainder_of(const Film& film) {
     double sum = 0, squares = 0;
     for (const PixelRecord& pixel : film.pixels)
         for (int c = 0; c < 3; ++c) {
-            const double value = (static_cast<double>(pixel.pruned[c]) + static_cast<double>(pixel.cut[c])) * unit;
+            const double value = (static_cast<double>(pixel.pruned[c]) + static_cast<double>(pixel.cut[c]) +
+                                  static_cast<double>(film.units_lost(pixel))) *
+                                 unit;
             sum += value;
             squares += value * value;
             remainder.max = std::max(remainder.max, value);

@@ -106,7 +106,7 @@ class BranchReader {
     }
 
     void note_passed(Replay& replay, const Ray<Real>& ray, const SurfaceEvent<Real>& event) const {
-        const uint32_t medium = ray.media.medium();
+        const uint32_t medium = ray.media.medium(scene_);
         for (int i = 0; i < event.count; ++i) {
             FacePassed face;
             fill(replay, face, event.taken[i].key, event.taken[i].t);
@@ -134,6 +134,7 @@ class BranchReader {
         out.index_beyond = index_of(scene_, event.beyond);
         out.cosine = -double(dot(ray.direction, s.normal));
         const bool sheet = out.crossing == CrossingKind::sheet;
+        take_opaque_index(m, m.fresnel != 0 && !sheet, out.index_beyond);
         const InterfaceSplit<Real> split =
             split_at<Real, E>(scene_, m, ray.direction, s.normal, ray.media, event.beyond, sheet);
         out.local = double(m.local);

@@ -3,6 +3,7 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/description/camera_path.h"
+#include "scene/film/film_picture.h"
 #include "testing/reference_renderers.h"
 #include "testing/support/scene.h"
 
@@ -30,6 +31,18 @@ Film film_of_all(const SceneDescription& scene) {
     EXPECT_EQ(film_hash(rendered(*make_embree_renderer<Real>(compiled, {.always_tree = true}), scene)), hash)
         << "embree";
     return film;
+}
+
+/// The share of pixels that differ by more than half of 1/255 in some channel.
+inline double share_apart(const Film& a, const Film& b) {
+    const ColorPicture x = to_color(a), y = to_color(b);
+    size_t apart = 0;
+    for (size_t i = 0; i < x.texels.size(); ++i) {
+        float off = 0;
+        for (int c = 0; c < 3; ++c) off = std::max(off, std::abs(x.texels[i][c] - y.texels[i][c]));
+        apart += off > 0.5f / 255;
+    }
+    return double(apart) / double(x.texels.size());
 }
 
 }  // namespace cistula::test

@@ -52,7 +52,7 @@ class SceneDump {
     void write(const SolidObject& s) {
         line(" solid", static_cast<int>(s.solid), s.center, s.radius, s.rotation);
         const EdgeLights& e = s.edge_lights;
-        line(" edge lights", e.count, e.color, e.glow, e.radius, e.falloff);
+        line(" edge lights", e.count, e.color, e.glow, e.radius, e.visible, e.falloff);
     }
     void write(const TrianglesObject& t) {
         for (const auto& vertex : t.vertices) line(" vertex", vertex);
@@ -76,7 +76,7 @@ class SceneDump {
             line("object", object.name, object.material);
             std::visit([this](const auto& shape) { write(shape); }, object.shape);
         }
-        for (const auto& l : s.lights) line("light", l.position, l.color, l.glow, l.radius, l.falloff);
+        for (const auto& l : s.lights) line("light", l.position, l.color, l.glow, l.radius, l.visible, l.falloff);
         if (s.frame) line("frame", s.frame->center, s.frame->scale, s.frame->bound);
     }
 

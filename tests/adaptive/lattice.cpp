@@ -111,6 +111,26 @@ TEST(Lattice, WeightsAddUpToAllSamplesHoweverItSplits) {
         }
 }
 
+TEST(Lattice, NoSampleStandsForMoreThanItsLargestWeight) {
+    std::set<uint32_t> counts;
+    for (const int most : {5, 16, 20, 40, 100, 256})
+        for (uint64_t seed = 0; seed < 200; ++seed) {
+            test::Random random(seed);
+            const double a = random.between(-1, 1), b = random.between(-1, 1), d = random.between(-16, 16);
+            const int x0 = int(random.below(16)), y0 = int(random.below(16));
+            // The sum is the weight of one sample.
+            const PixelRecord record = sampled(
+                lattice(0.001, most), [&](int x, int y) { return x == x0 && y == y0 ? fixed(0.75) : 0; },
+                [&](int x, int y) { return uint32_t(a * x + b * y < d); });
+            counts.insert(record.samples);
+            EXPECT_LE(record.radiance[0], int64_t(largest_weight(record.samples)) * fixed(0.75)) << record.samples;
+        }
+    EXPECT_GT(counts.size(), 5u);
+    const PixelRecord middle = sampled(
+        lattice(0.5), [](int x, int y) { return x == 8 && y == 8 ? fixed(0.01) : 0; }, one_kind);
+    EXPECT_EQ(middle.radiance[0], int64_t(largest_weight(5)) * fixed(0.01));
+}
+
 TEST(Lattice, AlikeSamplesEndAtOnceAndAStraightBorderIsNeverOverlooked) {
     const auto flat = [](int, int) { return fixed(0.5); };
     EXPECT_EQ(sampled(lattice(0.004), flat, one_kind).samples, 5u);

@@ -234,13 +234,11 @@ TYPED_TEST(LaneTest, OpaqueMeshesAtContactsAreEqual) {
     EXPECT_EQ(this->in_lanes(), 2u);
 }
 
-TYPED_TEST(LaneTest, SomeMeshesAreTracedOneRayAfterTheOther) {
-    for (const auto& scene : {scene_of_meshes(0, "[1, -5, 3]", kinds_of_glass[2]),                   // at contacts
-                              scene_of_meshes(-0.25, "[0.125, -0.25, 0.75]", kinds_of_glass[2])}) {  // twice around
-        const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
-        golden::render_with(*renderer, scene, golden::settings_for(scene));
-        EXPECT_EQ(renderer->lanes(), 1);
-    }
+TYPED_TEST(LaneTest, GlassMeshesAtContactsAreTracedOneRayAfterTheOther) {
+    const SceneDescription scene = scene_of_meshes(0, "[1, -5, 3]", kinds_of_glass[2]);
+    const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
+    golden::render_with(*renderer, scene, golden::settings_for(scene));
+    EXPECT_EQ(renderer->lanes(), 1);
 }
 
 TYPED_TEST(LaneTest, CutoffsAndTargetsAreEqual) {

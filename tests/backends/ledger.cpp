@@ -122,6 +122,37 @@ TEST_F(Ledger, HoldsInAllScenes) {
     EXPECT_GE(truncated_, 4 * scene_count);
 }
 
+/// What whole units take is bounded by the rays: sums of a coarse unit, against those of one that is 2^40 times finer.
+TEST_F(Ledger, HasWhatWholeUnitsTake) {
+    uint64_t compared = 0, lost = 0;
+    for (const std::string& name : golden::scene_names(test::scene_folder)) {
+        SceneDescription scene = test::shipped_scene(name);
+        FrameSettings settings = truncated(smaller(golden::settings_for(scene), 32, 18), 8, 0);
+        settings.supersample = 2;
+        const std::shared_ptr<const CompiledScene<double>> compiled = compile_scene<double>(scene);
+        const Film fine = golden::render_with(*make_embree_renderer<double>(compiled), scene, settings);
+        if (!scene.frame) scene.frame = FrameOfReference{compiled->center, compiled->scale, {}};
+        constexpr int shift = 40;
+        scene.frame->bound = std::ldexp(1.0, compiled->radiance_exponent + shift - 1);
+        const std::shared_ptr<const CompiledScene<double>> coarse_scene = compile_scene<double>(scene);
+        ASSERT_EQ(coarse_scene->radiance_exponent, compiled->radiance_exponent + shift);
+        const Film coarse = golden::render_with(*make_embree_renderer<double>(coarse_scene), scene, settings);
+        for (size_t i = 0; i < coarse.pixels.size(); ++i)
+            for (int c = 0; c < 3; ++c) {
+                const PixelRecord &f = fine.pixels[i], &p = coarse.pixels[i];
+                const int64_t whole = f.radiance[c] >> shift, rest = f.radiance[c] & ((int64_t{1} << shift) - 1);
+                const int64_t loss = whole - p.radiance[c];
+                ASSERT_GE(loss, 0) << name << " pixel " << i;
+                ASSERT_LE(loss + (rest > 0), p.pruned[c] + static_cast<int64_t>(coarse.units_lost(p)))
+                    << name << " pixel " << i;
+                ++compared;
+                lost += loss > 0;
+            }
+    }
+    std::cout << compared << " sums compared, " << lost << " lost units\n";
+    EXPECT_GT(lost, compared / 10);
+}
+
 /// The lights that make the bound are seen by few of the rays that are cut, yet what is missing is a fair part of it.
 TEST_F(Ledger, IsTightEnoughToBeUsed) {
     const SceneDescription scene = test::shipped_scene("infinity");

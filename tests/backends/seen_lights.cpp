@@ -175,5 +175,37 @@ TYPED_TEST(SeenLights, FromAfarToo) {
     EXPECT_GT(lights, 60);
 }
 
+/// In one frame of reference the same pictures, but for the pixels of the lights.
+TYPED_TEST(SeenLights, HiddenOnesLightAsTheyDoWhereTheyAreSeen) {
+    SceneDescription scene = lit();
+    for (LightDescription& light : scene.lights) light.falloff = light.radius > 0;
+    std::get<SolidObject>(scene.objects[1].shape).edge_lights.falloff = true;
+    std::shared_ptr<const CompiledScene<TypeParam>> seen = compile_scene<TypeParam>(scene);
+    const double bound = std::ldexp(1.0, seen->radiance_exponent + 1);
+    scene.frame = FrameOfReference{seen->center, seen->scale, 0.75 * bound};
+    seen = compile_scene<TypeParam>(scene);
+    const Film with = golden::render_with(*make_embree_renderer<TypeParam>(seen), scene, frame(1));
+    for (LightDescription& light : scene.lights) light.visible = false;
+    std::get<SolidObject>(scene.objects[1].shape).edge_lights.visible = false;
+    const std::shared_ptr<const CompiledScene<TypeParam>> hidden = compile_scene<TypeParam>(scene);
+    ASSERT_EQ(hidden->radiance_exponent, seen->radiance_exponent);
+    const Film without = golden::render_with(*make_embree_renderer<TypeParam>(hidden), scene, frame(1));
+    const auto solids = static_cast<int32_t>(scene.objects.size());
+    int lights = 0, lit_alike = 0;
+    for (size_t i = 0; i < with.pixels.size(); ++i) {
+        const PixelRecord &a = with.pixels[i], &b = without.pixels[i];
+        EXPECT_LE(b.id, solids);
+        if (a.id > solids) {
+            ++lights;
+            continue;
+        }
+        EXPECT_EQ(a.id, b.id);
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(a.radiance[c], b.radiance[c]) << i;
+        lit_alike += a.id != 0;
+    }
+    EXPECT_GT(lights, 100);
+    EXPECT_GT(lit_alike, 400);
+}
+
 }  // namespace
 }  // namespace cistula

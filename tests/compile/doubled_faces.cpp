@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "pieces_of.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/mesh_topology.h"
 #include "testing/support/scene.h"
 #include "testing/support/scene_samples.h"
 
@@ -14,13 +14,6 @@ namespace cistula {
 namespace {
 
 using test::Random;
-
-MeshTopology topology_of(const TrianglesObject& object) {
-    MeshSource source;
-    source.vertices = object.vertices;
-    source.triangles = object.triangles;
-    return find_topology(source);
-}
 
 using Triangle = std::array<uint32_t, 3>;
 
@@ -50,20 +43,20 @@ TEST(DoubledFaces, TheFirstStaysWhateverTheOrderOfCornersOfOthers) {
         TrianglesObject object = samples::square();
         object.triangles.push_back(reordered(object.triangles[1], order));
         object.triangles.push_back(reordered(copy_of(object, object.triangles[0]), order));
-        const MeshTopology topology = topology_of(object);
-        EXPECT_EQ(topology.count, 2u);
-        EXPECT_EQ(topology.doubled, 2u);
-        EXPECT_EQ(topology.kept, (std::vector<uint32_t>{0, 1}));
-        EXPECT_EQ(topology.open_edges, 4u);
-        EXPECT_EQ(topology.left_out(), "");
+        const MeshPieces pieces = pieces_of(object);
+        EXPECT_EQ(pieces.source.size(), 2u);
+        EXPECT_EQ(pieces.faults.doubled, 2u);
+        EXPECT_EQ(pieces.source, (std::vector<uint32_t>{0, 1}));
+        EXPECT_EQ(pieces.faults.open_edges, 4u);
+        EXPECT_EQ(pieces.faults.left_out(), "");
     }
 }
 
 TEST(DoubledFaces, OneThatSharesTwoCornersIsAnother) {
     TrianglesObject object = samples::square();
     object.triangles.push_back({1, 2, 3});
-    EXPECT_EQ(topology_of(object).doubled, 0u);
-    EXPECT_TRUE(topology_of(object).all_kept);
+    EXPECT_EQ(pieces_of(object).faults.doubled, 0u);
+    EXPECT_EQ(pieces_of(object).source.size(), 3u);
 }
 
 TEST(DoubledFaces, ClosedMeshesAreClosedAgain) {
@@ -77,11 +70,11 @@ TEST(DoubledFaces, ClosedMeshesAreClosedAgain) {
                 side_by_side.triangles.push_back(reordered(copy_of(side_by_side, t), order));
             }
             for (const TrianglesObject& object : {one_by_one, side_by_side}) {
-                const MeshTopology topology = topology_of(object);
-                EXPECT_TRUE(topology.closed);
-                EXPECT_FALSE(topology.flipped);
-                EXPECT_EQ(topology.count, count);
-                EXPECT_EQ(topology.doubled, count);
+                const MeshPieces pieces = pieces_of(object);
+                EXPECT_TRUE(pieces.closed);
+                EXPECT_EQ(std::count(pieces.turned.begin(), pieces.turned.end(), 1), 0);
+                EXPECT_EQ(pieces.source.size(), count);
+                EXPECT_EQ(pieces.faults.doubled, count);
             }
         }
 }
@@ -102,15 +95,12 @@ TEST(DoubledFaces, WindingsInAnyOrderAreClosedAgain) {
                 const uint32_t order = random.below(6);
                 object.triangles.insert(object.triangles.end(), {reordered(t, order), reordered(t, order ^ 1)});
             }
-            MeshSource source;
-            source.vertices = object.vertices;
-            source.triangles = object.triangles;
-            const MeshTopology topology = find_topology(source);
-            ASSERT_TRUE(topology.closed);
-            EXPECT_EQ(topology.count, all.size());
-            for (uint32_t i = 0; i < topology.count; ++i) {
-                Triangle t = object.triangles[topology.source_triangle(i)];
-                if (topology.reverses(i)) std::swap(t[1], t[2]);
+            const MeshPieces pieces = pieces_of(object);
+            ASSERT_TRUE(pieces.closed);
+            EXPECT_EQ(pieces.source.size(), all.size());
+            for (uint32_t i = 0; i < pieces.source.size(); ++i) {
+                Triangle t = object.triangles[pieces.source[i]];
+                if (pieces.turned[i]) std::swap(t[1], t[2]);
                 std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
                 Triangle right = all[i];
                 std::rotate(right.begin(), std::min_element(right.begin(), right.end()), right.end());
@@ -127,47 +117,47 @@ TEST(DoubledFaces, QuadsDividedAlongTheOtherDiagonalAreOne) {
          {std::vector<Triangle>{{1, 2, 3}, {1, 3, 0}}, std::vector<Triangle>{{3, 2, 1}, {0, 3, 1}}}) {
         object.triangles = first;
         object.triangles.insert(object.triangles.end(), second.begin(), second.end());
-        MeshTopology topology = topology_of(object);
-        EXPECT_EQ(topology.kept, (std::vector<uint32_t>{0, 1}));
-        EXPECT_EQ(topology.doubled, 2u);
+        MeshPieces pieces = pieces_of(object);
+        EXPECT_EQ(pieces.source, (std::vector<uint32_t>{0, 1}));
+        EXPECT_EQ(pieces.faults.doubled, 2u);
         object.triangles = {second[0], first[0], second[1], first[1]};
-        EXPECT_EQ(topology_of(object).kept, (std::vector<uint32_t>{0, 2}));
+        EXPECT_EQ(pieces_of(object).source, (std::vector<uint32_t>{0, 2}));
         // What lies in between is a body, where there is something in between.
         object.vertices[2] +=
             0.01 * cross(object.vertices[1] - object.vertices[0], object.vertices[3] - object.vertices[0]);
-        topology = topology_of(object);
-        EXPECT_EQ(topology.doubled, 0u);
-        EXPECT_EQ(topology.count, 4u);
+        pieces = pieces_of(object);
+        EXPECT_EQ(pieces.faults.doubled, 0u);
+        EXPECT_EQ(pieces.source.size(), 4u);
         object.vertices = samples::square().vertices;
     }
     // No quad: the same four corners in another cycle.
     object.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}};
-    EXPECT_EQ(topology_of(object).doubled, 0u);
-    EXPECT_EQ(topology_of(test::solid_mesh(PlatonicSolid::tetrahedron)).doubled, 0u);
+    EXPECT_EQ(pieces_of(object).faults.doubled, 0u);
+    EXPECT_EQ(pieces_of(test::solid_mesh(PlatonicSolid::tetrahedron)).faults.doubled, 0u);
 }
 
 TEST(DoubledFaces, SealingSliversCountToo) {
-    // MeshTopology.SliversThatSealAMeshStay, with every triangle twice.
+    // ClosedMeshes.SliversThatSealAMeshStay, with every triangle twice.
     TrianglesObject object;
     object.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}};
     object.triangles = {{0, 2, 4}, {4, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}, {0, 4, 1}};
     const auto once = object.triangles;
     for (const Triangle& t : once) object.triangles.push_back({t[1], t[0], t[2]});
-    const MeshTopology topology = topology_of(object);
-    EXPECT_TRUE(topology.closed);
-    EXPECT_EQ(topology.count, 6u);
-    EXPECT_EQ(topology.doubled, 6u);
-    EXPECT_EQ(topology.zero_area, 0u);
+    const MeshPieces pieces = pieces_of(object);
+    EXPECT_TRUE(pieces.closed);
+    EXPECT_EQ(pieces.source.size(), 6u);
+    EXPECT_EQ(pieces.faults.doubled, 6u);
+    EXPECT_EQ(pieces.faults.zero_area, 0u);
 }
 
 TEST(DoubledFaces, TrianglesWithoutThreeCornersAreCountedAsSuch) {
     TrianglesObject object = samples::square();
     object.vertices.push_back({NAN, 0, 0});
     object.triangles.insert(object.triangles.end(), {{0, 0, 1}, {0, 0, 1}, {0, 1, 4}, {0, 1, 4}});
-    const MeshTopology topology = topology_of(object);
-    EXPECT_EQ(topology.repeated_vertex, 2u);
-    EXPECT_EQ(topology.not_finite, 2u);
-    EXPECT_EQ(topology.doubled, 0u);
+    const MeshPieces pieces = pieces_of(object);
+    EXPECT_EQ(pieces.faults.repeated_vertex, 2u);
+    EXPECT_EQ(pieces.faults.not_finite, 2u);
+    EXPECT_EQ(pieces.faults.doubled, 0u);
 }
 
 TEST(DoubledFaces, AreCountedInAWarning) {

@@ -137,6 +137,28 @@ TEST(RequiredEffects, TotalReflectionAndFresnelCallForReflectionToo) {
     EXPECT_TRUE(effects_of(scene) & effect_transmission);
 }
 
+/// No ray enters an opaque body, so that its index and absorption call for nothing.
+TEST(RequiredEffects, OpaqueBodiesAreNoMedia) {
+    SceneDescription scene = lit_cube();
+    auto& m = scene.materials[0];
+    m.index = 1.5;
+    m.absorption.x = 1;
+    const uint32_t opaque = effect_solids | effect_diffuse | effect_opaque_shadows;
+    EXPECT_EQ(effects_of(scene), opaque);
+    scene.materials.push_back(m);  // of a pane, which rays pass
+    scene.materials[1].transmission = 0.5;
+    scene.materials[1].absorption = glm::dvec3{0};
+    add_object(scene, square(), 1);
+    EXPECT_FALSE(effects_of(scene) & (effect_refraction | effect_absorption | effect_insides));
+    scene.objects.pop_back();
+    scene.materials[0].transmission = 0.5;
+    scene.materials[0].tint = glm::dvec3{0};
+    EXPECT_FALSE(effects_of(scene) & (effect_transmission | effect_insides | effect_absorption));
+    scene.materials[0].fresnel = true;
+    EXPECT_EQ(effects_of(scene) & (effect_reflection | effect_fresnel | effect_insides),
+              effect_reflection | effect_fresnel);
+}
+
 TEST(RequiredEffects, SheetsHaveNoInside) {
     SceneDescription scene = empty_scene();
     auto& m = scene.materials[0];

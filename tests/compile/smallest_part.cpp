@@ -127,7 +127,7 @@ TEST(SmallestPart, ASheetHasHalfItsWidth) {
     doubled.triangles.push_back({0, 2, 1});
     doubled.triangles.push_back({0, 3, 2});
     scene.objects[1].shape = doubled;
-    expect_part(scene, std::numbers::sqrt2 / 2, "/objects/1: object 1: its half width");
+    expect_part(scene, 0.5 / std::numbers::sqrt2, "/objects/1: object 1: its half width");
 }
 
 /// A sheet of half size 1, one of whose triangles has this height.

@@ -1,4 +1,6 @@
 // Names by which mattes tell solids and materials apart: those of the scene file as they are, and never one for two.
+#include <fmt/format.h>
+
 #include "scene/compile/scene_source.h"
 #include "scene/readers/read_scene.h"
 #include "testing/support/expect_error.h"
@@ -70,6 +72,38 @@ TEST_F(SolidNames, FacesOfAnEarlierPartAreLeftOut) {
     EXPECT_EQ(source.solids[1].name, "m/more");
     EXPECT_EQ(source.solids[1].mesh.triangles.size(), 1u);
     EXPECT_EQ(source.solids[1].mesh.doubled_polygons, 1u);
+}
+
+/// An OBJ group: a cube about the origin.
+std::string cube_group(const std::string& name, double half, int first, bool inward) {
+    std::string text = "o " + name + '\n';
+    for (int i = 0; i < 8; ++i)
+        text += fmt::format("v {} {} {}\n", i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half);
+    for (auto q : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+        if (inward) std::swap(q[1], q[3]);
+        text += fmt::format("f {} {} {} {}\n", q[0] + first, q[1] + first, q[2] + first, q[3] + first);
+    }
+    return text;
+}
+
+/// Whoever names the material, groups that are closed are bodies, and one that is wound inward a hole in another.
+TEST_F(SolidNames, ClosedGroupsStayBodies) {
+    const std::string header = "mtllib m.mtl\nusemtl left\n";
+    for (const std::string material : {"", R"(, "material": "left")"}) {
+        const std::string object = R"({"mesh": "g.obj", "name": "m")" + material + "}";
+        put_bytes(file("g.obj"), header + cube_group("a", 2, 1, false) + cube_group("b", 1, 9, false));
+        EXPECT_EQ(names(object), "m/a m/b ");
+        put_bytes(file("g.obj"), header + cube_group("b", 1, 1, true) + cube_group("a", 2, 9, false));
+        const SceneDescription description = scene(object);
+        const SceneSource source = gather_scene(description);
+        ASSERT_EQ(source.solids.size(), 1u);
+        EXPECT_EQ(source.solids[0].name, "m");
+        EXPECT_NEAR(source.solids[0].thickness, (64 - 8) / (96 + 24.0), 1e-15);
+        put_bytes(file("g.obj"), header + cube_group("b", 1, 1, true) + cube_group("a", 2, 9, true));
+        EXPECT_EQ(names(object), "m/b m/a ") << "both are turned";
+    }
+    put_bytes(file("g.obj"), header + cube_group("b", 1, 1, true) + "usemtl right\n" + cube_group("a", 2, 9, false));
+    EXPECT_EQ(names(R"({"mesh": "g.obj", "name": "m"})"), "m/b m/a ") << "of other materials";
 }
 
 TEST_F(SolidNames, MaterialsOfMeshesAreNotTheScenes) {

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "scene/film/film_picture.h"
 #include "testing/support/film_of_all.h"
 #include "testing/support/scratch_directory.h"
 
@@ -13,21 +12,10 @@ namespace {
 
 using test::dvec3;
 using test::film_of_all;
+using test::share_apart;
 
 /// Rays that rounding sends past an edge on the other side, as a share of all pixels.
 constexpr double largest_share_apart = 0.002;
-
-/// The share of pixels that differ by more than half of 1/255 in some channel.
-double share_apart(const Film& a, const Film& b) {
-    const ColorPicture x = to_color(a), y = to_color(b);
-    size_t apart = 0;
-    for (size_t i = 0; i < x.texels.size(); ++i) {
-        float off = 0;
-        for (int c = 0; c < 3; ++c) off = std::max(off, std::abs(x.texels[i][c] - y.texels[i][c]));
-        apart += off > 0.5f / 255;
-    }
-    return double(apart) / double(x.texels.size());
-}
 
 /// Pixels of which the first samples meet different objects, or surfaces whose normals or depths are apart.
 size_t layers_apart(const Film& a, const Film& b) {

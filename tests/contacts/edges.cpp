@@ -52,9 +52,11 @@ TYPED_TEST(EdgeContacts, OfSolidsHaveFewFaults) {
 }
 
 TYPED_TEST(EdgeContacts, OfMeshesHaveFewFaults) {
-    const ContactCounts all = walk_all<TypeParam>(of_meshes, BodyKind::mesh);
-    EXPECT_GT(all.lines, 400000u);
-    EXPECT_LE(all.faults(), 300u);
+    // Faults come by scenes: of 4.9 million lines in 800 scenes 2,937 in float and 1,780 in double, of a tenth up to
+    // 344.
+    const ContactCounts all = walk_all<TypeParam>(of_meshes, BodyKind::mesh, 160);
+    EXPECT_GT(all.lines, 1600000u);
+    EXPECT_LE(all.faults(), 1300u);
 }
 
 }  // namespace

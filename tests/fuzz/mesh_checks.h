@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "checks.h"
-#include "scene/compile/mesh_topology.h"
+#include "scene/compile/mesh_pieces.h"
 #include "scene/readers/mesh_file.h"
 
 namespace cistula::fuzz {
 
-/// Aborts unless meshes are what polygon_mesh.h says; then makes triangles of them and looks at their topology.
+/// Aborts unless meshes are what polygon_mesh.h says; then makes triangles of them and looks for their insides.
 inline void check_meshes(std::vector<PolygonMesh> meshes) {
     for (const PolygonMesh& mesh : meshes) {
         require(mesh.uvs.empty() || mesh.uvs.size() == mesh.vertices.size());
@@ -25,7 +25,7 @@ inline void check_meshes(std::vector<PolygonMesh> meshes) {
     for (const MeshPart& part : parts_of(std::move(meshes), {})) {
         for (const auto& t : part.mesh.triangles)
             for (const uint32_t corner : t) require(corner < part.mesh.vertices.size());
-        find_topology(part.mesh);
+        find_pieces(part.mesh);
     }
 }
 

@@ -8,10 +8,12 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;
     try {
+        std::vector<std::string> warnings;
         const std::string bytes = utf8_of(std::string(reinterpret_cast<const char*>(data), size));
         std::vector<PolygonMesh> meshes;
-        meshes.push_back(read_ply(bytes, "a.ply"));
+        meshes.push_back(read_ply(bytes, "a.ply", warnings));
         fuzz::check_meshes(std::move(meshes));
+        for (const std::string& warning : warnings) fuzz::check_line(warning);
     } catch (const Error& error) {
         fuzz::check_error(error, ExitCode::file);
     }

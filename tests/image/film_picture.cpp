@@ -82,9 +82,10 @@ TEST(FilmPicture, Values) {
     expect("G", 4, 0);
     expect("B", 2, 0);
     expect("A", 1, 1);
-    expect("error.R", 4, 0);
-    expect("error.G", 6, 0);
-    expect("error.B", 0, 0);
+    // A unit for each ray, rounded up: of 77 and 4 rays 20 and 1 in the mean.
+    expect("error.R", std::nextafter(4.0f, 5.0f), 0x1p-57f);
+    expect("error.G", std::nextafter(6.0f, 7.0f), 0x1p-57f);
+    expect("error.B", 20 * 0x1p-57f, 0x1p-57f);
     expect("id", 5, 0);
     expect("samples", 4, 9);  // each pixel's own
     expect("cost", 77, 4);
@@ -167,6 +168,7 @@ TEST(FilmPicture, LedgerRoundsUpByTheLeastStep) {
             PixelRecord pixel = some_pixel();
             pixel.pruned[0] = value / 3;
             pixel.cut[0] = value - value / 3;
+            pixel.rays = 0;
             const Film film = film_of(1, exponent, {pixel});
             const long double exact = std::ldexp(static_cast<long double>(value) * unit, exponent);
             const float bound = channel(to_layers(film, everything), "error.R").values[0];
@@ -195,6 +197,7 @@ TEST(FilmPicture, LedgerRoundsUpOverSamples) {
     pixel.pruned[0] = 1;  // a ninth of the smallest unit is not nothing
     pixel.cut[0] = 0;
     pixel.pruned[1] = pixel.cut[1] = std::numeric_limits<int64_t>::max();
+    pixel.rays = 0;
     const Film film = film_of(9, 0, {pixel});
     ASSERT_EQ(film.fixed_shift, 58);
     const LayeredPicture picture = to_layers(film, everything);
@@ -206,11 +209,29 @@ TEST(FilmPicture, LedgerRoundsUpOverSamples) {
     EXPECT_EQ(channel(to_layers(bright, everything_half), "error.G").values[0], largest_half);
 }
 
+TEST(FilmPicture, LedgerHasAUnitForEachRayTimesWhatItsSampleStandsFor) {
+    PixelRecord pixel = some_pixel();
+    for (int c = 0; c < 3; ++c) pixel.pruned[c] = pixel.cut[c] = 0;
+    pixel.rays = 1 << 20;
+    const auto error_of = [&](uint32_t samples, int film_samples) {
+        pixel.samples = samples;
+        return channel(to_layers(film_of(film_samples, 0, {pixel}), everything), "error.G").values[0];
+    };
+    EXPECT_EQ(error_of(16, 16), 0x1p-58f * (1 << 20) / 16);
+    EXPECT_EQ(error_of(256, 256), 0x1p-54f * (1 << 20) / 256);
+    EXPECT_EQ(error_of(16, 256), 0x1p-54f * (1 << 20) / 256 * 16);
+    EXPECT_EQ(error_of(5, 256), 0x1p-54f * (1 << 20) / 256 * 160);
+    pixel.pruned[1] = pixel.cut[1] = std::numeric_limits<int64_t>::max();
+    EXPECT_GE(error_of(16, 16), 0x1p64f / 0x1p58f / 16);
+}
+
 TEST(FilmPicture, HalfChannelsAreClampedToTheLargestHalf) {
     EXPECT_EQ(largest_half, static_cast<float>(std::numeric_limits<half>::max()));
     PixelRecord dim = some_pixel(), bright = some_pixel();
-    for (PixelRecord* pixel : {&dim, &bright})
+    for (PixelRecord* pixel : {&dim, &bright}) {
         for (int c = 0; c < 3; ++c) pixel->pruned[c] = pixel->cut[c] = 0;
+        pixel->rays = 0;
+    }
     const int64_t most = int64_t(65504) << 42;  // in units of 2^-62 and radiances of 2^20
     dim.radiance[0] = most, dim.radiance[1] = most / 2, dim.radiance[2] = 0;
     bright.radiance[0] = most + (int64_t(1) << 42), bright.radiance[1] = most + (int64_t(1) << 36);

@@ -8,7 +8,7 @@
 
 #include "cistula/model/effects.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/mesh_topology.h"
+#include "scene/compile/mesh_pieces.h"
 #include "scene/readers/polygon.h"
 #include "testing/generated_mesh.h"
 #include "testing/support/read_text.h"
@@ -60,7 +60,7 @@ TEST(MeshFile, PlyTrianglesArePlaced) {
     bool found = false;
     for (const dvec3& p : parts[0].mesh.vertices) found |= p == dvec3(10, 24, 30);  // (2, 0, 0)
     EXPECT_TRUE(found);
-    EXPECT_TRUE(find_topology(parts[0].mesh).closed);
+    EXPECT_TRUE(find_pieces(parts[0].mesh).closed);
 }
 
 TEST(MeshFile, BinaryPlyToo) {
@@ -102,9 +102,9 @@ TEST(MeshFile, VerticesThatAreNearStayApart) {
     for (const char* name : {"t.ply", "t.obj"}) {
         const auto parts = read_whole_mesh(mesh_of(scratch.file(name)), "/objects/0");
         ASSERT_EQ(parts.size(), 1u);
-        const MeshTopology topology = find_topology(parts[0].mesh);
-        EXPECT_TRUE(topology.closed) << name;
-        EXPECT_EQ(topology.count, ring.triangles.size()) << name;
+        const MeshPieces pieces = find_pieces(parts[0].mesh);
+        EXPECT_TRUE(pieces.closed) << name;
+        EXPECT_EQ(pieces.source.size(), ring.triangles.size()) << name;
     }
 }
 

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/base/shown_text.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/mesh_file.h"
+#include "scene/readers/mesh_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 
@@ -116,7 +118,7 @@ TEST(ObjFile, EncodingsLineEndsIndentationAndContinuation) {
 TEST(ObjFile, IndicesCountForwardAndBackward) {
     EXPECT_EQ(corner_positions(read_quietly(square + "f -4 -3 -2 -1\nv 9 9 9\n")), whole_square);
     EXPECT_EQ(corner_positions(read_quietly("f 1 2 3 4\n" + square)), whole_square) << "faces may come first";
-    EXPECT_EQ(corner_positions(read_quietly(square + "vn 0 0 1\nf 1//1 2//-1 3//1 4//1\n")), whole_square);
+    EXPECT_EQ(corner_positions(read_quietly(square + "f 1//1 2//-1 3//1 4//1\n")), whole_square);
     expect_obj_refused(square + "f 1 2 5\n", "a.obj:5: a face names vertex 5, but there are 4");
     expect_obj_refused(square + "f 1 2 99999999999\n", "a.obj:5: a face names vertex 99999999999, but there are 4");
     expect_obj_refused(square + "f 1 2 4294967297\n", "a.obj:5: a face names vertex 4294967297, but there are 4");
@@ -149,6 +151,13 @@ TEST(ObjFile, ObjectsGroupsAndMaterialsBeginParts) {
     EXPECT_EQ(found, (std::vector<std::string>{":-:1", "left side:red:2", "left side:deep blue:1", "top:deep blue:1",
                                                "red:red:1"}));
     EXPECT_EQ(folder.warnings, std::vector<std::string>());
+}
+
+TEST(ObjFile, NormalsAndSmoothingAreIgnoredWithOneWarning) {
+    ObjFolder folder;
+    folder.read(square + "vn 0 0 1\nvn 0 0.1 1\ns 1\nf 1//1 2//1 3//2\ns off\nf 1//1 2//1 4//2\ns 2\nvn 0 1 0\n");
+    EXPECT_EQ(folder.warnings, (std::vector<std::string>{"a.obj: ignored what has no meaning here: 'vn', 's'"}));
+    read_quietly(square + "s off\nf 1 2 3\ns 0\nf 1 2 4\n");
 }
 
 TEST(ObjFile, WhatHasNoMeaningHereIsListedOnce) {
@@ -218,6 +227,80 @@ TEST(ObjFile, MaterialsOfLibraries) {
     refused("newmtl a\nNi inf\n", "m.mtl:2: Ni: expected a number from 0 to 100, found 'inf'");
     refused("newmtl a\nd 1.5\n", "m.mtl:2: d: expected a number from 0 to 1, found '1.5'");
     refused("newmtl a\nillum\n", "m.mtl:2: illum needs a number");
+}
+
+TEST(ObjFile, LightThatPassesIsTintedByTfOrKd) {
+    ObjFolder folder;
+    const auto expect = [&](const std::string& mtl, double transmission, const dvec3& tint) {
+        SCOPED_TRACE(mtl);
+        const MaterialDescription material = folder.material("newmtl a\n" + mtl);
+        EXPECT_EQ(material.transmission, transmission);
+        EXPECT_EQ(material.tint, tint);
+        EXPECT_EQ(folder.warnings, std::vector<std::string>());
+    };
+    const dvec3 white{1}, kd{.5, .25, 0};
+    expect("Kd 0 0 0\nKs 0 0 0\nTf 1 1 1\nd 0.5\nillum 4\n", 0.5, white);
+    expect("Kd 0 0 0\nd 0.25\n", 0.75, white);
+    expect("Kd 0 0 0\nTf 2 1 3\nd 0.25\n", 0.75, white);
+    expect("Kd 0 0 0\nTf 0 0 0\nd 0.25\n", 0.75, dvec3{0});
+    expect("Kd .5 .25 0\nd 0.25\n", 0.75, kd);
+    expect("Kd .5 .25 0\nTf 1 1 1\nTr 0.75\n", 0.75, kd);
+    expect("Tf 0 0 0\nd 0.25\nKd .5 .25 0\n", 0.75, kd);
+    expect("Kd .5 .25 0\nTf .1 .2 3\nd 0\n", 1, {.1, .2, 1});
+    expect("Kd 0 0 0\nTf 1 0 0\nd 0\n", 1, {1, 0, 0});
+    expect("Kd 0 0 0\nTf 0.25\nd 0\n", 1, dvec3{.25});
+    expect("Kd 2 0.5 0\nd 0\n", 1, {1, 0.5, 0});
+    // Opaque ones: Blender, 3ds Max, Maya.
+    expect("Ns 250\nKa 1 1 1\nKd .8 .8 .8\nKs .5 .5 .5\nKe 0 0 0\nNi 1.45\nd 1\nillum 2\n", 0, white);
+    expect("Ns 10\nNi 1.5\nd 1\nTr 0\nTf 1 1 1\nillum 2\nKa .6 .6 .6\nKd .6 .6 .6\n", 0, white);
+    expect("illum 4\nKd .5 .5 .5\nKa 0 0 0\nTf 1 1 1\nNi 1\n", 0, white);
+    expect("Kd .8 .8 .8\nTf 0 0 0\nd 1\n", 0, white);
+    folder.material("newmtl a\nTf .5 .5 .5\nTf spectral x.rfl\n");
+    EXPECT_EQ(folder.warnings,
+              (std::vector<std::string>{"a.obj: ignored what has no meaning here: 'Tf spectral', 'Tf'"}))
+        << "nothing passes";
+    folder.material("newmtl a\nTf .5 .5 .5\nnewmtl b\nnewmtl a\nd 0.5\nTf xyz 1 1 1\n");
+    EXPECT_EQ(folder.warnings, (std::vector<std::string>{"a.obj: ignored what has no meaning here: 'Tf xyz'"}));
+    expect_error([&] { folder.material("newmtl a\nTf 1 1\n"); }, ExitCode::file,
+                 "m.mtl:2: Tf needs a number from 0 to 1e30");
+}
+
+TEST(ObjFile, NamesThatAreNotUtf8StayDifferent) {
+    ObjFolder folder;
+    folder.files["caf\xe9.mtl"] =
+        "newmtl caf\xe9\nKd 1 0 0\nmap_Kd \xe8.png\nnewmtl caf\xe8\nKd 0 1 0\nnewmtl caf%E9\nKd 0 0 1\n";
+    folder.files["\xe8.png"];
+    const auto meshes = folder.read("mtllib caf\xe9.mtl\n" + square +
+                                    "o \x94\xa0\nusemtl caf\xe9\nf 1 2 3\ng \x8b\x85\nusemtl caf\xe8\nf 1 2 3\n"
+                                    "o x\nusemtl caf%E9\nf 1 2 3\nusemtl \xe9\nf 1 2 3\n");
+    std::vector<std::string> found;
+    for (const PolygonMesh& mesh : meshes) found.push_back(mesh.name + ":" + mesh.material->name);
+    EXPECT_EQ(found, (std::vector<std::string>{"%94%A0:caf%E9", "%8B%85:caf%E8", "x:caf%25E9", "%E9:%E9"}));
+    EXPECT_EQ(meshes[1].material->color, dvec3(0, 1, 0));
+    EXPECT_EQ(folder.warnings, (std::vector<std::string>{"a.obj: ignored what has no meaning here: 'map_Kd'",
+                                                         "a.obj: no library has these materials: '%E9'"}));
+    // Halves of UTF-16's pairs, each alone.
+    const std::string halves = utf8_of(std::string("\xff\xfeg\0 \0\0\xd8\n\0g\0 \0\1\xd8\n\0", 18));
+    EXPECT_EQ(utf8_name(halves), "g %ED%A0%80\ng %ED%A0%81\n");
+}
+
+TEST(ObjFile, CharactersThatEndWithABackslashJoinNoLinesAndAreInNamesOfFiles) {
+    const ScratchDirectory scratch;
+    const std::string table = "\x95\\";  // in Shift-JIS
+    put_bytes(scratch.file(table + ".mtl"), "newmtl " + table + "\nKd 1 0 0\nnewmtl \x83\\\nKd 0 1 0\n");
+    put_bytes(scratch.file("a.obj"),
+              "mtllib " + table + ".mtl\n" + square + "usemtl " + table + "\nf 1 2 3\nusemtl \x83\\\nf 1 2 4\n");
+    MeshObject object;
+    object.file = scratch.file("a.obj");
+    std::vector<std::string> warnings;
+    const auto parts = read_mesh(object, "here", warnings);
+    EXPECT_EQ(warnings, std::vector<std::string>());
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].material->name, "%95\\");
+    EXPECT_EQ(parts[0].material->color, dvec3(1, 0, 0));
+    EXPECT_EQ(parts[1].material->color, dvec3(0, 1, 0));
+    EXPECT_EQ(read_quietly("g caf\xc3\xa9\\\n x\n" + square + "f 1 2 3\n").at(0).name, "caf\xc3\xa9  x")
+        << "in UTF-8 it joins";
 }
 
 TEST(ObjFile, WarningsReachTheScene) {

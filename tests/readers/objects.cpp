@@ -28,7 +28,7 @@ TEST(SceneSolids, EveryKeyArrives) {
     const ObjectDescription object =
         read_objects(R"({"name": "gem", "solid": "icosahedron", "center": [1, 2, 3], "radius": 4,
         "rotate": [5, 6, 7], "material": "glass", "edge_lights": {"count": 8, "color": [1, 2, 3], "glow": 9,
-        "radius": 0.5, "falloff": "inverse-square"}})")
+        "radius": 0.5, "visible": false, "falloff": "inverse-square"}})")
             .objects.at(0);
     EXPECT_EQ(object.name, "gem");
     EXPECT_EQ(object.material, 0);
@@ -41,6 +41,7 @@ TEST(SceneSolids, EveryKeyArrives) {
     EXPECT_EQ(solid.edge_lights.color, glm::dvec3(1, 2, 3));
     EXPECT_EQ(solid.edge_lights.glow, glm::dvec3(9));
     EXPECT_EQ(solid.edge_lights.radius, 0.5);
+    EXPECT_FALSE(solid.edge_lights.visible || solid.edge_lights.shown());
     EXPECT_TRUE(solid.edge_lights.falloff);
 }
 
@@ -95,7 +96,8 @@ TEST(SceneSolids, EdgeLightErrors) {
     EXPECT_WRONG_OBJECT(solid(R"({"count": 1001})"),
                         "/edge_lights/count: expected a whole number from 0 to 1000, found 1001");
     EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "position": [0, 0, 0]})"),
-                        "/edge_lights/position: unknown key; known keys: count, color, glow, radius, falloff, group");
+                        "/edge_lights/position: unknown key; known keys: count, color, glow, radius, visible, falloff, "
+                        "group");
     EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "group": "key.left"})"),
                         "/edge_lights/group: the name 'key.left' has a dot, which separates layers from channels");
     EXPECT_WRONG_OBJECT(solid(R"({"count": 1, "group": "key left"})"),

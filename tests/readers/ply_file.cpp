@@ -25,9 +25,16 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
+PolygonMesh ply_mesh(const std::string& bytes) {
+    std::vector<std::string> warnings;
+    PolygonMesh mesh = read_ply(bytes, "a.ply", warnings);
+    EXPECT_EQ(warnings, std::vector<std::string>()) << bytes.substr(0, 300);
+    return mesh;
+}
+
 void expect_ply_refused(const std::string& bytes, const std::string& text) {
     SCOPED_TRACE(bytes.substr(0, 300));
-    expect_error([&] { read_ply(bytes, "a.ply"); }, ExitCode::file, text);
+    expect_error([&] { ply_mesh(bytes); }, ExitCode::file, text);
 }
 
 void expect_triangle(const PolygonMesh& mesh) {
@@ -45,11 +52,11 @@ std::string binary(T value, bool big_endian) {
 }
 
 TEST(PlyFile, TextWithLineEndsOfAllKinds) {
-    for (const char* end : {"\n", "\r\n", "\r"}) expect_triangle(read_ply(replaced(triangle, "\n", end), "a.ply"));
-    expect_triangle(read_ply(triangle.substr(0, triangle.size() - 1), "a.ply"));
-    expect_triangle(read_ply(replaced(triangle, "\n2 0 0", "\n\n  2\t0 0 \n\n"), "a.ply"));
+    for (const char* end : {"\n", "\r\n", "\r"}) expect_triangle(ply_mesh(replaced(triangle, "\n", end)));
+    expect_triangle(ply_mesh(triangle.substr(0, triangle.size() - 1)));
+    expect_triangle(ply_mesh(replaced(triangle, "\n2 0 0", "\n\n  2\t0 0 \n\n")));
     expect_triangle(
-        read_ply(replaced(triangle, "element vertex", "comment by hand\nobj_info n = 3\n\nelement vertex"), "a.ply"));
+        ply_mesh(replaced(triangle, "element vertex", "comment by hand\nobj_info n = 3\n\nelement vertex")));
 }
 
 TEST(PlyFile, BinaryDataMayBeginWithALineEnd) {
@@ -61,7 +68,7 @@ TEST(PlyFile, BinaryDataMayBeginWithALineEnd) {
                                          "\n", end);
             bytes += first;
             bytes += "\x01\x02";
-            EXPECT_EQ(read_ply(bytes, "a.ply").vertices, (std::vector<dvec3>{{first, 1, 2}}));
+            EXPECT_EQ(ply_mesh(bytes).vertices, (std::vector<dvec3>{{first, 1, 2}}));
         }
 }
 
@@ -87,7 +94,7 @@ void check_types(const std::string& coordinate, const std::string& size, const s
         bytes += binary(int16_t(-1), big) + binary<Size>(3, big);
         for (const int i : {2, 0, 1}) bytes += binary(Index(i), big);
         bytes += binary(1.5f, big) + binary(int32_t(9), big);
-        const PolygonMesh mesh = read_ply(bytes, "a.ply");
+        const PolygonMesh mesh = ply_mesh(bytes);
         EXPECT_EQ(mesh.vertices, (std::vector<dvec3>{{0, 1, 1}, {2, 1, 3}, {4, 1, 5}}));
         EXPECT_EQ(mesh.corners, (std::vector<uint32_t>{2, 0, 1}));
         // However much of the data is missing, it is missed.
@@ -113,9 +120,7 @@ TEST(PlyFile, AllTypesInBothOrdersOfBytesAmongWhatIsNotRead) {
 
 TEST(PlyFile, NumbersAreRoundedOnceToTheirType) {
     const auto first = [](const std::string& type, const std::string& number) {
-        return read_ply(replaced(replaced(triangle, "float", type), "\n2 0 0", "\n" + number + " 0 0"), "a.ply")
-            .vertices[1]
-            .x;
+        return ply_mesh(replaced(replaced(triangle, "float", type), "\n2 0 0", "\n" + number + " 0 0")).vertices[1].x;
     };
     EXPECT_EQ(first("double", "0.1"), 0.1);
     EXPECT_EQ(first("double", "+.5"), 0.5);
@@ -141,10 +146,9 @@ TEST(PlyFile, NumbersAreRoundedOnceToTheirType) {
 }
 
 TEST(PlyFile, StripsBeginAgainBehindMinusOne) {
-    const PolygonMesh mesh = read_ply(
+    const PolygonMesh mesh = ply_mesh(
         "ply\nformat ascii 1.0\nelement tristrips 2\nproperty list int int vertex_indices\nelement vertex 7\n" + xyz +
-            "end_header\n10 0 1 2 3 -1 4 -1 6 5 4\n5 0 1 1 2 3\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n4 0 0\n5 0 0\n6 0 0\n",
-        "a.ply");
+        "end_header\n10 0 1 2 3 -1 4 -1 6 5 4\n5 0 1 1 2 3\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n4 0 0\n5 0 0\n6 0 0\n");
     // The second strip is stitched: triangles that repeat a vertex turn the winding, and are no triangles.
     EXPECT_EQ(mesh.corners, (std::vector<uint32_t>{0, 1, 2, 2, 1, 3, 6, 5, 4, 1, 2, 3}));
     EXPECT_EQ(mesh.ends, (std::vector<size_t>{3, 6, 9, 12}));
@@ -155,14 +159,24 @@ TEST(PlyFile, TextureCoordinatesOfVerticesAndOfCorners) {
         std::string text = replaced(triangle, xyz, xyz + "property float " + u + "\nproperty double " + v + "\n");
         text = replaced(replaced(replaced(text, "\n0 0 0", "\n0 0 0 0 1"), "\n2 0 0", "\n2 0 0 .5 .25"), "\n0 2 0",
                         "\n0 2 0 1 0");
-        EXPECT_EQ(read_ply(text, "a.ply").uvs, (std::vector<glm::dvec2>{{0, 1}, {0.5, 0.25}, {1, 0}}));
+        EXPECT_EQ(ply_mesh(text).uvs, (std::vector<glm::dvec2>{{0, 1}, {0.5, 0.25}, {1, 0}}));
         expect_ply_refused(replaced(text, ".25", "inf"), "a.ply:13: a texture coordinate is not finite");
     }
     std::string text = replaced(triangle, indices, indices + "property list uchar float texcoord\n");
-    EXPECT_EQ(read_ply(replaced(text, "3 0 1 2", "3 0 1 2 6 0 0 1 0 0 1"), "a.ply").corner_uvs,
+    EXPECT_EQ(ply_mesh(replaced(text, "3 0 1 2", "3 0 1 2 6 0 0 1 0 0 1")).corner_uvs,
               (std::vector<glm::dvec2>{{0, 0}, {1, 0}, {0, 1}}));
-    EXPECT_TRUE(read_ply(replaced(text, "3 0 1 2", "3 0 1 2 0"), "a.ply").corner_uvs.empty());
+    EXPECT_TRUE(ply_mesh(replaced(text, "3 0 1 2", "3 0 1 2 0")).corner_uvs.empty());
     expect_ply_refused(replaced(text, "3 0 1 2", "3 0 1 2 4 0 0 1 0"), "a.ply:14: 4 values of texcoord for 3 corners");
+}
+
+TEST(PlyFile, NormalsOfVerticesAreIgnoredWithAWarning) {
+    std::vector<std::string> warnings;
+    const std::string normals = "property float nx\nproperty float ny\nproperty float nz\n";
+    std::string text = replaced(triangle, xyz, xyz + normals);
+    for (const char* vertex : {"\n0 0 0", "\n2 0 0", "\n0 2 0"})
+        text = replaced(text, vertex, vertex + std::string(" 0 0 1"));
+    expect_triangle(read_ply(text, "a.ply", warnings));
+    EXPECT_EQ(warnings, (std::vector<std::string>{"a.ply: ignored what has no meaning here: 'nx', 'ny', 'nz'"}));
 }
 
 TEST(PlyFile, WrongHeadersAreNamedByLine) {
@@ -225,9 +239,8 @@ TEST(PlyFile, SizesThatTheFileCannotHoldAreRefusedAtOnce) {
         bytes,
         "a.ply: byte 166: the list 'vertex_indices' says that it has 4294967295 values, but 1 are left in the file");
     // Rows of nothing take no time.
-    EXPECT_TRUE(
-        read_ply(replaced(triangle, "element face", "element nothing 18446744073709551615\nelement face"), "a.ply")
-            .ends.size() == 1);
+    EXPECT_TRUE(ply_mesh(replaced(triangle, "element face", "element nothing 18446744073709551615\nelement face"))
+                    .ends.size() == 1);
 }
 
 }  // namespace

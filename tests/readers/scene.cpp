@@ -70,10 +70,10 @@ TEST(SceneKeys, UnknownOnesNameTheNearest) {
         scene_with("\"film\": {\"quality\": 1}"),
         "a.json: /film/quality: unknown key; known keys: width, height, frames, supersample, frames_per_second, "
         "owner, comments");
-    EXPECT_WRONG(
-        scene_with("\"a/b~\\n\": 1"),
-        "a.json: /a~1b~0\\n: unknown key; known keys: $schema, film, depth, cutoff, ambient, background, camera, "
-        "textures, materials, objects, lights, frame");
+    EXPECT_WRONG(scene_with("\"a/b~\\n\": 1"),
+                 "a.json: /a~1b~0\\n: unknown key; known keys: $schema, film, depth, cutoff, contact, ambient, "
+                 "background, camera, "
+                 "textures, materials, objects, lights, frame");
     EXPECT_WRONG(json_scene("{}"), "a.json: /: missing key 'objects'");
 }
 
@@ -267,11 +267,13 @@ TEST(SceneMaterials, Errors) {
 
 TEST(SceneLights, EveryKeyArrives) {
     const auto lights = scene_with(R"("lights": [{"position": [1, 2, 3]}, {"position": [4, 5, 6], "color": [1, 2, 3],
-        "glow": 7, "radius": 0.5, "falloff": "inverse-square"}])")
+        "glow": 7, "radius": 0.5, "visible": false, "falloff": "inverse-square"}])")
                             .lights;
     ASSERT_EQ(lights.size(), 2u);
     EXPECT_EQ(lights[0].place, "/lights/0");
-    EXPECT_FALSE(lights[0].glow || lights[0].falloff);
+    EXPECT_FALSE(lights[0].glow || lights[0].falloff || lights[0].shown());
+    EXPECT_TRUE(lights[0].visible);
+    EXPECT_FALSE(lights[1].visible || lights[1].shown());
     EXPECT_EQ(lights[1].position, glm::dvec3(4, 5, 6));
     EXPECT_EQ(lights[1].color, glm::dvec3(1, 2, 3));
     EXPECT_EQ(lights[1].glow, glm::dvec3(7));

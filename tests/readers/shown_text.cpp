@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 
 #include "scene/base/error.h"
@@ -39,6 +40,29 @@ TEST(ShownText, CharactersStayAndBrokenOnesAreEscapedByteByByte) {
     EXPECT_EQ(one_line("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a pair
     EXPECT_EQ(one_line("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond the last character
     EXPECT_EQ(one_line("\xc3(\xa4"), "\\xc3(\\xa4");
+}
+
+TEST(ShownText, NamesBecomeUtf8AndStayWhatTheyAreIfTheyAreThat) {
+    for (const char* text :
+         {"", "Gl\xc3\xa4ser", "\xe6\xb0\xb4", "C:\\new", "50%", "100% wool", "a%20b", "%2", "%7F", "%e9", "%"})
+        EXPECT_EQ(utf8_name(text), text);
+    EXPECT_EQ(utf8_name("caf\xe9"), "caf%E9");   // Latin-1
+    EXPECT_EQ(utf8_name("\x94\xa0"), "%94%A0");  // Shift-JIS
+    EXPECT_EQ(utf8_name("\xed\xa0\x80\xc3\xa9"), "%ED%A0%80\xc3\xa9");
+    EXPECT_EQ(utf8_name("caf%E9"), "caf%25E9") << "unlike that of the byte";
+    EXPECT_EQ(utf8_name("%25%\x80"), "%2525%%80");
+}
+
+TEST(ShownText, NamesOfDifferentBytesAreDifferent) {
+    constexpr std::string_view parts[] = {"%", "E", "9", "25", "%E9", "\xe9", "\xc3", "\xa9", "e"};
+    std::map<std::string, std::string> bytes_of;
+    for (int i = 0; i < 9 * 9 * 9 * 9 * 9; ++i) {
+        std::string bytes;
+        for (int rest = i; rest > 0; rest /= 9) bytes += parts[rest % 9];
+        const std::string name = utf8_name(bytes);
+        EXPECT_TRUE(is_utf8(name)) << name;
+        EXPECT_EQ(bytes_of.try_emplace(name, bytes).first->second, bytes) << name;
+    }
 }
 
 TEST(ShownText, CutsAreBetweenCharacters) {

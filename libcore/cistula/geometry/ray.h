@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cistula/geometry/hit.h"
+#include "cistula/model/scene_access.h"
 
 namespace cistula {
 
@@ -71,12 +72,15 @@ struct InteriorList {
             if (count_of(entries[i]) < 0) entries[i] = entries[--size];
     }
 
-    /// The solid of highest priority that contains the point, or no_solid.
-    CISTULA_INLINE uint32_t medium() const {
+    /// The transparent solid of highest priority that contains the point, or no_solid.
+    template <class Scene>
+    CISTULA_INLINE uint32_t medium(const Scene& scene) const {
         uint32_t best = no_solid;
-        for (uint32_t i = 0; i < size; ++i)
-            if (count_of(entries[i]) > 0 && (best == no_solid || solid_of(entries[i]) > best))
-                best = solid_of(entries[i]);
+        for (uint32_t i = 0; i < size; ++i) {
+            const uint32_t solid = solid_of(entries[i]);
+            if (count_of(entries[i]) > 0 && (best == no_solid || solid > best) && !is_opaque(scene, solid))
+                best = solid;
+        }
         return best;
     }
 };
@@ -91,7 +95,10 @@ struct SingleInterior {
     CISTULA_INLINE bool contains(uint32_t index) const { return solid == index; }
     CISTULA_INLINE bool empty() const { return solid == no_solid; }
     CISTULA_INLINE uint32_t only() const { return solid; }
-    CISTULA_INLINE uint32_t medium() const { return solid; }
+    template <class Scene>
+    CISTULA_INLINE uint32_t medium(const Scene& scene) const {
+        return solid == no_solid || is_opaque(scene, solid) ? no_solid : solid;
+    }
 
     /// Records that a solid is entered or left. False, without a change, where the solids touch after all.
     CISTULA_INLINE bool cross(bool enters, bool leaves, uint32_t index) {
@@ -112,7 +119,7 @@ CISTULA_INLINE void assign(InteriorList& to, const InteriorList& from) {
     to = from;
 }
 CISTULA_INLINE void assign(SingleInterior& to, const InteriorList& from) {
-    to.solid = from.medium();
+    to.solid = from.only();
 }
 
 /// A ray. Where it passes a face without bending it keeps its origin and direction, and `after` moves on.

@@ -35,7 +35,7 @@ struct InteriorSet {
         return list;
     }
 
-    /// The solid of highest priority, of one or more.
+    /// The last of one or more solids.
     CISTULA_INLINE uint32_t highest() const { return 31u - uint32_t(__builtin_clz(bits)); }
 };
 
@@ -51,9 +51,16 @@ struct LaneMedia {
     CISTULA_INLINE Mask contains(uint32_t solid) const { return (bits & Index(int(1u << solid))) != 0; }
     CISTULA_INLINE Mask contains(const Index& solid) const { return (bits & bit_of(solid)) != 0; }
     CISTULA_INLINE Mask empty() const { return bits == 0; }
-    CISTULA_INLINE Index medium() const {
+    /// The transparent solids among them.
+    template <class Scene>
+    CISTULA_INLINE Index transparent(const Scene& scene) const {
+        return bits & Index(int(scene.transparent));
+    }
+    template <class Scene>
+    CISTULA_INLINE Index medium(const Scene& scene) const {
         Index highest = no_solid;
-        for_each_value(bits != 0, bits, [&](uint32_t set, const Mask& same) {
+        const Index media = transparent(scene);
+        for_each_value(media != 0, media, [&](uint32_t set, const Mask& same) {
             assign_where(same, highest, Index(int(InteriorSet{set}.highest())));
         });
         return highest;

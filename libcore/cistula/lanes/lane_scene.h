@@ -34,6 +34,7 @@ struct LaneScene : SceneView<Real> {
     uint32_t closed = 0;                        // solids i < closed are closed, others sheets
     int least_lanes = 1;                        // with fewer, one ray after the other is faster
     uint32_t meshes = 0, isolated = 0;          // bit i: solid i is a closed mesh; convex, nothing else near it
+    uint32_t transparent = 0;                   // bit i: light passes closed solid i
     Span<uint32_t> clear_solids, transmitting;  // of each solid, 1 if its material is clear; if it transmits
     Span<uint32_t> numbers;                     // of the solids in the scene's own order
     Span<PlaneBodies> plane_bodies;             // of each of shared_planes

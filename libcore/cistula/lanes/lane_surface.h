@@ -75,13 +75,28 @@ CISTULA_INLINE Lanes<T, n> highlight(const LaneMaterial<Lanes<T, n>>& material, 
 template <class Scene, class T, int n>
 CISTULA_INLINE Lanes<double, n> index_of(const Scene& scene, const LaneMedia<Lanes<T, n>>& media) {
     Lanes<double, n> index(1.0);
-    for_each_value(!media.empty(), media.bits, [&](uint32_t set, const auto& who) {
+    const IndexOf<Lanes<T, n>> transparent = media.transparent(scene);
+    for_each_value(transparent != 0, transparent, [&](uint32_t set, const auto& who) {
         const Solid& medium = scene.solids[InteriorSet{set}.highest()];
         assign_where(widened(who), index, Lanes<double, n>(scene.materials[medium.material].index));
     });
     return index;
 }
 
+template <class T, int n>
+CISTULA_INLINE void take_opaque_index(const LaneMaterial<Lanes<T, n>>& m, const MaskOf<Lanes<T, n>>& who,
+                                      Lanes<double, n>& beyond) {
+    for_each_value(who, m.number, [&](uint32_t number, const MaskOf<Lanes<T, n>>& same) {
+        const Material<T>& own = m.all[number];
+        if (own.transparency == Transparency::opaque) assign_where(widened(same), beyond, Lanes<double, n>(own.index));
+    });
+}
+
+/// Whether closed solids are opaque.
+template <class Real, class T, int n>
+CISTULA_INLINE auto is_opaque(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
+    return (Lanes<T, n>(int(scene.transparent)) & Lanes<T, n>(1) << (solid & 31)) == T(0);
+}
 template <class Real, class T, int n>
 CISTULA_INLINE auto is_clear(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
     return entries_of(scene.clear_solids, solid) != T(0);

@@ -70,7 +70,8 @@ struct ConstantScene {
     InlineSpan<Light<Real>, ShadowPlan::lights> lights;
     CachedTransmittance<Real> cached_transmittances[4];  // precomputed for crossings of transparent faces
     ShadowPlan plan;
-    uint32_t clear_solids, transmitting_solids;  // bit i: solid i's material is clear; transmits
+    uint32_t opaque_solids, clear_solids, transmitting_solids;  // bit i: solid i's material is opaque; is clear;
+                                                                // transmits
     InlineSpan<Texture, 8> textures;
     // Arrays outside of this struct, as in the view that it was made from:
     Span<SlabGroup<Real>> slab_groups;

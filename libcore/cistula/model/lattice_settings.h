@@ -9,6 +9,11 @@ namespace cistula {
 inline constexpr int lattice_side = 16, lattice_samples = lattice_side * lattice_side;
 /// The minimum number of samples of an adaptively sampled pixel: its four corners and its middle.
 inline constexpr int least_lattice_samples = 5;
+/// The most samples of the lattice that one of `samples` taken stands for (LatticePixel::accumulate): the middle one
+/// for 160, where only the first were taken; else a corner of a quarter's cell for 16.
+CISTULA_INLINE uint32_t largest_weight(uint32_t samples) {
+    return samples >= uint32_t(lattice_samples) ? 1 : samples > uint32_t(least_lattice_samples) ? 16 : 160;
+}
 /// Fraction bits of the colors that the rules compare: units of 2^-44 of the radiance bound's power of two, since a
 /// target may be as small as 2^-32 of it (closed-box.json). Products in the rules need at most 13 bits more.
 inline constexpr int color_bits = 44, color_shift = 54 - color_bits;

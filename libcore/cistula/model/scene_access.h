@@ -6,10 +6,20 @@
 
 namespace cistula {
 
+/// Whether no light passes a solid's faces; it is no medium then.
+template <class Real>
+CISTULA_INLINE bool is_opaque(const SceneView<Real>& scene, uint32_t solid) {
+    return scene.materials[scene.solids[solid].material].transparency == Transparency::opaque;
+}
+template <class Real>
+CISTULA_INLINE bool is_opaque(const ConstantScene<Real>& scene, uint32_t solid) {
+    return (scene.opaque_solids >> solid & 1u) != 0;
+}
+
 /// Whether a solid's material is clear: kr = 0, kt = 1, white tint.
 template <class Real>
 CISTULA_INLINE bool is_clear(const SceneView<Real>& scene, uint32_t solid) {
-    return scene.materials[scene.solids[solid].material].clear != 0;
+    return scene.materials[scene.solids[solid].material].transparency == Transparency::clear;
 }
 template <class Real>
 CISTULA_INLINE bool is_clear(const ConstantScene<Real>& scene, uint32_t solid) {

@@ -41,7 +41,8 @@ struct alignas(32) SlabGroup {
     bool lights_apart;  // no visible light of another solid reaches into this one
 };
 
-/// A solid. Solids are numbered in file order, which is also the priority of their media: a later solid wins.
+/// A solid. Solids are numbered in file order, which is also the priority of their media: a later transparent solid
+/// wins.
 struct alignas(16) Solid {
     Vec3<float> center;        // convex, mesh on a shared plane: of a sphere around it,
     float padded_square;       // ... and the square of its radius plus sphere_padding
@@ -124,6 +125,13 @@ struct alignas(16) Facet {
     uint32_t solid, triangle, slot;
 };
 
+/// What rays meet at a material's faces.
+enum class Transparency : uint32_t {
+    opaque,   // none passes: kt tint = 0; with fresnel, (kr + kt) tint = 0. A body of it is no medium
+    partial,  // some light passes
+    clear,    // kr = 0, kt = 1, white tint: invisible unless the index changes
+};
+
 /// A material. The shares of light are: local 1 - kr - kt, reflected kr, transmitted kt * tint.
 template <class Real>
 struct Material {
@@ -140,13 +148,13 @@ struct Material {
     Real transmission;  // kt
     Vec3<Real> filter;  // kt * tint
     Vec3<Real> tint;
-    Vec3<Real> absorption;    // per unit of scene-frame length
+    Vec3<Real> absorption;    // per unit of scene-frame length; 0 where no ray passes
     double index;             // index of refraction
     uint64_t filter_loss[3];  // -log2(kt * tint), Q11.52; 0 for opaque channels
     uint32_t opaque;          // bit c: channel c is blocked (kt * tint = 0)
     int32_t texture;          // -1: none
     uint32_t fresnel;         // 0 or 1
-    uint32_t clear;           // 1: kr = 0, kt = 1, white tint: invisible unless the index changes
+    Transparency transparency;
 };
 
 /// A point light with an intensity above zero.

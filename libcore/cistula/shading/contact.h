@@ -113,7 +113,8 @@ class ContactStart {
         const Real slope = dot(plane.normal, parent_.direction);
         if (parent_.from_plane == index) return slope > Real(0) ? 1 : -1;
         if (magnitude(slope) < least_slope<Real>) return distance_from(plane, parent_.origin) > Real(0) ? 1 : -1;
-        const bool ahead = plane_time(plane, parent_.origin, parent_.direction, Real(0)) >= hit_.t;
+        const Real time = plane_time(plane, parent_.origin, parent_.direction, Real(0));
+        const bool ahead = time > hit_.t || (time == hit_.t && parent_.after.t < time);
         return ahead == (slope > Real(0)) ? -1 : 1;
     }
 

@@ -16,12 +16,19 @@ struct InterfaceSplit {
     Vec3<Real> through;
 };
 
-/// Index of refraction at a point: that of the solid of highest priority that contains it, or 1. (In lanes:
+/// Index of refraction at a point: that of the transparent solid of highest priority that contains it, or 1. (In lanes:
 /// lane_surface.h.)
 template <class Scene, class Media>
 CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
-    const uint32_t solid = media.medium();
+    const uint32_t solid = media.medium(scene);
     return solid == no_solid ? 1.0 : scene.materials[scene.solids[solid].material].index;
+}
+
+/// Sets the index beyond the face of an opaque body to that of its own material, where `who` holds: no ray goes on
+/// there, but the exact terms say how much is mirrored. (In lanes: lane_surface.h.)
+template <class Real>
+CISTULA_INLINE void take_opaque_index(const Material<Real>& m, bool who, double& beyond) {
+    if (who && m.transparency == Transparency::opaque) beyond = m.index;
 }
 
 /// Splits light at an interface. Total internal reflection moves the transmitted share to the reflected ray. With
@@ -36,9 +43,13 @@ CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& s
     InterfaceSplit<Real, Filter> split{m.reflection, throughput_as<Filter>(m.filter), false, direction};
     if constexpr (E::has(effect_refraction)) {
         MaskOf<Real> fresnel = false;
-        if constexpr (E::has(effect_fresnel)) fresnel = (m.fresnel != 0) & !sheet;
+        const WideOf<Real> from = index_of(scene, before);
+        WideOf<Real> to = index_of(scene, beyond);
+        if constexpr (E::has(effect_fresnel)) {
+            fresnel = (m.fresnel != 0) & !sheet;
+            take_opaque_index(m, fresnel, to);
+        }
         const Real both = m.reflection + m.transmission;
-        const WideOf<Real> from = index_of(scene, before), to = index_of(scene, beyond);
         const MaskOf<Real> equal = narrowed<Real>(from == to);
         assign_where(fresnel & equal, split.reflection, Real(0));
         assign_where(fresnel & equal, split.filter, throughput_as<Filter>(m.tint) * both);

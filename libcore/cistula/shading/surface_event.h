@@ -12,7 +12,7 @@ template <class Real, class Media = InteriorList>
 struct SurfaceEvent {
     static constexpr int capacity = Media::contacts && !in_lanes<Real> ? 8 : 1;  // lanes keep the last one
 
-    Hit<Real> hit;                   // the crossing to shade: that of the solid of highest priority
+    Hit<Real> hit;                   // the crossing to shade
     Crossing<Real> taken[capacity];  // all crossings, in order
     int count;
     Media beyond;          // media behind all of them
@@ -53,13 +53,6 @@ struct SurfaceEvent {
     }
 };
 
-/// Whether no light passes a solid's faces.
-template <class Real>
-CISTULA_INLINE bool is_opaque(const SceneView<Real>& scene, uint32_t solid) {
-    const Material<Real>& material = scene.materials[scene.solids[solid].material];
-    return !(material.transmission > Real(0)) && material.fresnel == 0;
-}
-
 /// The intersector for crossings that are looked for beside those that a ray meets: one that observes rays is not to
 /// notice.
 template <class Intersector>
@@ -67,9 +60,9 @@ CISTULA_INLINE const Intersector& unobserved(const Intersector& intersector) {
     return intersector;
 }
 
-/// Collects the crossings at exactly the same t, up to a sheet, and chooses what is shaded: an opaque solid that begins
-/// there and is the medium beyond, else the highest solid that begins or ends there (docs/rules.md, 11, line 6). Not
-/// inlined: few events have more than one crossing.
+/// Collects the crossings at exactly the same t, up to a sheet, and chooses what is shaded: of the solids that begin or
+/// end there the last in the file, of opaque ones that end if there are any, else of opaque ones that begin
+/// (docs/rules.md, 11, line 6). Not inlined: few events have more than one crossing.
 template <class Real, class Intersector, class Media>
 CISTULA_NOINLINE void gather_shared(const SceneView<Real>& scene, const Intersector& intersector,
                                     const Ray<Real, Media>& ray, SurfaceEvent<Real, Media>& event) {
@@ -85,12 +78,14 @@ CISTULA_NOINLINE void gather_shared(const SceneView<Real>& scene, const Intersec
         event.take(next);
     }
     event.changes = false;
-    bool covered = false;
-    for (int i = 0; i < event.count && !covered; ++i) {
+    uint32_t shaded = 0;  // its place among those that may be: opaque ones that end, that begin, others; then by number
+    for (int i = 0; i < event.count; ++i) {
         const uint32_t solid = key_solid(hits[i].key);
-        if (ray.media.contains(solid) == event.beyond.contains(solid)) continue;
-        covered = solid == event.beyond.medium() && is_opaque(scene, solid);
-        if (event.changes && !covered && solid < key_solid(event.hit.key)) continue;
+        const bool ends = ray.media.contains(solid);
+        if (ends == event.beyond.contains(solid)) continue;
+        const uint32_t place = (is_opaque(scene, solid) ? (ends ? 2u : 1u) : 0u) << 24 | solid;
+        if (event.changes && place < shaded) continue;
+        shaded = place;
         event.hit = hits[i];
         event.changes = true;
     }

@@ -135,8 +135,8 @@ class NextSurface {
         }
     }
 
-    /// Whether a crossing has nothing to shade: it lies inside a medium of higher priority, or belongs to a clear face
-    /// between equal media.
+    /// Whether a crossing has nothing to shade: it is one of a transparent solid inside a medium of higher priority, or
+    /// belongs to a clear face between equal media.
     CISTULA_INLINE MaskOf<Real> invisible(const Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event) const {
         if constexpr (!E::has(effect_transmission | effect_insides)) {
             return false;
@@ -146,12 +146,16 @@ class NextSurface {
                 unchanged = !event.changes;
                 if (all(unchanged)) return unchanged;
             }
-            const IndexOf<Real> solid = key_solid(event.hit.key), medium = ray.media.medium();
-            const MaskOf<Real> sheet = is_kind(event.hit.key, CrossingKind::sheet);
-            MaskOf<Real> within_higher = (!sheet) & (medium != no_solid) & (medium > solid);
-            if constexpr (meets_contacts<E, Media>) within_higher = within_higher & event.beyond.contains(medium);
-            within_higher = within_higher | unchanged;
-            if (all(within_higher)) return within_higher;
+            const IndexOf<Real> solid = key_solid(event.hit.key);
+            MaskOf<Real> within_higher = unchanged;
+            if constexpr (Media::contacts) {
+                const IndexOf<Real> medium = ray.media.medium(scene_);
+                MaskOf<Real> inside =
+                    (!is_kind(event.hit.key, CrossingKind::sheet)) & (medium != no_solid) & (medium > solid);
+                if constexpr (meets_contacts<E, Media>) inside = inside & event.beyond.contains(medium);
+                if (any(inside)) within_higher = within_higher | (inside & !is_opaque(scene_, solid));
+                if (all(within_higher)) return within_higher;
+            }
             MaskOf<Real> clear = is_clear(scene_, solid);
             if constexpr (E::has(effect_refraction))
                 if (any(clear))

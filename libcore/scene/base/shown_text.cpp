@@ -49,6 +49,33 @@ std::string shown(const Character& character, std::string_view bytes) {
 
 }  // namespace
 
+bool is_utf8(std::string_view text) {
+    while (!text.empty()) {
+        const Character character = first_character(text);
+        if (!character.is_valid) return false;
+        text.remove_prefix(character.length);
+    }
+    return true;
+}
+
+std::string utf8_name(std::string_view text) {
+    constexpr std::string_view digits = "0123456789ABCDEF", digits_of_bytes = digits.substr(8);
+    std::string name;
+    while (!text.empty()) {
+        const Character character = first_character(text);
+        const std::string_view next = text.substr(1, 2);
+        const bool is_escape =
+            character.code == '%' && next.size() == 2 &&
+            (next == "25" || (digits_of_bytes.find(next[0]) != next.npos && digits.find(next[1]) != next.npos));
+        if (is_escape || !character.is_valid)
+            name += fmt::format("%{:02X}", character.code);
+        else
+            name += text.substr(0, character.length);
+        text.remove_prefix(character.length);
+    }
+    return name;
+}
+
 std::string one_line(std::string_view text) {
     return first_characters(text, text.size());
 }

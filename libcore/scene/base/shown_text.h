@@ -1,4 +1,5 @@
-// Text from outside, such as names and paths, as messages show it: nothing in it can act on a terminal or break a line.
+// Text from outside, such as names and paths: as UTF-8, and as messages show it, so that nothing in it can act on a
+// terminal or break a line.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +7,13 @@
 #include <string_view>
 
 namespace cistula {
+
+/// Whether a text is UTF-8, without overlong forms and halves of UTF-16's pairs.
+bool is_utf8(std::string_view text);
+
+/// The text as UTF-8, unlike that of any other text: a byte that is no UTF-8 becomes % and two digits (%E9), and so
+/// does a % (%25) before digits that would be read as such a byte's.
+std::string utf8_name(std::string_view text);
 
 /// The text as a single line of whole characters. Escaped are control characters (\n, \t, \x1b, \u0085), characters
 /// that break lines or turn the direction of writing (\u2028, \u202e), and bytes that are no UTF-8 (\xff). A backslash

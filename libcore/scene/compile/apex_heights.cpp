@@ -33,15 +33,10 @@ void take_least(AngleFactors& least, const AngleFactors& f) {
     least.outside = min_or_second(f.outside, least.outside);
 }
 
-/// Half-edges are numbered in the source's winding; if that is reversed, edge e is the source's edge 2 - e, and back.
-uint32_t source_edge(const NormalizedMesh& mesh, uint32_t triangle, uint32_t e) {
-    return mesh.topology().reverses(triangle) ? 2 - e : e;
-}
-
-/// A triangle's edge, in the winding that the mesh is rendered with.
+/// A triangle's edge.
 struct MeshEdge {
     MeshEdge(const NormalizedMesh& mesh, uint32_t half_edge) {
-        const uint32_t e = source_edge(mesh, half_edge / 3, half_edge % 3);
+        const uint32_t e = half_edge % 3;
         const auto corner = mesh.triangle(half_edge / 3);
         start = corner[e];
         edge = corner[(e + 1) % 3] - corner[e];
@@ -58,8 +53,8 @@ class CrowdedEdges {
     /// Most triangles of an edge that are compared each with each.
     static constexpr uint32_t most_pairs = 16;
 
-    explicit CrowdedEdges(const NormalizedMesh& mesh) : mesh_(mesh) {
-        if (mesh.topology().crowded_edges == 0) return;
+    CrowdedEdges(const NormalizedMesh& mesh, const MeshEdges& edges) : mesh_(mesh), edges_(edges) {
+        if (edges.crowded == 0) return;
         for (uint32_t h = 0; h < 3 * mesh.size(); ++h)
             if (is_crowded(h) && factors_.count(h) == 0) add(h);
     }
@@ -77,13 +72,7 @@ class CrowdedEdges {
         return count > most_pairs;
     }
 
-    uint32_t next(uint32_t half_edge) const { return mesh_.topology().next_along_edge[half_edge]; }
-
-    /// Grows with the angle of (x, y), from 0 to 4.
-    static double pseudo_angle(double x, double y) {
-        const double part = magnitude(y) / (magnitude(x) + magnitude(y));
-        return y >= 0 ? (x >= 0 ? part : 2 - part) : (x < 0 ? 2 + part : 4 - part);
-    }
+    uint32_t next(uint32_t half_edge) const { return edges_.next[half_edge]; }
 
     void add(uint32_t first) {
         const MeshEdge base(mesh_, first);
@@ -115,14 +104,15 @@ class CrowdedEdges {
     }
 
     const NormalizedMesh& mesh_;
+    const MeshEdges& edges_;
     std::unordered_map<uint32_t, AngleFactors> factors_;
 };
 
 }  // namespace
 
-ApexHeights apex_heights(const NormalizedMesh& mesh) {
-    const std::vector<uint32_t>& next = mesh.topology().next_along_edge;
-    const CrowdedEdges crowded(mesh);
+ApexHeights apex_heights(const NormalizedMesh& mesh, const MeshEdges& edges) {
+    const std::vector<uint32_t>& next = edges.next;
+    const CrowdedEdges crowded(mesh, edges);
     ApexHeights heights;
     for (auto& side : heights.side) side.resize(mesh.size());
     tbb::parallel_for(tbb::blocked_range<uint32_t>(0, mesh.size(), 1024), [&](const auto& range) {
@@ -130,7 +120,7 @@ ApexHeights apex_heights(const NormalizedMesh& mesh) {
             AngleFactors least;
             double perimeter = 0, twice_area = 0;
             for (uint32_t e = 0; e < 3; ++e) {
-                const uint32_t own = 3 * t + source_edge(mesh, t, e);
+                const uint32_t own = 3 * t + e;
                 const MeshEdge edge(mesh, own);
                 perimeter += length(edge.edge);
                 twice_area = length(edge.normal);

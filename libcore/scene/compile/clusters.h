@@ -3,7 +3,7 @@
 
 #include "cistula/model/scene_view.h"
 #include "scene/compile/mesh_apex.h"
-#include "scene/compile/mesh_topology.h"
+#include "scene/compile/normalized_mesh.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {

@@ -22,6 +22,15 @@ Real local_rounded_down(Real reflection, Real transmission) {
     return rounded > exact ? std::nextafter(rounded, Real(0)) : rounded;
 }
 
+/// The transparency of a material whose shares are compiled.
+template <class Real>
+Transparency transparency_of(const Material<Real>& m, const MaterialDescription& material) {
+    const Vec3<Real> passes = m.fresnel != 0 ? m.tint * (m.reflection + m.transmission) : m.filter;
+    if (!(largest_component(passes) > 0)) return Transparency::opaque;
+    const bool clear = material.reflection == 0 && material.transmission == 1 && material.tint == dvec3{1};
+    return clear ? Transparency::clear : Transparency::partial;
+}
+
 ColorPicture checker_picture(const TextureDescription& texture) {
     ColorPicture picture;
     picture.width = picture.height = 2;
@@ -136,7 +145,10 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     m.local = local_share(material) > 0 ? local_rounded_down(m.reflection, m.transmission) : 0;
     m.filter = Vec3<Real>(transmission * material.tint);
     m.tint = Vec3<Real>(material.tint);
-    const dvec3 absorption = material.absorption / normalization.factor;
+    m.fresnel = material.fresnel ? 1 : 0;
+    m.transparency = transparency_of(m, material);
+    const dvec3 absorption =
+        m.transparency == Transparency::opaque ? dvec3{0} : material.absorption / normalization.factor;
     if (largest_component(absorption) * size > largest_absorption)
         throw scene_error(scene, "",
                           "material " + material.name +
@@ -152,8 +164,6 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
         m.filter_loss[c] = opaque ? 0 : loss_of(share);
     }
     m.texture = texture;
-    m.fresnel = material.fresnel ? 1 : 0;
-    m.clear = material.reflection == 0 && material.transmission == 1 && material.tint == dvec3{1} ? 1 : 0;
     if (!is_finite(m.color) || !is_finite(m.ambient) || !is_finite(m.specular) || !is_finite(m.diffuse) ||
         !is_finite(m.exponent))
         throw scene_error(scene, "",

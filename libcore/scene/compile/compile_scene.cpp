@@ -2,6 +2,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include <fmt/format.h>
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -16,7 +18,6 @@
 #include "scene/compile/compile_materials.h"
 #include "scene/compile/compile_solids.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/convex_mesh.h"
 #include "scene/compile/edge_light_reach.h"
 #include "scene/compile/radiance_bound.h"
 #include "scene/compile/required_effects.h"
@@ -46,7 +47,10 @@ template <class Real>
 class Compiler {
   public:
     explicit Compiler(SceneSource source)
-        : description_(*source.description), source_(std::move(source)), normalization_(find_normalization(source_)) {}
+        : description_(*source.description),
+          source_(std::move(source)),
+          bodies_(*source_.bodies),
+          normalization_(bodies_.normalization) {}
 
     std::unique_ptr<CompiledScene<Real>> compile() {
         if (source_.solids.size() >= no_solid)
@@ -57,18 +61,22 @@ class Compiler {
         scene_.scale = normalization_.scale;
         scene_.extent = rounded_up<Real>(normalization_.extent);
         scene_.warnings = std::move(source_.warnings);
+        for (std::string& warning : contact_warnings(source_, normalization_, bodies_.contacts))
+            scene_.warnings.push_back(std::move(warning));
         scene_.solids.resize(source_.solids.size());
         scene_.hulls.resize(source_.solids.size());
-        boxes_.resize(source_.solids.size());
-        closed_.assign(source_.solids.size(), true);
+        places_.boxes.resize(source_.solids.size());
+        places_.distances.resize(source_.solids.size());
         by_planes_.assign(source_.solids.size(), false);
+        if (description_.contact) hash_.add(*description_.contact);
         hash_.add(normalization_.center);
         hash_.add(static_cast<uint32_t>(normalization_.scale));
 
+        for (const SolidContacts& solid : bodies_.contacts.solids) scene_.reaches.push_back(solid.reach);
         compile_convex();
-        lights_ = normalize_lights(source_, normalization_, convex_);
-        incidents_.resize(lights_.size());
-        find_convex_incidents<Real>(lights_, convex_, normalization_.extent, incidents_);
+        lights_ = normalize_lights(source_, normalization_, bodies_.convex);
+        light_faces_.resize(lights_.size());
+        find_convex_incidents(lights_, bodies_, incident_reach(), light_faces_);
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             scene_.solid_names.push_back(source_.solids[i].name);
             scene_.solids[i].material = source_.solids[i].material;
@@ -76,14 +84,9 @@ class Compiler {
             hash_mesh(i);
             compile_mesh(i);
         }
-        try {
-            contact_ = share_planes(scene_, convex_, boxes_, incidents_);
-        } catch (const TooManyPairs& pairs) {
-            throw scene_error(description_, source_.solids[pairs.solid].place,
-                              "more than " + std::to_string(most_near_pairs / 1'000'000) +
-                                  " million pairs of faces come near one another, as where many objects are in one "
-                                  "place; leave out those that are there several times");
-        }
+        settle_on_faces();
+        add_shared_planes(scene_, bodies_.contacts);
+        list_shared_planes(scene_, bodies_, places_.boxes);
         add_slabs();
         compile_shading();
         compile_lights();
@@ -97,65 +100,64 @@ class Compiler {
 
   private:
     void compile_convex() {
-        for (uint32_t i = 0; i < source_.solids.size(); ++i)
-            if (source_.solids[i].platonic)
-                convex_.push_back(convex_solid(*source_.solids[i].platonic, i, normalization_));
-        merge_coplanar(convex_, normalization_.extent);
-        for (const ConvexSolid& convex : convex_) {
-            for (const PlanePair& p : convex.planes) {
+        for (uint32_t i = 0; i < source_.solids.size(); ++i) {
+            if (!source_.solids[i].platonic) continue;
+            for (const PlanePair& p : convex_solid(*source_.solids[i].platonic, i, normalization_).planes) {
                 hash_.add(p.normal);
                 hash_.add(p.low);
                 hash_.add(p.high);
             }
-            hash_.add(convex.solid);
+            hash_.add(i);
         }
-        add_convex_meshes();
-        for (const ConvexSolid& convex : convex_) {
+        for (const ConvexSolid& convex : bodies_.convex) {
             Solid& solid = scene_.solids[convex.solid];
             solid = {};
             solid.kind = SolidKind::convex;
             bound_sphere(convex, solid);
             scene_.convex.push_back(convex.solid);
-            boxes_[convex.solid] = convex.box;
+            places_.boxes[convex.solid] = convex.box;
             by_planes_[convex.solid] = true;
         }
     }
 
-    /// Adds the meshes that planes reproduce in this precision. The hash has them as meshes.
-    void add_convex_meshes() {
-        const double unit = static_cast<double>(RealTraits<Real>::unit) * normalization_.extent;
-        for (uint32_t i = 0; i < source_.solids.size(); ++i)
-            if (std::optional<ConvexSolid> convex = convex_mesh(source_, i, normalization_, unit))
-                convex_.push_back(std::move(*convex));
-        std::sort(convex_.begin(), convex_.end(),
-                  [](const ConvexSolid& a, const ConvexSolid& b) { return a.solid < b.solid; });
-    }
-
     void add_slabs() {
-        for (const ConvexSolid& convex : convex_) {
+        for (const ConvexSolid& convex : bodies_.convex) {
             Solid& solid = scene_.solids[convex.solid];
             solid.first_slab = static_cast<uint32_t>(scene_.slabs.size());
             solid.slab_count = static_cast<uint32_t>(convex.planes.size());
-            for (const PlanePair& p : convex.planes)
-                scene_.slabs.push_back({Vec3<Real>(p.normal), static_cast<Real>(p.low), static_cast<Real>(p.high)});
-            scene_.slab_planes.insert(scene_.slab_planes.end(), convex.face_planes.begin(), convex.face_planes.end());
+            for (uint32_t i = 0; i < convex.planes.size(); ++i)
+                scene_.slabs.push_back(
+                    {Vec3<Real>(convex.planes[i].normal), offset_of(convex, 2 * i), offset_of(convex, 2 * i + 1)});
+            if (!scene_.shared_planes.empty())
+                scene_.slab_planes.insert(scene_.slab_planes.end(), convex.face_planes.begin(),
+                                          convex.face_planes.end());
             group_slabs(scene_.slabs, solid, scene_.slab_groups);
         }
+    }
+
+    /// The offset of a slab's face: that of its shared plane, bit by bit, if it has one.
+    Real offset_of(const ConvexSolid& convex, uint32_t face) const {
+        const PlanePair& pair = convex.planes[face / 2];
+        const uint32_t plane = convex.face_planes[face];
+        if (plane == no_plane) return static_cast<Real>(face % 2 == 1 ? pair.high : pair.low);
+        const SharedPlane<Real>& shared = scene_.shared_planes[plane];
+        return dot(dvec3(shared.normal), pair.normal) > 0 ? shared.offset : -shared.offset;
     }
 
     /// Finds the solids with an inside that may share a face with another solid (surface_event.h).
     void find_touching_solids() {
         std::vector<uint32_t> order;
         for (uint32_t i = 0; i < scene_.solids.size(); ++i)
-            if (scene_.solids[i].kind != SolidKind::sheet && !boxes_[i].empty()) order.push_back(i);
+            if (scene_.solids[i].kind != SolidKind::sheet && !places_.boxes[i].empty()) order.push_back(i);
         std::sort(order.begin(), order.end(),
-                  [&](uint32_t a, uint32_t b) { return boxes_[a].low.x < boxes_[b].low.x; });
+                  [&](uint32_t a, uint32_t b) { return places_.boxes[a].low.x < places_.boxes[b].low.x; });
         const auto near = [&](const Box& a, const Box& b, int axis) {
             return a.low[axis] <= b.high[axis] + touching && b.low[axis] <= a.high[axis] + touching;
         };
         for (size_t i = 0; i < order.size(); ++i)
-            for (size_t j = i + 1; j < order.size() && near(boxes_[order[i]], boxes_[order[j]], 0); ++j) {
-                if (near(boxes_[order[i]], boxes_[order[j]], 1) && near(boxes_[order[i]], boxes_[order[j]], 2))
+            for (size_t j = i + 1; j < order.size() && near(places_.boxes[order[i]], places_.boxes[order[j]], 0); ++j) {
+                if (near(places_.boxes[order[i]], places_.boxes[order[j]], 1) &&
+                    near(places_.boxes[order[i]], places_.boxes[order[j]], 2))
                     scene_.solids[order[i]].may_touch = scene_.solids[order[j]].may_touch = 1;
             }
     }
@@ -181,29 +183,25 @@ class Compiler {
 
     void compile_mesh(uint32_t number) {
         SourceSolid& from = source_.solids[number];
-        MeshTopology topology = find_topology(from.mesh);
-        warn(from, topology);
         if (by_planes_[number]) return;
-        const NormalizedMesh mesh(from.mesh, topology, normalization_, sizeof(Real) == sizeof(float));
-        ApexHeights heights = apex_heights(mesh);
-        topology.next_along_edge = {};
+        const std::vector<dvec3>& moved = bodies_.contacts.solids[number].points;
+        const NormalizedMesh mesh(from.mesh, normalization_, moved, sizeof(Real) == sizeof(float));
+        ApexHeights heights = apex_heights(mesh, link_edges(from.mesh));
         const Groups groups = group_triangles(mesh);
         prepare(number, mesh, groups, heights);
         return_free_memory();
 
         Solid& solid = scene_.solids[number];
-        solid.kind = topology.closed ? SolidKind::mesh : SolidKind::sheet;
-        closed_[number] = topology.closed;
+        solid.kind = from.closed ? SolidKind::mesh : SolidKind::sheet;
         solid.first_slab = solid.slab_count = 0;
-        solid.flat =
-            !topology.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * normalization_.extent, solid) ? 1 : 0;
+        solid.flat = !from.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * normalization_.extent, solid) ? 1 : 0;
         solid.first_triangle = triangle_count_;
         solid.first_uv = static_cast<uint32_t>(scene_.uvs.size());
         append_clusters(mesh, groups, heights, number, triangle_count_, scene_.clusters);
         const bool textured = source_.materials[from.material].texture >= 0;
         for (uint32_t t = 0; t < mesh.size(); ++t)
             for (const uint32_t corner : mesh.corners(t)) {
-                boxes_[number].add(mesh.vertex(corner));
+                places_.boxes[number].add(mesh.vertex(corner));
                 if (mesh.size() <= most_outlined) scene_.hulls[number].points.push_back(mesh.vertex(corner));
                 if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
             }
@@ -237,14 +235,25 @@ class Compiler {
         const SourceSolid& from = source_.solids[number];
         const ApexFaults faults = check_apexes(mesh, groups, tree, heights);
         const auto warn_of = [&](uint32_t sides, const char* what) {
-            if (sides > 0 && mesh.topology().closed)
+            if (sides > 0 && from.closed)
                 scene_.warnings.push_back(from.place + ": " + from.name + ": the mesh " + what + std::to_string(sides) +
                                           " sides of triangles; rays may leak there");
         };
         warn_of(faults.crossed, "passes through itself at ");
         warn_of(faults.unchecked, "is too crowded to be checked at ");
-        find_triangle_incidents<Real>(lights_, mesh, groups, tree, number, triangle_count_, normalization_.extent,
-                                      incidents_);
+        const SolidContacts& contacts = bodies_.contacts.solids[number];
+        find_triangle_incidents(lights_, NormalizedMesh(from.mesh, normalization_, contacts.points, false), groups,
+                                tree, number, triangle_count_, contacts.reach, incident_reach(), light_faces_);
+        places_.distances[number] = light_distances(lights_, mesh, groups, tree, number, triangle_count_, light_faces_,
+                                                    normalization_.extent, 2 * incident_reach());
+    }
+
+    /// Moves lights onto the faces on which they lie; distances from where they were then say nothing.
+    void settle_on_faces() {
+        const std::vector<bool> moved =
+            settle_lights(lights_, light_faces_, 4 * RealTraits<double>::unit * normalization_.extent);
+        for (std::vector<LightDistance>& distances : places_.distances)
+            std::erase_if(distances, [&](const LightDistance& distance) { return moved[distance.light]; });
     }
 
     void hash_mesh(uint32_t number) {
@@ -257,32 +266,23 @@ class Compiler {
         for (const auto& uv : mesh.uvs) hash_.add(uv.x), hash_.add(uv.y);
     }
 
-    void warn(const SourceSolid& solid, const MeshTopology& topology) {
-        const std::string place = solid.place + ": " + (solid.name.empty() ? "" : solid.name + ": ");
-        if (const std::string left_out = topology.left_out(); !left_out.empty())
-            scene_.warnings.push_back(place + left_out);
-        if (const uint32_t doubled = solid.mesh.doubled_polygons + topology.doubled; doubled > 0)
-            scene_.warnings.push_back(place + "merged " + std::to_string(doubled) +
-                                      (doubled == 1 ? " face" : " faces") + " with the corners of an earlier one");
-        const double index = source_.materials[solid.material].index;
-        const dvec3 absorption = source_.materials[solid.material].absorption;
-        if (!topology.closed && (index != 1 || largest_component(absorption) > 0))
-            scene_.warnings.push_back(place + "is not closed (" + topology.why_not_closed() +
-                                      "): its index and absorption have no effect");
-    }
-
     void compile_shading() {
         TextureSet textures = read_textures(source_);
         scene_.warnings.insert(scene_.warnings.end(), textures.warnings.begin(), textures.warnings.end());
-        scale_ = radiance_scale(description_, radiance_bound(source_, textures, lights_, boxes_),
-                                sizeof(Real) == sizeof(float));
+        for (const ConvexSolid& convex : bodies_.convex)
+            places_.distances[convex.solid] =
+                light_distances(lights_, convex, light_faces_, normalization_.extent, 2 * incident_reach());
+        const dvec3 bound =
+            radiance_bound(source_, textures, places_, 1 / normalization_.factor, lights_, scene_.warnings);
+        scale_ = radiance_scale(description_, bound, sizeof(Real) == sizeof(float));
         scene_.radiance_exponent = scale_.exponent;
         for (int c = 0; c < 3; ++c) scene_.bound[c] = rounded_up<Real>(scale_.bound[c]);
         scene_.background = Vec3<Real>(scaled(description_.background));
         std::vector<double> sizes(source_.materials.size());  // of the largest solid of each
-        for (size_t i = 0; i < boxes_.size(); ++i) {
+        for (size_t i = 0; i < places_.boxes.size(); ++i) {
             double& size = sizes[source_.solids[i].material];
-            if (!boxes_[i].empty()) size = max_or_second(length(boxes_[i].high - boxes_[i].low), size);
+            if (!places_.boxes[i].empty())
+                size = max_or_second(length(places_.boxes[i].high - places_.boxes[i].low), size);
         }
         for (size_t i = 0; i < source_.materials.size(); ++i) {
             const MaterialDescription& material = source_.materials[i];
@@ -327,25 +327,27 @@ class Compiler {
             hash_.add(light.radiance);
             hash_.add(light.radius);
             hash_.add(static_cast<uint32_t>(light.falloff));
+            if (light.radius > 0 && !light.shown) hash_.add(1u);
             const Vec3<Real> position(light.position), intensity(scaled(light.color));
             if (!is_finite(position) || !is_finite(intensity))
                 throw scene_error(description_, light.place,
                                   std::string("the light is beyond the range of ") + RealTraits<Real>::name);
-            if (light.radius > 0) {
+            if (light.shown) {
                 const Vec3<Real> radiance(scaled(light.radiance));
                 scene_.visible_lights.push_back({position, static_cast<Real>(light.radius), radiance});
                 names.visible_lights.push_back(light.group);
-                owners.push_back(light.convex < 0 ? no_solid : convex_[static_cast<size_t>(light.convex)].solid);
+                owners.push_back(light.convex < 0 ? no_solid : bodies_.convex[static_cast<size_t>(light.convex)].solid);
             }
             if (!light.lights()) continue;
-            auto& faces = incidents_[i];
-            std::sort(faces.begin(), faces.end(), [](const Incident& a, const Incident& b) {
-                return a.solid != b.solid ? a.solid < b.solid : a.face < b.face;
+            auto& faces = light_faces_[i];
+            std::sort(faces.begin(), faces.end(), [](const LightFace& a, const LightFace& b) {
+                const Incident &x = a.incident, &y = b.incident;
+                return x.solid != y.solid ? x.solid < y.solid : x.face < y.face;
             });
             const auto first = static_cast<uint32_t>(scene_.incidents.size());
             scene_.lights.push_back({position, intensity, static_cast<Real>(light.falloff ? light.radius : 0.0), first,
                                      static_cast<uint32_t>(faces.size())});
-            scene_.incidents.insert(scene_.incidents.end(), faces.begin(), faces.end());
+            for (const LightFace& face : faces) scene_.incidents.push_back(face.incident);
             const auto [group, is_new] = groups.try_emplace(light.group, uint32_t(names.light_groups.size()));
             if (is_new) names.light_groups.push_back(light.group);
             scene_.light_groups.push_back(group->second);
@@ -365,16 +367,16 @@ class Compiler {
 
     /// Adds a hull for each solid with the visible lights on its edges, and for every other visible light.
     void add_hulls() {
-        for (const ConvexSolid& convex : convex_) scene_.hulls[convex.solid].points = convex.vertices;
+        for (const ConvexSolid& convex : bodies_.convex) scene_.hulls[convex.solid].points = convex.vertices;
         for (uint32_t i = 0; i < source_.solids.size(); ++i)
-            if (scene_.hulls[i].points.empty() && !boxes_[i].empty())
-                for (const dvec3& corner : boxes_[i].corners()) scene_.hulls[i].points.push_back(corner);
+            if (scene_.hulls[i].points.empty() && !places_.boxes[i].empty())
+                for (const dvec3& corner : places_.boxes[i].corners()) scene_.hulls[i].points.push_back(corner);
         for (const NormalizedLight& light : lights_) {
-            if (!(light.radius > 0)) continue;
+            if (!light.shown) continue;
             if (light.convex < 0) {
                 scene_.hulls.push_back({{light.position}, light.radius});
             } else {
-                Hull& hull = scene_.hulls[convex_[static_cast<size_t>(light.convex)].solid];
+                Hull& hull = scene_.hulls[bodies_.convex[static_cast<size_t>(light.convex)].solid];
                 hull.reach = max_or_second(hull.reach, light.radius);
             }
         }
@@ -383,21 +385,32 @@ class Compiler {
     void explain() {
         std::vector<MaterialUse> uses;
         for (size_t i = 0; i < source_.solids.size(); ++i)
-            uses.push_back(
-                {&source_.materials[source_.solids[i].material], source_.solids[i].place, closed_[i], by_planes_[i]});
+            uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place,
+                            source_.solids[i].closed, by_planes_[i]});
         scene_.effect_reasons =
-            explain_effects(description_, uses, light_on_face(source_, lights_, incidents_), contact());
+            explain_effects(description_, uses, light_on_face(source_, lights_, light_faces_), contact());
         scene_.effects = required_effects(scene_.effect_reasons);
     }
 
-    /// A sentence with the first two objects that touch; empty where none do.
+    /// What touches: a sentence with the first two objects; empty where none do.
     std::string contact() const {
-        if (!contact_.found) return "";
-        const std::string &first = source_.solids[contact_.solids[0]].place,
-                          &second = source_.solids[contact_.solids[1]].place;
-        if (first == second) return "faces of " + first + " lie in one plane";
-        return "faces of " + first + " and " + second + " lie in one plane";
+        const Contacts& contacts = bodies_.contacts;
+        if (contacts.planes.empty()) return "";
+        const std::string &first = source_.solids[contacts.first[0]].place,
+                          &second = source_.solids[contacts.first[1]].place;
+        std::string text = first == second ? "faces of " + first : "faces of " + first + " and " + second;
+        text += " lie in one plane";
+        if (contacts.pairs > 1)
+            text += fmt::format("; {} pairs of faces touch in all, in {} plane{}", contacts.pairs,
+                                contacts.planes.size(), contacts.planes.size() == 1 ? "" : "s");
+        if (contacts.farthest_move > 0)
+            text += fmt::format("; to lie there, vertices were moved by up to {:.2g} ({})",
+                                contacts.farthest_move / normalization_.factor, source_.solids[contacts.moved].place);
+        return text;
     }
+
+    /// How far from a face a light may be to lie on it: 16 u M.
+    double incident_reach() const { return static_cast<double>(incidence<Real>) * normalization_.extent; }
 
     dvec3 scaled(const dvec3& radiance) const {
         return {std::ldexp(radiance.x, -scale_.exponent), std::ldexp(radiance.y, -scale_.exponent),
@@ -406,14 +419,12 @@ class Compiler {
 
     const SceneDescription& description_;
     SceneSource source_;
-    SceneNormalization normalization_;
+    const PlacedBodies& bodies_;
+    const SceneNormalization& normalization_;
     CompiledScene<Real> scene_;
-    std::vector<ConvexSolid> convex_;
     std::vector<NormalizedLight> lights_;
-    IncidentLists incidents_;
-    FirstContact contact_;
-    std::vector<Box> boxes_;       // of each solid
-    std::vector<bool> closed_;     // each solid has an inside
+    LightFaces light_faces_;
+    SolidPlaces places_;
     std::vector<bool> by_planes_;  // each solid is given by planes
     uint32_t triangle_count_ = 0;
     RadianceScale scale_;

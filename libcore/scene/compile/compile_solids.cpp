@@ -9,70 +9,7 @@
 namespace cistula {
 namespace {
 
-constexpr double coplanar = 1e-12;
 constexpr double on_face = 1e-9;  // of the solid's size: far above the rounding of a vertex's distance from its planes
-
-bool are_close(const glm::dvec3& a, const glm::dvec3& b) {
-    return magnitude(a.x - b.x) <= coplanar && magnitude(a.y - b.y) <= coplanar && magnitude(a.z - b.z) <= coplanar;
-}
-
-/// Gives parallel plane pairs a common normal. Returns the pairs of each direction.
-std::vector<std::vector<PlanePair*>> merge_normals(std::vector<PlanePair*>& pairs) {
-    // Sorted by |n.x|, so that opposite normals are neighbors; each is compared with representatives in a window only.
-    std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair* a, const PlanePair* b) {
-        return magnitude(a->normal.x) < magnitude(b->normal.x);
-    });
-    std::vector<std::vector<PlanePair*>> directions;
-    size_t window = 0;
-    for (PlanePair* pair : pairs) {
-        const double x = magnitude(pair->normal.x);
-        while (window < directions.size() && magnitude(directions[window][0]->normal.x) < x - 2 * coplanar) ++window;
-        bool found = false;
-        for (size_t d = window; d < directions.size() && !found; ++d) {
-            const glm::dvec3 normal = directions[d][0]->normal;
-            const bool same = are_close(normal, pair->normal), opposite = are_close(normal, -pair->normal);
-            if (!same && !opposite) continue;
-            found = true;
-            if (same) {
-                pair->normal = normal;
-            } else if (pair->low == -INFINITY) {
-                pair->normal = -normal;
-            } else {
-                pair->normal = normal;
-                const double low = pair->low;
-                pair->low = -pair->high;
-                pair->high = -low;
-                pair->turned = !pair->turned;
-            }
-            directions[d].push_back(pair);
-        }
-        if (!found) directions.push_back({pair});
-    }
-    return directions;
-}
-
-/// The offset of a plane along a direction; `negated`: its pair's normal is the negative of the direction.
-struct Offset {
-    double value;
-    double* stored;
-    bool negated;
-};
-
-void merge_offsets(const std::vector<PlanePair*>& pairs, double tolerance) {
-    std::vector<Offset> offsets;
-    for (PlanePair* pair : pairs) {
-        const bool negated = pair->normal != pairs[0]->normal;
-        for (double* stored : {&pair->low, &pair->high})
-            if (*stored != -INFINITY) offsets.push_back({negated ? -*stored : *stored, stored, negated});
-    }
-    std::stable_sort(offsets.begin(), offsets.end(),
-                     [](const Offset& a, const Offset& b) { return a.value < b.value; });
-    double shared = -INFINITY;
-    for (const Offset& offset : offsets) {
-        if (offset.value - shared > tolerance) shared = offset.value;
-        *offset.stored = offset.negated ? -shared : shared;
-    }
-}
 
 }  // namespace
 
@@ -115,16 +52,9 @@ ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Scene
     for (const auto& planes : shape.planes) {
         const glm::dvec3 normal = rotation(planes.normal);
         const double middle = dot(normal, center), half = radius * shape.inradius;
-        solid.planes.push_back({normal, planes.single ? -INFINITY : middle - half, middle + half, false});
+        solid.planes.push_back({normal, planes.single ? -INFINITY : middle - half, middle + half});
     }
     return solid;
-}
-
-void merge_coplanar(std::vector<ConvexSolid>& solids, double extent) {
-    std::vector<PlanePair*> pairs;
-    for (ConvexSolid& solid : solids)
-        for (PlanePair& pair : solid.planes) pairs.push_back(&pair);
-    for (const auto& direction : merge_normals(pairs)) merge_offsets(direction, coplanar * extent);
 }
 
 void bound_sphere(const ConvexSolid& convex, Solid& solid) {

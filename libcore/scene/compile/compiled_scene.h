@@ -8,6 +8,7 @@
 #include "cistula/model/scene_view.h"
 #include "scene/compile/effect_reason.h"
 #include "scene/compile/hull.h"
+#include "scene/description/coordinate_rounding.h"
 #include "scene/description/description.h"
 #include "scene/film/film_layers.h"
 
@@ -35,6 +36,7 @@ struct CompiledScene {
     std::vector<LightNode> visible_light_tree;
     std::vector<uint32_t> light_groups;  // of each of lights
     std::vector<Hull> hulls;             // around everything visible
+    std::vector<ContactReach> reaches;   // of each solid
     Vec3<Real> background, bound;
     Real extent = 1;
 

@@ -31,8 +31,9 @@ bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantS
     to.planes.assign(to.clusters.size, [&](uint32_t i) { return boxed_plane(here, i); });
     to.sides.assign(to.clusters.size * cluster_lanes, [&](uint32_t slot) { return sides_of(here, slot); });
     cache_transmittances(here.materials, to.cached_transmittances);
-    to.clear_solids = to.transmitting_solids = 0;
+    to.opaque_solids = to.clear_solids = to.transmitting_solids = 0;
     for (uint32_t i = 0; i < to.solids.size; ++i) {
+        to.opaque_solids |= uint32_t(is_opaque(here, i)) << i;
         to.clear_solids |= uint32_t(is_clear(here, i)) << i;
         to.transmitting_solids |= uint32_t(transmits(here, i)) << i;
     }

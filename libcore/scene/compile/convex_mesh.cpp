@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "cistula/geometry/ray.h"
 #include "cistula/lights/edge_lights.h"
-#include "scene/compile/mesh_topology.h"
+#include "scene/compile/normalized_mesh.h"
 #include "scene/description/weld.h"
 
 namespace cistula {
@@ -12,11 +13,13 @@ namespace {
 
 using glm::dvec3;
 
-// In u M. Faces are flat to within `flat`; rounding moves a plane by less than as much again. Where planes meet as
-// bluntly as `least_lean` says, the solid then reaches at most 64 beyond the mesh, by which its box is grown.
-constexpr double flat = 4;
-constexpr double joined = 2 * flat;     // of a triangle's corners from the plane of a larger one: one face
-constexpr double least_width = 0x1p11;  // what a precision holds (docs/rules.md, 12)
+// Faces are flat to within 2^-22 M, which is 4 u M of float, and 2^-9 of the body's thickness; rounding moves a plane
+// by less than as much again. Where planes meet as bluntly as `least_lean` says, the solid then reaches at most 64 u M
+// of float beyond the mesh, by which its box is grown.
+constexpr double flat_in_extent = 0x1p-22;
+constexpr double flat_in_thickness = 0x1p-9;
+constexpr double joined = 2;           // times that, of a triangle's corners from the plane of a larger one: one face
+constexpr double least_width = 0x1p8;  // times that: a body is as thick
 constexpr double least_lean = 1.0 / 8;
 constexpr int most_steps = 64;            // of the search for that direction
 constexpr double least_corner = 0x1p-10;  // determinant of three normals that fixes a corner
@@ -29,23 +32,23 @@ struct HullFacet {
     double offset;
     uint32_t first;                 // the lowest number of its triangles
     std::vector<uint32_t> corners;  // of all its triangles
+    uint32_t plane = no_plane;      // the contact plane of one of them
 };
 
 class ConvexSearch {
   public:
-    ConvexSearch(const MeshSource& mesh, const MeshTopology& topology, const SceneNormalization& normalization,
-                 double unit)
-        : unit_(unit) {
+    ConvexSearch(const MeshSource& mesh, const NormalizedMesh& placed, const Contacts& contacts, uint32_t solid,
+                 double flat)
+        : contacts_(contacts), flat_(flat) {
+        solid_.solid = solid;
         const std::vector<uint32_t> welded = weld(mesh.vertices);
         std::vector<uint32_t> number(mesh.vertices.size(), no_vertex);
-        for (uint32_t t = 0; t < topology.count; ++t) {
-            std::array<uint32_t, 3> corners = mesh.triangles[topology.source_triangle(t)];
-            if (topology.reverses(t)) std::swap(corners[1], corners[2]);
+        for (TriangleCorners corners : mesh.triangles) {
             for (uint32_t& corner : corners) {
                 uint32_t& known = number[welded[corner]];
                 if (known == no_vertex) {
                     known = static_cast<uint32_t>(points_.size());
-                    points_.push_back(normalization.point(mesh.vertices[corner]));
+                    points_.push_back(placed.vertex(corner));
                 }
                 corner = known;
             }
@@ -60,7 +63,7 @@ class ConvexSearch {
         pair_facets();
         if (solid_.planes.size() > most_slabs_of_edge_lights || !is_convex() || !find_corners()) return std::nullopt;
         for (const dvec3& p : points_) solid_.box.add(p);
-        solid_.flatness = flat * unit_;
+        solid_.flatness = flat_;
         return std::move(solid_);
     }
 
@@ -93,7 +96,7 @@ class ConvexSearch {
 
     bool lies_in(const HullFacet& facet, uint32_t triangle) const {
         for (const uint32_t corner : triangles_[triangle])
-            if (magnitude(dot(facet.normal, points_[corner]) - facet.offset) > joined * unit_) return false;
+            if (magnitude(dot(facet.normal, points_[corner]) - facet.offset) > joined * flat_) return false;
         return dot(area_of(triangle), facet.normal) >= 0;
     }
 
@@ -109,10 +112,11 @@ class ConvexSearch {
             if (facet == facets_.end()) {
                 if (facets_.size() == 2 * most_slabs_of_edge_lights || !(square(t) > 0)) return false;
                 const dvec3 normal = normalized(area_of(t));
-                facets_.push_back({dvec3(0), normal, dot(normal, points_[triangles_[t][0]]), t, {}});
+                facets_.push_back({dvec3(0), normal, dot(normal, points_[triangles_[t][0]]), t, {}, no_plane});
                 facet = facets_.end() - 1;
             }
             facet->area += area_of(t);
+            facet->plane = std::min(facet->plane, contacts_.plane_of(solid_.solid, t));
             facet->first = std::min(facet->first, t);
             facet->corners.insert(facet->corners.end(), triangles_[t].begin(), triangles_[t].end());
         }
@@ -125,7 +129,7 @@ class ConvexSearch {
         for (HullFacet& facet : facets_) {
             facet.normal = normalized(facet.area);
             const Range off = range(facet.normal, facet.corners);
-            if (!off.within(2 * flat * unit_)) return false;
+            if (!off.within(2 * flat_)) return false;
             facet.offset = off.middle();
         }
         return true;
@@ -137,10 +141,16 @@ class ConvexSearch {
         for (size_t i = 0; i < facets_.size(); ++i) {
             if (taken[i]) continue;
             const HullFacet& facet = facets_[i];
-            PlanePair pair{facet.normal, -INFINITY, facet.offset, false};
-            for (size_t j = i + 1; j < facets_.size() && pair.low == -INFINITY; ++j)
-                if (!taken[j] && make_slab(facet, facets_[j], pair)) taken[j] = true;
+            PlanePair pair{facet.normal, -INFINITY, facet.offset};
+            uint32_t low = no_plane, high = facet.plane;
+            for (size_t j = i + 1; j < facets_.size() && pair.low == -INFINITY; ++j) {
+                if (taken[j] || !make_slab(facet, facets_[j], pair)) continue;
+                taken[j] = true;
+                low = facets_[j].plane;
+                if (!largest_is_positive(facet.normal)) std::swap(low, high);
+            }
             solid_.planes.push_back(pair);
+            solid_.face_planes.insert(solid_.face_planes.end(), {low, high});
         }
     }
 
@@ -151,8 +161,8 @@ class ConvexSearch {
         const HullFacet &above = ahead ? facet : other, &below = ahead ? other : facet;
         const dvec3 normal = normalized(above.area - below.area);
         const Range high = range(normal, above.corners), low = range(normal, below.corners);
-        if (!high.within(2 * flat * unit_) || !low.within(2 * flat * unit_)) return false;
-        pair = {normal, low.middle(), high.middle(), false};
+        if (!high.within(2 * flat_) || !low.within(2 * flat_)) return false;
+        pair = {normal, low.middle(), high.middle()};
         return true;
     }
 
@@ -176,7 +186,7 @@ class ConvexSearch {
                 outside.low = min_or_second(off, outside.low);
                 outside.high = max_or_second(off, outside.high);
             }
-            if (outside.high > flat * unit_ || outside.low > -least_width * unit_) return false;
+            if (outside.high > flat_ || outside.low > -least_width * flat_) return false;
         }
         return true;
     }
@@ -187,7 +197,7 @@ class ConvexSearch {
         for (const dvec3& p : points_) {
             std::vector<dvec3> normals;
             for (const HalfSpace& half : half_spaces_)
-                if (dot(half.normal, p) - half.offset >= -flat * unit_) normals.push_back(half.normal);
+                if (dot(half.normal, p) - half.offset >= -flat_) normals.push_back(half.normal);
             if (normals.empty() || !are_blunt(normals)) return false;
             if (normals.size() < 3) continue;  // on an edge or in a face
             if (!(largest_determinant(normals) >= least_corner)) return false;
@@ -222,9 +232,10 @@ class ConvexSearch {
         return largest;
     }
 
-    const double unit_;
+    const Contacts& contacts_;
+    const double flat_;
     std::vector<dvec3> points_;  // welded
-    std::vector<std::array<uint32_t, 3>> triangles_;
+    std::vector<TriangleCorners> triangles_;
     std::vector<HullFacet> facets_;
     std::vector<HalfSpace> half_spaces_;
     ConvexSolid solid_;
@@ -233,15 +244,17 @@ class ConvexSearch {
 }  // namespace
 
 std::optional<ConvexSolid> convex_mesh(const SceneSource& source, uint32_t number,
-                                       const SceneNormalization& normalization, double unit) {
+                                       const SceneNormalization& normalization, const Contacts& contacts) {
     const SourceSolid& solid = source.solids[number];
-    if (solid.platonic || solid.keep_triangles || source.materials[solid.material].texture >= 0) return std::nullopt;
-    if (solid.mesh.triangles.size() > most_convex_triangles) return std::nullopt;
-    const MeshTopology topology = find_topology(solid.mesh);
-    if (!topology.closed) return std::nullopt;
-    std::optional<ConvexSolid> convex = ConvexSearch(solid.mesh, topology, normalization, unit).run();
-    if (convex) convex->solid = number;
-    return convex;
+    if (solid.platonic || !solid.closed || solid.keep_triangles) return std::nullopt;
+    if (source.materials[solid.material].texture >= 0 || solid.mesh.triangles.size() > most_convex_triangles)
+        return std::nullopt;
+    const double thickness = 3 * solid.thickness * normalization.factor;
+    const NormalizedMesh mesh(solid.mesh, normalization, contacts.solids[number].points, false);
+    const double flat =
+        max_or_second(min_or_second(flat_in_extent, flat_in_thickness * thickness / normalization.extent),
+                      4 * RealTraits<double>::unit);
+    return ConvexSearch(solid.mesh, mesh, contacts, number, flat * normalization.extent).run();
 }
 
 }  // namespace cistula

@@ -65,6 +65,7 @@ void OwnedLaneScene<Real>::number_solids(const SceneView<Real>& from) {
             place[i] = static_cast<uint32_t>(numbers_.size());
             if (from.solids[i].kind == SolidKind::convex) convex_.push_back(place[i]);
             if (from.solids[i].kind == SolidKind::mesh) scene_.meshes |= 1u << place[i];
+            if (is_closed && !is_opaque(from, i)) scene_.transparent |= 1u << place[i];
             scene_.closed += is_closed;
             numbers_.push_back(i);
             solids_.push_back(from.solids[i]);

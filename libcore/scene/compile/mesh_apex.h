@@ -4,12 +4,13 @@
 
 #include <vector>
 
-#include "scene/compile/mesh_topology.h"
+#include "scene/compile/mesh_edges.h"
+#include "scene/compile/normalized_mesh.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
 
-/// Apex heights of the kept triangles: [0] inside (the side that normals point away from), [1] outside. Lengths in the
+/// Apex heights of a mesh's triangles: [0] inside (the side that normals point away from), [1] outside. Lengths in the
 /// frame.
 struct ApexHeights {
     std::vector<float> side[2];
@@ -17,7 +18,7 @@ struct ApexHeights {
 
 /// Initial heights: inradius / 8 * min(1, tan(a / 2)), a the smallest dihedral angle on that side; edges without a
 /// neighbor are ignored.
-ApexHeights apex_heights(const NormalizedMesh& mesh);
+ApexHeights apex_heights(const NormalizedMesh& mesh, const MeshEdges& edges);
 
 /// Greatest number of times an apex is halved; its lowest height is 2^-24 of the first.
 inline constexpr int most_halvings = 24;

@@ -9,9 +9,6 @@ namespace {
 
 using glm::dvec3;
 
-// Rounding of the sums over a mesh's triangles, relative to those of the magnitudes.
-constexpr double rounding = 0x1p-30;
-
 /// Calls `use(a, b, c, n)` for the triangles with finite corners and an area; n is twice the area vector.
 template <class Use>
 void for_each_triangle(const MeshSource& mesh, const SceneNormalization& normalization, const Use& use) {
@@ -28,26 +25,20 @@ void for_each_triangle(const MeshSource& mesh, const SceneNormalization& normali
 
 MeshSize mesh_size(const MeshSource& mesh, const SceneNormalization& normalization, double least_height) {
     MeshSize size;
-    dvec3 origin(0), area_vector(0);
-    double area = 0, volume = 0, least_square = INFINITY;
+    double area = 0, least_square = INFINITY;  // twice the area
     const double no_area = least_height * least_height;
     for_each_triangle(mesh, normalization, [&](const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& n) {
-        if (size.triangles++ == 0) origin = a;
+        ++size.triangles;
         for (const dvec3& p : {a, b, c}) size.box.add(p);
         const double square = dot(n, n);
-        area_vector += n;
         area += square_root(square);
-        volume += dot(a - origin, n);
         const dvec3 ab = b - a, bc = c - b, ca = a - c;
         const double longest = max_or_second(dot(ab, ab), max_or_second(dot(bc, bc), dot(ca, ca)));
         if (square > no_area * longest) least_square = min_or_second(square / longest, least_square);
     });
     if (size.triangles == 0) return size;
     size.least_height = square_root(least_square);
-    const double diagonal = length(size.box.high - size.box.low);
-    size.closed = length(area_vector) <= rounding * area && magnitude(volume) > rounding * area * diagonal;
-    // `area` is twice the area, `volume` six times the volume.
-    size.thickness = size.closed ? magnitude(volume) / (3 * area) : area / (4 * diagonal);
+    size.half_width = area / (4 * length(size.box.high - size.box.low));
     return size;
 }
 

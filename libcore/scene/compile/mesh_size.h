@@ -11,9 +11,7 @@ namespace cistula {
 struct MeshSize {
     Box box;
     size_t triangles = 0;
-    bool closed = false;      // it encloses a volume: its triangles' area vectors cancel
-    double thickness = 0;     // closed: volume / area, a third of the inradius of what surrounds a ball and all of a
-                              // plate's; else half the width: area / 2 over the diagonal of the box
+    double half_width = 0;    // area / 2 over the diagonal of the box
     double least_height = 0;  // of a triangle that is higher than asked for; infinity: there is none
 };
 

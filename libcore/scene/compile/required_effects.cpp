@@ -31,12 +31,12 @@ struct SceneLight {
 std::vector<SceneLight> all_lights(const SceneDescription& scene) {
     std::vector<SceneLight> lights;
     for (const LightDescription& light : scene.lights)
-        lights.push_back({"the light " + light.place, false, any(light.color), light.radius > 0, light.falloff});
+        lights.push_back({"the light " + light.place, false, any(light.color), light.shown(), light.falloff});
     for (const ObjectDescription& object : scene.objects) {
         const auto* solid = std::get_if<SolidObject>(&object.shape);
         if (!solid || solid->edge_lights.count == 0) continue;
         const EdgeLights& e = solid->edge_lights;
-        lights.push_back({"the lights on the edges of " + object.place, true, any(e.color), e.radius > 0, e.falloff});
+        lights.push_back({"the lights on the edges of " + object.place, true, any(e.color), e.shown(), e.falloff});
     }
     return lights;
 }
@@ -67,8 +67,9 @@ struct Use {
     bool closed, convex;
 };
 
+/// Whether some light may pass a material's faces: perhaps too little for numbers of float, but no less.
 bool passes(const MaterialDescription& m) {
-    return m.transmission > 0 || (m.fresnel && m.reflection > 0);
+    return any((m.transmission + (m.fresnel ? m.reflection : 0)) * m.tint);
 }
 
 bool shows_texture(const Use& use) {
@@ -93,11 +94,11 @@ bool keeps_a_color(const Use& use) {
 }
 
 bool bends(const Use& use) {
-    return use.facts.passing_rays && use.closed && use.material.index != 1;
+    return use.facts.passing_rays && use.closed && passes(use.material) && use.material.index != 1;
 }
 
 bool reflects(const Use& use) {
-    return use.material.reflection > 0 || (use.material.fresnel && passes(use.material)) || bends(use);
+    return use.material.reflection > 0 || (use.material.fresnel && use.material.transmission > 0) || bends(use);
 }
 
 bool is_tinted(const Use& use) {
@@ -107,7 +108,7 @@ bool is_tinted(const Use& use) {
 
 Text because_of_reflection(const Use& use) {
     if (use.material.reflection > 0) return "has kr " + number(use.material.reflection);
-    if (use.material.fresnel && passes(use.material)) return "splits its light by Fresnel's terms";
+    if (use.material.fresnel && use.material.transmission > 0) return "splits its light by Fresnel's terms";
     return "has index " + number(use.material.index) + ": total reflection";
 }
 
@@ -147,7 +148,8 @@ const MaterialRow material_rows[] = {
     {effect_fresnel, Premise::none,
      [](const Use& u) { return u.material.fresnel && u.material.reflection + u.material.transmission > 0; },
      [](const Use&) -> Text { return "has fresnel on"; }, "no material that reflects or transmits has fresnel on"},
-    {effect_absorption, Premise::none, [](const Use& u) { return u.closed && any(u.material.absorption); },
+    {effect_absorption, Premise::none,
+     [](const Use& u) { return u.closed && passes(u.material) && any(u.material.absorption); },
      [](const Use&) -> Text { return "absorbs light"; }, "no solid absorbs"},
     {effect_tint, Premise::passing_rays, is_tinted, [](const Use&) -> Text { return "has a tint"; },
      "what passes keeps its color"},

@@ -11,9 +11,9 @@ bool shines(const glm::dvec3& color) {
 }
 
 void add_light(SceneNames& names, const std::string& name, const std::string& place, const glm::dvec3& color,
-               double radius) {
+               bool shown) {
     if (shines(color)) names.lights.push_back({name, place});
-    if (radius > 0) names.visible_lights.push_back({name, place});
+    if (shown) names.visible_lights.push_back({name, place});
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ SceneNames name_scene(const SceneDescription& description) {
     // Lights in the order of normalize_lights.
     for (size_t i = 0; i < description.lights.size(); ++i) {
         const LightDescription& light = description.lights[i];
-        add_light(names, "light " + std::to_string(i), light.place, light.color, light.radius);
+        add_light(names, "light " + std::to_string(i), light.place, light.color, light.shown());
     }
     for (const SourceSolid& solid : source.solids) {
         if (!solid.platonic) continue;
@@ -35,7 +35,7 @@ SceneNames name_scene(const SceneDescription& description) {
         for (size_t edge = 0; edge < edges; ++edge)
             for (int i = 0; i < on_edges.count; ++i)
                 add_light(names, solid.name + " edge " + std::to_string(edge) + " light " + std::to_string(i),
-                          solid.place, on_edges.color, on_edges.radius);
+                          solid.place, on_edges.color, on_edges.shown());
     }
     return names;
 }

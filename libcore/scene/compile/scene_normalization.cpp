@@ -4,6 +4,7 @@
 
 #include "cistula/numerics/vec.h"
 #include "scene/base/box.h"
+#include "scene/compile/scene_source.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
 
@@ -22,7 +23,7 @@ void add_solid(Box& box, const SolidObject& solid) {
     const std::vector<glm::dvec3> vertices = world_vertices(solid);
     for (const glm::dvec3& p : vertices) box.add(p);
     const EdgeLights& lights = solid.edge_lights;
-    if (lights.count == 0 || !(lights.radius > 0)) return;
+    if (lights.count == 0 || !lights.shown()) return;
     for (const auto& edge : platonic_shape(solid.solid).edges) {
         for (int i = 0; i < lights.count; ++i) {
             const double s = (i + 1.0) / (lights.count + 1.0);
@@ -43,7 +44,7 @@ Box world_box(const SceneSource& source) {
         }
     }
     for (const LightDescription& light : source.description->lights)
-        if (light.radius > 0) add_sphere(box, light.position, light.radius);
+        if (light.shown()) add_sphere(box, light.position, light.radius);
     return box;
 }
 

@@ -5,9 +5,11 @@
 
 #include <glm/vec3.hpp>
 
-#include "scene/compile/scene_source.h"
+#include "scene/description/description.h"
 
 namespace cistula {
+
+struct SceneSource;
 
 struct SceneNormalization {
     glm::dvec3 center{0};

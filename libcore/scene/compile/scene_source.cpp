@@ -6,9 +6,9 @@
 
 #include "cistula/numerics/vec.h"
 #include "scene/base/default_rounding.h"
-#include "scene/compile/mesh_topology.h"
+#include "scene/compile/mesh_solids.h"
+#include "scene/compile/placed_bodies.h"
 #include "scene/description/platonic.h"
-#include "scene/readers/mesh_file.h"
 
 namespace cistula {
 namespace {
@@ -80,54 +80,6 @@ void check_triangles(const SceneDescription& scene, const TrianglesObject& objec
         if (!is_finite(uv.x) || !is_finite(uv.y)) throw scene_error(scene, place, "a uv is not finite");
 }
 
-/// The triangles of all parts as one mesh.
-MeshSource joined_mesh(const std::vector<MeshPart>& parts) {
-    const bool with_uvs =
-        std::all_of(parts.begin(), parts.end(), [](const MeshPart& p) { return !p.mesh.uvs.empty(); });
-    MeshSource joined;
-    for (const MeshPart& part : parts) {
-        const auto first = static_cast<uint32_t>(joined.owned_vertices.size());
-        joined.owned_vertices.insert(joined.owned_vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
-        if (with_uvs) joined.owned_uvs.insert(joined.owned_uvs.end(), part.mesh.uvs.begin(), part.mesh.uvs.end());
-        for (const auto& t : part.mesh.triangles)
-            joined.owned_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-        joined.doubled_polygons += part.mesh.doubled_polygons;
-    }
-    joined.view_owned();
-    return joined;
-}
-
-/// Merges all parts of one material into one if that closes a mesh that the file splits; else leaves out of each what
-/// an earlier one has, too.
-void join_parts(std::vector<MeshPart>& parts) {
-    MeshSource joined = joined_mesh(parts);
-    const MeshTopology topology = find_topology(joined);
-    if (topology.closed) {
-        parts.resize(1);
-        parts.front().mesh = std::move(joined);
-        return;
-    }
-    uint32_t first = 0;
-    auto doubled = topology.doubles.begin();
-    for (MeshPart& part : parts) {
-        MeshSource& mesh = part.mesh;
-        const auto count = static_cast<uint32_t>(mesh.owned_triangles.size());
-        uint32_t kept = 0;
-        for (uint32_t i = 0; i < count; ++i) {
-            const bool is_double = doubled != topology.doubles.end() && *doubled == first + i;
-            if (is_double)
-                ++doubled;
-            else
-                mesh.owned_triangles[kept++] = mesh.owned_triangles[i];
-        }
-        mesh.owned_triangles.resize(kept);
-        (kept > 0 ? mesh : parts.front().mesh).doubled_polygons += count - kept;  // which the warning counts
-        mesh.view_owned();
-        first += count;
-    }
-    std::erase_if(parts, [](const MeshPart& part) { return part.mesh.triangles.empty(); });
-}
-
 /// `name`, or one after a place in the file, "object3", if that is empty.
 std::string given_name(const std::string& name, const std::string& place) {
     return name.empty() ? "object" + place.substr(place.find_last_of('/') + 1) : name;
@@ -148,11 +100,11 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
     const SceneDescription& scene = *source.description;
     if (!is_finite(mesh.center) || !is_finite(mesh.rotation) || !is_finite(mesh.scale) || mesh.scale == 0)
         throw scene_error(scene, object.place, "the center and rotation must be finite, the scale finite and not 0");
-    std::vector<MeshPart> parts = read_mesh(mesh, scene.source + ": " + object.place, source.warnings, &source.files);
-    if (object.material >= 0 && parts.size() > 1) join_parts(parts);
-    for (MeshPart& part : parts) {
+    std::vector<MeshGroup> groups = join_groups(
+        read_mesh(mesh, scene.source + ": " + object.place, source.warnings, &source.files), object.material >= 0);
+    for (auto& [part, pieces] : groups) {
         SourceSolid solid;
-        solid.name = parts.size() == 1 ? object.name : given_name(object.name, object.place) + "/" + part.name;
+        solid.name = groups.size() == 1 ? object.name : given_name(object.name, object.place) + "/" + part.name;
         solid.place = object.place;
         solid.mesh = std::move(part.mesh);
         solid.keep_triangles = mesh.keep_triangles;
@@ -167,7 +119,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
             throw scene_error(scene, object.place,
                               "the mesh brings no material of its own (" + mesh.file + "); name one with \"material\"");
         }
-        source.solids.push_back(std::move(solid));
+        add_mesh_solids(source, std::move(solid), pieces);
     }
 }
 
@@ -175,6 +127,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
 void require_different_names(const SceneSource& source) {
     std::unordered_map<std::string, const SourceSolid*> first;
     for (const SourceSolid& solid : source.solids) {
+        if (solid.body > 0) continue;
         const auto [other, is_new] = first.try_emplace(name_of(solid), &solid);
         if (!is_new && !(solid.name.empty() && other->second->name.empty()))
             throw scene_error(*source.description, solid.place,
@@ -243,7 +196,11 @@ SceneSource gathered_scene(const SceneDescription& description) {
             solid.mesh.vertices = triangles.vertices;
             solid.mesh.triangles = triangles.triangles;
             solid.mesh.uvs = triangles.uvs;
+            solid.mesh.rounding = coordinate_rounding(triangles.vertices);
             solid.keep_triangles = triangles.keep_triangles;
+            const MeshPieces pieces = find_pieces(solid.mesh);
+            add_mesh_solids(source, std::move(solid), pieces);
+            continue;
         }
         source.solids.push_back(std::move(solid));
     }
@@ -260,6 +217,7 @@ SceneSource gathered_scene(const SceneDescription& description) {
             throw scene_error(description, solid.place,
                               what + "the triangles have no texture coordinates; give one uv a vertex");
     }
+    source.bodies = std::make_shared<const PlacedBodies>(source);
     return source;
 }
 

@@ -16,12 +16,18 @@ struct SourceSolid {
     std::string name, place;
     uint32_t material = 0;                  // index into SceneSource::materials
     const SolidObject* platonic = nullptr;  // null: the solid is `mesh`
+    /// The triangles that are rendered, in file order; those of a closed mesh counter-clockwise seen from outside.
     MeshSource mesh;
+    bool closed = true;           // the solid has an inside; if it is a mesh, its triangles surround a volume
+    double thickness = 0;         // of a closed mesh, in scene units: the least volume / area of its bodies
+    uint32_t body = 0;            // of several solids that one mesh makes, from 0; they share its name
     bool keep_triangles = false;  // the mesh is not given by planes, even where it could be
 };
 
 /// The solid's name, or one after its place in the file, "object3", if the file gives none.
 std::string name_of(const SourceSolid& solid);
+
+struct PlacedBodies;
 
 struct SceneSource {
     const SceneDescription* description = nullptr;
@@ -29,6 +35,7 @@ struct SceneSource {
     std::vector<SourceSolid> solids;             // in file order
     std::vector<std::string> warnings;           // of mesh files
     std::vector<std::string> files;  // that the description and its meshes name; maps of meshes may be missing
+    std::shared_ptr<const PlacedBodies> bodies;  // the solids in the scene's frame (placed_bodies.h)
 };
 
 /// Checks every number that affects the compiled scene, and reads the meshes. Throws Error with the place.

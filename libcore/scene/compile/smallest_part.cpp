@@ -1,20 +1,15 @@
 #include "scene/compile/smallest_part.h"
 
-#include <vector>
+#include <algorithm>
 
 #include "scene/compile/compile_lights.h"
-#include "scene/compile/compile_solids.h"
-#include "scene/compile/convex_mesh.h"
-#include "scene/compile/mesh_size.h"
-#include "scene/compile/scene_normalization.h"
+#include "scene/compile/placed_bodies.h"
 #include "scene/description/platonic.h"
 
 namespace cistula {
 namespace {
 
 using glm::dvec3;
-
-constexpr double contact = 0x1p-20;  // 16 u in float, times M: what is nearer touches
 
 bool apart(const Box& a, const Box& b, double range) {
     for (int axis = 0; axis < 3; ++axis)
@@ -26,13 +21,15 @@ class SmallestPartSearch {
   public:
     explicit SmallestPartSearch(const SceneSource& source)
         : source_(source),
-          normalization_(find_normalization(source)),
+          bodies_(*source.bodies),
+          normalization_(bodies_.normalization),
           extent_(normalization_.extent),
           range_(least_share(Precision::single_) * extent_) {}
 
     SmallestPart run() {
         add_solids();
         add_lights();
+        add_gaps();
         return smallest_;
     }
 
@@ -56,66 +53,77 @@ class SmallestPartSearch {
             const double radius = solid.platonic->radius * normalization_.factor;
             add(platonic_shape(solid.platonic->solid).inradius * radius,
                 [&] { return name(solid) + ": its inradius"; });
-            convex_.push_back(convex_solid(*solid.platonic, i, normalization_));
         }
     }
 
     void add_mesh(uint32_t number) {
         const SourceSolid& solid = source_.solids[number];
         const MaterialDescription& material = source_.materials[solid.material];
-        const MeshSize size = mesh_size(solid.mesh, normalization_, least_share(Precision::double_) * extent_);
-        meshes_.push_back({&solid, size.box});
+        const MeshSize& size = bodies_.sizes[number];
         if (size.triangles == 0) return;
-        add(size.thickness, [&] { return name(solid) + (size.closed ? ": its thickness" : ": its half width"); });
+        if (solid.closed)
+            add(solid.thickness * normalization_.factor, [&] { return name(solid) + ": its thickness"; });
+        else
+            add(size.half_width, [&] { return name(solid) + ": its half width"; });
         if (!(material.reflection > 0 || material.transmission > 0)) return;
         if (!(size.least_height / extent_ < smallest_.share) || has_planes(number)) return;
         add(size.least_height, [&] { return name(solid) + ": the least height of its triangles"; });
     }
 
-    /// Whether a mesh is given by planes in single precision, so that rays leave no triangles.
     bool has_planes(uint32_t number) const {
-        const double unit = RealTraits<float>::unit * extent_;
-        return convex_mesh(source_, number, normalization_, unit).has_value();
+        const auto found = std::lower_bound(bodies_.convex.begin(), bodies_.convex.end(), number,
+                                            [](const ConvexSolid& a, uint32_t wanted) { return a.solid < wanted; });
+        return found != bodies_.convex.end() && found->solid == number;
     }
 
-    /// Adds a distance unless it is a contact.
-    template <class What>
-    void add_distance(double distance, const What& what) {
-        if (distance > contact * extent_) add(distance, what);
+    /// Adds a light's distance from a solid's face unless it lies on that.
+    void add_distance(double distance, uint32_t solid, const NormalizedLight& light) {
+        if (distance > tolerance(solid, light))
+            add(distance,
+                [&] { return light.place + ": a light's distance from a face of " + source_.solids[solid].place; });
+    }
+    double tolerance(uint32_t solid, const NormalizedLight& light) const {
+        return largest_tolerance(bodies_.contacts.solids[solid].reach, light);
     }
 
     void add_lights() {
-        for (const NormalizedLight& light : normalize_lights(source_, normalization_, convex_)) {
-            if (light.radius > 0) add(light.radius, [&] { return light.place + ": a light's radius"; });
+        for (const NormalizedLight& light : normalize_lights(source_, normalization_, bodies_.convex)) {
+            if (light.shown) add(light.radius, [&] { return light.place + ": a light's radius"; });
             if (!light.lights()) continue;
             const Box at{light.position, light.position};
-            for (const ConvexSolid& solid : convex_) {
+            for (const ConvexSolid& solid : bodies_.convex) {
                 if (apart(at, solid.box, range_)) continue;
                 double beyond = -INFINITY;
                 for (const PlanePair& plane : solid.planes) {
                     beyond = max_or_second(dot(plane.normal, light.position) - plane.high, beyond);
                     beyond = max_or_second(plane.low - dot(plane.normal, light.position), beyond);
                 }
-                add_distance(magnitude(beyond), [&] { return near(light, source_.solids[solid.solid]); });
+                add_distance(magnitude(beyond), solid.solid, light);
             }
-            for (const auto& [mesh, box] : meshes_) {
-                if (apart(at, box, range_)) continue;
-                const SourceSolid& solid = *mesh;
-                add_distance(
-                    distance_to_triangles(solid.mesh, normalization_, light.position, contact * extent_, range_),
-                    [&] { return near(light, solid); });
+            for (uint32_t i = 0; i < source_.solids.size(); ++i) {
+                if (source_.solids[i].platonic || has_planes(i) || apart(at, bodies_.sizes[i].box, range_)) continue;
+                add_distance(distance_to_triangles(source_.solids[i].mesh, normalization_, light.position,
+                                                   tolerance(i, light), range_),
+                             i, light);
             }
         }
     }
-    static std::string near(const NormalizedLight& light, const SourceSolid& solid) {
-        return light.place + ": a light's distance from a face of " + solid.place;
+
+    /// Adds gaps that float would close (docs/rules.md, 11, A10).
+    void add_gaps() {
+        for (const auto* pairs : {&bodies_.contacts.near, &bodies_.contacts.apart})
+            for (const NearPair& pair : *pairs)
+                if (pair.gap <= 0x1p-20 * extent_)
+                    add(max_or_second(pair.gap, least_share(Precision::double_) * extent_), [&] {
+                        return name(source_.solids[pair.solids[1]]) + ": its distance from " +
+                               source_.solids[pair.solids[0]].place;
+                    });
     }
 
     const SceneSource& source_;
-    const SceneNormalization normalization_;
+    const PlacedBodies& bodies_;
+    const SceneNormalization& normalization_;
     const double extent_, range_;
-    std::vector<ConvexSolid> convex_;
-    std::vector<std::pair<const SourceSolid*, Box>> meshes_;
     SmallestPart smallest_;
 };
 

@@ -47,8 +47,11 @@ struct EdgeLights {
     glm::dvec3 color{1};
     std::optional<glm::dvec3> glow;  // radiance of the visible sphere; default: color
     double radius = 0;               // 0: not visible
+    bool visible = true;             // false: the radius is of the falloff alone
     bool falloff = false;
     std::string group;  // the light layer that they are part of; empty: one of their own
+
+    bool shown() const { return visible && radius > 0; }
 };
 
 struct SolidObject {
@@ -88,9 +91,12 @@ struct LightDescription {
     glm::dvec3 color{1};  // intensity; 0: gives no light, may still be visible
     std::optional<glm::dvec3> glow;
     double radius = 0;     // 0: not visible
+    bool visible = true;   // false: the radius is of the falloff alone
     bool falloff = false;  // 1 / distance^2, clamped at radius, which must then be positive
     std::string group;     // the light layer that it is part of; empty: one of its own
     std::string place;
+
+    bool shown() const { return visible && radius > 0; }
 };
 
 /// A path of the camera in cylindrical coordinates, in the text input's sinusoids of time: r = r0 + Ar sin(wr t + pr),
@@ -129,6 +135,7 @@ struct SceneDescription {
     CameraDescription camera;
     int depth = 4;
     double cutoff = 0;
+    std::optional<double> contact;  // faces that are no farther apart touch; none: 2^-20 of the scene's extent
     glm::dvec3 ambient{0.1}, background{0};
     std::vector<TextureDescription> textures;
     std::vector<MaterialDescription> materials;

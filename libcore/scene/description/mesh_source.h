@@ -9,18 +9,25 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "scene/description/coordinate_rounding.h"
+
 namespace cistula {
+
+/// The corners of a triangle, by the numbers of its mesh's vertices.
+using TriangleCorners = std::array<uint32_t, 3>;
 
 /// Triangles in scene units: owned (read from a file) or borrowed from the description. Moving it keeps the spans
 /// valid.
 struct MeshSource {
     std::span<const glm::dvec3> vertices;
-    std::span<const std::array<uint32_t, 3>> triangles;
+    std::span<const TriangleCorners> triangles;
     std::span<const glm::dvec2> uvs;  // one per vertex, or none
     uint32_t doubled_polygons = 0;    // of the file, left out since an earlier one has the same corners
 
+    CoordinateRounding rounding;  // of the vertices, in scene units
+
     std::vector<glm::dvec3> owned_vertices;
-    std::vector<std::array<uint32_t, 3>> owned_triangles;
+    std::vector<TriangleCorners> owned_triangles;
     std::vector<glm::dvec2> owned_uvs;
 
     MeshSource() = default;

@@ -16,11 +16,11 @@ void take_from(MaterialDescription& m, uint32_t effect) {
     if (effect == effect_tint) m.tint = glm::dvec3{1};
 }
 
-/// Removes a light's visible sphere or its falloff. Falloff needs the radius of the sphere, so it goes with it.
+/// Hides a light, or removes its falloff.
 template <class Light>
 void take_from_light(Light& light, uint32_t effect) {
-    if (effect == effect_visible_lights) light.radius = 0;
-    if (effect == effect_visible_lights || effect == effect_light_falloff) light.falloff = false;
+    if (effect == effect_visible_lights) light.visible = false;
+    if (effect == effect_light_falloff) light.falloff = false;
 }
 
 /// Makes a mesh triangles, if the shape is one.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cistula/model/lattice_settings.h"
 #include "cistula/model/pixel_record.h"
 #include "scene/base/pixel_rect.h"
 #include "scene/film/film_layers.h"
@@ -27,6 +28,13 @@ struct Film {
 
     /// Contribution of one unit of a pixel's sums to its mean, in the scene's units of radiance.
     double unit() const { return std::ldexp(1.0, radiance_exponent - fixed_shift) / samples; }
+
+    /// A bound on what whole units took from each channel of a pixel's sums: less than one for each contribution, of
+    /// which there are no more than rays (docs/rules.md, 8).
+    uint64_t units_lost(const PixelRecord& pixel) const {
+        const bool is_adaptive = pixel.samples < static_cast<uint32_t>(samples);
+        return uint64_t{pixel.rays} * (is_adaptive ? largest_weight(pixel.samples) : 1);
+    }
 };
 
 }  // namespace cistula

@@ -1,5 +1,6 @@
 #include "scene/film/film_colors.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "cistula/numerics/elementary.h"
@@ -21,7 +22,8 @@ float rounded_up_to_float(double exact) {
 
 /// A pixel's error bound: the mean of its ledger, rounded up to a unit of the fixed sums and then to a float.
 float ledger_bound(const Film& film, const PixelRecord& pixel, int c) {
-    const uint64_t total = static_cast<uint64_t>(pixel.pruned[c]) + static_cast<uint64_t>(pixel.cut[c]);
+    const uint64_t branches = static_cast<uint64_t>(pixel.pruned[c]) + static_cast<uint64_t>(pixel.cut[c]);
+    const uint64_t total = branches + std::min(film.units_lost(pixel), ~branches);
     const uint64_t samples = static_cast<uint64_t>(film.samples);
     const uint64_t mean = total / samples + (total % samples != 0);
     const int width = static_cast<int>(std::bit_width(mean));

@@ -19,7 +19,8 @@ class FilmColors {
     /// Channel c of a share of light, as of a material's color.
     float reflectance(const float (&color)[3], int c) const;
 
-    /// A bound on the error of channel c of a pixel's radiance from the ledger, rounded up to float.
+    /// A bound on the error of channel c of a pixel's radiance from the ledger and from whole units, rounded up to
+    /// float.
     float error(const PixelRecord& pixel, int c) const;
 
     /// What samples that meet nothing added to a pixel, and what a file with a transparent background leaves out.

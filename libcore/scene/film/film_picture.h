@@ -42,11 +42,11 @@ inline constexpr float largest_half = 65504;
 
 /// All channels of a file. R G B: mean radiance. A: 1, or, if the background is transparent, as coverage: the share of
 /// samples that hit anything; radiance is premultiplied then. error.R error.G error.B: bound
-/// on the error from pruned and cut branches, rounded up so that it stays a bound in the file's precision. id: 1 +
-/// solid, or 1 + solids + visible light; 0 for none. samples: per pixel. cost: rays. Z: distance along the view axis,
-/// z_far for none. N.X N.Y N.Z: unit normal in world axes, 0 for none. Values of
-/// half channels that are over largest_half become that, and are added to `clamped`; such an error.* is no bound. The
-/// data window is the film's rectangle. Attributes: chromaticities and colorInteropID of the color space;
+/// on the error from pruned and cut branches and from whole units of the sums, rounded up so that it stays a bound in
+/// the file's precision. id: 1 + solid, or 1 + solids + visible light; 0 for none. samples: per pixel. cost: rays. Z:
+/// distance along the view axis, z_far for none. N.X N.Y N.Z: unit normal in world axes, 0 for none. Values of half
+/// channels that are over largest_half become that, and are added to `clamped`; such an error.* is no bound. The data
+/// window is the film's rectangle. Attributes: chromaticities and colorInteropID of the color space;
 /// cistula:background, cistula:zFar and, with dwaa and dwab, cistula:dwaLevel, where they are not the defaults; with
 /// light layers their number in the scene, cistula:lightLayers, of which the file may have some;
 /// acesImageContainerFlag (set_container_flag).

@@ -23,15 +23,16 @@ struct FacePlane {
 template <class Real>
 class FacesAtCamera {
   public:
-    FacesAtCamera(const CompiledScene<Real>& scene, const dvec3& camera)
+    FacesAtCamera(const CompiledScene<Real>& scene, const dvec3& camera, const dvec3& half_unit)
         : scene_(scene),
           view_(scene.view()),
           camera_(camera),
+          half_unit_(half_unit),
           unit_(double(RealTraits<Real>::unit) * double(scene.extent)) {}
 
     std::vector<FacePlane> find() {
         std::vector<bool> near(scene_.solids.size());
-        for (size_t i = 0; i < scene_.solids.size(); ++i) near[i] = may_touch(scene_.hulls[i]);
+        for (size_t i = 0; i < scene_.solids.size(); ++i) near[i] = may_touch(scene_.hulls[i], scene_.reaches[i]);
         for (const uint32_t i : scene_.convex)
             if (near[i]) look_at_solid(i);
         for (const Cluster<Real>& cluster : scene_.clusters)
@@ -52,14 +53,20 @@ class FacesAtCamera {
     }
     dvec3 camera_size() const { return {magnitude(camera_.x), magnitude(camera_.y), magnitude(camera_.z)}; }
 
-    bool may_touch(const Hull& hull) const {
+    bool may_touch(const Hull& hull, const ContactReach& reach) const {
+        const double range = max_or_second(apart * unit_, reach.most);
         Box box;
         for (const Vec3<double>& p : hull.points) box.add(p);
         bool inside = !box.empty();
         for (int axis = 0; axis < 3; ++axis)
-            inside = inside && camera_[axis] >= box.low[axis] - apart * unit_ &&
-                     camera_[axis] <= box.high[axis] + apart * unit_;
+            inside = inside && camera_[axis] >= box.low[axis] - range && camera_[axis] <= box.high[axis] + range;
         return inside;
+    }
+
+    /// How far the camera may be from a face to lie on it. `rounding`: of its distance.
+    double range(const PlaneEquation& plane, const Box& box, double rounding, uint32_t solid) const {
+        return max_or_second(touching * rounding,
+                             point_tolerance(scene_.reaches[solid], plane, camera_, half_unit_, box));
     }
 
     /// The rounding of a distance from a face: at least the slack of its shared plane, if it has one.
@@ -70,32 +77,38 @@ class FacesAtCamera {
     void look_at_solid(uint32_t index) {
         const Solid& solid = scene_.solids[index];
         const dvec3 size = camera_size() + dvec3(square_root(double(solid.padded_square)));
+        const dvec3 center(solid.center), radius(square_root(double(solid.padded_square)));
+        const Box box{center - radius, center + radius};
         std::vector<FacePlane> at_camera;
         for (const SolidPlane& plane : solid_planes(view_, solid)) {
             const double outside = dot(plane.normal, camera_) - plane.offset;
             const double rounding =
                 with_slack(rounding_of(plane.normal, size, plane.offset), plane_of_face(view_, index, plane.face));
-            if (outside > touching * rounding) return;
-            if (outside >= -touching * rounding)
+            const double near = range({plane.normal, plane.offset}, box, rounding, index);
+            if (outside > near) return;
+            if (outside >= -near)
                 at_camera.push_back({plane.normal, plane.offset, apart * max_or_second(unit_, rounding)});
         }
         for (const FacePlane& plane : at_camera) add(plane);
     }
 
     void look_at_triangles(const Cluster<Real>& cluster) {
+        const double most = max_or_second(touching * unit_, scene_.reaches[cluster.solid].most);
         for (uint32_t lane = 0; lane < cluster.count; ++lane) {
             std::array<dvec3, 3> corner;
             for (size_t c = 0; c < 3; ++c)
                 for (int axis = 0; axis < 3; ++axis) corner[c][axis] = double(cluster.corner[c][axis][lane]);
-            if (!near_triangle(corner, camera_, touching * unit_)) continue;
+            if (!near_triangle(corner, camera_, most)) continue;
             const dvec3 normal = normalized(cross(corner[1] - corner[0], corner[2] - corner[0]));
             const double offset = dot(normal, corner[0]);
             dvec3 size = camera_size();
+            Box box;
+            for (const dvec3& p : corner) box.add(p);
             for (const dvec3& p : corner)
                 for (int axis = 0; axis < 3; ++axis) size[axis] = max_or_second(size[axis], magnitude(p[axis]));
             const double rounding = with_slack(rounding_of(normal, size, offset),
                                                plane_of_face(view_, cluster.solid, cluster.triangle[lane]));
-            if (magnitude(dot(normal, camera_) - offset) <= touching * rounding)
+            if (magnitude(dot(normal, camera_) - offset) <= range({normal, offset}, box, rounding, cluster.solid))
                 add({normal, offset, apart * max_or_second(unit_, rounding)});
         }
     }
@@ -113,7 +126,7 @@ class FacesAtCamera {
 
     const CompiledScene<Real>& scene_;
     const SceneView<Real> view_;
-    const dvec3 camera_;
+    const dvec3 camera_, half_unit_;
     const double unit_;  // u M
     std::vector<FacePlane> planes_;
 };
@@ -121,10 +134,10 @@ class FacesAtCamera {
 }  // namespace
 
 template <class Real>
-void set_camera_sides(const CompiledScene<Real>& scene, FrameView& frame) {
+void set_camera_sides(const CompiledScene<Real>& scene, const dvec3& half_unit, FrameView& frame) {
     const dvec3 camera = frame.camera.position;
     std::vector<FacePlane> planes;
-    if (!frame.is_far) planes = FacesAtCamera<Real>(scene, camera).find();
+    if (!frame.is_far) planes = FacesAtCamera<Real>(scene, camera, half_unit).find();
     frame.camera_planes = int(planes.size());
     for (size_t i = 0; i < planes.size(); ++i) frame.camera_normals[i] = planes[i].normal;
     for (int side = 0; side < 1 << frame.camera_planes; ++side) {
@@ -139,7 +152,7 @@ void set_camera_sides(const CompiledScene<Real>& scene, FrameView& frame) {
     }
 }
 
-template void set_camera_sides(const CompiledScene<float>&, FrameView&);
-template void set_camera_sides(const CompiledScene<double>&, FrameView&);
+template void set_camera_sides(const CompiledScene<float>&, const dvec3&, FrameView&);
+template void set_camera_sides(const CompiledScene<double>&, const dvec3&, FrameView&);
 
 }  // namespace cistula

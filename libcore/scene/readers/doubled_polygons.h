@@ -11,7 +11,7 @@ namespace cistula {
 
 /// For each polygon, whether an earlier one has the same corners in the same cyclic order or in its reverse; corners at
 /// equal positions are the same. Polygons with fewer than four corners, or one that is not finite, never count:
-/// find_topology compares triangles.
+/// find_pieces compares triangles.
 std::vector<bool> doubled_polygons(std::span<const glm::dvec3> vertices,
                                    const std::vector<std::span<const uint32_t>>& polygons);
 

@@ -1,8 +1,10 @@
 #include "scene/readers/mesh_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
+#include "cistula/numerics/vec.h"
 #include "scene/base/file_bytes.h"
 #include "scene/description/rotation.h"
 #include "scene/readers/doubled_polygons.h"
@@ -34,7 +36,9 @@ std::string ply_bytes(const std::string& path, const std::string& label) {
 ObjSurroundings surroundings_of(const std::string& file, const std::string& place, std::vector<std::string>* files) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     const auto path_of = [folder](std::string name) {
-        std::replace(name.begin(), name.end(), '\\', '/');
+        std::error_code error;
+        const bool is_whole = std::filesystem::is_regular_file(folder / name, error);  // with a backslash in its name
+        if (!is_whole) std::replace(name.begin(), name.end(), '\\', '/');
         return (folder / name).string();
     };
     ObjSurroundings around;
@@ -51,6 +55,31 @@ ObjSurroundings surroundings_of(const std::string& file, const std::string& plac
     return around;
 }
 
+/// The rounding of a mesh's vertices once they are placed: that of the file's numbers, and of the numbers that place
+/// it.
+CoordinateRounding placed_rounding(std::span<const dvec3> vertices, const MeshObject& object) {
+    CoordinateRounding rounding = coordinate_rounding(vertices);
+    double reach = 0;
+    for (const dvec3& p : vertices)
+        if (is_finite(p)) reach = std::max(reach, length(p));
+    const Rotation rotation(object.rotation);
+    dvec3 placed(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        dvec3 along(0);
+        along[axis] = object.scale * rounding.half_unit[axis];
+        const dvec3 turned = rotation(along);
+        placed += dvec3(std::abs(turned.x), std::abs(turned.y), std::abs(turned.z));
+    }
+    double angle = 0;  // degrees
+    for (int axis = 0; axis < 3; ++axis)
+        if (object.rotation[axis] != std::round(object.rotation[axis])) angle += half_unit_of(object.rotation[axis]);
+    const double of_size =
+        half_unit_of(object.scale) * reach + angle * 0.0174532925199433 * std::abs(object.scale) * reach;
+    for (int axis = 0; axis < 3; ++axis)
+        rounding.half_unit[axis] = placed[axis] + half_unit_of(object.center[axis]) + of_size;
+    return rounding;
+}
+
 MeshPart part_of(PolygonMesh&& from, const MeshObject& object) {
     MeshPart part;
     part.name = std::move(from.name);
@@ -58,6 +87,7 @@ MeshPart part_of(PolygonMesh&& from, const MeshObject& object) {
     MeshSource& mesh = part.mesh;
     const Rotation rotation(object.rotation);
     mesh.owned_vertices = std::move(from.vertices);
+    mesh.rounding = placed_rounding(mesh.owned_vertices, object);
     for (dvec3& p : mesh.owned_vertices) p = object.center + rotation(object.scale * p);
     std::vector<std::span<const uint32_t>> polygons;
     polygons.reserve(from.ends.size());
@@ -122,7 +152,7 @@ std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& pla
         if (is_obj)
             meshes = read_obj(bytes, label, surroundings_of(object.file, place, files), warnings);
         else
-            meshes.push_back(read_ply(bytes, label));
+            meshes.push_back(read_ply(bytes, label, warnings));
     }
     std::vector<MeshPart> parts = parts_of(std::move(meshes), object);
     if (parts.empty()) throw Error(ExitCode::file, label + ": has no faces; give a file with polygons");

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "scene/base/blanks.h"
+#include "scene/base/shown_text.h"
 
 namespace cistula {
 namespace {
@@ -25,7 +26,7 @@ void append_utf8(std::string& text, uint32_t code) {
     add(0x80 | (code & 0x3f));
 }
 
-/// Halves of pairs that stand alone, and an odd last byte, become U+FFFD.
+/// An odd last byte becomes U+FFFD.
 std::string utf8_of_utf16(std::string_view bytes, bool big_endian) {
     constexpr uint32_t unknown = 0xfffd;
     const auto unit = [&](size_t i) -> uint32_t {
@@ -36,12 +37,18 @@ std::string utf8_of_utf16(std::string_view bytes, bool big_endian) {
     std::string text;
     for (size_t i = 0; i < bytes.size(); i += 2) {
         const uint32_t code = unit(i), low = unit(i + 2);
-        const bool high_half = code >= 0xd800 && code < 0xdc00, half = code >= 0xd800 && code < 0xe000;
-        const bool pair = high_half && low >= 0xdc00 && low < 0xe000;
-        append_utf8(text, pair ? 0x10000 + ((code - 0xd800) << 10) + (low - 0xdc00) : half ? unknown : code);
+        const bool pair = code >= 0xd800 && code < 0xdc00 && low >= 0xdc00 && low < 0xe000;
+        append_utf8(text, pair ? 0x10000 + ((code - 0xd800) << 10) + (low - 0xdc00) : code);
         if (pair) i += 2;
     }
     return text;
+}
+
+/// Whether a line goes on in the next. In Shift-JIS, GBK and Big5 a character may end with a backslash.
+bool is_continued(std::string_view line) {
+    if (!line.ends_with('\\')) return false;
+    const bool may_be_half = line.size() > 1 && static_cast<uint8_t>(line[line.size() - 2]) >= 0x80;
+    return !may_be_half || is_utf8(line);
 }
 
 }  // namespace
@@ -77,9 +84,9 @@ bool MeshTextLines::next() {
     words_.clear();
     while (words_.empty() && at_ < text_.size()) {
         content_ = physical_line();
-        if (content_.ends_with('\\')) {
+        if (is_continued(content_)) {
             joined_.clear();
-            while (content_.ends_with('\\')) {
+            while (is_continued(content_)) {
                 joined_.append(content_.substr(0, content_.size() - 1)) += ' ';
                 content_ = at_ < text_.size() ? physical_line() : std::string_view();
             }
@@ -94,6 +101,25 @@ bool MeshTextLines::next() {
 std::string_view MeshTextLines::rest(size_t number) const {
     if (number >= words_.size()) return {};
     return {words_[number].data(), words_.back().data() + words_.back().size()};
+}
+
+void NameList::add(std::string_view name) {
+    constexpr size_t most = 24;
+    if (std::find(names_.begin(), names_.end(), name) != names_.end()) return;
+    if (names_.size() < most)
+        names_.emplace_back(name);
+    else
+        more_ = true;
+}
+
+std::string NameList::text() const {
+    std::string text;
+    for (const std::string& name : names_) text += (text.empty() ? "" : ", ") + quoted(name);
+    return text + (more_ ? ", ..." : "");
+}
+
+std::string ignored_warning(const std::string& label, const NameList& names) {
+    return label + ": ignored what has no meaning here: " + names.text();
 }
 
 }  // namespace cistula

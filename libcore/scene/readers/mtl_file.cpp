@@ -23,8 +23,22 @@ struct Statements {
     dvec3 Kd{0.6}, Ks{0};
     double Ns = 0, Ni = 1;
     std::optional<double> d, Tr;
+    dvec3 Tf{1};
     int illum = 1;
 };
+
+/// Whether a Tf is a color to filter by: black and white are what exporters write where they have nothing to say.
+bool is_filter(const dvec3& Tf) {
+    return Tf != dvec3{0} && !(Tf.x >= 1 && Tf.y >= 1 && Tf.z >= 1);
+}
+
+/// What transmitted light is multiplied by.
+dvec3 tint_of(const Statements& from) {
+    dvec3 tint = is_filter(from.Tf) ? from.Tf : from.Kd;
+    if (from.Kd == dvec3{0} && from.Tf != dvec3{0} && !is_filter(from.Tf)) tint = dvec3{1};
+    for (int c = 0; c < 3; ++c) tint[c] = std::min(tint[c], 1.0);
+    return tint;
+}
 
 MaterialDescription material_of(const std::string& name, const Statements& from) {
     MaterialDescription m;
@@ -43,8 +57,7 @@ MaterialDescription material_of(const std::string& name, const Statements& from)
     const bool reflects = from.illum >= 3 && from.illum <= 9;
     if (reflects) m.reflection = std::min(strongest, 1.0);
     m.fresnel = from.illum == 5 || from.illum == 7;
-    if (m.transmission > 0) m.tint = m.color;
-    for (int c = 0; c < 3; ++c) m.tint[c] = std::min(m.tint[c], 1.0);
+    if (m.transmission > 0) m.tint = tint_of(from);
     // Transmitted light cannot be reflected as well.
     if (m.reflection + m.transmission > 1) m.reflection = 1 - m.transmission;
     return m;
@@ -71,12 +84,15 @@ class MtlReader {
                 read_statement(lines_.words()[0]);
                 continue;
             }
-            finish();
-            name_ = lines_.rest(1);
-            if (name_->empty()) fail("expected \"newmtl\" and a name");
-            material_ = all_[*name_];
+            const std::string name = utf8_name(lines_.rest(1));
+            if (name.empty()) fail("expected \"newmtl\" and a name");
+            material_ = &all_[name];
         }
-        finish();
+        for (const auto& [name, statements] : all_) {
+            const MaterialDescription material = material_of(name, statements);
+            if (material.transmission == 0 && is_filter(statements.Tf)) library_.ignored.add("Tf");
+            library_.materials.insert_or_assign(name, material);
+        }
     }
 
   private:
@@ -84,34 +100,28 @@ class MtlReader {
         throw Error(ExitCode::file, fmt::format("{}:{}: {}", label_, lines_.line(), what));
     }
 
-    void finish() {
-        if (!name_) return;
-        all_[*name_] = material_;
-        library_.materials.insert_or_assign(*name_, material_of(*name_, material_));
-    }
-
     void read_statement(std::string_view key) {
         const bool map = key.starts_with("map_") || key == "bump" || key == "disp" || key == "decal" || key == "refl" ||
                          key == "norm";
         constexpr std::string_view others[] = {"Kd", "Ks", "Ka", "Ke", "Tf", "Ns", "Ni", "d", "Tr", "illum"};
         const bool known = map || std::find(std::begin(others), std::end(others), key) != std::end(others);
-        if (known && !name_)
+        if (known && !material_)
             fail(fmt::format("{} before the first newmtl; a material begins with newmtl", quoted(key)));
         if (map) return read_map(key);
         if (!known) return library_.ignored.add(key);
-        if (key == "Kd") read_color(key, material_.Kd);
-        if (key == "Ks") read_color(key, material_.Ks);
+        if (key == "Kd") read_color(key, material_->Kd);
+        if (key == "Ks") read_color(key, material_->Ks);
         if (key == "Ke") ignore_unless(key, 0);
-        if (key == "Tf") ignore_unless(key, 1);
-        if (key == "Ns") material_.Ns = number(key, 1, most_of("exponent"));
-        if (key == "Ni") material_.Ni = number(key, 1, most_of("index"));
-        if (key == "Tr") material_.Tr = number(key, 1, 1);
+        if (key == "Tf") read_color(key, material_->Tf);
+        if (key == "Ns") material_->Ns = number(key, 1, most_of("exponent"));
+        if (key == "Ni") material_->Ni = number(key, 1, most_of("index"));
+        if (key == "Tr") material_->Tr = number(key, 1, 1);
         if (key == "d") {
             const bool halo = lines_.words().size() > 1 && lines_.words()[1] == "-halo";
             if (halo) library_.ignored.add("-halo");
-            material_.d = number(key, halo ? 2 : 1, 1);
+            material_->d = number(key, halo ? 2 : 1, 1);
         }
-        if (key == "illum") material_.illum = static_cast<int>(std::floor(number(key, 1, 1000)));
+        if (key == "illum") material_->illum = static_cast<int>(std::floor(number(key, 1, 1000)));
     }
 
     /// The largest number that a scene's material may have under a key of its own.
@@ -168,27 +178,11 @@ class MtlReader {
     const std::string& label_;
     const std::function<bool(const std::string&)>& has_map_;
     MaterialLibrary& library_;
-    std::optional<std::string> name_;
-    Statements material_;
-    std::map<std::string, Statements> all_;
+    std::map<std::string, Statements> all_;  // by name
+    Statements* material_ = nullptr;         // the one that statements are about
 };
 
 }  // namespace
-
-void NameList::add(std::string_view name) {
-    constexpr size_t most = 24;
-    if (std::find(names_.begin(), names_.end(), name) != names_.end()) return;
-    if (names_.size() < most)
-        names_.emplace_back(name);
-    else
-        more_ = true;
-}
-
-std::string NameList::text() const {
-    std::string text;
-    for (const std::string& name : names_) text += (text.empty() ? "" : ", ") + quoted(name);
-    return text + (more_ ? ", ..." : "");
-}
 
 MaterialDescription default_obj_material(const std::string& name) {
     return material_of(name, {});

@@ -5,29 +5,17 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "scene/description/description.h"
+#include "scene/readers/mesh_text.h"
 
 namespace cistula {
-
-/// Names from files for one warning: each once, in order, no more than a line holds.
-class NameList {
-  public:
-    void add(std::string_view name);
-    bool empty() const { return names_.empty(); }
-    std::string text() const;
-
-  private:
-    std::vector<std::string> names_;
-    bool more_ = false;
-};
 
 /// A material as an OBJ names it, before its library is read.
 MaterialDescription default_obj_material(const std::string& name);
 
 struct MaterialLibrary {
-    std::map<std::string, MaterialDescription, std::less<>> materials;  // by name
+    std::map<std::string, MaterialDescription, std::less<>> materials;  // by utf8_name() of their names
     NameList ignored;                                                   // what has no meaning here
     NameList missing_maps;
 };

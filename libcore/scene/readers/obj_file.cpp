@@ -59,7 +59,7 @@ class ObjReader {
     }
 
     void read_statement(std::string_view key) {
-        constexpr std::string_view unused[] = {"vn", "vp", "p", "l", "s"};
+        constexpr std::string_view unused[] = {"vp", "p", "l"};
         if (key == "v") {
             positions_.push_back({number(1), number(2), number(3)});
             for (size_t i = 4; i < lines_.words().size(); ++i) number(i);  // a weight, a color
@@ -70,14 +70,15 @@ class ObjReader {
         } else if (key == "f") {
             read_face();
         } else if (key == "o" || key == "g") {
-            change(name_, lines_.rest(1));
+            change(name_, utf8_name(lines_.rest(1)));
             starts_with_name_ = true;
         } else if (key == "usemtl") {
-            change(material_, lines_.rest(1));
+            change(material_, utf8_name(lines_.rest(1)));
         } else if (key == "mtllib") {
             library_lines_.emplace_back(lines_.rest(1));
         } else if (std::find(std::begin(unused), std::end(unused), key) == std::end(unused)) {
-            library_.ignored.add(key);
+            const bool is_flat = key == "s" && (lines_.rest(1) == "off" || lines_.rest(1) == "0");
+            if (!is_flat) library_.ignored.add(key);
         }
     }
 
@@ -90,9 +91,9 @@ class ObjReader {
         return *value;
     }
 
-    void change(std::string& current, std::string_view to) {
+    void change(std::string& current, std::string to) {
         if (current == to) return;
-        current = to;
+        current = std::move(to);
         in_group_ = false;
     }
 
@@ -184,7 +185,7 @@ class ObjReader {
         const auto add = [this](const char* what, const NameList& names) {
             if (!names.empty()) warnings_.push_back(fmt::format("{}: {}: {}", label_, what, names.text()));
         };
-        add("ignored what has no meaning here", library_.ignored);
+        if (!library_.ignored.empty()) warnings_.push_back(ignored_warning(label_, library_.ignored));
         add("there are no such material libraries", missing_libraries_);
         add("there are no files of these maps", library_.missing_maps);
         add("no library has these materials", missing_materials_);

@@ -71,7 +71,7 @@ class PlyReader {
         require(next_line() && words_.size() == 1 && words_[0] == "ply", "is not PLY: its first line must be \"ply\"");
     }
 
-    PolygonMesh read() {
+    PolygonMesh read(std::vector<std::string>& warnings) {
         read_header();
         check_sizes();
         for (const Element& element : elements_) {
@@ -83,6 +83,7 @@ class PlyReader {
             else
                 read_rows([](size_t, double) {}, [](size_t, auto&) {}, [] {});
         }
+        if (!ignored_.empty()) warnings.push_back(ignored_warning(label_, ignored_));
         return std::move(mesh_);
     }
 
@@ -247,6 +248,8 @@ class PlyReader {
         for (int axis = 0; axis < 3; ++axis)
             if (place[axis] == none) fail_at(element_->line, "element vertex lacks one of the properties x, y and z");
         const bool has_uvs = place[3] < none && place[4] < none;
+        for (const std::string_view normal : {"nx", "ny", "nz"})
+            if (find(normal) < none) ignored_.add(normal);
         double row[5] = {};
         const auto keep = [&](size_t property, double value) {
             for (int i = 0; i < 5; ++i)
@@ -320,6 +323,7 @@ class PlyReader {
     std::vector<Element> elements_;
     const Element* element_ = nullptr;
     uint64_t vertices_ = 0;
+    NameList ignored_;
     PolygonMesh mesh_;
 };
 
@@ -329,8 +333,8 @@ void check_ply_start(std::string_view start, const std::string& label) {
     PlyReader(start, label).read_first_line();
 }
 
-PolygonMesh read_ply(std::string_view bytes, const std::string& label) {
-    return PlyReader(bytes, label).read();
+PolygonMesh read_ply(std::string_view bytes, const std::string& label, std::vector<std::string>& warnings) {
+    return PlyReader(bytes, label).read(warnings);
 }
 
 }  // namespace cistula

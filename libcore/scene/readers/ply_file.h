@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/readers/polygon_mesh.h"
 
@@ -12,7 +13,7 @@ namespace cistula {
 void check_ply_start(std::string_view start, const std::string& label);
 
 /// The mesh in a PLY file's bytes, with all of its vertices in file order. Throws Error(file): `label`, which names the
-/// file, then the line or the byte, what is wrong and what would be right.
-PolygonMesh read_ply(std::string_view bytes, const std::string& label);
+/// file, then the line or the byte, what is wrong and what would be right. Adds a warning where vertices have normals.
+PolygonMesh read_ply(std::string_view bytes, const std::string& label, std::vector<std::string>& warnings);
 
 }  // namespace cistula

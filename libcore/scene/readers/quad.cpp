@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cistula/numerics/vec.h"
+#include "scene/description/coordinate_rounding.h"
 #include "scene/readers/scene_keys.h"
 
 namespace cistula {
@@ -18,7 +19,9 @@ std::optional<std::string> quad_problem(const std::array<glm::dvec3, 4>& corners
         return "the quad has no area or crosses itself; give the corners in order around it";
     const glm::dvec3 normal = normalized(product);
     const double distance = magnitude(dot(normal, (corners[1] - corners[0]) / diagonal));
-    if (distance > quad_tolerance)
+    const glm::dvec3 rounding = coordinate_rounding(corners).half_unit / diagonal;
+    const double written = dot(glm::dvec3(magnitude(normal.x), magnitude(normal.y), magnitude(normal.z)), rounding);
+    if (distance > max_or_second(quad_tolerance, 2 * written))
         return fmt::format(
             "the quad is not planar: its diagonals pass at {:.2g} of their length, at most {} is allowed", distance,
             number_text(quad_tolerance));

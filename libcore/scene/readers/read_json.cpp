@@ -155,6 +155,7 @@ LightDescription read_light(const JsonValue& value) {
     keys.read("color", light.color);
     keys.read("glow", light.glow);
     keys.read("radius", light.radius);
+    keys.read("visible", light.visible);
     light.falloff = keys.read_choice("falloff") == 1;
     read_light_group(keys, light.group);
     keys.finish();
@@ -232,6 +233,7 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
     keys.read("$schema", schema);
     keys.read("depth", scene.depth);
     keys.read("cutoff", scene.cutoff);
+    keys.read("contact", scene.contact);
     keys.read("ambient", scene.ambient);
     keys.read("background", scene.background);
     if (keys.has("film")) scene.film = read_film(keys.at("film"));

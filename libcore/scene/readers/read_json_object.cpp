@@ -35,6 +35,7 @@ EdgeLights read_edge_lights(const JsonValue& value) {
     keys.read("color", lights.color);
     keys.read("glow", lights.glow);
     keys.read("radius", lights.radius);
+    keys.read("visible", lights.visible);
     lights.falloff = keys.read_choice("falloff") == 1;
     read_light_group(keys, lights.group);
     keys.finish();

@@ -59,6 +59,7 @@ constexpr Key scene_list[] = {
     other("film"),
     whole("depth", {1, 1024}, "4"),
     number("cutoff", not_negative, "0"),
+    number("contact", not_negative, ""),
     color("ambient", not_negative, "0.1"),
     color("background", not_negative, "0"),
     other("camera"),
@@ -136,6 +137,7 @@ constexpr Key edge_lights_list[] = {
     color("color", not_negative, "1"),
     color("glow", not_negative, {}),
     number("radius", not_negative, "0"),
+    boolean("visible", "true"),
     choice("falloff", falloff_choices, "\"none\""),
     text("group"),
 };
@@ -166,6 +168,7 @@ constexpr Key light_list[] = {
     color("color", not_negative, "1"),
     color("glow", not_negative, {}),
     number("radius", not_negative, "0"),
+    boolean("visible", "true"),
     choice("falloff", falloff_choices, "\"none\""),
     text("group"),
 };

@@ -12,6 +12,12 @@ namespace {
 
 constexpr uint32_t group_size = cluster_lanes;
 
+/// The device that all trees are built on: to open one takes longer than most trees. It lives as long as the program.
+RTCDevice builder_device() {
+    static const RTCDevice device = make_embree_device("").release();
+    return device;
+}
+
 void* run_builder(RTCBuildArguments& arguments, RTCDevice device) {
     void* root = rtcBuildBVH(&arguments);
     check_embree(device, "building a tree");
@@ -141,8 +147,8 @@ Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives) {
     Groups groups;
     if (primitives.empty()) return groups;
     GroupLeaves leaves{primitives.data(), std::vector<uint64_t>(primitives.size()), {}};
-    const DevicePointer device = make_embree_device("");
-    const BvhPointer bvh(rtcNewBVH(device.get()));
+    const RTCDevice device = builder_device();
+    const BvhPointer bvh(rtcNewBVH(device));
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.maxDepth = max_tree_depth;
     arguments.sahBlockSize = group_size;
@@ -156,7 +162,7 @@ Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives) {
     arguments.setNodeBounds = group_bounds;
     arguments.createLeaf = group_leaf;
     arguments.userPtr = &leaves;
-    run_builder(arguments, device.get());
+    run_builder(arguments, device);
 
     // Threads finish leaves in any order; sorted by position in the array they are in tree order, neighbors together.
     leaves.leaves.resize(leaves.leaf_count);
@@ -185,8 +191,8 @@ Tree build_tree(std::vector<RTCBuildPrimitive>& primitives, int quality) {
         all.upper_y = std::max(all.upper_y, p.upper_y);
         all.upper_z = std::max(all.upper_z, p.upper_z);
     }
-    const DevicePointer device = make_embree_device("");
-    const BvhPointer bvh(rtcNewBVH(device.get()));
+    const RTCDevice device = builder_device();
+    const BvhPointer bvh(rtcNewBVH(device));
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.buildQuality = quality > 0 ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW;
     arguments.maxBranchingFactor = 2;
@@ -200,7 +206,7 @@ Tree build_tree(std::vector<RTCBuildPrimitive>& primitives, int quality) {
     arguments.setNodeChildren = tree_children;
     arguments.setNodeBounds = tree_bounds;
     arguments.createLeaf = tree_leaf;
-    const auto* root = static_cast<const BuildNode*>(run_builder(arguments, device.get()));
+    const auto* root = static_cast<const BuildNode*>(run_builder(arguments, device));
     if (root->count > 0) return single_leaf(*root, all);
     Tree tree;
     tree.nodes.reserve(primitives.size());

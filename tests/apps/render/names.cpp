@@ -4,9 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <set>
 #include <string>
+#include <tuple>
 
 #include "scene/base/shown_text.h"
+#include "scene/film/murmur3.h"
 #include "scene/image/exr.h"
 #include "testing/support/render_program.h"
 
@@ -65,6 +68,44 @@ TEST_F(RenderNames, AreEscapedInReports) {
     EXPECT_TRUE(nlohmann::json::accept(pixel.out));
     expect_done({name + ".json", "-o", name + ".exr", "--stats", "stats.json"});
     EXPECT_TRUE(nlohmann::json::accept(bytes_of(file("stats.json"))));
+}
+
+TEST_F(RenderNames, OfMeshFilesThatAreNotUtf8HaveMattesOfTheirOwn) {
+    // A wall of three squares in front of the camera, named in Shift-JIS and Latin-1.
+    const std::vector<std::string> names = {"\x94\xa0", "\x8b\x85", "caf\xe9"};
+    std::string obj = "mtllib w.mtl\n", mtl;
+    for (size_t i = 0; i < names.size(); ++i) {
+        for (const char* corner : {"0 -9", "1 -9", "1 9", "0 9"})
+            obj += "v " + std::to_string(static_cast<int>(i) - 2 + (corner[0] - '0')) + " 0 " + (corner + 2) + "\n";
+        obj += "o " + names[i] + "\nusemtl " + names[i] + "\nf -4 -3 -2 -1\n";
+        mtl += "newmtl " + names[i] + "\nKd 1 1 1\n";
+    }
+    put_bytes(file("w.obj"), obj);
+    put_bytes(file("w.mtl"), mtl);
+    put_bytes(file("w.json"), R"({"film": {"width": 40, "height": 24}, "ambient": 1, "camera": {"position": [0, -4, 0],
+        "target": [0, 0, 0], "fov": 60}, "objects": [{"name": "w", "mesh": "w.obj"}]})");
+    expect_done({"w.json", "-o", "w.exr", "--layers", "cryptomatte"});
+    const LayeredPicture picture = read_exr(file("w.exr"));
+    for (const auto& [kind, key, before] :
+         {std::tuple{"CryptoObject", "3ae39a5", "w/"}, std::tuple{"CryptoMaterial", "be359d6", ""}}) {
+        std::set<std::string> expected;
+        for (const char* name : {"%94%A0", "%8B%85", "caf%E9"}) expected.insert(before + std::string(name));
+        std::set<std::string> in_manifest;
+        std::set<float> ids{0}, known{0};
+        const auto& text =
+            std::get<std::string>(picture.attributes.at("cryptomatte/" + std::string(key) + "/manifest"));
+        const auto manifest = nlohmann::json::parse(text);
+        for (const auto& [name, id] : manifest.items()) {
+            in_manifest.insert(name);
+            known.insert(cryptomatte_id(name));
+        }
+        EXPECT_EQ(in_manifest, expected);
+        for (const auto& channel : picture.channels)
+            if (channel.name == std::string(kind) + "00.r") ids.insert(channel.values.begin(), channel.values.end());
+        EXPECT_EQ(ids, known) << kind;
+    }
+    const ProgramResult pixel = run({"w.json", "--pixel", "16,12"});
+    EXPECT_NE(pixel.out.find("w/%8B%85"), std::string::npos) << pixel.out;
 }
 
 TEST_F(RenderNames, OfAMillionTheFirstIsWrittenAtOnce) {

@@ -24,6 +24,7 @@
 #include "cistula/transport/ray_tree.h"
 #include "scene/film/frame_settings.h"
 #include "testing/support/expect_error.h"
+#include "testing/support/scene.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
@@ -571,6 +572,32 @@ TEST(Stats, LedgerTotalsAreInTheScenesUnits) {
     EXPECT_EQ(pruned.worst, (std::array<double, 3>{0, 2, 0}));
     EXPECT_EQ(cut.mean, (std::array<double, 3>{0, 0, 0.125}));
     EXPECT_EQ(cut.worst, (std::array<double, 3>{0, 0, 0.25}));
+    for (PixelRecord& pixel : film.pixels) pixel.samples = 4;
+    film.pixels[1].rays = 1 << 30;
+    EXPECT_EQ(unit_totals(film).worst, (std::array<double, 3>{0x1p-31, 0x1p-31, 0x1p-31}));
+    EXPECT_EQ(unit_totals(film).mean, (std::array<double, 3>{0x1p-32, 0x1p-32, 0x1p-32}));
+}
+
+TEST(Stats, OfWhatTheDepthTookTheWorstFrameIsSaidOnce) {
+    FilmTotals totals;
+    FrameStats frame;
+    frame.file = "a.exr";
+    frame.depth_loss = {0.0078125, 0.5, 0.5};  // just under what is seen
+    totals.add(frame);
+    EXPECT_EQ(describe_depth_loss(totals, "a.#.exr", 4), "");
+    frame.frame = 7;
+    frame.depth_loss = {0.15, 1.0, 0.5};
+    totals.add(frame);
+    frame.frame = 8;
+    frame.depth_loss = {0.01, 0.1, 0.5};
+    totals.add(frame);
+    EXPECT_EQ(describe_depth_loss(totals, "a.#.exr", 4),
+              "a.#.exr: in 2 of 3 frames, most in frame 7: depth 4 may have taken up to 1 from a pixel and 0.15 in the "
+              "mean, where the picture's mean is 0.5: see --depth and --layers error");
+    FilmTotals black;
+    frame.depth_loss = {0.01, 0.1, 0};
+    black.add(frame);
+    EXPECT_NE(describe_depth_loss(black, "a.exr", 4), "");
 }
 
 TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
@@ -578,13 +605,14 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     for (int i = 0; i < effect_count; ++i)
         reasons.push_back(
             {1u << i, (1u << i) == effect_diffuse, (1u << i) == effect_diffuse ? "material clay" : "no reason"});
-    const std::string table = explain_table("s.json", reasons);
+    const std::string table = explain_table("s.json", {reasons, {"a and b overlap"}});
     EXPECT_NE(table.find("diffuse              yes     in        material clay\n"), std::string::npos) << table;
     EXPECT_NE(table.find("fresnel              no      left out  no reason\n"), std::string::npos) << table;
     EXPECT_NE(table.find("Mask 1 of "), std::string::npos) << table;
     EXPECT_EQ(table.find("cost"), std::string::npos) << table;
+    EXPECT_NE(table.find("\na and b overlap\n"), std::string::npos) << table;
     const EffectCosts costs{12.5, 7, {{effect_diffuse, 0.25}}};
-    const std::string measured = explain_table("s.json", reasons, &costs);
+    const std::string measured = explain_table("s.json", {reasons, {}}, &costs);
     EXPECT_NE(measured.find("diffuse              yes     in        25.0 %   material clay\n"), std::string::npos)
         << measured;
     EXPECT_NE(measured.find("fresnel              no      left out  -        no reason\n"), std::string::npos)
@@ -592,12 +620,24 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     EXPECT_NE(measured.find("7 frames of 12.5 ms"), std::string::npos) << measured;
 }
 
+/// Cubes in one another.
+SceneDescription nested_cubes(int count) {
+    SceneDescription scene;
+    for (int i = 0; i < count; ++i) test::add_solid(scene, PlatonicSolid::cube, glm::dvec3(0), 1 + count - i);
+    return scene;
+}
+
 TEST(RenderFlags, EveryFlagHasItsWords) {
-    EXPECT_EQ(describe_flags(flag_not_finite), "a radiance was infinite or not a number");
-    EXPECT_EQ(describe_flags(flag_not_finite | flag_media_overflow),
-              "a radiance was infinite or not a number; a ray was inside more solids at once than it can list");
+    const SceneDescription scene = nested_cubes(InteriorList::capacity + 1);
+    EXPECT_EQ(describe_flags(flag_not_finite, scene), "a radiance was infinite or not a number");
+    EXPECT_EQ(
+        describe_flags(flag_not_finite | flag_media_overflow, scene),
+        "a radiance was infinite or not a number; a ray was inside more than 8 solids at once, which is all it can "
+        "list: o0, o1, o2, o3, o4, o5, o6, o7, o8; take some away");
+    EXPECT_EQ(describe_flags(flag_media_overflow, nested_cubes(2)),
+              "a ray was inside more than 8 solids at once, which is all it can list; take some away");
     for (const RenderFlag flag : {flag_not_finite, flag_media_overflow, flag_stack_overflow, flag_too_many_crossings})
-        EXPECT_FALSE(describe_flags(flag).empty());
+        EXPECT_FALSE(describe_flags(flag, scene).empty());
 }
 
 }  // namespace

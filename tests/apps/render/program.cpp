@@ -353,6 +353,31 @@ TEST_F(RenderProgram, HalfNeverHoldsAnInfinity) {
     EXPECT_EQ(run({"s.json", "-o", "dim.exr", "--bits", "half"}).error.find("half"), std::string::npos);
 }
 
+TEST_F(RenderProgram, WhatTheDepthTookIsSaidInOneLine) {
+    const ProgramResult film = run({"s.json", "-o", "d.#.exr", "--depth", "1"});
+    EXPECT_EQ(film.code, 0) << film.error;
+    const std::string said = "render: warning: d.#.exr: in 3 of 3 frames, most in frame ";
+    ASSERT_NE(film.error.find(said), std::string::npos) << film.error;
+    EXPECT_NE(film.error.find(": depth 1 may have taken up to "), std::string::npos) << film.error;
+    EXPECT_EQ(film.error.find("see --depth"), film.error.rfind("see --depth")) << "one line";
+    const ProgramResult frame = run({"s.json", "-f", "1", "-o", "d.exr", "--depth", "1"});
+    EXPECT_NE(frame.error.find("render: warning: d.exr: depth 1 may"), std::string::npos) << frame.error;
+    EXPECT_EQ(run({"s.json", "-o", "d.#.exr", "--depth", "1", "-q"}).error, "");
+    EXPECT_EQ(run({"s.json", "-o", "d.#.exr", "--depth", "64"}).error.find("depth"), std::string::npos);
+    EXPECT_EQ(run({"s.json", "-o", "d.#.exr", "--depth", "1", "--target-error", "9"}).error.find("warning"),
+              std::string::npos);
+}
+
+TEST_F(RenderProgram, ALightThatSumsCannotHoldIsRefusedByName) {
+    std::string bright = scene_text;
+    const std::string light = R"({"position": [-4, 4, 5]})";
+    bright.replace(bright.find(light), light.size(),
+                   R"({"position": [-4, 4, 5]}, {"position": [0, 0, 9], "radius": 1, "glow": 1e20})");
+    put_bytes(file("bright.json"), bright);
+    expect_refused({"bright.json", "-o", "b.#.exr"}, ExitCode::usage, "bright.json: /lights/1: its glow of 1e+20");
+    EXPECT_FALSE(exists("b.0.exr"));
+}
+
 TEST_F(RenderProgram, AFilmOverTheZenithSaysWhereItTurns) {
     std::string over = scene_text;
     const std::string path = R"({"r0": 5, "z0": 3, "wphi": 0.1})";

@@ -45,4 +45,29 @@ TEST(Target, ChecksAreCountedApartFromWhatIsProven) {
     EXPECT_EQ(both.off, 2u);
 }
 
+TEST(Target, WholeUnitsOfTheSumsCountAsTruncation) {
+    Film film;
+    film.pixels.resize(2);
+    film.samples = 256;
+    film.fixed_shift = 54;
+    film.radiance_exponent = 40;
+    for (PixelRecord& pixel : film.pixels) {
+        pixel = PixelRecord();
+        pixel.samples = 256;
+        pixel.rays = 256;
+    }
+    film.pixels[1].rays = 256 << 10;  // 2^-4 of them
+    FrameSettings settings;
+    settings.target_error = 0.1;
+    const TargetReport report = target_report(film, settings);
+    EXPECT_EQ(report.worst_truncation, 0x1p-4);
+    EXPECT_EQ(report.truncated, 1u);
+    EXPECT_EQ(report.coarse, 1u);
+    EXPECT_EQ(report.bushy, 0u);
+    EXPECT_FALSE(report.proven());
+    EXPECT_NE(
+        describe_target(report, 2, settings, Precision::single_).find("1 lose more than a quarter of it to whole"),
+        std::string::npos);
+}
+
 }  // namespace

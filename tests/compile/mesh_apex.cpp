@@ -1,13 +1,10 @@
-#include "scene/compile/mesh_topology.h"
+#include "scene/compile/mesh_apex.h"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "scene/compile/clusters.h"
-#include "scene/compile/compiled_scene.h"
-#include "scene/compile/mesh_apex.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {
@@ -17,168 +14,18 @@ using glm::dvec3;
 using samples::solid;
 using samples::square;
 
-MeshSource source_of(const TrianglesObject& object) {
-    MeshSource source;
-    source.owned_vertices = object.vertices;
-    source.owned_triangles = object.triangles;
-    source.view_owned();
-    return source;
-}
-
 TrianglesObject platonic(int kind) {
     return triangulated_solid(solid(static_cast<PlatonicSolid>(kind)));
-}
-
-TEST(MeshTopology, SolidsAndSmoothMeshesAreClosed) {
-    for (int kind = 0; kind < 5; ++kind) EXPECT_TRUE(find_topology(source_of(platonic(kind))).closed);
-    for (const auto& object : {torus(1, 0.3, 20, 10), star(), bumpy_sphere(2000)}) {
-        const MeshTopology topology = find_topology(source_of(object));
-        EXPECT_TRUE(topology.closed);
-        EXPECT_FALSE(topology.flipped);
-        EXPECT_TRUE(topology.all_kept);
-        EXPECT_EQ(topology.open_edges, 0u);
-        EXPECT_EQ(topology.count, object.triangles.size());
-    }
-}
-
-TEST(MeshTopology, VerticesAtOnePositionCountAsOne) {
-    const TrianglesObject joined = torus(1, 0.3, 12, 8);
-    TrianglesObject apart;
-    for (const auto& t : joined.triangles) {
-        const auto first = static_cast<uint32_t>(apart.vertices.size());
-        for (const uint32_t corner : t) apart.vertices.push_back(joined.vertices[corner]);
-        apart.triangles.push_back({first, first + 1, first + 2});
-    }
-    EXPECT_TRUE(find_topology(source_of(apart)).closed);
-    apart.vertices[0].x = std::nextafter(apart.vertices[0].x, 9);
-    EXPECT_FALSE(find_topology(source_of(apart)).closed);
-}
-
-TEST(MeshTopology, MinusZeroIsZero) {
-    TrianglesObject object = platonic(2);
-    for (auto& t : object.triangles) {
-        for (auto& corner : t) {
-            dvec3 p = object.vertices[corner];
-            for (int axis = 0; axis < 3; ++axis)
-                if (p[axis] == 0 && object.vertices.size() % 2) p[axis] = -0.0;
-            object.vertices.push_back(p);
-            corner = static_cast<uint32_t>(object.vertices.size() - 1);
-        }
-    }
-    EXPECT_TRUE(find_topology(source_of(object)).closed);
-}
-
-TEST(MeshTopology, InsideOutMeshesAreTurned) {
-    TrianglesObject object = star();
-    for (auto& t : object.triangles) std::swap(t[0], t[2]);
-    const MeshSource source = source_of(object);
-    const MeshTopology topology = find_topology(source);
-    EXPECT_TRUE(topology.closed);
-    EXPECT_TRUE(topology.flipped);
-    const SceneNormalization normalization;
-    const NormalizedMesh mesh(source, topology, normalization, false);
-    for (uint32_t i = 0; i < mesh.size(); ++i) {
-        const auto c = mesh.triangle(i);
-        EXPECT_GT(dot(c[0], cross(c[1], c[2])), 0);
-    }
-}
-
-TEST(MeshTopology, BrokenMeshesAreSheets) {
-    TrianglesObject hole = torus(1, 0.3, 12, 8);
-    hole.triangles.pop_back();
-    EXPECT_FALSE(find_topology(source_of(hole)).closed);
-    EXPECT_EQ(find_topology(source_of(hole)).open_edges, 3u);
-    EXPECT_EQ(find_topology(source_of(hole)).why_not_closed(), "3 open edges");
-    TrianglesObject turned = torus(1, 0.3, 12, 8);
-    std::swap(turned.triangles[5][0], turned.triangles[5][1]);
-    EXPECT_FALSE(find_topology(source_of(turned)).closed);
-    EXPECT_EQ(find_topology(source_of(turned)).why_not_closed(), "3 edges along which neighbors face opposite ways");
-    TrianglesObject fin = platonic(1);  // a third triangle on an edge
-    fin.vertices.push_back({3, 3, 3});
-    fin.triangles.push_back({fin.triangles[0][0], fin.triangles[0][1], 8});
-    EXPECT_FALSE(find_topology(source_of(fin)).closed);
-    EXPECT_EQ(find_topology(source_of(fin)).why_not_closed(), "2 open edges and 1 edge of more than two faces");
-    TrianglesObject flat = square();  // a triangle, and its other side in three around a point: without a volume
-    flat.vertices[3] = (flat.vertices[0] + flat.vertices[1] + flat.vertices[2]) / 3.0;
-    flat.triangles = {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}};
-    const MeshTopology topology = find_topology(source_of(flat));
-    EXPECT_EQ(topology.open_edges, 0u);
-    EXPECT_FALSE(topology.closed);
-    EXPECT_EQ(topology.why_not_closed(), "no volume");
-}
-
-TEST(MeshTopology, TwoSolidsInOneMeshMayTouchAtAVertex) {
-    TrianglesObject two = platonic(2);
-    const TrianglesObject other = triangulated_solid(solid(PlatonicSolid::octahedron, {2, 0, 0}));
-    for (const auto& t : other.triangles) two.triangles.push_back({t[0] + 6, t[1] + 6, t[2] + 6});
-    two.vertices.insert(two.vertices.end(), other.vertices.begin(), other.vertices.end());
-    EXPECT_TRUE(find_topology(source_of(two)).closed);
-}
-
-TEST(MeshTopology, DegenerateTrianglesAreLeftOutAndCounted) {
-    TrianglesObject object = torus(1, 0.3, 12, 8);
-    const auto count = static_cast<uint32_t>(object.triangles.size());
-    const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-    const auto first = static_cast<uint32_t>(object.vertices.size());
-    object.vertices.insert(object.vertices.end(), {{nan, 0, 0}, {0, inf, 0}, object.vertices[3]});
-    object.triangles.insert(object.triangles.begin() + 7, {3, first, 5});
-    object.triangles.insert(object.triangles.begin() + 9, {3, 4, first + 1});
-    object.triangles.push_back({3, 3, 5});
-    object.triangles.push_back({first + 2, 4, 3});
-    MeshTopology topology = find_topology(source_of(object));
-    EXPECT_TRUE(topology.closed);
-    EXPECT_EQ(topology.count, count);
-    EXPECT_EQ(topology.not_finite, 2u);
-    EXPECT_EQ(topology.repeated_vertex, 2u);
-    EXPECT_EQ(topology.source_triangle(6), 6u);
-    EXPECT_EQ(topology.source_triangle(7), 8u);
-    EXPECT_EQ(topology.left_out(),
-              "left out 2 triangles with a repeated vertex and 2 triangles with a vertex that is not finite");
-
-    TrianglesObject sheet = square();
-    sheet.vertices.push_back({5, 5, 0});
-    sheet.triangles.push_back({0, 2, 4});  // on the diagonal's line
-    topology = find_topology(source_of(sheet));
-    EXPECT_EQ(topology.zero_area, 1u);
-    EXPECT_EQ(topology.count, 2u);
-    EXPECT_EQ(topology.left_out(), "left out 1 triangle of zero area");
-}
-
-TEST(MeshTopology, SliversThatSealAMeshStay) {
-    // A vertex in the middle of one edge of a tetrahedron, known to one of its two triangles only; a sliver joins them.
-    TrianglesObject object;
-    object.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}};
-    object.triangles = {{0, 2, 4}, {4, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}, {0, 4, 1}};
-    const MeshTopology sealed = find_topology(source_of(object));
-    EXPECT_TRUE(sealed.closed);
-    EXPECT_EQ(sealed.count, 6u);
-    EXPECT_EQ(sealed.zero_area, 0u);
-    object.triangles.pop_back();
-    EXPECT_FALSE(find_topology(source_of(object)).closed);
-}
-
-TEST(MeshTopology, NothingLeftIsASheetOfNothing) {
-    SceneDescription scene = samples::empty_scene();
-    TrianglesObject object;
-    object.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-    object.triangles = {{0, 1, 2}, {0, 0, 1}};
-    samples::add_object(scene, object);
-    samples::add_object(scene, square());
-    const auto compiled = compile_scene<float>(scene);
-    EXPECT_EQ(compiled->solids[0].kind, SolidKind::sheet);
-    EXPECT_EQ(compiled->clusters.size(), 1u);
-    ASSERT_EQ(compiled->warnings.size(), 1u);
-    EXPECT_EQ(compiled->warnings[0],
-              "/objects/0: object 0: left out 1 triangle with a repeated vertex and 1 triangle of zero area");
 }
 
 /// Heights of a mesh before and after the check.
 struct Apexes {
     explicit Apexes(const TrianglesObject& object, bool single_precision = false)
-        : source(source_of(object)),
-          topology(find_topology(source)),
-          mesh(source, topology, normalization, single_precision),
-          first(apex_heights(mesh)),
+        : scene(scene_of(object)),
+          source(gather_scene(scene)),
+          mesh(source.solids[0].mesh, normalization, unmoved, single_precision),
+          edges(link_edges(source.solids[0].mesh)),
+          first(apex_heights(mesh, edges)),
           checked(first) {
         const Groups groups = group_triangles(mesh);
         const ApexFaults faults = check_apexes(mesh, groups, group_tree(mesh, groups), checked);
@@ -191,10 +38,19 @@ struct Apexes {
         return (c[0] + c[1] + c[2]) / 3.0 + (side ? 1.0 : -1.0) * double(checked.side[side][t]) * normal;
     }
 
-    MeshSource source;
+    static SceneDescription scene_of(TrianglesObject object) {
+        SceneDescription scene = samples::empty_scene();
+        object.uvs.clear();
+        samples::add_object(scene, object);
+        return scene;
+    }
+
+    SceneDescription scene;
+    SceneSource source;
     SceneNormalization normalization;
-    MeshTopology topology;
+    std::vector<dvec3> unmoved;
     NormalizedMesh mesh;
+    MeshEdges edges;
     ApexHeights first, checked;
     uint32_t blocked = 0, unchecked = 0;
 };
@@ -243,7 +99,7 @@ TEST(MeshApex, LieOnTheirSideAndSeeTheirCorners) {
         for (int kind = 0; kind < 5; ++kind) meshes.push_back(platonic(kind));
         for (const TrianglesObject& object : meshes) {
             const Apexes apexes(object, single);
-            ASSERT_TRUE(apexes.topology.closed);
+            ASSERT_TRUE(apexes.source.solids[0].closed);
             EXPECT_EQ(apexes.blocked, 0u);
             for (uint32_t t = 0; t < apexes.mesh.size(); ++t) {
                 ASSERT_GT(apexes.checked.side[0][t], 0);
@@ -261,7 +117,6 @@ TEST(MeshApex, FlippedMeshesHaveTheSameApexes) {
     const Apexes straight(object);
     for (auto& t : object.triangles) std::swap(t[0], t[1]);
     const Apexes turned(object);
-    ASSERT_TRUE(turned.topology.flipped);
     for (uint32_t t = 0; t < straight.mesh.size(); ++t)
         for (int side = 0; side < 2; ++side)
             EXPECT_NEAR(turned.first.side[side][t], straight.first.side[side][t], 1e-7);
@@ -353,7 +208,7 @@ TEST(MeshApex, CrowdedEdgesTakeTheNearestOnEachSide) {
                 book.triangles.push_back({0, 1, last});
         }
         const Apexes apexes(book);
-        EXPECT_EQ(apexes.topology.crowded_edges, 1u);
+        EXPECT_EQ(apexes.edges.crowded, 1u);
         const double inradius = 2 / (2 + 2 * std::sqrt(2.0));
         for (int i = 0; i < pages; ++i) {
             const double after = (i + 1 < pages ? angles[i + 1] : angles[0] + 2 * M_PI) - angles[i];
@@ -385,10 +240,13 @@ TEST(MeshApex, DoNotDependOnTheRun) {
 }
 
 TEST(Groups, AreTheSameFromRunToRunAndWellFilled) {
-    const MeshSource source = source_of(bumpy_sphere(100000));
-    const MeshTopology topology = find_topology(source);
+    const TrianglesObject object = bumpy_sphere(100000);
+    MeshSource source;
+    source.vertices = object.vertices;
+    source.triangles = object.triangles;
     const SceneNormalization normalization;
-    const NormalizedMesh mesh(source, topology, normalization, true);
+    const std::vector<dvec3> unmoved;
+    const NormalizedMesh mesh(source, normalization, unmoved, true);
     const Groups first = group_triangles(mesh);
     EXPECT_GT(double(mesh.size()) / (8 * first.size()), 0.8);
     for (int i = 0; i < 3; ++i) {

@@ -1,0 +1,28 @@
+// Which pieces of a mesh lie in which (docs/rules.md, 2). Private to libcore/scene.
+#pragma once
+
+#include <vector>
+
+#include "scene/base/box.h"
+#include "scene/description/mesh_source.h"
+
+namespace cistula {
+
+/// A connected closed part of a mesh's surface.
+struct MeshPiece {
+    std::vector<uint32_t> triangles;  // ascending
+    Box box;
+    double volume = 0, area = 0;    // six times and twice
+    uint32_t depth = 0;             // the number of pieces that contain it
+    uint32_t container = no_piece;  // the least of these
+
+    static constexpr uint32_t no_piece = 0xffffffffu;
+};
+
+/// Sets depths and containers. `triangles` are wound counter-clockwise seen from outside their piece. A piece contains
+/// another of less volume if points inside that one, beside up to 23 of its triangles, are all in it. Returns how many
+/// pieces have some of these points in another and some not: they pass through it, and it does not contain them.
+uint32_t nest_pieces(std::span<const glm::dvec3> vertices, std::span<const TriangleCorners> triangles,
+                     std::vector<MeshPiece>& pieces);
+
+}  // namespace cistula

@@ -1,0 +1,316 @@
+// Which faces touch, whatever digits a file has and whatever the precision, and what is moved for it (docs/rules.md,
+// 11).
+#include "scene/compile/contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <set>
+
+#include "scene/compile/placed_bodies.h"
+#include "scene/compile/smallest_part.h"
+#include "scene/description/rotation.h"
+#include "testing/support/scene.h"
+#include "testing/support/scene_samples.h"
+
+namespace cistula {
+namespace {
+
+using test::dvec3;
+
+enum : int { as_float = 0, exact = 17 };  // digits of coordinates, beside 6 to 9
+
+double written(double x, int digits) {
+    if (digits == as_float) return double(float(x));
+    char text[40];
+    std::snprintf(text, sizeof(text), "%.*g", digits, x);
+    return std::atof(text);
+}
+
+/// Bodies that are turned and moved alike, then written with so many digits.
+struct Bodies {
+    Rotation rotation{dvec3(0)};
+    dvec3 move{0};
+    int digits = exact;
+    SceneDescription scene = samples::empty_scene();
+
+    Bodies() = default;
+    Bodies(uint64_t seed, double off, int digits_of_all) : digits(digits_of_all) {
+        std::mt19937_64 random(seed);
+        std::uniform_real_distribution<double> angle(-180, 180), place(-1, 1);
+        rotation = Rotation({angle(random), angle(random), angle(random)});
+        move = dvec3(place(random), place(random), place(random)) * off;
+    }
+
+    dvec3 placed(const dvec3& p) const {
+        const dvec3 q = rotation(p) + move;
+        return {written(q.x, digits), written(q.y, digits), written(q.z, digits)};
+    }
+    void add(const std::vector<dvec3>& vertices, const std::vector<std::array<uint32_t, 3>>& triangles) {
+        TrianglesObject mesh;
+        for (const dvec3& p : vertices) mesh.vertices.push_back(placed(p));
+        mesh.triangles = triangles;
+        test::add_object(scene, mesh, 0);
+    }
+    void quad(const dvec3& corner, const dvec3& a, const dvec3& b) {
+        add({corner, corner + a, corner + a + b, corner + b}, {{0, 1, 2}, {0, 2, 3}});
+    }
+    /// A square of 2 x 2 times `half` at z = 0.
+    void floor(double half = 3) { quad({-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0}); }
+    static std::vector<dvec3> corners(const dvec3& low, const dvec3& high) {
+        std::vector<dvec3> all;
+        for (int i = 0; i < 8; ++i)
+            all.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+        return all;
+    }
+    static std::vector<std::array<uint32_t, 3>> sides() {
+        return {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    }
+    void box(const dvec3& low, const dvec3& high) { add(corners(low, high), sides()); }
+    void cube(double half, const dvec3& base) {
+        box(base + dvec3(-half, -half, 0), base + dvec3(half, half, 2 * half));
+    }
+};
+
+/// Pairs of solids with faces in one plane.
+std::set<std::pair<uint32_t, uint32_t>> touching(const Contacts& contacts) {
+    std::set<std::pair<uint32_t, uint32_t>> pairs;
+    for (uint32_t a = 0; a < contacts.solids.size(); ++a)
+        for (uint32_t b = a + 1; b < contacts.solids.size(); ++b)
+            for (const PartOnPlane& x : contacts.solids[a].parts)
+                for (const PartOnPlane& y : contacts.solids[b].parts)
+                    if (x.plane == y.plane) pairs.insert({a, b});
+    return pairs;
+}
+
+/// Six times the volume of a mesh, as given or as moved.
+double volume(const SceneSource& source, uint32_t solid, bool moved) {
+    const std::vector<dvec3>& points = source.bodies->contacts.solids[solid].points;
+    const MeshSource& mesh = source.solids[solid].mesh;
+    const auto at = [&](uint32_t i) {
+        return moved && !points.empty() ? points[i] : source.bodies->normalization.point(mesh.vertices[i]);
+    };
+    double sum = 0;
+    for (const auto& t : mesh.triangles) sum += dot(at(t[0]), cross(at(t[1]), at(t[2])));
+    return sum;
+}
+
+/// Holds what no contact may do: turn a body, put its faces beyond rounding of their plane, or two opposite faces of
+/// one closed body into one plane.
+void expect_sound(const SceneSource& source) {
+    const Contacts& contacts = source.bodies->contacts;
+    const double extent = source.bodies->normalization.extent;
+    for (uint32_t i = 0; i < source.solids.size(); ++i) {
+        const SolidContacts& solid = contacts.solids[i];
+        if (!solid.points.empty() && source.solids[i].closed) {
+            EXPECT_NEAR(volume(source, i, true) / volume(source, i, false), 1, 0.01) << i;
+        }
+        std::vector<int> along(contacts.planes.size(), 0);
+        for (const PartOnPlane& part : solid.parts) {
+            const ContactPlane& plane = contacts.planes[part.plane];
+            const auto& t = source.solids[i].mesh.triangles[part.part];
+            dvec3 corner[3];
+            for (int c = 0; c < 3; ++c)
+                corner[c] = solid.points.empty()
+                                ? source.bodies->normalization.point(source.solids[i].mesh.vertices[t[size_t(c)]])
+                                : solid.points[t[size_t(c)]];
+            for (const dvec3& p : corner)
+                EXPECT_LE(std::abs(dot(plane.normal, p - plane.middle)), 0x1p-50 * extent) << "solid " << i;
+            if (!source.solids[i].closed) continue;
+            const int side = dot(plane.normal, cross(corner[1] - corner[0], corner[2] - corner[0])) > 0 ? 1 : -1;
+            EXPECT_NE(along[part.plane], -side) << "opposite faces of solid " << i;
+            along[part.plane] = side;
+        }
+    }
+}
+
+SceneSource gathered(const Bodies& bodies) {
+    SceneSource source = gather_scene(bodies.scene);
+    expect_sound(source);
+    return source;
+}
+
+TEST(Contacts, CubesStandOnTheirFloorHoweverTheyAreWritten) {
+    for (const double half : {0.5, 0.05})
+        for (const int digits : {7, 8, 9, int(as_float), int(exact)})
+            for (uint64_t seed = 0; seed < 40; ++seed) {
+                Bodies bodies(seed, 0, digits);
+                bodies.floor();
+                bodies.cube(half, {0.3, 0.2, 0});
+                const SceneSource source = gathered(bodies);
+                ASSERT_EQ(touching(source.bodies->contacts).size(), 1u)
+                    << "half edge " << half << ", digits " << digits << ", seed " << seed;
+                EXPECT_TRUE(source.bodies->contacts.near.empty());
+                ASSERT_EQ(source.bodies->convex.size(), 1u) << "planes give the cube in either precision";
+            }
+}
+
+TEST(Contacts, WhatIsExactIsNotMoved) {
+    Bodies bodies;
+    bodies.floor();
+    bodies.cube(0.5, {0.25, 0.5, 0});
+    bodies.cube(0.25, {0.25, 0.5, 1});
+    const SceneSource source = gathered(bodies);
+    EXPECT_EQ(touching(source.bodies->contacts), (std::set<std::pair<uint32_t, uint32_t>>{{0, 1}, {1, 2}}));
+    EXPECT_EQ(source.bodies->contacts.farthest_move, 0);
+}
+
+TEST(Contacts, CornersHolesRowsDecalsAndTilesTouch) {
+    for (uint64_t seed = 0; seed < 12; ++seed)
+        for (const int digits : {7, 9, int(as_float), int(exact)}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", digits " << digits);
+            Bodies corner(seed, 1, digits);
+            corner.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+            corner.quad({0, 0, 0}, {0, 4, 0}, {0, 0, 4});
+            corner.quad({0, 0, 0}, {0, 0, 4}, {4, 0, 0});
+            corner.box({0, 0, 0}, {1, 1, 1});
+            for (uint32_t wall = 0; wall < 3; ++wall)
+                EXPECT_EQ(touching(gathered(corner).bodies->contacts).count({wall, 3}), 1u) << wall;
+
+            Bodies decal(seed, 1, digits);
+            decal.box({-1, -1, -1}, {1, 1, 1});
+            decal.quad({-0.5, -0.4, 1}, {1, 0, 0}, {0, 0.8, 0});
+            EXPECT_EQ(touching(gathered(decal).bodies->contacts).size(), 1u);
+
+            Bodies row(seed, 1, digits);
+            row.floor(5);
+            for (int i = 0; i < 8; ++i) row.box({0.31 * i, -0.3, 0}, {0.31 * (i + 1), 0.3, 0.2});
+            const auto pairs = touching(gathered(row).bodies->contacts);
+            for (uint32_t i = 1; i <= 8; ++i) EXPECT_EQ(pairs.count({0, i}), 1u) << "box " << i << " on the floor";
+            EXPECT_EQ(gathered(row).bodies->contacts.planes.size(), 11u) << "the floor, 7 walls, and 3 that all share";
+        }
+}
+
+TEST(Contacts, ABoxStandsOnAMeshOfManySquares) {
+    for (const int digits : {7, int(exact)}) {
+        Bodies bodies(5, 1, digits);
+        std::vector<dvec3> vertices;
+        std::vector<std::array<uint32_t, 3>> triangles;
+        const uint32_t n = 60;
+        for (uint32_t j = 0; j <= n; ++j)
+            for (uint32_t i = 0; i <= n; ++i) vertices.push_back({-3 + 6.0 * i / n, -3 + 6.0 * j / n, 0});
+        for (uint32_t j = 0; j < n; ++j)
+            for (uint32_t i = 0; i < n; ++i) {
+                const uint32_t a = j * (n + 1) + i;
+                triangles.push_back({a, a + 1, a + n + 2});
+                triangles.push_back({a, a + n + 2, a + n + 1});
+            }
+        bodies.add(vertices, triangles);
+        bodies.box({-0.6, -0.6, 0}, {0.6, 0.6, 1});
+        const SceneSource source = gathered(bodies);
+        EXPECT_EQ(source.bodies->contacts.planes.size(), 1u);
+        EXPECT_EQ(touching(source.bodies->contacts).size(), 1u);
+    }
+}
+
+TEST(Contacts, GapsOfAThousandthOfABodyStay) {
+    for (const double edge : {1.0, 0.1, 0.01, 1e-3, 1e-4})
+        for (const int digits : {9, int(exact)})
+            for (uint64_t seed = 0; seed < 20; ++seed) {
+                Bodies bodies(seed, 0, digits);
+                bodies.floor();
+                bodies.cube(edge / 2, {0.2, 0.3, 1.2e-3 * edge});
+                if (digits == 9 && edge < 1e-2) continue;  // the gap is no more than the rounding
+                EXPECT_TRUE(touching(gathered(bodies).bodies->contacts).empty())
+                    << "edge " << edge << ", digits " << digits << ", seed " << seed;
+            }
+}
+
+TEST(Contacts, NearPairsAreToldWithTheKeyThatJoinsThem) {
+    Bodies bodies;
+    bodies.floor();
+    bodies.cube(0.5, {0, 0, 2e-5});
+    const SceneSource source = gathered(bodies);
+    const Contacts& contacts = source.bodies->contacts;
+    EXPECT_TRUE(contacts.planes.empty());
+    ASSERT_EQ(contacts.near.size(), 1u);
+    EXPECT_EQ(contact_warnings(source, source.bodies->normalization, contacts).front(),
+              "/objects/1: o1 and /objects/0: o0 have faces that are 2e-05 apart and do not touch; "
+              "\"contact\": 2.2e-05 joins them");
+    bodies.scene.contact = 2.2e-5;
+    const SceneSource joined = gathered(bodies);
+    EXPECT_EQ(touching(joined.bodies->contacts).size(), 1u);
+    EXPECT_TRUE(joined.bodies->contacts.near.empty());
+}
+
+TEST(Contacts, AContactOfZeroJoinsOnlyWhatRoundingPartsAndWarnsOfNothing) {
+    Bodies bodies;
+    bodies.floor();
+    bodies.cube(0.5, {0, 0, 1e-7});
+    EXPECT_EQ(touching(gathered(bodies).bodies->contacts).size(), 1u);
+    bodies.scene.contact = 0;
+    const SceneSource source = gathered(bodies);
+    EXPECT_TRUE(source.bodies->contacts.planes.empty());
+    EXPECT_TRUE(contact_warnings(source, source.bodies->normalization, source.bodies->contacts).empty());
+    Bodies exactly;
+    exactly.floor();
+    exactly.cube(0.5, {0, 0, 0});
+    exactly.scene.contact = 0;
+    EXPECT_EQ(touching(gathered(exactly).bodies->contacts).size(), 1u);
+}
+
+TEST(Contacts, AKeyJoinsNoBodyOverAThousandthOfItsThickness) {
+    Bodies bodies;
+    bodies.floor();
+    bodies.cube(0.5, {0, 0, 2e-3});
+    bodies.cube(0.5, {1.5, 0, 2e-4});
+    bodies.scene.contact = 0.01;
+    EXPECT_EQ(touching(gathered(bodies).bodies->contacts), (std::set<std::pair<uint32_t, uint32_t>>{{0, 2}}));
+}
+
+TEST(Contacts, AFilmBetweenPlatesAndAThinShellKeepTheirThickness) {
+    Bodies plates;
+    plates.box({-1, -1, -0.5}, {1, 1, 0});
+    plates.box({-1.5, -1.5, 0}, {1.5, 1.5, 1e-7});
+    plates.box({-0.8, -0.8, 1e-7}, {0.8, 0.8, 0.5});
+    const SceneSource source = gathered(plates);
+    EXPECT_EQ(touching(source.bodies->contacts), (std::set<std::pair<uint32_t, uint32_t>>{{0, 1}, {1, 2}}));
+    EXPECT_EQ(volume(source, 1, true), volume(source, 1, false));
+}
+
+TEST(Contacts, OfAChainOfTilesOnlyTheNearestAreJoined) {
+    Bodies tiles;
+    const double step = 3e-6;
+    for (int i = 0; i < 20; ++i) tiles.box({0.3 * i, 0, -0.2}, {0.3 * (i + 1), 0.3, step * 0.3 * i});
+    tiles.box({0.3 * 14 + 0.05, 0.05, step * 0.3 * 14}, {0.3 * 14 + 0.25, 0.25, 0.3});
+    const SceneSource source = gathered(tiles);
+    for (uint32_t i = 0; i + 1 < 20; ++i)
+        EXPECT_EQ(touching(source.bodies->contacts).count({i, i + 1}), 1u) << "their sides, " << i;
+    EXPECT_EQ(touching(source.bodies->contacts).count({14, 20}), 1u) << "the box on its tile";
+}
+
+TEST(Contacts, AGapThatFloatWouldCloseTakesDouble) {
+    Bodies bodies;
+    bodies.floor();
+    bodies.cube(0.0005, {0.2, 0.3, 2e-6});  // below tau, above 2^-10 of the cube's thickness
+    const SceneSource source = gathered(bodies);
+    EXPECT_TRUE(source.bodies->contacts.planes.empty());
+    const SmallestPart part = smallest_part(source);
+    EXPECT_LT(part.share, least_share(Precision::single_));
+    EXPECT_EQ(part.what, "/objects/1: o1: its distance from /objects/0");
+}
+
+template <class Real>
+class ContactsOf : public ::testing::Test {};
+using Precisions = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(ContactsOf, Precisions);
+
+TYPED_TEST(ContactsOf, LightsOfAnyDigitsLieOnTheirFace) {
+    for (const int digits : {7, int(as_float), int(exact)})
+        for (uint64_t seed = 0; seed < 20; ++seed) {
+            Bodies bodies(seed, 1, digits);
+            bodies.box({-3, -3, -0.5}, {3, 3, 0});
+            LightDescription light;
+            light.position = bodies.placed({1, 0.5, 0});
+            bodies.scene.lights.push_back(light);
+            EXPECT_EQ(compile_scene<TypeParam>(bodies.scene)->incidents.size(), 1u)
+                << "digits " << digits << ", seed " << seed;
+        }
+}
+
+}  // namespace
+}  // namespace cistula
