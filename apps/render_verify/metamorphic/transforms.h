@@ -120,6 +120,7 @@ void translate_scenes(Stage& stage, Tally& tally, bool with_ground, const Compar
         put_on_grid(scene);
         const double size = std::ldexp(1.0, -scene.frame->scale);
         if (with_ground) add_ground(scene, 1.75 * size);
+        scene.contact = 0x1p-16 * size;  // not what the digits of a place say
         const Film expected = stage.render(scene, generated_settings(scene));
         tally.witness(shows_something(expected));
         uint64_t variation = 0;

@@ -121,6 +121,7 @@ struct FresnelEqual {
         material.transmission = Real(0.5);
         material.tint = Vec3<Real>(Real(1), Real(0.5), Real(0));
         material.fresnel = 1;
+        material.transparency = Transparency::partial;
         const InterfaceSplit<Real> split = split_at<Real, Effects<all_effects>>(
             setup.scene, material, direction, normal, InteriorList(), InteriorList(), false);
         tally.expect(!found.total && found.reflectance == Real(0) && found.direction == renormalized(direction) &&

@@ -68,10 +68,10 @@ inline int32_t id_before(const SceneDescription& scene, int32_t id, uint64_t whi
     if (id <= solids) return id;
     std::vector<uint32_t> visible;  // the lights with a radius, in their new order
     for (const uint32_t light : permutation(scene.lights.size(), which))
-        if (scene.lights[light].radius > 0) visible.push_back(light);
+        if (scene.lights[light].shown()) visible.push_back(light);
     const uint32_t light = visible[size_t(id - solids - 1)];
     int32_t before = solids + 1;
-    for (uint32_t i = 0; i < light; ++i) before += scene.lights[i].radius > 0;
+    for (uint32_t i = 0; i < light; ++i) before += scene.lights[i].shown();
     return before;
 }
 

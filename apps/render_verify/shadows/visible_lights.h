@@ -42,7 +42,7 @@ struct VisibleLightTree {
                  {PlatonicSolid::tetrahedron, PlatonicSolid::cube, PlatonicSolid::octahedron,
                   PlatonicSolid::dodecahedron, PlatonicSolid::icosahedron}) {
                 SolidObject solid = solid_object(shape, {k - 2, k * 0.25 - 0.5, 0.125 * k}, 0.5, {17 * k, 41, 73});
-                solid.edge_lights = {6, glm::dvec3(0), glm::dvec3(1), radius, false, ""};
+                solid.edge_lights = {6, glm::dvec3(0), glm::dvec3(1), radius, true, false, ""};
                 add_solid(scene, Shape::planes, solid);
                 ++k;
             }
