@@ -197,8 +197,7 @@ class ContactSearch {
     void compare(uint32_t i, uint32_t j, bool one_solid, const PlaneSets& sets) {
         const FlatFace &a = faces_[i], &b = faces_[j];
         if (one_solid && sets.exact() && !is_flat_[body_of_[a.solid]] && !overlapping(i, j)) return;
-        const bool reaches = touch(a.box, b.box, reach * tau());
-        if (reaches) reaching_.push_back({i, j});
+        if (touch(a.box, b.box, reach * tau())) reaching_.push_back({i, j});
         const auto& [large, small] = sets.is_larger(i, j) ? std::pair(i, j) : std::pair(j, i);
         const double distance =
             farthest_from(faces_[large].normal, faces_[large].offset, body(faces_[small]), faces_[small]);
@@ -275,10 +274,7 @@ class ContactSearch {
                 triangles.push_back(
                     {of.points[face.corners[0]], of.points[face.corners[i]], of.points[face.corners[i + 1]]});
         } else {
-            for (const uint32_t t : face.parts) {
-                const TriangleCorners& c = of.facets[t];
-                triangles.push_back({of.points[c[0]], of.points[c[1]], of.points[c[2]]});
-            }
+            for (const uint32_t t : face.parts) triangles.push_back(points_of(of, t));
         }
         return triangles;
     }
@@ -318,7 +314,7 @@ class ContactSearch {
     // ---- results
 
     void list_planes() {
-        std::vector<uint32_t> members(equations_.size(), 0), number(equations_.size(), no_plane);
+        std::vector<uint32_t> number(equations_.size(), no_plane);
         std::vector<uint32_t> first(equations_.size(), no_body);
         std::vector<bool> needed(equations_.size(), false);
         for (uint32_t i = 0; i < faces_.size(); ++i) {

@@ -17,11 +17,6 @@ int level_of(const Box& box) {
     return -1;
 }
 
-std::array<dvec3, 3> points_of(const ContactBody& body, uint32_t triangle) {
-    const TriangleCorners& c = body.facets[triangle];
-    return {body.points[c[0]], body.points[c[1]], body.points[c[2]]};
-}
-
 /// The face that some triangles make.
 FlatFace face_of(const ContactBody& body, std::vector<uint32_t> triangles) {
     FlatFace face{};
@@ -214,6 +209,11 @@ bool NearSolids::meets_another(const Box& box, uint32_t solid) const {
 void add_mesh_faces(const ContactBody& body, const std::vector<uint32_t>& triangles, double tolerance,
                     std::vector<FlatFace>& faces) {
     FaceGrowth(body, triangles, tolerance).grow(faces);
+}
+
+std::array<dvec3, 3> points_of(const ContactBody& body, uint32_t facet) {
+    const TriangleCorners& c = body.facets[facet];
+    return {body.points[c[0]], body.points[c[1]], body.points[c[2]]};
 }
 
 void add_triangles(const ContactBody& body, const std::vector<uint32_t>& triangles, std::vector<FlatFace>& faces) {

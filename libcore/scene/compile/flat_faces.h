@@ -80,6 +80,9 @@ class NearSolids {
 void add_mesh_faces(const ContactBody& body, const std::vector<uint32_t>& triangles, double tolerance,
                     std::vector<FlatFace>& faces);
 
+/// The corners of one of a body's facets.
+std::array<glm::dvec3, 3> points_of(const ContactBody& body, uint32_t facet);
+
 /// Makes a face of each triangle of a mesh.
 void add_triangles(const ContactBody& body, const std::vector<uint32_t>& triangles, std::vector<FlatFace>& faces);
 
