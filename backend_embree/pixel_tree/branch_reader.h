@@ -134,7 +134,7 @@ class BranchReader {
         out.index_beyond = index_of(scene_, event.beyond);
         out.cosine = -double(dot(ray.direction, s.normal));
         const bool sheet = out.crossing == CrossingKind::sheet;
-        take_opaque_index(m, m.fresnel != 0 && !sheet, out.index_beyond);
+        take_opaque_index(scene_, m, m.fresnel != 0 && !sheet, out.index_beyond);
         const InterfaceSplit<Real> split =
             split_at<Real, E>(scene_, m, ray.direction, s.normal, ray.media, event.beyond, sheet);
         out.local = double(m.local);

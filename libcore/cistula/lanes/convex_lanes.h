@@ -7,6 +7,9 @@
 
 namespace cistula::convex_lanes {
 
+/// What is asked of a line: the face by which it enters; that by which a ray inside leaves, but for one.
+inline constexpr int entering = 1, inside = 2;
+
 /// Where lines enter and leave a solid, with the first faces that have these times.
 template <class Real>
 struct Line {
@@ -14,18 +17,23 @@ struct Line {
     IndexOf<Real> enter_face = 0, leave_face = 0;
 
     /// Takes the crossings of slab i, whose leaving face is `leaving`; `skipped` is not left by.
+    template <int asked>
     CISTULA_INLINE void take(const Real& in, const Real& out, const IndexOf<Real>& leaving,
                              const IndexOf<Real>& skipped) {
-        const MaskOf<Real> later = in > enter, sooner = (out < leave) & (leaving != skipped);
+        if constexpr ((asked & entering) != 0) enter_face = select(in > enter, leaving, enter_face);
         enter = max_or_second(in, enter);
-        enter_face = select(later, leaving, enter_face);
-        leave = select(sooner, out, leave);
-        leave_face = select(sooner, leaving, leave_face);
+        if constexpr ((asked & inside) != 0) {
+            const MaskOf<Real> sooner = (out < leave) & (leaving != skipped);
+            leave = select(sooner, out, leave);
+            leave_face = select(sooner, leaving, leave_face);
+        } else {
+            leave = min_or_second(out, leave);
+        }
     }
 };
 
 /// Computed as if no slab were parallel to a line, and again with the test for that if one was.
-template <class Real, bool careful, class Scene>
+template <class Real, bool careful, int asked, class Scene>
 CISTULA_INLINE Line<Real> cross_all(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                     const Vec3<Real>& direction, const IndexOf<Real>& skipped, Real& least) {
     Line<Real> line;
@@ -43,20 +51,21 @@ CISTULA_INLINE Line<Real> cross_all(const Scene& scene, const Solid& solid, cons
             out = max_no_nan(at_low, at_high);
             least = min_or_second(magnitude(slope), least);
         }
-        const IndexOf<Real> leaving = IndexOf<Real>(int(2 * i)) - minus_one_where(slope > Real(0));
-        line.take(in, out, leaving, skipped);
+        IndexOf<Real> leaving;
+        if constexpr (asked != 0) leaving = IndexOf<Real>(int(2 * i)) - minus_one_where(slope > Real(0));
+        line.template take<asked>(in, out, leaving, skipped);
     }
     line.enter_face = line.enter_face ^ 1;
     return line;
 }
 
-template <class Real, class Scene>
+template <class Real, int asked, class Scene>
 CISTULA_INLINE Line<Real> cross(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
                                 const Vec3<Real>& direction, const IndexOf<Real>& skipped) {
     Real least(1);
-    const Line<Real> line = cross_all<Real, false>(scene, solid, origin, direction, skipped, least);
+    const Line<Real> line = cross_all<Real, false, asked>(scene, solid, origin, direction, skipped, least);
     if (!any(least < least_slope<ScalarOf<Real>>)) return line;
-    return cross_all<Real, true>(scene, solid, origin, direction, skipped, least);
+    return cross_all<Real, true, asked>(scene, solid, origin, direction, skipped, least);
 }
 
 }  // namespace cistula::convex_lanes

@@ -21,6 +21,17 @@ struct LaneBranch {
     uint32_t depth = 0;
     bool mirrored = false;
 
+    /// Becomes what is constructed, value by value: a copy of the whole is slow.
+    CISTULA_INLINE void begin() {
+        ray.from_solid = no_solid;
+        ray.from_face = 0;
+        ray.from_plane = ScalarOf<IndexOf<Real>>(no_plane);
+        ray.after = {Real(-1), 0};
+        weight = Weight(Real(1));
+        no_light_ahead = false;
+        depth = 0;
+        mirrored = false;
+    }
     /// A child without its ray.
     CISTULA_INLINE LaneBranch child(const Weight& of, bool is_mirrored) const {
         LaneBranch branch;

@@ -13,6 +13,7 @@ struct LaneIntersector {
     using Media = LaneMedia<Real>;
     using Mask = MaskOf<Real>;
     using Index = IndexOf<Real>;
+    using T = ScalarOf<Real>;
     const Scene& scene;
 
     /// The hits with the smallest (t, key) after ray.after, where `who` holds.
@@ -142,10 +143,14 @@ struct LaneIntersector {
         if (scene.plan != nullptr) {
             const auto light = uint32_t(shadow.light - scene.lights.data);
             beyond = scene.plan->beyond[light];
-            for_each_value(who & (ray.from_solid != int(no_solid)), ray.from_solid,
-                           [&](uint32_t from, const Mask& same) {
-                               assign_where(same, near, Index(int32_t(scene.plan->near[from][light])));
-                           });
+            if (scene.solids.size <= native::table_entries<sizeof(T)>)
+                near = looked_up(scene.tables.near[light], ray.from_solid) |
+                       minus_one_where(ray.from_solid == int(no_solid));
+            else
+                for_each_value(who & (ray.from_solid != int(no_solid)), ray.from_solid,
+                               [&](uint32_t from, const Mask& same) {
+                                   assign_where(same, near, Index(int32_t(scene.plan->near[from][light])));
+                               });
         }
         Mask open = !sum.is_blocked();
         for (uint32_t p = 0; E::solids && p < scene.convex_copies.size && any(open); ++p) {
@@ -153,11 +158,21 @@ struct LaneIntersector {
             open = !sum.is_blocked();
         }
         for (uint32_t i = 0; E::triangles && i < scene.clusters.size && any(open); ++i) {
-            Mask reaches = reaching(i, ray, open, shadow.distance);
-            if (scene.plan != nullptr) reaches &= (near & int32_t(1u << (ShadowPlan::first_cluster + i))) != 0;
-            if (any(reaches)) shadow_cluster(i, shadow, LaneTriangleRay<Real>(ray.origin, ray.direction), reaches, sum);
+            Mask asked = open;
+            if (scene.plan != nullptr) asked &= (near & int32_t(1u << (ShadowPlan::first_cluster + i))) != 0;
+            if (!any(asked)) continue;
+            shadow_cluster_in_loop(i, shadow, asked, sum);
             open = !sum.is_blocked();
         }
+    }
+
+    /// Out of line, so that the compiler moves nothing of it out of the loop.
+    template <class E>
+    CISTULA_NOINLINE void shadow_cluster_in_loop(uint32_t i, const ShadowRay<Real, Media>& shadow, const Mask& asked,
+                                                 ShadowSum<E, Real>& sum) const {
+        const Ray<Real, Media>& ray = shadow.ray;
+        const Mask reaches = reaching(i, ray, asked, shadow.distance);
+        if (any(reaches)) shadow_cluster(i, shadow, LaneTriangleRay<Real>(ray.origin, ray.direction), reaches, sum);
     }
 
     template <class E>
@@ -198,9 +213,13 @@ struct LaneIntersector {
                 inside = inside & !leaves;
             }
         }
-        const Mask on_plane = is_beside<E>(index, beside),
-                   reaches =
-                       who & near & outside & !misses_bounds(next.sphere, ray.origin, ray.direction, shadow.distance);
+        const Mask on_plane = is_beside<E>(index, beside);
+        Mask reaches = who & near & outside;
+        if constexpr (!E::has(effect_contacts)) reaches &= ray.from_solid != int(index);
+        if (any(reaches))
+            reaches &= !misses_bounds(next.sphere, ray.origin, ray.direction, shadow.distance);
+        else if (!any(inside))
+            return;
         const Mask others = reaches & (!on_plane) & (ray.from_solid != int(index));
         if (any(inside | others)) {
             const Index left = faces_left<E>(scene, index, ray, inside & on_plane);
@@ -213,10 +232,19 @@ struct LaneIntersector {
     CISTULA_INLINE void closest_in_solid(const IndexedSolid<ScalarOf<Real>>& next, const Ray<Real, Media>& ray,
                                          const Index& left, const Mask& inside, const Mask& outside,
                                          Hit<Real>& best) const {
-        const auto line = convex_lanes::cross(scene, next.solid, ray.origin, ray.direction, left);
-        if (any(inside))
-            take_exit<Real>(
-                inside, next.index, line.leave, [&] { return line.leave_face; }, best);
+        if (!any(inside)) {
+            const auto line =
+                convex_lanes::cross<Real, convex_lanes::entering>(scene, next.solid, ray.origin, ray.direction, left);
+            const Mask meets = outside & is_met(line, scene.extent);
+            if (any(meets))
+                take_entry<Real>(
+                    meets, next.index, line.enter, [&] { return line.enter_face; }, ray, best);
+            return;
+        }
+        const auto line = convex_lanes::cross<Real, convex_lanes::entering | convex_lanes::inside>(
+            scene, next.solid, ray.origin, ray.direction, left);
+        take_exit<Real>(
+            inside, next.index, line.leave, [&] { return line.leave_face; }, best);
         const Mask meets = outside & is_met(line, scene.extent);
         if (any(meets))
             take_entry<Real>(

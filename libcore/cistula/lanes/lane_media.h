@@ -60,6 +60,8 @@ struct LaneMedia {
     CISTULA_INLINE Index medium(const Scene& scene) const {
         Index highest = no_solid;
         const Index media = transparent(scene);
+        if constexpr (sizeof(ScalarOf<Index>) == 4)
+            return select(media == 0, highest, Index(native::highest_bits(media.v)));
         for_each_value(media != 0, media, [&](uint32_t set, const Mask& same) {
             assign_where(same, highest, Index(int(InteriorSet{set}.highest())));
         });
@@ -72,9 +74,12 @@ struct LaneMedia {
         const Index bit = bit_of(solid);
         const Mask is_inside = (bits & bit) != 0;
         Mask fits = (enters & !is_inside) | (leaves & is_inside);
-        for_each_value(enters & !empty(), bits, [&](uint32_t set, const Mask& same) {
-            if (__builtin_popcount(set) == InteriorList::capacity) fits = fits & !(enters & same);
-        });
+        // A set with as many solids as fit is not less than this.
+        constexpr int full = (1 << InteriorList::capacity) - 1;
+        if (any(enters & (bits >= Index(full))))
+            for_each_value(enters & !empty(), bits, [&](uint32_t set, const Mask& same) {
+                if (__builtin_popcount(set) == InteriorList::capacity) fits = fits & !(enters & same);
+            });
         assign_where(fits, bits, bits ^ bit);
         return fits | !(enters | leaves);
     }

@@ -3,17 +3,10 @@
 
 #include "cistula/lanes/convex_lanes.h"
 #include "cistula/lanes/lane_contact.h"
+#include "cistula/lanes/lane_transmittance.h"
 #include "cistula/shading/shadow.h"
 
 namespace cistula {
-
-/// a + b, clamped to largest_loss.
-template <int n>
-CISTULA_INLINE Lanes<int64_t, n> saturating_add(const Lanes<int64_t, n>& a, const Lanes<int64_t, n>& b) {
-    const Lanes<int64_t, n> sum = a + b, top(std::numeric_limits<int64_t>::min());
-    const auto flip = [&](const Lanes<int64_t, n>& x) { return x ^ top; };  // the order of unsigned numbers
-    return select(flip(sum) < flip(a), Lanes<int64_t, n>(int64_t(largest_loss)), sum);
-}
 
 /// 2^-loss: from the scene's table where it has all of them.
 template <class Real, int n>
@@ -21,15 +14,14 @@ CISTULA_INLINE Lanes<Real, n> transmittance_of(const LaneScene<Real>& scene, con
     using Result = Lanes<Real, n>;
     MaskOf<Result> known = narrowed<Result>(loss == Lanes<int64_t, n>(int64_t(0)));
     Result share(Real(1));
+    if (all(known)) return share;
     for (const CachedTransmittance<Real>& entry : scene.cached_transmittances) {
         const MaskOf<Result> is = narrowed<Result>(loss == Lanes<int64_t, n>(int64_t(entry.loss)));
         assign_where(is, share, Result(entry.transmittance));
         known |= is;
+        if (all(known)) return share;
     }
-    if (all(known)) return share;
-    LaneArray<Result> shares(share);
-    for_each_lane(!known, [&](int lane) { shares.of[lane] = uncached_transmittance<Real>(uint64_t(loss[lane])); });
-    return shares.all();
+    return uncached_transmittance<Real>(loss);
 }
 
 /// Adds the absorption of a mesh that a lane enters (sign 1) or leaves (sign -1) at t (ShadowSum::absorb_rest).
@@ -72,7 +64,7 @@ CISTULA_INLINE void add_path_losses(const Scene& scene, const ShadowSum<E, Real>
     constexpr int lanes = LaneTraits<Real>::lanes;
     for (int lane = 0; lane < lanes; ++lane)
         if (const PathSum& path = sum.path[channel * lanes + lane]; path.sum != 0)
-            loss.set(lane, int64_t(saturating_add(uint64_t(loss[lane]), path.loss())));
+            loss.set(lane, int64_t(min_or_second(saturating_add(uint64_t(loss[lane]), path.loss()), loss_of_all)));
 }
 
 /// Where rays start whose light lies on faces of a convex solid: inside all of them, or outside one.
@@ -104,7 +96,9 @@ CISTULA_INLINE void shadow_solid(const Scene& scene, uint32_t index, const Solid
     light_sides<E>(scene, index, shadow, inside | others, lit_inside, lit_outside);
     const MaskOf<Real> on_face = lit_inside | lit_outside;
     const Material<ScalarOf<Real>>& material = scene.materials[solid.material];
-    const auto line = convex_lanes::cross(scene, solid, ray.origin, ray.direction, left);
+    const auto line =
+        any(inside) ? convex_lanes::cross<Real, convex_lanes::inside>(scene, solid, ray.origin, ray.direction, left)
+                    : convex_lanes::cross<Real, 0>(scene, solid, ray.origin, ray.direction, left);
     const Real leave = select(on_face, shadow.distance, max_or_second(line.leave, Real(0)));
     if (any(inside)) add_exit<Real, E>(inside, material, leave, shadow.distance, sum);
     const Real enter = max_or_second(line.enter, Real(0));

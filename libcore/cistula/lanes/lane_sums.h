@@ -27,6 +27,24 @@ CISTULA_INLINE Lanes<int64_t, n> integers_of(const Lanes<double, n>& a) {
     }
 }
 
+/// The sums of a pixel's radiance, and its rays.
+struct alignas(32) SumRow {
+    int64_t of[4];
+};
+/// Adds numbers of four lanes to the rows of these lanes.
+template <class Index>
+CISTULA_INLINE void add_to_rows(SumRow* rows, const Index* numbers, __m256i a, __m256i b, __m256i c, __m256i d) {
+    const __m256i ab_even = _mm256_unpacklo_epi64(a, b), ab_odd = _mm256_unpackhi_epi64(a, b),
+                  cd_even = _mm256_unpacklo_epi64(c, d), cd_odd = _mm256_unpackhi_epi64(c, d);
+    const __m256i of[4] = {
+        _mm256_permute2x128_si256(ab_even, cd_even, 0x20), _mm256_permute2x128_si256(ab_odd, cd_odd, 0x20),
+        _mm256_permute2x128_si256(ab_even, cd_even, 0x31), _mm256_permute2x128_si256(ab_odd, cd_odd, 0x31)};
+    for (int i = 0; i < 4; ++i) {
+        auto* row = reinterpret_cast<__m256i*>(&rows[uint32_t(numbers[i])]);
+        _mm256_store_si256(row, _mm256_add_epi64(_mm256_load_si256(row), of[i]));
+    }
+}
+
 template <class Real>
 class LaneSums {
   public:
@@ -44,12 +62,26 @@ class LaneSums {
         pixel_ = branch.pixel & IndexOf<Real>(Branch::by_mirror - 1);
         rays_ = 0;
         cuts_ = false;
-        for (int c = 0; c < 3; ++c) radiance_[c] = cut_[c] = int64_t(0);
+        for (int c = 0; c < 3; ++c) radiance_[c] = int64_t(0);
     }
-    CISTULA_INLINE void end(const Mask& who) {
-        give(radiance_, who, &PixelRecord::radiance);
+    /// Sums of all pixels are to be added to these rows.
+    void collect(SumRow* rows) { rows_ = rows; }
+    CISTULA_INLINE void end(const Mask&) {
+        alignas(lane_bytes) int64_t whole[3][lanes];
+        for (int c = 0; c < 3; ++c) memcpy(whole[c], &radiance_[c], sizeof radiance_[c]);
+        const LaneArray<IndexOf<Real>> numbers(pixel_), counts(rays_);
+        for (int lane = 0; lane < lanes; lane += 4) {
+            const auto four = [&](int c) {
+                return _mm256_load_si256(reinterpret_cast<const __m256i*>(&whole[c][lane]));
+            };
+            __m256i rays;
+            if constexpr (sizeof counts.of[0] == 4)
+                rays = _mm256_cvtepi32_epi64(_mm_load_si128(reinterpret_cast<const __m128i*>(&counts.of[lane])));
+            else
+                rays = _mm256_load_si256(reinterpret_cast<const __m256i*>(&counts.of[lane]));
+            add_to_rows(rows_, &numbers.of[lane], four(0), four(1), four(2), rays);
+        }
         if (any(cuts_)) give(cut_, cuts_, &PixelRecord::cut);
-        for_each_lane(who, [&](int lane) { pixels_[pixel_[lane]].rays += uint32_t(rays_[lane]); });
     }
 
     CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource, const Mask& who) {
@@ -84,6 +116,8 @@ class LaneSums {
     template <class Weight>
     CISTULA_INLINE void cut(const Weight& weight, const Mask& who) {
         const Vec3<Real> units = in_units(bounded(weight), who);
+        if (!any(cuts_))
+            for (int c = 0; c < 3; ++c) cut_[c] = int64_t(0);
         for (int c = 0; c < 3; ++c) cut_[c] += integers_of<true>(Lanes<double, lanes>(units[c]));
         cuts_ |= who;
     }
@@ -100,6 +134,15 @@ class LaneSums {
 
     /// A radiance in units of the sums; 0 in other lanes.
     CISTULA_INLINE void units_of(const Vec3<Real>& radiance, const Mask& who, Integers (&to)[3]) {
+        if constexpr (sizeof(T) == 4) {
+            const Mask usual = native::are_below_one(radiance.x.v, radiance.y.v, radiance.z.v);
+            if (!any(who & !usual)) {
+                const Real scale(T(settings_.fixed_scale) * T(0x1p-31));
+                for (int c = 0; c < 3; ++c)
+                    native::whole_of(masked(who, radiance[c] * scale).v, to[c].low.v, to[c].high.v);
+                return;
+            }
+        }
         const Vec3<Real> units = in_units(radiance, who);
         for (int c = 0; c < 3; ++c) to[c] = integers_of<false>(Lanes<double, lanes>(units[c]));
     }
@@ -110,6 +153,7 @@ class LaneSums {
     }
 
     LanePixel* const pixels_;
+    SumRow* rows_ = nullptr;
     IndexOf<Real> pixel_ = 0;
     Integers radiance_[3];
 

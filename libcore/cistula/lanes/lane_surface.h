@@ -16,26 +16,29 @@ struct LaneMaterial {
     IndexOf<Real> integer_exponent;
     Vec3<Real> filter, tint;
     IndexOf<Real> fresnel;
+    IndexOf<Real> texture;
     IndexOf<Real> number;  // of the material
     const Material<ScalarOf<Real>>* all;
 
-    /// Sets the lanes where `who` holds.
-    template <class E>
-    CISTULA_INLINE void take(const MaskOf<Real>& who, const Material<ScalarOf<Real>>& from) {
-        assign_where(who, ambient, spread<Real>(from.ambient));
+    /// Takes every part by take(part, its table, its value in a material).
+    template <class E, class Take>
+    CISTULA_INLINE void take_all(const Take& take, const SolidTables<ScalarOf<Real>>& tables,
+                                 const Material<ScalarOf<Real>>& from) {
+        take(ambient, tables.ambient, from.ambient);
         if constexpr (E::has(effect_specular)) {
-            assign_where(who, specular, spread<Real>(from.specular));
-            assign_where(who, integer_exponent, IndexOf<Real>(from.integer_exponent));
+            take(specular, tables.specular, from.specular);
+            take(integer_exponent, tables.integer_exponent, from.integer_exponent);
         }
-        if constexpr (E::has(effect_diffuse)) assign_where(who, diffuse, Real(from.diffuse));
-        assign_where(who, local, Real(from.local));
-        assign_where(who, reflection, Real(from.reflection));
-        if constexpr (E::has(effect_transmission)) assign_where(who, filter, spread<Real>(from.filter));
+        if constexpr (E::has(effect_diffuse)) take(diffuse, tables.diffuse, from.diffuse);
+        take(local, tables.local, from.local);
+        take(reflection, tables.reflection, from.reflection);
+        if constexpr (E::has(effect_transmission)) take(filter, tables.filter, from.filter);
         if constexpr (E::has(effect_refraction)) {
-            assign_where(who, transmission, Real(from.transmission));
-            assign_where(who, tint, spread<Real>(from.tint));
-            assign_where(who, fresnel, IndexOf<Real>(int(from.fresnel)));
+            take(transmission, tables.transmission, from.transmission);
+            take(tint, tables.tint, from.tint);
+            take(fresnel, tables.fresnel, int(from.fresnel));
         }
+        if constexpr (E::has(effect_texture)) take(texture, tables.texture, from.texture);
     }
 };
 
@@ -83,9 +86,10 @@ CISTULA_INLINE Lanes<double, n> index_of(const Scene& scene, const LaneMedia<Lan
     return index;
 }
 
-template <class T, int n>
-CISTULA_INLINE void take_opaque_index(const LaneMaterial<Lanes<T, n>>& m, const MaskOf<Lanes<T, n>>& who,
-                                      Lanes<double, n>& beyond) {
+template <class Scene, class T, int n>
+CISTULA_INLINE void take_opaque_index(const Scene& scene, const LaneMaterial<Lanes<T, n>>& m,
+                                      const MaskOf<Lanes<T, n>>& who, Lanes<double, n>& beyond) {
+    if (!scene.has_opaque_fresnel) return;
     for_each_value(who, m.number, [&](uint32_t number, const MaskOf<Lanes<T, n>>& same) {
         const Material<T>& own = m.all[number];
         if (own.transparency == Transparency::opaque) assign_where(widened(same), beyond, Lanes<double, n>(own.index));
@@ -97,12 +101,21 @@ template <class Real, class T, int n>
 CISTULA_INLINE auto is_opaque(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
     return (Lanes<T, n>(int(scene.transparent)) & Lanes<T, n>(1) << (solid & 31)) == T(0);
 }
+
+/// Whether bits of a set are those of solids; of no solid, none is.
+template <class T, int n>
+CISTULA_INLINE typename Lanes<T, n>::Mask among(uint32_t set, const Lanes<T, n>& solid) {
+    if (set == 0) return false;
+    return ((Lanes<T, n>(1) << (solid & 31)) & Lanes<T, n>(T(set))) != 0;
+}
 template <class Real, class T, int n>
 CISTULA_INLINE auto is_clear(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
+    if (scene.solids.size <= 32) return among(scene.clear_bits, solid);
     return entries_of(scene.clear_solids, solid) != T(0);
 }
 template <class Real, class T, int n>
 CISTULA_INLINE auto transmits(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
+    if (scene.solids.size <= 32) return among(scene.transmitting_bits, solid);
     return entries_of(scene.transmitting, solid) != T(0);
 }
 
@@ -118,6 +131,44 @@ CISTULA_INLINE Vec3<Lanes<T, n>> off_triangle(const Scene& scene, uint32_t slot,
     return select(outside, start(apex[1]), start(apex[0]));
 }
 
+/// texture_uv(), where `who` holds; else 0.
+template <class T, int n, class Scene>
+CISTULA_INLINE Vec2<Lanes<T, n>> texture_uv(const Scene& scene, const Hit<Lanes<T, n>>& hit,
+                                            const MaskOf<Lanes<T, n>>& who) {
+    using Real = Lanes<T, n>;
+    Vec2<Real> uv(Real(0));
+    for_each_value(who, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+        const auto& cluster = scene.clusters[slot / cluster_lanes];
+        const Solid& solid = scene.solids[cluster.solid];
+        const Vec2<T>* of =
+            scene.uvs.data + solid.first_uv + 3 * (cluster.triangle[slot % cluster_lanes] - solid.first_triangle);
+        for (int k = 0; k < 2; ++k)
+            assign_where(same, uv[k],
+                         Real(of[0][k]) * (Real(1) - hit.u - hit.v) + Real(of[1][k]) * hit.u + Real(of[2][k]) * hit.v);
+    });
+    return uv;
+}
+
+/// repeated() in lanes.
+template <class T, int n>
+CISTULA_INLINE IndexOf<Lanes<T, n>> repeated(const Lanes<T, n>& i, uint32_t size) {
+    using Real = Lanes<T, n>;
+    const Real sizes(static_cast<T>(size)), last(static_cast<T>(size - 1));
+    if (all(magnitude(i) < Real(T(0x1p23)))) return whole_of(clamped(i - floor_of(i / sizes) * sizes, Real(0), last));
+    LaneArray<Real> all(i);
+    LaneArray<IndexOf<Real>> rests;
+    for (int lane = 0; lane < n; ++lane) rests.of[lane] = int32_t(any_remainder(all.of[lane], size));
+    return rests.all();
+}
+/// Texels in lanes.
+template <class T, int n, class Scene>
+CISTULA_INLINE Vec3<Lanes<T, n>> texel_at(const Scene& scene, const Texture& texture, const Lanes<T, n>& i,
+                                          const Lanes<T, n>& j) {
+    const auto row = repeated(j, texture.height), column = repeated(i, texture.width);
+    return vectors_at<3>(&scene.texels.data[texture.first_texel].x,
+                         row * IndexOf<Lanes<T, n>>(int(texture.width)) + column);
+}
+
 /// Finds the surfaces of hits in the lanes of `who`; others hold arbitrary numbers, but the first material.
 template <class E, class T, int n, class Media, class Scene>
 CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media>& ray, const Hit<Lanes<T, n>>& hit,
@@ -129,24 +180,32 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
     s.viewer_media = ray.media;
     s.material.all = scene.materials.data;
     s.material.number = s.material.integer_exponent = 0;  // read in all lanes
-    Index slab = 0;
-    MaskOf<Real> convex = false;
-    for_each_value(who, solids, [&](uint32_t index, const MaskOf<Real>& same) {
-        const Solid& solid = scene.solids[index];
+    Index first_slab = 0, is_convex = 0;
+    const auto take_all = [&](const Solid& solid, const auto& take) {
         const Material<T>& material = scene.materials[solid.material];
-        s.material.template take<E>(same, material);
-        assign_where(same, s.material.number, Index(int(solid.material)));
-        assign_where(same, s.color, spread<Real>(material.color));
-        if (is_convex<E>(solid)) {
-            convex |= same;
-            assign_where(same, slab, Index(int(solid.first_slab)) + (faces >> 1));
+        s.material.template take_all<E>(take, scene.tables, material);
+        take(s.material.number, scene.tables.material, int(solid.material));
+        take(s.color, scene.tables.color, material.color);
+        if constexpr (E::solids) {
+            take(is_convex, scene.tables.is_convex, int(solid.kind == SolidKind::convex));
+            take(first_slab, scene.tables.first_slab, int(solid.first_slab));
         }
-    });
+    };
+    if (scene.solids.size <= native::table_entries<sizeof(T)>)
+        take_all(scene.solids[0], [&](auto& to, const auto& table, const auto&) { to = looked_up(table, solids); });
+    else
+        for_each_value(who, solids, [&](uint32_t index, const MaskOf<Real>& same) {
+            take_all(scene.solids[index], [&]<class To>(To& to, const auto&, const auto& value) {
+                if constexpr (std::is_same_v<To, Vec3<Real>>)
+                    assign_where(same, to, spread<Real>(value));
+                else
+                    assign_where(same, to, To(value));
+            });
+        });
+    const MaskOf<Real> convex = who & (is_convex != 0);
     if (any(convex)) {
-        LaneVectors<Real> normals;
-        LaneArray<Index> slabs(slab);
-        for (int lane = 0; lane < n; ++lane) normals.set(lane, scene.slabs[uint32_t(slabs.of[lane])].normal);
-        const Vec3<Real> normal = normals.all();
+        const Vec3<Real> normal = vectors_at<sizeof(Slab<T>) / sizeof(T)>(&scene.slabs.data->normal.x,
+                                                                          masked(convex, first_slab + (faces >> 1)));
         const MaskOf<Real> high = (faces & 1) != 0, outward = (high & hit.enters) | !(high | hit.enters);
         assign_where(convex, s.normal, select(outward, normal, -normal));
     }
@@ -164,19 +223,10 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
         });
     }
     if constexpr (E::has(effect_texture)) {
-        for_each_value(who, s.material.number, [&](uint32_t number, const MaskOf<Real>& same) {
-            const int32_t texture = scene.materials[number].texture;
-            if (texture < 0) return;
-            LaneVectors<Real> colors(s.color);
-            for_each_lane(same & !convex, [&](int lane) {
-                Hit<T> one;
-                one.key = KeyFormat<Real>::of_lane(hit.key, lane);
-                one.u = hit.u[lane];
-                one.v = hit.v[lane];
-                colors.set(lane,
-                           colors[lane] * texture_at(scene, scene.textures[uint32_t(texture)], texture_uv(scene, one)));
-            });
-            s.color = colors.all();
+        const MaskOf<Real> textured = who & !convex & (s.material.texture >= Index(0));
+        for_each_value(textured, s.material.texture, [&](uint32_t texture, const MaskOf<Real>& same) {
+            const Vec2<Real> uv = texture_uv(scene, hit, same);
+            assign_where(same, s.color, s.color * texture_at(scene, scene.textures[texture], uv));
         });
     }
 }

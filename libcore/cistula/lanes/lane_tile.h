@@ -58,6 +58,8 @@ class LaneTile {
         const Intersector intersector = intersector_with(hash);
         SumsOf<Real, E> sums(frame_.tree, scene_, pixels_.data(), flags);
         if constexpr (E::has(fills_layers)) sums.divide(frame_.layers, scene_.light_groups);
+        rows_.assign(pixels_.size(), SumRow{});
+        sums.collect(rows_.data());
         LaneRays<Real> rays{RayCounts(), sums};
         RayTree<Real, E, Intersector, LaneQueues<Entry>, LaneRays<Real>> tree(scene_, intersector, frame_.tree.depth,
                                                                               sums, rays, queues_);
@@ -77,7 +79,7 @@ class LaneTile {
                 if (!any(who)) continue;
                 (branch.mirrored ? rays.counts.reflected : rays.counts.transmitted) += rays.count(who);
             } else {
-                branch = Entry();
+                branch.begin();
                 who = take_primaries(branch, first, flags);
                 sums.begin(branch);
                 if (!any(who)) continue;
@@ -91,6 +93,10 @@ class LaneTile {
             sums.end(who);
             if constexpr (by_sample) add_to_samples(branch, hash, sums.rays(), who, single);
             if (any(single)) trace_singly(kept, single, first, stopped, rays.counts, flags);
+        }
+        for (size_t i = 0; i < pixels_.size(); ++i) {
+            for (int c = 0; c < 3; ++c) pixels_[i].record->radiance[c] += rows_[i].of[c];
+            pixels_[i].rays += uint32_t(rows_[i].of[3]);
         }
         for (LanePixel& pixel : pixels_) {
             pixel.record->rays = pixel.rays;
@@ -277,6 +283,7 @@ class LaneTile {
     const FrameView& frame_;
     const bool adaptive_, gradual_;
     std::vector<LanePixel> pixels_;
+    std::vector<SumRow> rows_;  // of pixels_
     LaneQueues<Entry> queues_;
     size_t next_ = 0;      // of pixels_
     int next_sample_ = 0;  // of its samples

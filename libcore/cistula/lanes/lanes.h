@@ -201,6 +201,47 @@ CISTULA_INLINE Lanes<T, n> reciprocal(Lanes<T, n> a) {
     return Lanes<T, n>(T(1)) / a;
 }
 
+/// Entries of a table, which has at most native::table_entries.
+template <class Table, class T, int n>
+CISTULA_INLINE auto looked_up(const Table& table, const Lanes<T, n>& index) {
+    return Lanes<std::remove_cvref_t<decltype(table.of[0])>, n>(native::looked_up(table.of, index.v));
+}
+/// Vectors, a table for each component.
+template <class Table, class T, int n>
+CISTULA_INLINE auto looked_up(const Table (&table)[3], const Lanes<T, n>& index) {
+    using Real = Lanes<std::remove_cvref_t<decltype(table[0].of[0])>, n>;
+    return Vec3<Real>(looked_up(table[0], index), looked_up(table[1], index), looked_up(table[2], index));
+}
+/// Whole numbers as integers, in float below 2^31.
+template <int n>
+CISTULA_INLINE Lanes<int32_t, n> whole_of(const Lanes<float, n>& a) {
+    return Lanes<int32_t, n>(__builtin_convertvector(a.v, typename Lanes<int32_t, n>::Vector));
+}
+/// Whole numbers in [-2^51, 2^51) as integers, and back.
+template <int n>
+CISTULA_INLINE Lanes<int64_t, n> whole_of(const Lanes<double, n>& a) {
+    if constexpr (is_pair<double, n>)
+        return {whole_of(a.low), whole_of(a.high)};
+    else
+        return Lanes<int64_t, n>((native::Longs)(a + Lanes<double, n>(0x1.8p52)).v - 0x4338000000000000);
+}
+template <int n>
+CISTULA_INLINE Lanes<double, n> double_of(const Lanes<int64_t, n>& a) {
+    if constexpr (is_pair<double, n>)
+        return {double_of(a.low), double_of(a.high)};
+    else
+        return Lanes<double, n>((typename Lanes<double, n>::Vector)(a.v + 0x4338000000000000)) -
+               Lanes<double, n>(0x1.8p52);
+}
+/// `a` where the mask holds, else 0.
+template <class T, int n>
+CISTULA_INLINE Lanes<T, n> masked(LaneMask<int(sizeof(T)), n> mask, const Lanes<T, n>& a) {
+    if constexpr (is_pair<T, n>)
+        return {masked(mask.low, a.low), masked(mask.high, a.high)};
+    else
+        return Lanes<T, n>(native::masked(mask.v, a.v));
+}
+
 /// -1 where the mask holds, else 0.
 template <int bytes, int n>
 CISTULA_INLINE Lanes<SignedOf<bytes>, n> minus_one_where(LaneMask<bytes, n> mask) {
@@ -305,6 +346,25 @@ struct LaneVectors {
     CISTULA_INLINE Vec3<T> operator[](int lane) const { return {x.of[lane], y.of[lane], z.of[lane]}; }
     CISTULA_INLINE Vec3<Real> all() const { return {x.all(), y.all(), z.all()}; }
 };
+
+/// The vectors that begin with the numbers from[stride place].
+template <int stride, class From, class T, int n>
+CISTULA_INLINE auto vectors_at(const From* from, const Lanes<T, n>& place) {
+    if constexpr (sizeof(From) == 4 && sizeof(T) == 4) {
+        Vec3<Lanes<float, n>> all;
+        native::gather_three(from, (place * Lanes<T, n>(stride)).v, all.x.v, all.y.v, all.z.v);
+        return all;
+    } else {
+        using Real = Lanes<std::conditional_t<sizeof(T) == 4, float, double>, n>;
+        const LaneArray<Lanes<T, n>> places(place);
+        LaneVectors<Real> all;
+        for (int lane = 0; lane < n; ++lane) {
+            const From* of = from + stride * size_t(places.of[lane]);
+            all.set(lane, Vec3<ScalarOf<Real>>(Vec3<From>(of[0], of[1], of[2])));
+        }
+        return all.all();
+    }
+}
 
 /// Calls visit(lane) for each lane of a mask.
 template <int bytes, int n, class Visit>

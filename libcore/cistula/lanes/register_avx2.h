@@ -101,6 +101,69 @@ CISTULA_INLINE Ints select(Ints mask, Ints a, Ints b) {
 CISTULA_INLINE Longs select(Longs mask, Longs a, Longs b) {
     return (Longs)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)mask);
 }
+/// Where all three numbers are in [0, 1); -0 counts as outside.
+CISTULA_INLINE Ints are_below_one(Floats a, Floats b, Floats c) {
+    const __m256i greatest = _mm256_max_epu32(_mm256_max_epu32((__m256i)a, (__m256i)b), (__m256i)c);
+    return (Ints)_mm256_cmpeq_epi32(_mm256_min_epu32(greatest, _mm256_set1_epi32(0x3f7fffff)), greatest);
+}
+/// floor(2^31 a), for a in [0, 2^31): the first and the second four.
+CISTULA_INLINE void whole_of(Floats a, Longs& low, Longs& high) {
+    const __m256i upper = _mm256_cvttps_epi32(a);
+    const __m256 rest = _mm256_sub_ps(a, _mm256_cvtepi32_ps(upper));
+    const __m256i lower = _mm256_cvttps_epi32(_mm256_mul_ps(rest, _mm256_set1_ps(0x1p31f)));
+    const __m256i first = _mm256_or_si256(lower, _mm256_slli_epi32(upper, 31)), second = _mm256_srli_epi32(upper, 1);
+    const __m256i even = _mm256_unpacklo_epi32(first, second), odd = _mm256_unpackhi_epi32(first, second);
+    low = (Longs)_mm256_permute2x128_si256(even, odd, 0x20);
+    high = (Longs)_mm256_permute2x128_si256(even, odd, 0x31);
+}
+/// The numbers of the highest bits of positive integers.
+CISTULA_INLINE Ints highest_bits(Ints a) {
+    const __m256i top = _mm256_andnot_si256(_mm256_srli_epi32((__m256i)a, 1), (__m256i)a);  // rounds to no higher one
+    return (Ints)_mm256_sub_epi32(_mm256_srli_epi32((__m256i)_mm256_cvtepi32_ps(top), 23), _mm256_set1_epi32(127));
+}
+CISTULA_INLINE __m128 three_at(const float* from) {
+    return _mm_movelh_ps(_mm_loadl_pi(_mm_setzero_ps(), reinterpret_cast<const __m64*>(from)), _mm_load_ss(from + 2));
+}
+/// Three numbers from each of these places.
+CISTULA_INLINE void gather_three(const float* from, Ints places, Floats& x, Floats& y, Floats& z) {
+    alignas(32) int32_t at[8];
+    _mm256_store_si256(reinterpret_cast<__m256i*>(at), (__m256i)places);
+    const auto two = [&](int i) {
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(three_at(from + uint32_t(at[i]))),
+                                    three_at(from + uint32_t(at[i + 4])), 1);
+    };
+    const __m256 a = two(0), b = two(1), c = two(2), d = two(3);
+    const __m256 ab = _mm256_unpacklo_ps(a, b), cd = _mm256_unpacklo_ps(c, d);
+    x = _mm256_shuffle_ps(ab, cd, 0x44);
+    y = _mm256_shuffle_ps(ab, cd, 0xee);
+    z = _mm256_shuffle_ps(_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d), 0x44);
+}
+/// Entries of tables of so many bytes each that looked_up() takes.
+template <int bytes>
+inline constexpr uint32_t table_entries = 8;
+CISTULA_INLINE Floats looked_up(const float* table, Ints index) {
+    return _mm256_permutevar8x32_ps(_mm256_load_ps(table), (__m256i)index);
+}
+CISTULA_INLINE Ints looked_up(const int32_t* table, Ints index) {
+    return (Ints)_mm256_permutevar8x32_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(table)),
+                                             (__m256i)index);
+}
+/// Entries of 64 bits, by pairs of words of the first and of the second four.
+CISTULA_INLINE Doubles looked_up(const double* table, Longs index) {
+    const __m256i first = _mm256_slli_epi64((__m256i)index, 1);
+    const __m256i words = _mm256_or_si256(first, _mm256_slli_epi64(_mm256_add_epi64(first, _mm256_set1_epi64x(1)), 32));
+    const auto four = [&](const double* from) {
+        return (__m256d)_mm256_permutevar8x32_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(from)), words);
+    };
+    return _mm256_blendv_pd(four(table), four(table + 4), (__m256d)_mm256_slli_epi64((__m256i)index, 61));
+}
+CISTULA_INLINE Longs looked_up(const int64_t* table, Longs index) {
+    return (Longs)looked_up(reinterpret_cast<const double*>(table), index);
+}
+template <class Vector, class Mask>
+CISTULA_INLINE Vector masked(Mask mask, Vector a) {
+    return (Vector)((Mask)a & mask);
+}
 /// The sign bits of the lanes.
 CISTULA_INLINE uint32_t bits(Ints mask) {
     return uint32_t(_mm256_movemask_ps((__m256)mask));

@@ -77,6 +77,64 @@ CISTULA_INLINE Ints minus_ones(Mask16 mask) {
 CISTULA_INLINE Longs minus_ones(Mask8 mask) {
     return (Longs)_mm512_movm_epi64(__mmask8(mask.bits));
 }
+/// Where all three numbers are in [0, 1); -0 counts as outside.
+CISTULA_INLINE Mask16 are_below_one(Floats a, Floats b, Floats c) {
+    const __m512i greatest = _mm512_max_epu32(_mm512_max_epu32((__m512i)a, (__m512i)b), (__m512i)c);
+    return {_mm512_cmple_epu32_mask(greatest, _mm512_set1_epi32(0x3f7fffff))};
+}
+/// floor(2^31 a), for a in [0, 2^31): the first and the second eight.
+CISTULA_INLINE void whole_of(Floats a, Longs& low, Longs& high) {
+    const __m512 scaled = _mm512_mul_ps(a, _mm512_set1_ps(0x1p31f));
+    low = (Longs)_mm512_cvttps_epi64(_mm512_castps512_ps256(scaled));
+    high = (Longs)_mm512_cvttps_epi64(_mm512_extractf32x8_ps(scaled, 1));
+}
+/// The numbers of the highest bits of positive integers.
+CISTULA_INLINE Ints highest_bits(Ints a) {
+    return (Ints)_mm512_sub_epi32(_mm512_set1_epi32(31), _mm512_lzcnt_epi32((__m512i)a));
+}
+CISTULA_INLINE __m128 three_at(const float* from) {
+    return _mm_movelh_ps(_mm_loadl_pi(_mm_setzero_ps(), reinterpret_cast<const __m64*>(from)), _mm_load_ss(from + 2));
+}
+/// Three numbers from each of these places.
+CISTULA_INLINE void gather_three(const float* from, Ints places, Floats& x, Floats& y, Floats& z) {
+    alignas(64) int32_t at[16];
+    _mm512_store_si512(at, (__m512i)places);
+    const auto four = [&](int i) {
+        __m512 v = _mm512_castps128_ps512(three_at(from + uint32_t(at[i])));
+        v = _mm512_insertf32x4(v, three_at(from + uint32_t(at[i + 4])), 1);
+        v = _mm512_insertf32x4(v, three_at(from + uint32_t(at[i + 8])), 2);
+        return _mm512_insertf32x4(v, three_at(from + uint32_t(at[i + 12])), 3);
+    };
+    const __m512 a = four(0), b = four(1), c = four(2), d = four(3);
+    const __m512 ab = _mm512_unpacklo_ps(a, b), cd = _mm512_unpacklo_ps(c, d);
+    x = _mm512_shuffle_ps(ab, cd, 0x44);
+    y = _mm512_shuffle_ps(ab, cd, 0xee);
+    z = _mm512_shuffle_ps(_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d), 0x44);
+}
+/// Entries of tables of so many bytes each that looked_up() takes.
+template <int bytes>
+inline constexpr uint32_t table_entries = bytes == 4 ? 16 : 8;
+CISTULA_INLINE Floats looked_up(const float* table, Ints index) {
+    return _mm512_permutexvar_ps((__m512i)index, _mm512_load_ps(table));
+}
+CISTULA_INLINE Doubles looked_up(const double* table, Longs index) {
+    return _mm512_permutexvar_pd((__m512i)index, _mm512_load_pd(table));
+}
+CISTULA_INLINE Ints looked_up(const int32_t* table, Ints index) {
+    return (Ints)_mm512_permutexvar_epi32((__m512i)index, _mm512_load_si512(table));
+}
+CISTULA_INLINE Longs looked_up(const int64_t* table, Longs index) {
+    return (Longs)_mm512_permutexvar_epi64((__m512i)index, _mm512_load_si512(table));
+}
+CISTULA_INLINE Longs masked(Mask8 mask, Longs a) {
+    return (Longs)_mm512_maskz_mov_epi64(__mmask8(mask.bits), (__m512i)a);
+}
+CISTULA_INLINE Ints masked(Mask16 mask, Ints a) {
+    return (Ints)_mm512_maskz_mov_epi32(__mmask16(mask.bits), (__m512i)a);
+}
+CISTULA_INLINE Floats masked(Mask16 mask, Floats a) {
+    return _mm512_maskz_mov_ps(__mmask16(mask.bits), a);
+}
 /// The mask with these bits.
 template <int bytes>
 CISTULA_INLINE MaskRegister<bytes> mask_of(uint32_t bits) {

@@ -41,8 +41,9 @@ CISTULA_NOINLINE Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
 /// applies to uv.
 template <class Real>
 CISTULA_INLINE Vec2<Real> in_texels(const Texture& texture, const Vec2<Real>& uv) {
-    return {uv.x * Real(texture.repeat[0]) * Real(texture.width),
-            uv.y * Real(texture.repeat[1]) * Real(texture.height)};
+    using T = ScalarOf<Real>;
+    return {uv.x * Real(T(texture.repeat[0])) * Real(T(texture.width)),
+            uv.y * Real(T(texture.repeat[1])) * Real(T(texture.height))};
 }
 
 /// The first of the texels that give the color at uv: the only one, or the upper left one of four.
@@ -53,15 +54,19 @@ CISTULA_INLINE Vec2<Real> first_texel(const Texture& texture, const Vec2<Real>& 
     return {floor_of(place.x - offset), floor_of(place.y - offset)};
 }
 
+/// The texel in column i and row j, integers. (In lanes: lane_surface.h.)
+template <class Real, class Scene>
+CISTULA_INLINE Vec3<Real> texel_at(const Scene& scene, const Texture& texture, Real i, Real j) {
+    const Vec3<float>* texels = scene.texels.data + texture.first_texel;
+    return Vec3<Real>(texels[repeated(j, texture.height) * texture.width + repeated(i, texture.width)]);
+}
+
 /// The color of a texture at uv, the object's coordinates.
 template <class Real, class Scene>
 CISTULA_HD inline Vec3<Real> texture_at(const Scene& scene, const Texture& texture, const Vec2<Real>& uv) {
-    const Vec3<float>* texels = scene.texels.data + texture.first_texel;
     const Vec2<Real> place = in_texels(texture, uv);
     const Real x = place.x, y = place.y;
-    const auto texel = [&](Real i, Real j) {
-        return Vec3<Real>(texels[repeated(j, texture.height) * texture.width + repeated(i, texture.width)]);
-    };
+    const auto texel = [&](Real i, Real j) { return texel_at(scene, texture, i, j); };
     if (texture.filter == TextureFilter::nearest) return texel(floor_of(x), floor_of(y));
     return bilinear(x, y, texel);
 }

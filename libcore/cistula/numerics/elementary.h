@@ -16,13 +16,13 @@ inline constexpr double pow_worst_ulp = 0.70;
 inline constexpr double infinity = RealTraits<double>::infinity;
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-template <int n>
-CISTULA_INLINE double polynomial(double x, const double (&coefficients)[n]) {
-    double sum = coefficients[n - 1];
+template <class Double, int n>
+CISTULA_INLINE Double polynomial(Double x, const double (&coefficients)[n]) {
+    Double sum = coefficients[n - 1];
 #if CISTULA_ON_DEVICE
 #pragma unroll
 #endif
-    for (int i = n - 2; i >= 0; --i) sum = fused(sum, x, coefficients[i]);
+    for (int i = n - 2; i >= 0; --i) sum = fused(sum, x, Double(coefficients[i]));
     return sum;
 }
 
@@ -38,15 +38,16 @@ CISTULA_INLINE double scaled(double x, int k) {
 }
 
 /// 2^(r + tail) for |r| <= 0.5 and a tail of at most about an ulp of 0.5; the result lies in [0.7, 1.42]. Exact at 0.
-CISTULA_HD inline double exp2_reduced(double r, double tail) {
-    constexpr double ln2_hi = 0x1.62e42fefa39efp-1, ln2_lo = 0x1.abc9e3b39803fp-56;
+template <class Double>
+CISTULA_HD inline Double exp2_reduced(Double r, std::type_identity_t<Double> tail) {
+    const Double ln2_hi = 0x1.62e42fefa39efp-1, ln2_lo = 0x1.abc9e3b39803fp-56;
     constexpr double quadratic[] = {0x1.ebfbdff82c58fp-3,  0x1.c6b08d704a0c2p-5,  0x1.3b2ab6fba4e78p-7,
                                     0x1.5d87fe78a5276p-10, 0x1.430912f86bf52p-13, 0x1.ffcbfc670dcd4p-17,
                                     0x1.62c022401b97dp-20, 0x1.b524fae627834p-24, 0x1.e4cf1cd08d4b8p-28,
                                     0x1.e9d3fe3952179p-32, 0x1.c48f769ad2c46p-36};
-    const DoubleDouble linear = two_product(r, ln2_hi);
-    const DoubleDouble sum = fast_two_sum(1, linear.high);
-    const double small = fused(r, ln2_lo, linear.low) + ln2_hi * tail * sum.high;
+    const DoubleDoubleOf<Double> linear = two_product(r, ln2_hi);
+    const DoubleDoubleOf<Double> sum = fast_two_sum(Double(1), linear.high);
+    const Double small = fused(r, ln2_lo, linear.low) + ln2_hi * tail * sum.high;
     return sum.high + (sum.low + fused(r * r, polynomial(r, quadratic), small));
 }
 

@@ -26,8 +26,8 @@ CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
 
 /// Sets the index beyond the face of an opaque body to that of its own material, where `who` holds: no ray goes on
 /// there, but the exact terms say how much is mirrored. (In lanes: lane_surface.h.)
-template <class Real>
-CISTULA_INLINE void take_opaque_index(const Material<Real>& m, bool who, double& beyond) {
+template <class Scene, class Real>
+CISTULA_INLINE void take_opaque_index(const Scene&, const Material<Real>& m, bool who, double& beyond) {
     if (who && m.transparency == Transparency::opaque) beyond = m.index;
 }
 
@@ -47,7 +47,7 @@ CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& s
         WideOf<Real> to = index_of(scene, beyond);
         if constexpr (E::has(effect_fresnel)) {
             fresnel = (m.fresnel != 0) & !sheet;
-            take_opaque_index(m, fresnel, to);
+            take_opaque_index(scene, m, fresnel, to);
         }
         const Real both = m.reflection + m.transmission;
         const MaskOf<Real> equal = narrowed<Real>(from == to);

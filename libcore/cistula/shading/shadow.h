@@ -37,8 +37,7 @@ struct ShadowSum {
             assign_where(who, opaque, Bits(7u));
         } else {
             assign_where(who, opaque, opaque | Bits(material.opaque));
-            for (int c = 0; c < channels; ++c)
-                assign_where(widened(who), loss[c], saturating_add(loss[c], Loss(material.filter_loss[c])));
+            for (int c = 0; c < channels; ++c) add_loss(widened(who), material.filter_loss[c], loss[c]);
         }
     }
 
@@ -48,13 +47,7 @@ struct ShadowSum {
         for (int c = 0; c < channels; ++c) {
             const double sigma = double(material.absorption[c]);
             if (!(sigma > 0)) continue;
-            if constexpr (in_lanes<Lanes>)
-                for_each_lane(who, [&](int lane) {
-                    const uint64_t own = absorption_loss(sigma * double(length[lane]));
-                    loss[c].set(lane, int64_t(saturating_add(uint64_t(loss[c][lane]), own)));
-                });
-            else
-                loss[c] = saturating_add(loss[c], absorption_loss(sigma * double(length)));
+            add_loss(widened(who), absorption_loss(WideOf<Lanes>(sigma) * WideOf<Lanes>(length)), loss[c]);
         }
     }
 

@@ -54,6 +54,7 @@ OwnedLaneScene<Real>::OwnedLaneScene(const SceneView<Real>& from) {
     number_solids(from);
     copy_parts();
     find_tree();
+    fill_tables();
 }
 
 template <class Real>
@@ -109,6 +110,15 @@ void OwnedLaneScene<Real>::copy_parts() {
             (side > 0 ? plane_bodies_[plane].above : plane_bodies_[plane].below) |= uint32_t(side != 0) << i;
         }
     scene_.plane_bodies = span_of(plane_bodies_);
+    for (const Material<Real>& material : scene_.materials)
+        scene_.has_opaque_fresnel |= material.transparency == Transparency::opaque && bool(material.fresnel);
+    for (uint32_t i = 0; i < solids_.size(); ++i) {
+        const Vec3<Real>& sigma = scene_.materials[solids_[i].material].absorption;
+        if (i < scene_.closed) scene_.absorbing |= uint32_t(largest_component(sigma) > Real(0)) << i;
+        if (i >= 32) break;
+        scene_.clear_bits |= clear_[i] << i;
+        scene_.transmitting_bits |= transmitting_[i] << i;
+    }
     cache_transmittances(scene_.materials, scene_.cached_transmittances);
 }
 
@@ -128,6 +138,38 @@ void OwnedLaneScene<Real>::find_tree() {
     tree_items_ = std::move(tree.items);
     scene_.tree = span_of(tree_);
     scene_.tree_items = span_of(tree_items_);
+}
+
+template <class Real>
+void OwnedLaneScene<Real>::fill_tables() {
+    SolidTables<Real>& tables = scene_.tables;
+    for (uint32_t i = 0; i < std::min<size_t>(solids_.size(), std::size(tables.diffuse.of)); ++i) {
+        const Solid& solid = solids_[i];
+        const Material<Real>& material = scene_.materials[solid.material];
+        const auto set = [i](auto& table, const auto& value) {
+            if constexpr (std::is_array_v<std::remove_reference_t<decltype(table)>>)
+                for (int c = 0; c < 3; ++c) table[c].of[i] = value[c];
+            else
+                table.of[i] = value;
+        };
+        set(tables.color, material.color);
+        set(tables.ambient, material.ambient);
+        set(tables.specular, material.specular);
+        set(tables.filter, material.filter);
+        set(tables.tint, material.tint);
+        set(tables.diffuse, material.diffuse);
+        set(tables.local, material.local);
+        set(tables.reflection, material.reflection);
+        set(tables.transmission, material.transmission);
+        set(tables.integer_exponent, material.integer_exponent);
+        set(tables.fresnel, int(material.fresnel));
+        set(tables.material, int(solid.material));
+        set(tables.texture, material.texture);
+        set(tables.first_slab, int(solid.first_slab));
+        set(tables.is_convex, int(solid.kind == SolidKind::convex));
+        for (uint32_t light = 0; scene_.plan != nullptr && light < scene_.lights.size; ++light)
+            set(tables.near[light], int32_t(scene_.plan->near[i][light]));
+    }
 }
 
 template <class Real>

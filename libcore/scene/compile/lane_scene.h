@@ -25,6 +25,7 @@ class OwnedLaneScene {
     void number_solids(const SceneView<Real>& from);
     void copy_parts();
     void find_tree();
+    void fill_tables();
 
     LaneScene<Real> scene_{};
     std::vector<uint32_t> numbers_, convex_, clear_, transmitting_, tree_items_, plane_solids_;
