@@ -70,7 +70,7 @@ class FrameTask {
         if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = limited_mask;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
-        if (in_lanes == nullptr || mask_ == unshadowed_mask || !camera_fits_lanes(frame_)) return;
+        if (in_lanes == nullptr || mask_ == unshadowed_mask || !camera_fits_lanes()) return;
         tiles_ = tile_functions(*in_lanes, settings.lanes);
     }
 
@@ -107,11 +107,11 @@ class FrameTask {
         return {scene_, frame_, intersector_, x, y, own, stack};
     }
 
-    /// Whether no solid contains the camera more than once.
-    static bool camera_fits_lanes(const FrameView& frame) {
+    /// Whether lanes can hold the solids that contain the camera.
+    bool camera_fits_lanes() const {
         bool fits = true;
-        for (int i = 0; i < 1 << frame.camera_planes; ++i)
-            frame.camera_sides[i].media.for_each([&](uint32_t, int count) { fits &= count == 1; });
+        for (int i = 0; i < 1 << frame_.camera_planes; ++i)
+            fits &= InteriorSet::holds(frame_.camera_sides[i].media, lane_scene_->named);
         return fits;
     }
 

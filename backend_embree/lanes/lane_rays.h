@@ -15,7 +15,7 @@ struct LaneRayQueries {
     /// Finds the closest hits of at most `lanes` rays.
     static void closest(const LaneScene<T>& scene, const Ray<T>* rays, int count, Hit<T>* hits) {
         const Hit<Real> found = LaneIntersector<Real>{scene}.template closest<E>(
-            rays_of(count, [&](int lane) -> const Ray<T>& { return rays[lane]; }), MaskOf<Real>::first(count));
+            rays_of(scene, count, [&](int lane) -> const Ray<T>& { return rays[lane]; }), MaskOf<Real>::first(count));
         for (int lane = 0; lane < count; ++lane) {
             Hit<T>& hit = hits[lane];
             hit.t = found.t[lane];
@@ -34,7 +34,7 @@ struct LaneRayQueries {
         LaneArray<Real> distances(Real(T(0)));
         for (int lane = 0; lane < count; ++lane) distances.of[lane] = shadows[lane].distance;
         const ShadowRay<Real, LaneMedia<Real>> all{
-            rays_of(count, [&](int lane) -> const Ray<T>& { return shadows[lane].ray; }), distances.all(),
+            rays_of(scene, count, [&](int lane) -> const Ray<T>& { return shadows[lane].ray; }), distances.all(),
             shadows[0].light};
         const auto arrives = LaneIntersector<Real>{scene}.template transmittance<E>(all, MaskOf<Real>::first(count));
         for (int lane = 0; lane < count; ++lane)
@@ -48,7 +48,7 @@ struct LaneRayQueries {
     using Indices = LaneArray<Index>;
 
     template <class Get>
-    static Ray<Real, Media> rays_of(int count, const Get& get) {
+    static Ray<Real, Media> rays_of(const LaneScene<T>& scene, int count, const Get& get) {
         LaneVectors<Real> origins(Vec3<Real>(Real(T(0)))), directions(Vec3<Real>(Real(T(0))));
         LaneArray<Real> after(Real(T(-1)));
         Indices keys{Index(0)}, solids{Index(Integer(no_solid))}, faces{Index(0)}, planes{Index(Integer(no_plane))},
@@ -62,7 +62,7 @@ struct LaneRayQueries {
             solids.of[lane] = Integer(ray.from_solid);
             faces.of[lane] = Integer(ray.from_face);
             planes.of[lane] = Integer(ray.from_plane);
-            media.of[lane] = int32_t(InteriorSet::of(ray.media).bits);
+            media.of[lane] = int32_t(InteriorSet::of(ray.media, scene.named).bits);
         }
         Ray<Real, Media> rays;
         rays.origin = origins.all();
@@ -71,7 +71,7 @@ struct LaneRayQueries {
         rays.from_solid = solids.all();
         rays.from_face = faces.all();
         rays.from_plane = planes.all();
-        rays.media.bits = media.all();
+        rays.media = {media.all(), scene.named};
         return rays;
     }
 };

@@ -149,6 +149,55 @@ TYPED_TEST(LaneTest, TreesAndSharedPlanesAreEqual) {
     EXPECT_EQ(this->in_lanes(), scenes);
 }
 
+/// A scene with 36 more solids, of all its materials, which stand on one floor in a corner of it: too many for a bit
+/// each. Some touch, some are one inside the other.
+SceneDescription crowded(const SceneDescription& scene) {
+    SceneDescription more = scene;
+    const SceneDescription unit = test::json_scene(
+        R"({"materials": {"m": {"color": 0.5}}, "objects": [
+            {"solid": "cube", "center": [0, 0, 0], "radius": 1, "material": "m"},
+            {"quad": [[-2, -2, 0], [20, -2, 0], [20, 20, 0], [-2, 20, 0]], "material": "m"}]})");
+    std::vector<int> plain;  // materials without a texture
+    for (size_t i = 0; i < scene.materials.size(); ++i)
+        if (scene.materials[i].texture < 0) plain.push_back(int(i));
+    plain.push_back(int(more.materials.size()));
+    more.materials.push_back(unit.materials[0]);
+    for (int i = 0; i < 37; ++i) {
+        ObjectDescription object = unit.objects[i < 36 ? 0 : 1];
+        object.name.clear();
+        object.material = plain[size_t(i) % plain.size()];
+        if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
+            const double size = i % 6 == 5 ? 0.2 : 0.5;
+            solid->radius = size * std::sqrt(3.0) / 2;
+            solid->center = {-3 + 0.5 * (i % 6 == 5 ? i % 6 - 1 : i % 6), 2 + 0.75 * (i / 6), size / 2};
+        } else {
+            for (glm::dvec3& vertex : std::get<TrianglesObject>(object.shape).vertices) vertex *= 0.25;
+        }
+        more.objects.push_back(object);
+    }
+    return more;
+}
+
+TYPED_TEST(LaneTest, ScenesOfManySolidsAreEqual) {
+    size_t scenes = 0;
+    for (const int nested : {1, 2, 5}) {
+        const SceneDescription scene = crowded(tiled_scene(3, 0, nested));
+        FrameSettings settings = golden::settings_for(scene);
+        this->compare(scene, settings, fmt::format("{} nested", nested));
+        settings.cutoff = 0.004;
+        settings.layers = test::all_layers();
+        this->compare(scene, settings, fmt::format("{} nested with a cutoff and layers", nested));
+        scenes += 2;
+    }
+    for (uint64_t seed = 0; seed < 60; ++seed) {
+        const SceneDescription scene = crowded(generated_scene(seed));
+        FrameSettings settings = generated_settings(scene);
+        settings.depth = std::min(settings.depth, 8);
+        this->compare(scene, settings, "scene " + std::to_string(seed));
+    }
+    EXPECT_GE(this->in_lanes(), scenes + 15);
+}
+
 TYPED_TEST(LaneTest, SolidsBeyondAnInteriorListAreToldOf) {
     const SceneDescription scene = tiled_scene(2, 0, InteriorList::capacity + 1);
     const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());

@@ -1,10 +1,14 @@
 // A register of lanes computes what a number computes, lane by lane, special values included.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
+#include <vector>
 
 #include "cistula/lanes/lane_shadow.h"
 #include "cistula/lanes/lane_sums.h"
+#include "cistula/lanes/lane_surface.h"
 #include "testing/draw/draw.h"
 
 using namespace cistula;
@@ -132,14 +136,109 @@ TYPED_TEST(LanesTest, IntegersAreThoseOfNumbers) {
     }
 }
 
-TYPED_TEST(LanesTest, LossesSaturate) {
+TYPED_TEST(LanesTest, LossesAreThoseOfNumbersUpToWhereNothingPasses) {
+    using Real = typename TestFixture::Real;
     constexpr int n = TestFixture::lanes;
+    const uint64_t all = loss_of_all;
     for (int turn = 0; turn < 5000; ++turn) {
-        Lanes<int64_t, n> a(int64_t(0)), b(int64_t(0));
-        const auto loss = [&] { return this->draw_.one_in(4) ? largest_loss : this->draw_.shifted(0, 63); };
-        for (int i = 0; i < n; ++i) a.set(i, int64_t(loss())), b.set(i, int64_t(loss()));
-        const Lanes<int64_t, n> sum = saturating_add(a, b);
-        for (int i = 0; i < n; ++i) ASSERT_EQ(uint64_t(sum[i]), saturating_add(uint64_t(a[i]), uint64_t(b[i])));
+        Lanes<int64_t, n> sums(int64_t{0});
+        Lanes<double, n> depths(0.0);
+        uint64_t expected[n] = {};
+        for (int i = 0; i < n; ++i) {
+            depths.set(i, this->draw_.one_in(8) ? this->draw_.template special<double>()
+                                                : std::ldexp(this->draw_.template centered<double>(1.0),
+                                                             int(this->draw_.below(64)) - 48));
+            expected[i] = absorption_loss(depths[i]);
+        }
+        add_loss(LaneMask<8, n>(true), absorption_loss(depths), sums);
+        const uint32_t mask = uint32_t(this->draw_.below(1u << n));
+        const auto who = widened(MaskOf<Real>::of_bits(mask));
+        for (int term = 0; term < 6; ++term) {
+            const uint64_t loss = this->draw_.one_in(4) ? largest_loss : this->draw_.shifted(0, 63);
+            add_loss(who, loss, sums);
+            for (int i = 0; i < n; ++i) add_loss((mask >> i & 1u) != 0, loss, expected[i]);
+        }
+        const Real shares = uncached_transmittance<TypeParam>(sums);
+        for (int i = 0; i < n; ++i) {
+            ASSERT_EQ(uint64_t(sums[i]), std::min(expected[i], all)) << depths[i];
+            ASSERT_TRUE(this->same(shares[i], transmittance_of<TypeParam>(expected[i]))) << expected[i];
+        }
+    }
+}
+
+TYPED_TEST(LanesTest, EntriesOfTablesAndVectorsAreTakenByIndex) {
+    using Real = typename TestFixture::Real;
+    using Index = IndexOf<Real>;
+    SolidTable<TypeParam> table;
+    SolidTable<ScalarOf<Index>> integers;
+    std::vector<TypeParam> vectors(3 * 16);  // as long as they are: nothing is read behind the last
+    for (int i = 0; i < 16; ++i) {
+        table.of[i] = this->number();
+        integers.of[i] = ScalarOf<Index>(this->draw_.below(1u << 30));
+        for (int c = 0; c < 3; ++c) vectors[size_t(3 * i + c)] = this->number();
+    }
+    for (int turn = 0; turn < 1000; ++turn) {
+        Index index = 0, place = 0;
+        for (int i = 0; i < TestFixture::lanes; ++i) {
+            index.set(i, ScalarOf<Index>(this->draw_.below(native::table_entries<sizeof(TypeParam)>)));
+            place.set(i, ScalarOf<Index>(this->draw_.below(16)));
+        }
+        this->expect("entry", looked_up(table, index), [&](int i) { return table.of[index[i]]; });
+        const Index found = looked_up(integers, index);
+        const Vec3<Real> vector = vectors_at<3>(vectors.data(), place);
+        for (int i = 0; i < TestFixture::lanes; ++i) ASSERT_EQ(found[i], integers.of[index[i]]);
+        for (int c = 0; c < 3; ++c)
+            this->expect("vector", vector[c], [&](int i) { return vectors[size_t(3 * place[i] + c)]; });
+    }
+}
+
+TYPED_TEST(LanesTest, TexturesRepeatAsForNumbers) {
+    using Real = typename TestFixture::Real;
+    for (const uint32_t size : {1u, 2u, 3u, 7u, 640u, 65535u})
+        for (int turn = 0; turn < 2000; ++turn) {
+            auto a = this->numbers();
+            for (TypeParam& one : a.of)
+                one = std::floor(this->draw_.one_in(2) ? one
+                                                       : TypeParam(1e5) * this->draw_.template centered<TypeParam>(1));
+            a.all = Real::at(a.of);
+            const auto found = repeated(a.all, size);
+            for (int i = 0; i < TestFixture::lanes; ++i)
+                ASSERT_EQ(uint32_t(found[i]), repeated(a.of[i], size)) << a.of[i] << " " << size;
+        }
+}
+
+/// Solids that are entered and left in any order, as many as fit and one more.
+TYPED_TEST(LanesTest, NamedSetsHoldUpToThreeSolids) {
+    using Real = typename TestFixture::Real;
+    using Index = IndexOf<Real>;
+    const std::vector<uint32_t> solids{0, 1, 2, 511, 512, 1020, 1021};
+    for (int turn = 0; turn < 500; ++turn) {
+        LaneMedia<Real> media{Index(0), true};
+        std::set<uint32_t> expected[TestFixture::lanes];
+        for (int step = 0; step < 12; ++step) {
+            Index solid = 0;
+            const auto enters = MaskOf<Real>::of_bits(uint32_t(this->draw_.below(1u << TestFixture::lanes)));
+            for (int i = 0; i < TestFixture::lanes; ++i)
+                solid.set(i, ScalarOf<Index>(solids[this->draw_.below(solids.size())]));
+            const auto is_inside = media.contains(solid);
+            const auto fits = media.cross(enters, !enters, solid);
+            for (int i = 0; i < TestFixture::lanes; ++i) {
+                const auto own = uint32_t(solid[i]);
+                const bool enter = (enters.bits() >> i & 1u) != 0, was_inside = expected[i].count(own) != 0;
+                ASSERT_EQ((is_inside.bits() >> i & 1u) != 0, was_inside);
+                const bool possible = enter ? !was_inside && expected[i].size() < 3 : was_inside;
+                ASSERT_EQ((fits.bits() >> i & 1u) != 0, possible);
+                if (possible && enter) expected[i].insert(own);
+                if (possible && !enter) expected[i].erase(own);
+                ASSERT_EQ(media.of(i).count(), expected[i].size());
+                for (const uint32_t other : solids) {
+                    ASSERT_EQ(media.of(i).contains(other), expected[i].count(other) != 0);
+                    ASSERT_EQ((media.contains(other).bits() >> i & 1u) != 0, expected[i].count(other) != 0);
+                }
+                ASSERT_EQ(media.of(i).last(), expected[i].empty() ? no_solid : *expected[i].rbegin());
+                ASSERT_EQ(InteriorSet::of(media.of(i).list(), true).count(), expected[i].size());
+            }
+        }
     }
 }
 

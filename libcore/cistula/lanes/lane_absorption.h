@@ -17,7 +17,7 @@ struct Absorption<true, Lanes<T, n>> {
     template <class Media, class Scene>
     CISTULA_INLINE void begin(const Scene& scene, const Media& media, const Real& t, const MaskOf<Real>& who) {
         summed = false;
-        if (scene.absorbing == 0) return;
+        if (!scene.absorbing.any) return;
         const MaskOf<Real> from = who & (t > Real(0)) & absorbs(scene, media);
         if (any(from)) add(scene, media, t, -1, from);
     }
@@ -26,19 +26,19 @@ struct Absorption<true, Lanes<T, n>> {
     template <class Media, class Scene>
     CISTULA_INLINE void change(const Scene& scene, const Media& before, const Media& beyond, const Real& t,
                                const MaskOf<Real>& who) {
-        if (scene.absorbing == 0) return;
+        if (!scene.absorbing.any) return;
         for_each_lane(who, [&](int lane) {
-            const uint32_t from = before.of(lane).bits, to = beyond.of(lane).bits;
+            const InteriorSet from = before.of(lane), to = beyond.of(lane);
             clear(lane);
-            of[lane].add_all(scene, InteriorSet{from & ~to}, t[lane], 1);
-            of[lane].add_all(scene, InteriorSet{to & ~from}, t[lane], -1);
+            of[lane].add_all(scene, from.among([&](uint32_t i) { return !to.contains(i); }), t[lane], 1);
+            of[lane].add_all(scene, to.among([&](uint32_t i) { return !from.contains(i); }), t[lane], -1);
         });
     }
 
     template <class Media, class Scene>
     CISTULA_INLINE void dim(const Scene& scene, const Media& media, const Real& t, Vec3<Real>& weight,
                             const MaskOf<Real>& who) {
-        if (scene.absorbing == 0) return;
+        if (!scene.absorbing.any) return;
         const MaskOf<Real> inside = who & absorbs(scene, media);
         if (any(inside | (who & summed))) dim_inside(scene, media, t, weight, inside, who);
     }
@@ -46,7 +46,7 @@ struct Absorption<true, Lanes<T, n>> {
   private:
     template <class Media, class Scene>
     CISTULA_INLINE static MaskOf<Real> absorbs(const Scene& scene, const Media& media) {
-        return (media.bits & IndexOf<Real>(int(scene.absorbing))) != 0;
+        return media.among(scene.absorbing) != 0;
     }
     CISTULA_INLINE void clear(int lane) {
         if ((summed.bits() >> lane & 1u) != 0) return;
@@ -67,20 +67,22 @@ struct Absorption<true, Lanes<T, n>> {
                                      const MaskOf<Real>& inside, const MaskOf<Real>& who) {
         MaskOf<Real> single = who & summed;
         const double farthest = 4 * double(scene.extent);
-        for_each_value(inside & !summed, media.bits & IndexOf<Real>(int(scene.absorbing)),
-                       [&](uint32_t set, const MaskOf<Real>& same) {
-                           const auto& sigma = scene.materials[scene.solids[lowest_bit(set)].material].absorption;
-                           if ((set & (set - 1)) != 0 || !(double(largest_component(sigma)) * farthest < 0x1p20)) {
-                               single |= same;
-                               return;
-                           }
-                           const Wide length = clamped(Wide(t), Wide(0.0), Wide(farthest));
-                           for (int c = 0; c < 3; ++c) {
-                               const Wide depth = floor_of(Wide(double(sigma[c])) * length * Wide(0x1p32) + Wide(0.5));
-                               const Real share = uncached_transmittance<T>(absorption_loss(depth * Wide(0x1p-32)));
-                               assign_where(same, weight[c], weight[c] * share);
-                           }
-                       });
+        Vec3<Real> sigma(Real(0));
+        for_each_value(inside & !summed, media.among(scene.absorbing), [&](uint32_t bits, const MaskOf<Real>& same) {
+            const InteriorSet solids{bits, media.named};
+            const Vec3<T>& own = scene.materials[scene.solids[solids.last()].material].absorption;
+            assign_where(same, sigma, spread<Real>(own));
+            if (solids.only() == no_solid || !(double(largest_component(own)) * farthest < 0x1p20)) single |= same;
+        });
+        const MaskOf<Real> together = inside & !single;
+        if (any(together)) {
+            const Wide length = clamped(Wide(t), Wide(0.0), Wide(farthest));
+            for (int c = 0; c < 3; ++c) {
+                const Wide depth = floor_of(Wide(sigma[c]) * length * Wide(0x1p32) + Wide(0.5)) * Wide(0x1p-32);
+                const Real share = uncached_transmittance<T>(absorption_loss(depth));
+                assign_where(together, weight[c], weight[c] * share);
+            }
+        }
         if (!any(single)) return;
         LaneVectors<Real> weights(weight);
         for_each_lane(single, [&](int lane) {

@@ -120,7 +120,10 @@ CISTULA_INLINE MaskOf<Lanes<T, n>> resolve_event(const LaneScene<T>& scene,
     MaskOf<Lanes<T, n>> strays = false;
     event.begin(ray, hit);
     if constexpr (E::has(effect_transmission | effect_insides))  // else no ray goes on behind a crossing
-        if (scene.meshes != 0) strays = who & is_miscounted(ray, hit);
+    {
+        if (scene.meshes.any) strays = who & is_miscounted(ray, hit);
+        if (scene.named) strays |= who & !event.fits;
+    }
     if constexpr (E::has(effect_contacts)) {
         using Index = IndexOf<Lanes<T, n>>;
         if (scene.shared_planes.empty()) return strays;
@@ -158,14 +161,14 @@ CISTULA_NOINLINE bool gather_in_lane(const LaneScene<T>& scene, const Ray<Lanes<
     SurfaceEvent<T> gathered;
     gathered.begin(one, lane_of(hit, lane));
     gather_shared(view, SingleIntersector<T>{scene}, one, gathered);
-    if (!InteriorSet::holds(gathered.beyond)) return false;
+    if (!InteriorSet::holds(gathered.beyond, scene.named)) return false;
     const auto only = MaskOf<Lanes<T, n>>::of_bits(1u << lane);
     const Hit<T>& shaded = gathered.hit;
     event.hit.take(only, shaded.t, Keys::of_single(shaded.key), shaded.u, shaded.v, int32_t(shaded.slot),
                    shaded.enters);
     event.taken[0].t.set(lane, gathered.last().t);
     event.taken[0].key.set(lane, Keys::of_single(gathered.last().key));
-    event.beyond.bits.set(lane, int32_t(InteriorSet::of(gathered.beyond).bits));
+    event.beyond.bits.set(lane, int32_t(InteriorSet::of(gathered.beyond, scene.named).bits));
     assign_where(only, event.fits, MaskOf<Lanes<T, n>>(gathered.fits));
     assign_where(only, event.changes, MaskOf<Lanes<T, n>>(gathered.changes));
     return true;
@@ -201,14 +204,23 @@ CISTULA_NOINLINE MaskOf<Lanes<T, n>> find_meshes_at_starts(const LaneScene<T>& s
     return found;
 }
 
-/// Hits of `who` from which new rays may have to count the meshes around them (count_meshes), and perhaps others.
+/// Hits of `who` from which new rays may have to count the meshes around them (count_meshes), or may be inside more
+/// solids than lanes can name, and perhaps others.
 template <class E, class T, int n>
 CISTULA_INLINE MaskOf<Lanes<T, n>> meshes_at_starts(const LaneScene<T>& scene,
                                                     const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
                                                     const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& who) {
     if constexpr (E::has(effect_contacts))
-        if (scene.meshes != 0 && !scene.shared_planes.empty())
-            return find_meshes_at_starts(scene, along(ray.origin, hit.t, ray.direction), key_solid(hit.key), who);
+        if (!scene.shared_planes.empty()) {
+            MaskOf<Lanes<T, n>> found = false;
+            if (scene.meshes.any)
+                found = find_meshes_at_starts(scene, along(ray.origin, hit.t, ray.direction), key_solid(hit.key), who);
+            if (scene.named)  // of a ray inside several solids, starts may be inside too many
+                for_each_lane(who & !found & !ray.media.empty(), [&](int lane) {
+                    if (ray.media.of(lane).count() > 1) found |= MaskOf<Lanes<T, n>>::of_bits(1u << lane);
+                });
+            return found;
+        }
     return false;
 }
 
@@ -226,7 +238,26 @@ CISTULA_NOINLINE void correct_lane(const LaneScene<T>& scene, const Ray<Lanes<T,
     InteriorList around = media.of(lane).list();
     start_at_contact(view, one, event, lane_of(normal, lane), beyond, start, around);
     for (int axis = 0; axis < 3; ++axis) origin[axis].set(lane, start[axis]);
-    media.bits.set(lane, int32_t(InteriorSet::of(around).bits));
+    media.bits.set(lane, int32_t(InteriorSet::of(around, scene.named).bits));
+}
+
+/// Takes out of media the convex solids with a face on a shared plane that lie on its other side than rays that start
+/// there, above it where `up` holds.
+template <class T, int n>
+CISTULA_INLINE void leave_bodies(const LaneScene<T>& scene, uint32_t plane, const MaskOf<Lanes<T, n>>& up,
+                                 const MaskOf<Lanes<T, n>>& who, LaneMedia<Lanes<T, n>>& media) {
+    using Index = IndexOf<Lanes<T, n>>;
+    if (!scene.named) {
+        const PlaneBodies& bodies = scene.plane_bodies[plane];
+        const Index beside = select(up, Index(int(bodies.below)), Index(int(bodies.above)));
+        return assign_where(who, media.bits, media.bits & (beside ^ Index(-1)));
+    }
+    for_each_lane(who & !media.empty(), [&](int lane) {
+        const int other_side = (up.bits() >> lane & 1u) != 0 ? -1 : 1;
+        const InteriorSet left =
+            media.of(lane).among([&](uint32_t i) { return inner_side(scene, i, plane) != other_side; });
+        media.bits.set(lane, int32_t(left.bits));
+    });
 }
 
 /// Corrects the origins and the media of rays that start at hits where `who` holds (start_at_contact). Starts near one
@@ -246,11 +277,9 @@ CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T,
         LaneMedia<Real> around = media;
         for_each_value(who & (own != Index(ScalarOf<Index>(no_plane))), own, [&](uint32_t number, const auto& same) {
             const SharedPlane<T>& plane = scene.shared_planes[number];
-            const PlaneBodies& bodies = scene.plane_bodies[number];
             assign_where(same, start, along(met, Real(start_lift<T> * plane.slack), toward));
             const auto up = dot(toward, spread<Real>(plane.normal)) > Real(0);
-            const Index beside = select(up, Index(int(bodies.below)), Index(int(bodies.above)));
-            assign_where(same, around.bits, around.bits & (beside ^ Index(-1)));
+            leave_bodies(scene, number, up, same, around);
         });
         MaskOf<Real> single = false;  // lanes that are done by themselves
         for_each_value(who, solids, [&](uint32_t index, const auto& same) {

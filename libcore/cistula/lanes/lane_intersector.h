@@ -14,6 +14,7 @@ struct LaneIntersector {
     using Mask = MaskOf<Real>;
     using Index = IndexOf<Real>;
     using T = ScalarOf<Real>;
+    using Integer = ScalarOf<Index>;
     const Scene& scene;
 
     /// The hits with the smallest (t, key) after ray.after, where `who` holds.
@@ -24,8 +25,7 @@ struct LaneIntersector {
         const Mask traced = who & is_finite(ray);
         best.t = select(traced, Real(RealTraits<Real>::infinity), Real(-1));
         Mask enclosed = false;  // by solids that nothing else comes near
-        if constexpr (E::solids && E::has(effect_insides))
-            enclosed = traced & ((ray.media.bits & Index(int(scene.isolated))) != 0);
+        if constexpr (E::solids && E::has(effect_insides)) enclosed = traced & (ray.media.among(scene.isolated) != 0);
         const Index beside = beside_start<E>(ray);
         if (scene.tree.empty())
             closest_in_loop<E>(ray, traced, traced & !enclosed, beside, best);
@@ -41,7 +41,7 @@ struct LaneIntersector {
         ShadowSum<E, Real> sum;
         assign_where(!(who & is_finite(shadow.ray)), sum.opaque, Index(7));
         if constexpr (E::has(effect_absorption))
-            if (scene.meshes != 0) shadow_start(scene, shadow, who, sum);
+            if (scene.meshes.any) shadow_start(scene, shadow, who, sum);
         const Index beside = beside_start<E>(shadow.ray);
         if (scene.tree.empty())
             shadow_in_loop(shadow, who, beside, sum);
@@ -51,12 +51,13 @@ struct LaneIntersector {
     }
 
   private:
-    /// The convex solids with a face on the shared planes on which rays start, a bit each.
+    /// The convex solids with a face on the shared planes on which rays start, a bit each; the planes, if solids are
+    /// named.
     template <class E>
     CISTULA_INLINE Index beside_start(const Ray<Real, Media>& ray) const {
         if constexpr (E::has(effect_contacts))
-            if (!scene.shared_planes.empty()) return bodies_at_start(scene, ray);
-        return 0;
+            if (!scene.shared_planes.empty()) return scene.named ? ray.from_plane : bodies_at_start(scene, ray);
+        return scene.named ? Index(Integer(no_plane)) : Index(0);
     }
 
     /// `free`: the rays of `who` that may hit more than the solid that they are in.
@@ -75,9 +76,9 @@ struct LaneIntersector {
     template <class E>
     CISTULA_INLINE void closest_in_tree(const Ray<Real, Media>& ray, const Mask& enclosed, const Mask& free,
                                         const Index& beside, Hit<Real>& best) const {
-        for_each_value(enclosed, ray.media.bits & Index(int(scene.isolated)), [&](uint32_t set, const Mask& same) {
-            const uint32_t solid = InteriorSet{set}.highest();
-            closest_solid<E>(scene.convex_before(solid), ray, same, false, beside, best);
+        for_each_value(enclosed, ray.media.among(scene.isolated), [&](uint32_t set, const Mask& same) {
+            const uint32_t solid = InteriorSet{set, scene.named}.last();
+            closest_solid<E>(scene.convex_places[solid], ray, same, false, beside, best);
         });
         if (!any(free)) return;
         const LaneTriangleRay<Real> triangle_ray(ray.origin, ray.direction);
@@ -120,9 +121,15 @@ struct LaneIntersector {
 
     /// The rays that start on a shared plane where a convex solid has a face.
     template <class E>
-    CISTULA_INLINE static Mask is_beside(uint32_t index, const Index& beside) {
-        if constexpr (E::has(effect_contacts)) return (beside & Index(int(1u << index))) != 0;
-        return false;
+    CISTULA_INLINE Mask is_beside(uint32_t index, const Index& beside) const {
+        Mask found = false;
+        if constexpr (E::has(effect_contacts)) {
+            if (!scene.named) return (beside & Index(int(1u << index))) != 0;
+            for_each_value(beside != Index(Integer(no_plane)), beside, [&](uint32_t plane, const Mask& same) {
+                if (inner_side(scene, index, plane) != 0) found |= same;
+            });
+        }
+        return found;
     }
 
     /// The crossings by which rays enter a convex solid that has a face on the shared plane on which they start.
@@ -255,7 +262,7 @@ struct LaneIntersector {
                                            const LaneTriangleRay<Real>& triangle_ray, const Mask& who,
                                            Hit<Real>& best) const {
         const auto& cluster = scene.clusters[index];
-        const bool is_mesh = scene.is_mesh(cluster.solid);
+        const bool is_mesh = scene.meshes.has(cluster.solid);
         for_each_crossing(
             cluster, triangle_ray, who, [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
                 const uint32_t triangle = cluster.triangle[lane], slot = index * uint32_t(cluster_lanes) + lane;

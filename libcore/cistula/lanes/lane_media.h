@@ -1,45 +1,13 @@
 // The interior lists of lanes.
 #pragma once
 
-#include "cistula/geometry/ray.h"
 #include "cistula/lanes/lane_scene.h"
 #include "cistula/lanes/lanes.h"
 
 namespace cistula {
 
-/// The closed solids of a LaneScene that contain a point, a bit each.
-struct InteriorSet {
-    uint32_t bits = 0;
-
-    /// Calls visit(solid, 1) for every solid.
-    template <class Visit>
-    CISTULA_INLINE void for_each(const Visit& visit) const {
-        for (uint32_t left = bits; left != 0; left &= left - 1) visit(lowest_bit(left), 1);
-    }
-    CISTULA_INLINE uint32_t only() const { return bits != 0 && (bits & (bits - 1)) == 0 ? lowest_bit(bits) : no_solid; }
-    /// The solids of an interior list.
-    CISTULA_INLINE static InteriorSet of(const InteriorList& list) {
-        InteriorSet set;
-        list.for_each([&](uint32_t solid, int) { set.bits |= 1u << solid; });
-        return set;
-    }
-    /// Whether all counts of a list are 1.
-    CISTULA_INLINE static bool holds(const InteriorList& list) {
-        bool holds = true;
-        list.for_each([&](uint32_t, int count) { holds &= count == 1; });
-        return holds;
-    }
-    CISTULA_INLINE InteriorList list() const {
-        InteriorList list;
-        for_each([&](uint32_t solid, int count) { list.add(solid, count); });
-        return list;
-    }
-
-    /// The last of one or more solids.
-    CISTULA_INLINE uint32_t highest() const { return 31u - uint32_t(__builtin_clz(bits)); }
-};
-
-/// InteriorSets in lanes. A ray whose count of a mesh is neither 0 nor 1 is traced by itself (lane_single.h).
+/// InteriorSets in lanes. A ray whose count of a mesh is neither 0 nor 1, or that is inside too many solids, is traced
+/// by itself (lane_single.h).
 template <class Real>
 struct LaneMedia {
     static constexpr bool contacts = true, meshes = false;
@@ -47,30 +15,44 @@ struct LaneMedia {
     using Mask = MaskOf<Real>;
 
     Index bits = 0;
+    bool named = false;
 
-    CISTULA_INLINE Mask contains(uint32_t solid) const { return (bits & Index(int(1u << solid))) != 0; }
-    CISTULA_INLINE Mask contains(const Index& solid) const { return (bits & bit_of(solid)) != 0; }
+    CISTULA_INLINE Mask contains(uint32_t solid) const {
+        if (named) return places_of(Index(int(solid))) != 0;
+        return (bits & Index(int(1u << solid))) != 0;
+    }
+    CISTULA_INLINE Mask contains(const Index& solid) const {
+        if (named) return places_of(solid) != 0;
+        return (bits & bit_of(solid)) != 0;
+    }
     CISTULA_INLINE Mask empty() const { return bits == 0; }
-    /// The transparent solids among them.
-    template <class Scene>
-    CISTULA_INLINE Index transparent(const Scene& scene) const {
-        return bits & Index(int(scene.transparent));
+    /// The sets' solids that a SolidSet has.
+    CISTULA_INLINE Index among(const SolidSet& solids) const {
+        if (!named) return bits & Index(int(solids.bits));
+        Index kept = 0;
+        if (solids.any)
+            for_each_value(!empty(), bits, [&](uint32_t set, const Mask& same) {
+                const InteriorSet some = InteriorSet{set, true}.among([&](uint32_t i) { return solids.each[i] != 0; });
+                assign_where(same, kept, Index(int(some.bits)));
+            });
+        return kept;
     }
     template <class Scene>
     CISTULA_INLINE Index medium(const Scene& scene) const {
-        Index highest = no_solid;
-        const Index media = transparent(scene);
+        Index last = no_solid;
+        const Index media = among(scene.transparent);
         if constexpr (sizeof(ScalarOf<Index>) == 4)
-            return select(media == 0, highest, Index(native::highest_bits(media.v)));
+            if (!named) return select(media == 0, last, Index(native::highest_bits(media.v)));
         for_each_value(media != 0, media, [&](uint32_t set, const Mask& same) {
-            assign_where(same, highest, Index(int(InteriorSet{set}.highest())));
+            assign_where(same, last, Index(int(InteriorSet{set, named}.last())));
         });
-        return highest;
+        return last;
     }
 
     /// Records that a closed solid is entered or left. False, without a change, where that is impossible or the solids
-    /// are more than an InteriorList holds.
+    /// are more than an InteriorList, or this, holds.
     CISTULA_INLINE Mask cross(const Mask& enters, const Mask& leaves, const Index& solid) {
+        if (named) return cross_named(enters, leaves, solid);
         const Index bit = bit_of(solid);
         const Mask is_inside = (bits & bit) != 0;
         Mask fits = (enters & !is_inside) | (leaves & is_inside);
@@ -85,10 +67,31 @@ struct LaneMedia {
     }
 
     CISTULA_INLINE void take_where(const Mask& who, const LaneMedia& other) { assign_where(who, bits, other.bits); }
-    CISTULA_INLINE InteriorSet of(int lane) const { return {uint32_t(bits[lane])}; }
+    CISTULA_INLINE InteriorSet of(int lane) const { return {uint32_t(bits[lane]), named}; }
 
   private:
+    /// The lowest and the highest bit of each number.
+    static constexpr int lowest = 1 | 1 << 10 | 1 << 20, highest = lowest << 9;
+
     CISTULA_INLINE static Index bit_of(const Index& solid) { return Index(1) << (solid & 31); }
+    /// The highest bits of the zeros among numbers; of two zeros with a one between them, perhaps a bit too many.
+    CISTULA_INLINE static Index zeros_of(const Index& numbers) {
+        return (numbers - Index(lowest)) & (numbers ^ Index(-1)) & Index(highest);
+    }
+    /// Where a solid's number is: the highest bit of its place, or 0.
+    CISTULA_INLINE Index places_of(const Index& solid) const {
+        const Index number = solid + Index(1);
+        const Index zeros = zeros_of(bits ^ (number | number << 10 | number << 20));
+        return zeros & (Index(0) - zeros);
+    }
+    CISTULA_NOINLINE Mask cross_named(const Mask& enters, const Mask& leaves, const Index& solid) {
+        const Index own = places_of(solid), free = zeros_of(bits), first_free = free & (Index(0) - free);
+        const Mask enters_now = enters & (own == 0) & (free != 0), leaves_now = leaves & (own != 0);
+        const Index number = solid + Index(1);
+        assign_where(enters_now, bits, bits + number * (first_free >> 9));
+        assign_where(leaves_now, bits, bits - number * (own >> 9));
+        return enters_now | leaves_now | !(enters | leaves);
+    }
 };
 
 }  // namespace cistula

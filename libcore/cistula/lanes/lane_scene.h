@@ -1,6 +1,7 @@
 // The form of a scene that rays in lanes trace.
 #pragma once
 
+#include "cistula/geometry/ray.h"
 #include "cistula/model/constant_scene.h"
 
 namespace cistula {
@@ -36,34 +37,109 @@ struct SolidTables {
     SolidTable<Integer> near[ShadowPlan::lights];  // of a ShadowPlan
 };
 
-/// A scene with at most 31 closed solids, of which only opaque meshes have faces in others' planes. Its solids are
-/// numbered anew, closed ones before sheets, so that a bit each says which of them a ray is inside. The order within
-/// either kind is kept, and with it that of crossings at equal t.
+/// Some of the solids of a LaneScene: a bit each of the first 31, and 1 for each that is among them.
+struct SolidSet {
+    uint32_t bits = 0;
+    bool any = false;
+    Span<uint32_t> each;
+
+    CISTULA_INLINE bool has(uint32_t solid) const { return each[solid] != 0; }
+};
+
+/// The closed solids of a LaneScene that contain a point: a bit each or, where the scene has too many for that
+/// (`named`), up to three of them by number, 1 + solid in ten bits each, 0 for none.
+struct InteriorSet {
+    static constexpr uint32_t most_named = 3, number_bits = 10, number_mask = (1u << number_bits) - 1;
+
+    uint32_t bits = 0;
+    bool named = false;
+
+    /// Calls visit(solid, 1) for every solid.
+    template <class Visit>
+    CISTULA_INLINE void for_each(const Visit& visit) const {
+        if (named)
+            for (uint32_t left = bits; left != 0; left >>= number_bits) {
+                if ((left & number_mask) != 0) visit((left & number_mask) - 1, 1);
+            }
+        else
+            for (uint32_t left = bits; left != 0; left &= left - 1) visit(lowest_bit(left), 1);
+    }
+    CISTULA_INLINE uint32_t count() const {
+        uint32_t count = 0;
+        for_each([&](uint32_t, int) { ++count; });
+        return count;
+    }
+    /// The last of them, or no_solid.
+    CISTULA_INLINE uint32_t last() const {
+        uint32_t last = no_solid;
+        for_each([&](uint32_t solid, int) { last = last == no_solid || solid > last ? solid : last; });
+        return last;
+    }
+    CISTULA_INLINE uint32_t only() const { return count() == 1 ? last() : no_solid; }
+    CISTULA_INLINE bool contains(uint32_t solid) const {
+        bool contains = false;
+        for_each([&](uint32_t own, int) { contains |= own == solid; });
+        return contains;
+    }
+    /// Those for which keeps(solid) holds.
+    template <class Keeps>
+    CISTULA_INLINE InteriorSet among(const Keeps& keeps) const {
+        InteriorSet kept{0, named};
+        for_each([&](uint32_t solid, int) {
+            if (keeps(solid)) kept.add(solid);
+        });
+        return kept;
+    }
+    /// The solids of an interior list; of one that does not fit, the first.
+    CISTULA_INLINE static InteriorSet of(const InteriorList& list, bool named) {
+        InteriorSet set{0, named};
+        list.for_each([&](uint32_t solid, int) { set.add(solid); });
+        return set;
+    }
+    /// Whether an interior list fits: all its counts are 1, and they are few enough.
+    CISTULA_INLINE static bool holds(const InteriorList& list, bool named) {
+        bool holds = !named || list.size <= most_named;
+        list.for_each([&](uint32_t, int count) { holds &= count == 1; });
+        return holds;
+    }
+    CISTULA_INLINE InteriorList list() const {
+        InteriorList list;
+        for_each([&](uint32_t solid, int count) { list.add(solid, count); });
+        return list;
+    }
+
+  private:
+    CISTULA_INLINE void add(uint32_t solid) {
+        if (!named)
+            bits |= 1u << solid;
+        else if ((bits >> (most_named - 1) * number_bits) == 0)
+            bits = bits << number_bits | (solid + 1);
+    }
+};
+
+/// A scene with at most 1,022 closed solids, of which only opaque meshes have faces in others' planes. Its solids are
+/// numbered anew, closed ones before sheets, so that a bit each says which of up to 31 a ray is inside; of more, their
+/// numbers do (InteriorSet). The order within either kind is kept, and with it that of crossings at equal t.
 template <class Real>
 struct LaneScene : SceneView<Real> {
-    static constexpr uint32_t most_closed = 31;
+    static constexpr uint32_t most_with_bits = 31, most_closed = 1022;
 
     Span<IndexedSolid<Real>> convex_copies;  // of `convex`, to avoid an indirection
     Span<SheetPlane<Real>> planes;           // of the clusters
     Span<TriangleSides<Real>> sides;         // by slot
     CachedTransmittance<Real> cached_transmittances[4];
-    const ShadowPlan* plan = nullptr;           // of a scene that is small enough for one
-    uint32_t closed = 0;                        // solids i < closed are closed, others sheets
-    int least_lanes = 1;                        // with fewer, one ray after the other is faster
-    uint32_t meshes = 0, isolated = 0;          // bit i: solid i is a closed mesh; convex, nothing else near it
-    uint32_t transparent = 0, absorbing = 0;    // bit i: light passes closed solid i; loses by its absorption there
-    Span<uint32_t> clear_solids, transmitting;  // of each solid, 1 if its material is clear; if it transmits
-    uint32_t clear_bits = 0, transmitting_bits = 0;  // the same of the first 32, a bit each
-    Span<uint32_t> numbers;                          // of the solids in the scene's own order
-    Span<PlaneBodies> plane_bodies;                  // of each of shared_planes
-    bool has_opaque_fresnel = false;                 // whether any opaque material is
+    const ShadowPlan* plan = nullptr;  // of a scene that is small enough for one
+    uint32_t closed = 0;               // solids i < closed are closed, others sheets
+    int least_lanes = 1;               // with fewer, one ray after the other is faster
+    bool named = false;                // whether InteriorSets are numbers, not bits
+    SolidSet meshes, isolated;         // closed meshes; convex solids near which nothing else is
+    SolidSet transparent, absorbing;   // closed solids that light passes; in which it is absorbed
+    SolidSet clear, transmitting;      // of all solids, those of a clear material; of one that transmits
+    Span<uint32_t> numbers, places;    // the scene's own number of each solid, and the reverse
+    Span<uint32_t> convex_places;      // of each convex solid, its place among them
+    Span<PlaneBodies> plane_bodies;    // of each of shared_planes, if InteriorSets are bits
+    bool has_opaque_fresnel = false;   // whether any opaque material is
     SolidTables<Real> tables;
-
-    CISTULA_INLINE bool is_mesh(uint32_t solid) const { return solid < closed && (meshes >> solid & 1u) != 0; }
-    /// The place of a convex solid among them: how many come before it.
-    CISTULA_INLINE uint32_t convex_before(uint32_t solid) const {
-        return solid - uint32_t(__builtin_popcount(meshes & ((1u << solid) - 1u)));
-    }
 };
 
 }  // namespace cistula

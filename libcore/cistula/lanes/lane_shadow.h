@@ -50,7 +50,8 @@ template <class E, class Real, class Media, class Scene>
 CISTULA_NOINLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& who,
                                    ShadowSum<E, Real>& sum) {
     for_each_lane(who, [&](int lane) {
-        InteriorSet{shadow.ray.media.of(lane).bits & scene.meshes}.for_each([&](uint32_t solid, int) {
+        shadow.ray.media.of(lane).for_each([&](uint32_t solid, int) {
+            if (!scene.meshes.has(solid)) return;
             absorb_in_lane(scene, scene.solids[solid], shadow, lane, ScalarOf<Real>(0), 1, sum);
         });
     });
@@ -60,7 +61,7 @@ CISTULA_NOINLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Med
 template <class E, class Real, class Scene>
 CISTULA_INLINE void add_path_losses(const Scene& scene, const ShadowSum<E, Real>& sum, int channel,
                                     LossOf<Real>& loss) {
-    if (scene.meshes == 0) return;
+    if (!scene.meshes.any) return;
     constexpr int lanes = LaneTraits<Real>::lanes;
     for (int lane = 0; lane < lanes; ++lane)
         if (const PathSum& path = sum.path[channel * lanes + lane]; path.sum != 0)

@@ -77,11 +77,11 @@ CISTULA_INLINE Lanes<T, n> highlight(const LaneMaterial<Lanes<T, n>>& material, 
 /// The index of refraction around each ray.
 template <class Scene, class T, int n>
 CISTULA_INLINE Lanes<double, n> index_of(const Scene& scene, const LaneMedia<Lanes<T, n>>& media) {
+    using Index = IndexOf<Lanes<T, n>>;
     Lanes<double, n> index(1.0);
-    const IndexOf<Lanes<T, n>> transparent = media.transparent(scene);
-    for_each_value(transparent != 0, transparent, [&](uint32_t set, const auto& who) {
-        const Solid& medium = scene.solids[InteriorSet{set}.highest()];
-        assign_where(widened(who), index, Lanes<double, n>(scene.materials[medium.material].index));
+    const Index medium = media.medium(scene);
+    for_each_value(medium != Index(int(no_solid)), medium, [&](uint32_t solid, const auto& who) {
+        assign_where(widened(who), index, Lanes<double, n>(scene.materials[scene.solids[solid].material].index));
     });
     return index;
 }
@@ -96,27 +96,25 @@ CISTULA_INLINE void take_opaque_index(const Scene& scene, const LaneMaterial<Lan
     });
 }
 
+/// Where solids are of a set; no solid is.
+template <class T, int n>
+CISTULA_INLINE typename Lanes<T, n>::Mask among(const SolidSet& set, const Lanes<T, n>& solid) {
+    if (!set.any) return false;
+    if (set.each.size <= 31) return ((Lanes<T, n>(1) << (solid & 31)) & Lanes<T, n>(T(set.bits))) != 0;
+    return entries_of(set.each, solid) != T(0);
+}
 /// Whether closed solids are opaque.
 template <class Real, class T, int n>
 CISTULA_INLINE auto is_opaque(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
-    return (Lanes<T, n>(int(scene.transparent)) & Lanes<T, n>(1) << (solid & 31)) == T(0);
-}
-
-/// Whether bits of a set are those of solids; of no solid, none is.
-template <class T, int n>
-CISTULA_INLINE typename Lanes<T, n>::Mask among(uint32_t set, const Lanes<T, n>& solid) {
-    if (set == 0) return false;
-    return ((Lanes<T, n>(1) << (solid & 31)) & Lanes<T, n>(T(set))) != 0;
+    return !among(scene.transparent, solid);
 }
 template <class Real, class T, int n>
 CISTULA_INLINE auto is_clear(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
-    if (scene.solids.size <= 32) return among(scene.clear_bits, solid);
-    return entries_of(scene.clear_solids, solid) != T(0);
+    return among(scene.clear, solid);
 }
 template <class Real, class T, int n>
 CISTULA_INLINE auto transmits(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
-    if (scene.solids.size <= 32) return among(scene.transmitting_bits, solid);
-    return entries_of(scene.transmitting, solid) != T(0);
+    return among(scene.transmitting, solid);
 }
 
 /// The origins of rays that leave from points on a triangle, on its outside or its inside (Apex::from).

@@ -88,7 +88,7 @@ class LaneTile {
             if constexpr (by_sample) hash.begin(largest_component(branch.weight) >= least_weight(), adaptive_);
             find_start_plane<E>(scene_, branch.ray);
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
-            if (scene_.meshes != 0) kept = branch;
+            if (scene_.meshes.any || scene_.named) kept = branch;
             const Mask single = tree.follow(branch, who, first);
             sums.end(who);
             if constexpr (by_sample) add_to_samples(branch, hash, sums.rays(), who, single);
@@ -215,10 +215,9 @@ class LaneTile {
 
     /// The solids of an interior list, which has the scene's own numbers.
     InteriorSet interior_set(const InteriorList& list) const {
-        InteriorSet set;
-        for (uint32_t i = 0; !list.empty() && i < scene_.closed; ++i)
-            set.bits |= uint32_t(list.contains(scene_.numbers[i])) << i;
-        return set;
+        InteriorList own;
+        list.for_each([&](uint32_t solid, int count) { own.add(scene_.places[solid], count); });
+        return InteriorSet::of(own, scene_.named);
     }
 
     /// The next sample of what was added, and its pixel's number.
@@ -274,7 +273,7 @@ class LaneTile {
         }
         branch.ray.origin = origins.all();
         branch.ray.direction = directions.all();
-        branch.ray.media.bits = media.all();
+        branch.ray.media = {media.all(), scene_.named};
         branch.pixel = numbers.all();
         return Mask::first(count);
     }

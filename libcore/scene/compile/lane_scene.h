@@ -1,6 +1,7 @@
 // Conversion of a scene to the form that rays in lanes trace.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -14,21 +15,23 @@ struct FrameView;
 template <class Real>
 class OwnedLaneScene {
   public:
-    /// The view must fit and outlive this.
-    explicit OwnedLaneScene(const SceneView<Real>& from);
+    /// The view must fit and outlive this. InteriorSets are bits in scenes with at most `most_with_bits` closed solids.
+    explicit OwnedLaneScene(const SceneView<Real>& from, uint32_t most_with_bits = LaneScene<Real>::most_with_bits);
     OwnedLaneScene(const OwnedLaneScene&) = delete;
 
     const LaneScene<Real>& scene() const { return scene_; }
     size_t memory() const;  // bytes of all arrays
 
   private:
-    void number_solids(const SceneView<Real>& from);
+    void number_solids(const SceneView<Real>& from, uint32_t most_with_bits);
+    void find_sets(const SceneView<Real>& from);
     void copy_parts();
     void find_tree();
     void fill_tables();
 
     LaneScene<Real> scene_{};
-    std::vector<uint32_t> numbers_, convex_, clear_, transmitting_, tree_items_, plane_solids_;
+    std::vector<uint32_t> numbers_, places_, convex_, convex_places_, tree_items_, plane_solids_;
+    std::deque<std::vector<uint32_t>> sets_;  // of the SolidSets
     std::vector<Solid> solids_;
     std::vector<IndexedSolid<Real>> convex_copies_;
     std::vector<Cluster<Real>> clusters_;
