@@ -58,15 +58,21 @@ DeviceWorker<Real>::DeviceWorker(int device, const SceneArena<Real>& scene, cons
 }
 
 /// Allocates adaptive sampling's storage for as many blocks as the device can run at once, or half as many until it
-/// fits.
+/// fits and leaves as much for pixels.
 template <class Real>
-void DeviceWorker<Real>::reserve_storage() {
-    if (storage_blocks_ != 0) return;
+void DeviceWorker<Real>::reserve_storage(const LayerPlan& layers) {
+    if (storage_blocks_ != 0 && layers.sample_words() <= sample_words_) return;
+    storage_.free();
+    storage_blocks_ = 0;
     int multiprocessors = 0;
+    size_t unused = 0, all = 0;
     CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
-    constexpr size_t block = pixels_at_work * sizeof(LatticeStorage);
+    CISTULA_CUDA_CHECK(cudaMemGetInfo(&unused, &all));
+    sample_words_ = layers.sample_words();
+    const size_t sample_layers = size_t(sample_words_) * sizeof(int64_t);
+    const size_t block = pixels_at_work * (sizeof(LatticeStorage) + lattice_samples * sample_layers);
     unsigned int blocks = unsigned(multiprocessors * most_blocks);
-    while (blocks > 1 && !storage_.try_reserve(blocks * block)) blocks /= 2;
+    while (blocks > 1 && (blocks * block > unused / 2 || !storage_.try_reserve(blocks * block))) blocks /= 2;
     storage_.reserve(blocks * block);
     storage_blocks_ = blocks;
 }
@@ -81,6 +87,7 @@ FrameJob DeviceWorker<Real>::job_for(const PartSlot& slot) const {
     job.next = next_.as<unsigned int>();
     job.stop = stop_.on_device();
     job.storage = storage_.as<LatticeStorage>();
+    job.sample_layers = reinterpret_cast<int64_t*>(job.storage + size_t(storage_blocks_) * pixels_at_work);
     job.storage_blocks = storage_blocks_;
     return job;
 }
@@ -92,12 +99,12 @@ template <class Real>
 void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
     const int kernel = 2 * mask + int(sampling);
     if (primed_ >> kernel & 1u) return;
-    if (sampling == Sampling::adaptive) reserve_storage();
     PartSlot& slot = slots_[0];
     slot.records.reserve(most_warps * warp_threads * sizeof(PixelRecord));
     FrameJob job = job_for(slot);  // its rectangle has no height, so its block renders no pixel
     job.blocks = next_.as<BlockPlace>();
     job.block_count = 1;
+    job.storage_blocks = 1;
     CISTULA_CUDA_CHECK(cudaMemsetAsync(next_.as<void>(), 0, next_bytes, compute_));
     launch(sampling, mask, path_, upload_.scene(), job, compute_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
@@ -108,6 +115,7 @@ template <class Real>
 bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const FramePlan& plan) {
     use_device(device_);
     prime(plan.sampling, plan.mask);
+    if (plan.sampling == Sampling::adaptive) reserve_storage(plan.view.layers);
     const size_t bytes = pixels * sizeof(PixelRecord);
     const size_t layer_bytes = pixels * size_t(plan.view.layers.words) * sizeof(int64_t);
     if (memory_limit != 0 && slots * (bytes + layer_bytes) > memory_limit) return false;

@@ -60,7 +60,7 @@ class DeviceWorker {
 
     FrameJob job_for(const PartSlot& slot) const;
     void prime(Sampling sampling, int mask);
-    void reserve_storage();
+    void reserve_storage(const LayerPlan& layers);
     void fill_gaps(const PartSlot& slot, Film& film);
 
     const int device_;
@@ -70,8 +70,9 @@ class DeviceWorker {
     Readback readback_;
     StopFlag stop_;
     DeviceMemory next_;                // FrameJob::next
-    DeviceMemory storage_;             // FrameJob::storage
+    DeviceMemory storage_;             // FrameJob::storage, and sample_layers behind it
     unsigned int storage_blocks_ = 0;  // 0: storage_ is empty
+    int sample_words_ = 0;             // for which storage_ has room
     uint32_t primed_ = 0;              // bit 2 m + s: mask m's kernel for Sampling s has run
     PartSlot slots_[slots];
 };

@@ -65,7 +65,8 @@ class WarpPixels {
           lane_(threadIdx.x % warp_threads),
           places_(job.block_count * warp_threads),
           at_once_(clamped(int(places_ / (gridDim.x * adaptive_shape.warps)), 1, warp_pixels)),
-          storage_(job.storage + (blockIdx.x * adaptive_shape.warps + threadIdx.x / warp_threads) * warp_pixels) {}
+          first_((blockIdx.x * adaptive_shape.warps + threadIdx.x / warp_threads) * warp_pixels),
+          storage_(job.storage + first_) {}
 
     /// Starts new pixels in place of finished ones while fewer samples are wanted than there are lanes.
     __device__ void refill() {
@@ -86,7 +87,7 @@ class WarpPixels {
         __syncwarp();
     }
 
-    /// Calls take(x, y, storage, slot, record) for one wanted sample per lane; false if no lane has any.
+    /// Calls take(x, y, pixel, slot, record) for one wanted sample per lane; false if no lane has any.
     template <class Take>
     __device__ bool take_samples(const Take& take) {
         const WarpScheduler pieces = WarpScheduler::of(wanted_ - given_);
@@ -96,17 +97,23 @@ class WarpPixels {
         const int x = __shfl_sync(whole_warp, x_, pixel), y = __shfl_sync(whole_warp, y_, pixel);
         const unsigned int record = __shfl_sync(whole_warp, record_, pixel);
         i += __shfl_sync(whole_warp, given_, pixel);
-        if (lane_ < pieces.total) take(x, y, storage_[pixel], storage_[pixel].pixel.wanted(i), records_[record]);
+        if (lane_ < pieces.total) take(x, y, pixel, storage_[pixel].pixel.wanted(i), records_[record]);
         __syncwarp();
         given_ += clamped(warp_threads - pieces.before, 0, wanted_ - given_);
         return true;
     }
 
+    /// What is stored of a pixel's samples, and a sample's layers.
+    __device__ LatticeStorage& storage(int pixel) const { return storage_[pixel]; }
+    __device__ int64_t* layers_of(int pixel, int slot) const {
+        const size_t sample = size_t(first_ + unsigned(pixel)) * lattice_samples + unsigned(slot);
+        return job_.sample_layers + sample * unsigned(job_.frame.layers.sample_words());
+    }
+
     /// Lets pixels that have all samples of their round decide which samples they want next, and writes the sums of
-    /// those that are finished. stands_for(x, y, record, slot, weight, threshold) is told of their samples if it is
-    /// `wanted`.
-    template <class StandsFor>
-    __device__ void finish_round(const StandsFor& stands_for) {
+    /// those that are finished. `layered`: their layers too.
+    template <bool layered>
+    __device__ void finish_round([[maybe_unused]] uint32_t& flags) {
         const bool ready = wanted_ != 0 && given_ == wanted_;
         if (!__any_sync(whole_warp, ready)) return;
         const LatticeSettings& settings = job_.frame.lattice;
@@ -123,22 +130,21 @@ class WarpPixels {
         for (int j = lane_; __any_sync(whole_warp, j < standing.total); j += warp_threads) {
             int pixel = 0, i = 0;
             standing.find(j, pixel, i);
-            const unsigned int place = __shfl_sync(whole_warp, record, pixel);
-            PixelRecord& to = records_[place];
-            int x = 0, y = 0;
-            if constexpr (StandsFor::wanted) {
-                x = __shfl_sync(whole_warp, x_, pixel);
-                y = __shfl_sync(whole_warp, y_, pixel);
-            }
+            PixelRecord& to = records_[__shfl_sync(whole_warp, record, pixel)];
             if (j >= standing.total) continue;
             // Summed locally: reading the next sample right after an atomic addition would wait for it.
             PixelRecord cell = PixelRecord();
-            storage_[pixel].pixel.accumulate(i, [&](int slot, int weight) {
-                storage_[pixel].samples[slot].give(cell, weight, Plus());
-                if constexpr (StandsFor::wanted)
-                    stands_for(x, y, place, slot, weight, storage_[pixel].samples[slot].threshold);
-            });
+            storage_[pixel].pixel.accumulate(
+                i, [&](int slot, int weight) { storage_[pixel].samples[slot].give(cell, weight, Plus()); });
             cell.give(to, AtomicAdd());
+        }
+        if constexpr (layered) {
+            for (unsigned int left = __ballot_sync(whole_warp, done); left != 0; left &= left - 1) {
+                const int pixel = __ffs(int(left)) - 1;
+                fill_layers(pixel, __shfl_sync(whole_warp, cells_, pixel), __shfl_sync(whole_warp, record_, pixel),
+                            flags);
+            }
+            __syncwarp();
         }
         if (done) storage_[lane_].pixel.describe(records_[record_]);
     }
@@ -157,6 +163,26 @@ class WarpPixels {
         note_wishes();
     }
 
+    /// Fills the layers of a finished pixel from those of its samples: a lane adds up a word, so that the loads of a
+    /// warp lie side by side.
+    __device__ void fill_layers(int pixel, int cells, unsigned int record, uint32_t& flags) const {
+        const LayerPlan& plan = job_.frame.layers;
+        const LatticePixel& lattice = storage_[pixel].pixel;
+        int64_t* to = job_.layers_of(record).words;
+        for (int word = lane_; word < plan.sums(); word += warp_threads) {
+            int64_t sum = 0;
+            for (int i = 0; i < cells; ++i)
+                lattice.accumulate(i, [&](int slot, int weight) { sum += weight * layers_of(pixel, slot)[word]; });
+            to[word] = sum;
+        }
+        if (plan.sample_words() == plan.sums()) return;
+        for (int i = lane_; i < cells; i += warp_threads)
+            lattice.accumulate(i, [&](int slot, int weight) {
+                if (!give_first_hit(plan, layers_of(pixel, slot), weight, LatticePixel::is_chosen(slot), to))
+                    flags |= flag_objects_overflow;
+            });
+    }
+
     /// Reads the pixel's wishes right after it has decided, while they are in cache.
     __device__ void note_wishes() {
         given_ = 0;
@@ -169,6 +195,7 @@ class WarpPixels {
     const int lane_;
     const unsigned int places_;  // number of pixels: a block is a tile
     const int at_once_;          // pixels; fewer in a small frame, so that all warps have some
+    const unsigned int first_;   // of the pixels in the job's storage
     LatticeStorage* const storage_;
     bool more_ = true;  // whether there are pixels that no warp has started
     int x_ = 0, y_ = 0;
@@ -177,33 +204,11 @@ class WarpPixels {
     int cells_ = 0;
 };
 
-/// What happens to samples that count in the end: nothing more.
-struct NoLayers {
-    static constexpr bool wanted = false;
-};
-/// What happens to samples that count in the end: they are traced again into the layers of their pixel.
-template <class Real, class Intersector, class Stack>
-struct IntoLayers {
-    static constexpr bool wanted = true;
-    using E = Effects<effect_masks[layered_mask]>;
-    const FrameJob& job;
-    const typename Intersector::Scene& scene;
-    const Intersector& intersector;
-    PixelWork& own;
-    Stack& stack;
-
-    __device__ void operator()(int x, int y, unsigned int record, int slot, int weight, float threshold) const {
-        add_layers(
-            PixelTask<E, Intersector, Stack>{scene, job.frame, intersector, x, y, own, stack, job.layers_of(record)},
-            slot, weight, threshold);
-    }
-};
-
-template <class Real, DevicePath path, bool layered>
+template <class Real, int mask, DevicePath path>
 __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(adaptive_shape, path))
     render_adaptive(const __grid_constant__ FrameJob job,
                     const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
-    using E = Effects<effect_masks[limited_mask]>;
+    using E = Effects<effect_masks[mask]>;
     using Stack = DeviceStack<Real, E, path>;
     __shared__ Uninitialized<BlockStorage<adaptive_shape.threads()>> memory;
     PixelWork& own = memory.get().work[threadIdx.x] = PixelWork();
@@ -217,20 +222,18 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
     for (;;) {
         pixels.refill();
         const bool ends = stack.stopped();  // read early: the load takes a while
-        const bool any = pixels.take_samples([&](int x, int y, LatticeStorage& pixel, int slot, PixelRecord& record) {
-            TreeThreshold threshold{LatticePixel::first_threshold(job.frame.tree, pixel.samples, slot)};
-            const uint32_t hash =
-                take_sample(PixelTask<E, Intersector, Stack>{scene, job.frame, intersector, x, y, own, stack}, slot,
-                            gradual, threshold, taken);
-            pixel.samples[slot].keep(taken, hash, threshold.share);
+        const bool any = pixels.take_samples([&](int x, int y, int pixel, int slot, PixelRecord& record) {
+            LatticeStorage& storage = pixels.storage(pixel);
+            TreeThreshold threshold{LatticePixel::first_threshold(job.frame.tree, storage.samples, slot)};
+            PixelTask<E, Intersector, Stack> task{scene, job.frame, intersector, x, y, own, stack};
+            if constexpr (E::has(fills_layers)) task.layers = {pixels.layers_of(pixel, slot)};
+            const uint32_t hash = take_sample(task, slot, gradual, threshold, taken);
+            storage.samples[slot].keep(taken, hash, threshold.share);
             AtomicAdd()(record.rays, taken.rays);
             if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
         });
         if (!any || __any_sync(whole_warp, ends)) break;
-        if constexpr (layered)
-            pixels.finish_round(IntoLayers<Real, Intersector, Stack>{job, scene, intersector, own, stack});
-        else
-            pixels.finish_round(NoLayers());
+        pixels.template finish_round<E::has(fills_layers)>(own.flags);
     }
     add_to_tally(*job.tally, own.rays, own.flags);
 }

@@ -40,7 +40,8 @@ struct FrameJob {
     DeviceTally* tally = nullptr;
     const unsigned int* stop = nullptr;  // points to 1: the kernel ends, and its output is invalid
     unsigned int* next = nullptr;        // adaptive sampling: the pixel that the next free warp takes,
-    LatticeStorage* storage = nullptr;   // ... pixels_at_work for each of storage_blocks
+    LatticeStorage* storage = nullptr;   // ... pixels_at_work for each of storage_blocks,
+    int64_t* sample_layers = nullptr;    // ... and frame.layers.sample_words() for each of their samples
     unsigned int storage_blocks = 0;
 
     CISTULA_INLINE PixelLayers layers_of(unsigned int record) const {

@@ -93,7 +93,7 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
             check_cuda(cudaGetLastError(), "launch of render_pixels");
         } else if constexpr (samples_adaptively(mask)) {
             constexpr int threads = adaptive_shape.threads();
-            const auto kernel = render_adaptive<Real, here, mask == layered_mask>;
+            const auto kernel = render_adaptive<Real, mask, here>;
             kernel<<<min_or_second(filling_blocks(kernel, threads), job.storage_blocks), threads, 0, stream>>>(job,
                                                                                                                own);
             check_cuda(cudaGetLastError(), "launch of render_adaptive");

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -84,8 +85,8 @@ class FrameTask {
     bool run() {
         if (tiles_ != nullptr) return goes_by_sample() ? render_samples_in_lanes() : render_in_lanes();
         if (settings_.layers.any())
-            return settings_.adaptive() ? render_adaptive_layers() : render_mask<layered_mask>();
-        if (settings_.adaptive()) return render_adaptive();
+            return settings_.adaptive() ? render_adaptive<layered_mask>() : render_mask<layered_mask>();
+        if (settings_.adaptive()) return render_adaptive<limited_mask>();
         if constexpr (!runs_every_mask<Intersector>) {
             return mask_ == unshadowed_mask ? render_mask<unshadowed_mask>() : render_mask<limited_mask>();
         } else {
@@ -160,38 +161,31 @@ class FrameTask {
         });
     }
 
-    /// Renders with a target error, and enters each sample that counts into the layers.
-    bool render_adaptive_layers() {
-        if constexpr (!fills_film_layers<Intersector>) {
+    /// Renders with a target error.
+    template <int mask>
+    bool render_adaptive() {
+        if constexpr (mask == layered_mask && !fills_film_layers<Intersector>) {
             return false;  // never called
         } else {
-            using E = Effects<effect_masks[limited_mask]>;
-            using Layered = Effects<effect_masks[layered_mask]>;
+            using E = Effects<effect_masks[mask]>;
             const bool gradual = shades_gradually(scene_);
             return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
                 typename Stack<E>::Storage storage;
                 Stack<E> stack(storage, RenderStop{progress_.stop});
-                PixelTask layered = task_for<Layered>(x, y, own, stack);
-                layered.layers = layers_of(pixel);
-                render_adaptive_pixel(
-                    task_for<E>(x, y, own, stack), gradual, pixel,
-                    [&](int slot, int weight, float threshold) { add_layers(layered, slot, weight, threshold); });
+                PixelTask task = task_for<E>(x, y, own, stack);
+                std::unique_ptr<int64_t[]> samples;
+                if constexpr (mask == layered_mask) {
+                    task.layers = layers_of(pixel);
+                    samples = std::make_unique_for_overwrite<int64_t[]>(size_t(lattice_samples) *
+                                                                        size_t(frame_.layers.sample_words()));
+                }
+                render_adaptive_pixel(task, gradual, pixel, samples.get());
             });
         }
     }
 
     PixelLayers layers_of(const PixelRecord& pixel) {
         return {film_.layers.of(size_t(&pixel - film_.pixels.data())), 1};
-    }
-
-    bool render_adaptive() {
-        using E = Effects<effect_masks[limited_mask]>;
-        const bool gradual = shades_gradually(scene_);
-        return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
-            typename Stack<E>::Storage storage;
-            Stack<E> stack(storage, RenderStop{progress_.stop});
-            render_adaptive_pixel(task_for<E>(x, y, own, stack), gradual, pixel);
-        });
     }
 
     /// A tile's contribution to the film's counts.

@@ -450,17 +450,20 @@ TYPED_TEST(LaneTest, LayersOfTreesAndSharedPlanesAreEqual) {
 TYPED_TEST(LaneTest, ObjectsBeyondAPixelsTableAreToldOf) {
     const SceneDescription scene = tiled_scene(12, 0, 1);
     const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
-    for (const int entries : {1, 64})
-        for (const int lanes : {1, 16}) {
-            FrameSettings settings = golden::settings_for(scene);
-            settings.supersample = 3;
-            settings.lanes = lanes;
-            settings.layers.objects = true;
-            settings.layers.object_entries = entries;
-            EXPECT_EQ(golden::render_with(*renderer, scene, settings).flags, entries == 1 ? flag_objects_overflow : 0u)
-                << entries << " entries, " << lanes << " lanes";
-            EXPECT_EQ(renderer->lanes() > 1, lanes > 1);
-        }
+    for (const double target : {0.0, 0.1})
+        for (const int entries : {1, 64})
+            for (const int lanes : {1, 16}) {
+                FrameSettings settings = golden::settings_for(scene);
+                settings.supersample = 3;
+                settings.target_error = target;
+                settings.lanes = lanes;
+                settings.layers.objects = true;
+                settings.layers.object_entries = entries;
+                EXPECT_EQ(golden::render_with(*renderer, scene, settings).flags,
+                          entries == 1 ? flag_objects_overflow : 0u)
+                    << entries << " entries, " << lanes << " lanes, target " << target;
+                EXPECT_EQ(renderer->lanes() > 1, lanes > 1);
+            }
 }
 
 }  // namespace

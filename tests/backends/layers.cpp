@@ -38,6 +38,9 @@ class Layers : public ::testing::Test {
         EXPECT_EQ(film.flags, plain.flags) << scene.source;
         EXPECT_EQ(test::first_fault_of_layers(film), "") << scene.source;
         const Film other = rendered(*make_host_renderer<Real>(compiled, HostIntersector::bvh), scene, settings);
+        EXPECT_EQ(film_hash(other), film_hash(film)) << scene.source;
+        EXPECT_EQ(other.rays.total(), film.rays.total()) << scene.source;
+        EXPECT_EQ(other.flags, film.flags) << scene.source;
         EXPECT_EQ(test::first_fault_of_layers(other), "") << scene.source;
         EXPECT_TRUE(test::ordered_words(other) == test::ordered_words(film)) << scene.source;
     }

@@ -10,7 +10,7 @@ namespace cistula {
 /// Renders sample `slot` of a pixel into `record` and returns its path hash. If its tree has more than most_branches,
 /// it is traced again with a larger threshold, and so on; the ledger contains what that drops. Trees that are traced
 /// again leave no trace, and their rays do not count. `threshold`: the first, and then the one that held. `gradual`:
-/// shades_gradually(scene), computed once. task.work is the thread's own.
+/// shades_gradually(scene), computed once. task.work is the thread's own, task.layers the sample's.
 template <class E, class Intersector, class Stack>
 CISTULA_HOST_NOINLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack>& task, int slot, bool gradual,
                                            TreeThreshold& threshold, PixelRecord& record) {
@@ -21,11 +21,13 @@ CISTULA_HOST_NOINLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack
     for (;;) {
         task.work.rays = before;
         begin_pixel(record);
+        if constexpr (E::has(fills_layers))
+            for (int i = 0; i < task.frame.layers.sample_words(); ++i) task.layers.words[i] = 0;
         PathHash hash;
         Hashing stack(task.stack, hash, Real(task.frame.lattice.significant));
         const HashingIntersector<Intersector> intersector{task.intersector, hash, gradual};
-        const PixelTask<E, HashingIntersector<Intersector>, Hashing> hashed{task.scene, task.frame, intersector, task.x,
-                                                                            task.y,     task.work,  stack};
+        const PixelTask<E, HashingIntersector<Intersector>, Hashing> hashed{
+            task.scene, task.frame, intersector, task.x, task.y, task.work, stack, task.layers};
         const bool holds = render_sample(hashed, threshold, {slot % lattice_side, slot / lattice_side, true}, record);
         record.rays = task.work.rays.total() - before.total();
         const bool is_too_large = stack.drop();
@@ -37,20 +39,6 @@ CISTULA_HOST_NOINLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack
         else
             threshold.shrink();
     }
-}
-
-/// Enters sample `slot` into the pixel's layers as if it represented `weight` samples of the lattice, by tracing it
-/// again with the threshold that held. E: with fills_layers.
-template <class E, class Intersector, class Stack>
-CISTULA_NOINLINE void add_layers(const PixelTask<E, Intersector, Stack>& task, int slot, int weight, float threshold) {
-    PixelWork work;
-    PixelRecord record;
-    begin_pixel(record);
-    const PixelTask<E, Intersector, Stack> traced{task.scene, task.frame, task.intersector, task.x,
-                                                  task.y,     work,       task.stack,       task.layers};
-    const GridSample sample{slot % lattice_side, slot / lattice_side, LatticePixel::is_chosen(slot)};
-    render_sample(traced, {threshold, true}, sample, record, weight);
-    task.work.flags |= work.flags & flag_objects_overflow;
 }
 
 /// Copies the data that belong to a single sample: id, depth and normal.
@@ -127,16 +115,27 @@ CISTULA_INLINE void sample_adaptively(const FrameView& frame, bool checked, Pixe
     pixel.finish(record, stands_for);
 }
 
-/// Renders a pixel of a frame with a target error. `stands_for` is that of sample_adaptively.
-template <class E, class Intersector, class Stack, class StandsFor = IgnoredWeights>
+/// Renders a pixel of a frame with a target error. With fills_layers each sample fills words of its own, in `samples`
+/// by slot, and those that count enter task.layers, the pixel's, when their weights are known.
+template <class E, class Intersector, class Stack>
 CISTULA_INLINE void render_adaptive_pixel(const PixelTask<E, Intersector, Stack>& task, bool gradual,
-                                          PixelRecord& record, const StandsFor& stands_for = {}) {
+                                          PixelRecord& record, [[maybe_unused]] int64_t* samples = nullptr) {
+    [[maybe_unused]] const LayerPlan& plan = task.frame.layers;
     sample_adaptively(
         task.frame, is_checked(task.x, task.y), record,
         [&](int slot, TreeThreshold& threshold, PixelRecord& taken) {
-            return take_sample(task, slot, gradual, threshold, taken);
+            PixelTask<E, Intersector, Stack> own = task;
+            if constexpr (E::has(fills_layers)) own.layers = {samples + slot * plan.sample_words()};
+            return take_sample(own, slot, gradual, threshold, taken);
         },
-        stands_for);
+        [&]([[maybe_unused]] int slot, [[maybe_unused]] int weight, float) {
+            if constexpr (E::has(fills_layers)) {
+                const int64_t* words = samples + slot * plan.sample_words();
+                for (int i = 0; i < plan.sums(); ++i) task.layers.words[i] += weight * words[i];
+                if (!give_first_hit(plan, words, weight, LatticePixel::is_chosen(slot), task.layers.words))
+                    task.work.flags |= flag_objects_overflow;
+            }
+        });
 }
 
 }  // namespace cistula

@@ -46,7 +46,7 @@ struct FirstHit {
 /// half. A pixel has a table of these; free entries are 0.
 inline constexpr int object_shift = 32;
 
-/// The place of each group of layers in a pixel's words of 64 bits; -1: not kept.
+/// The place of each group of layers in a pixel's words of 64 bits, in this order; -1: not kept.
 struct LayerPlan {
     int words = 0;   // of a pixel; 0: no layers
     int path = -1;   // 3 sums for each PathLayer
@@ -54,14 +54,19 @@ struct LayerPlan {
     int first_hit = -1;
     int objects = -1, object_entries = 0;
 
+    /// The number of words that are sums. They come first.
+    CISTULA_INLINE int sums() const { return first_hit >= 0 ? first_hit : objects >= 0 ? objects : words; }
+    /// The number of words of a single sample, whose table holds one object.
+    CISTULA_INLINE int sample_words() const { return objects >= 0 ? objects + 1 : words; }
+
     bool operator==(const LayerPlan&) const = default;
 };
 
 inline constexpr int first_hit_words = int(sizeof(FirstHit) / sizeof(int64_t));
 static_assert(sizeof(FirstHit) % sizeof(int64_t) == 0);
 
-/// The words of a pixel and the number of lattice samples that the sample under way stands for; 1 in a uniform grid. A
-/// negative weight takes back what was added.
+/// The words of a pixel, or of one sample, and the number of lattice samples that the sample under way stands for; 1 in
+/// a uniform grid. A negative weight takes back what was added.
 struct PixelLayers {
     int64_t* words = nullptr;
     int weight = 1;
@@ -76,6 +81,17 @@ CISTULA_INLINE bool count_object(int64_t* table, int entries, uint32_t object, i
         return true;
     }
     return false;
+}
+
+/// Enters what a sample met first, from its own words, into its pixel's, as if it represented `weight` samples.
+/// `chosen`: it gives the pixel's id. False if the pixel's table has no room for the object.
+CISTULA_INLINE bool give_first_hit(const LayerPlan& plan, const int64_t* sample, int weight, bool chosen,
+                                   int64_t* pixel) {
+    if (plan.first_hit >= 0 && chosen)
+        for (int i = plan.first_hit; i < plan.first_hit + first_hit_words; ++i) pixel[i] = sample[i];
+    if (plan.objects < 0 || sample[plan.objects] == 0) return true;
+    const uint32_t object = uint32_t(uint64_t(sample[plan.objects]) >> object_shift);
+    return count_object(pixel + plan.objects, plan.object_entries, object, weight);
 }
 
 }  // namespace cistula
