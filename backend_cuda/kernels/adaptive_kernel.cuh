@@ -61,7 +61,6 @@ class WarpPixels {
   public:
     __device__ WarpPixels(const FrameJob& job)
         : job_(job),
-          records_(job.records),
           lane_(threadIdx.x % warp_threads),
           places_(job.block_count * warp_threads),
           at_once_(clamped(int(places_ / (gridDim.x * adaptive_shape.warps)), 1, warp_pixels)),
@@ -86,7 +85,7 @@ class WarpPixels {
         __syncwarp();
     }
 
-    /// Calls take(x, y, storage, slot, record) for one wanted sample per lane; false if no lane has any.
+    /// Calls take(x, y, storage, slot, sight) for one wanted sample per lane; false if no lane has any.
     template <class Take>
     __device__ bool take_samples(const Take& take) {
         const WarpScheduler pieces = WarpScheduler::of(wanted_ - given_);
@@ -96,7 +95,8 @@ class WarpPixels {
         const int x = __shfl_sync(whole_warp, x_, pixel), y = __shfl_sync(whole_warp, y_, pixel);
         const unsigned int record = __shfl_sync(whole_warp, record_, pixel);
         i += __shfl_sync(whole_warp, given_, pixel);
-        if (lane_ < pieces.total) take(x, y, storage_[pixel], storage_[pixel].pixel.wanted(i), records_[record]);
+        if (lane_ < pieces.total)
+            take(x, y, storage_[pixel], storage_[pixel].pixel.wanted(i), job_.records.sights[record]);
         __syncwarp();
         given_ += clamped(warp_threads - pieces.before, 0, wanted_ - given_);
         return true;
@@ -124,7 +124,6 @@ class WarpPixels {
             int pixel = 0, i = 0;
             standing.find(j, pixel, i);
             const unsigned int place = __shfl_sync(whole_warp, record, pixel);
-            PixelRecord& to = records_[place];
             int x = 0, y = 0;
             if constexpr (StandsFor::wanted) {
                 x = __shfl_sync(whole_warp, x_, pixel);
@@ -138,9 +137,9 @@ class WarpPixels {
                 if constexpr (StandsFor::wanted)
                     stands_for(x, y, place, slot, weight, storage_[pixel].samples[slot].threshold);
             });
-            cell.give(to, AtomicAdd());
+            cell.give(job_.records.radiance[place], job_.records.losses[place], AtomicAdd());
         }
-        if (done) storage_[lane_].pixel.describe(records_[record_]);
+        if (done) storage_[lane_].pixel.describe(job_.records.radiance[record_]);
     }
 
   private:
@@ -149,7 +148,7 @@ class WarpPixels {
         const PixelPlace in_tile = BlockPlan{PixelMapping::shared_tile}.place_of(int(place % warp_threads));
         const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
         record_ = place;
-        records_[record_] = PixelRecord();  // also beyond the rectangle: whole tiles are copied
+        job_.records.put(record_, PixelRecord());  // also beyond the rectangle: whole tiles are copied
         if (column >= job_.width || row >= job_.height) return;
         x_ = job_.x + column;
         y_ = job_.y + row;
@@ -165,7 +164,6 @@ class WarpPixels {
     }
 
     const FrameJob& job_;
-    PixelRecord* const records_;
     const int lane_;
     const unsigned int places_;  // number of pixels: a block is a tile
     const int at_once_;          // pixels; fewer in a small frame, so that all warps have some
@@ -217,14 +215,14 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
     for (;;) {
         pixels.refill();
         const bool ends = stack.stopped();  // read early: the load takes a while
-        const bool any = pixels.take_samples([&](int x, int y, LatticeStorage& pixel, int slot, PixelRecord& record) {
+        const bool any = pixels.take_samples([&](int x, int y, LatticeStorage& pixel, int slot, PixelSight& sight) {
             TreeThreshold threshold{LatticePixel::first_threshold(job.frame.tree, pixel.samples, slot)};
             const uint32_t hash =
                 take_sample(PixelTask<E, Intersector, Stack>{scene, job.frame, intersector, x, y, own, stack}, slot,
                             gradual, threshold, taken);
             pixel.samples[slot].keep(taken, hash, threshold.share);
-            AtomicAdd()(record.rays, taken.rays);
-            if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
+            AtomicAdd()(sight.rays, taken.rays);
+            if (LatticePixel::is_chosen(slot)) choose_sample(taken, sight);
         });
         if (!any || __any_sync(whole_warp, ends)) break;
         if constexpr (layered)

@@ -54,7 +54,7 @@ CISTULA_NOINLINE void add_layers(const PixelTask<E, Intersector, Stack>& task, i
 }
 
 /// Copies the data that belong to a single sample: id, depth and normal.
-CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel) {
+CISTULA_INLINE void choose_sample(const PixelSight& sample, PixelSight& pixel) {
     pixel.id = sample.id;
     pixel.z = sample.z;
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];
