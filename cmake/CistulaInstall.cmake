@@ -10,6 +10,7 @@ list(TRANSFORM _headers REPLACE "^#include \"([^\"]+)\".*" "\\1")
 list(APPEND _headers cistula.h scene/base/pixel_rect.h scene/base/shown_text.h scene/compile/effect_reason.h scene/compile/hull.h scene/description/coordinate_rounding.h scene/description/mesh_source.h
     scene/film/film_layers.h
     scene/film/film_memory.h
+    scene/film/film_pixels.h
     scene/film/finished_tiles.h
     scene/image/color_space.h)
 foreach(_header IN LISTS _headers)

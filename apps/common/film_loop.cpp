@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <atomic>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -31,9 +28,9 @@ namespace {
 std::vector<FrameFile> expected_files(const FilmJob& job, const CameraFrame& camera) {
     Film one;
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
-    one.pixels.assign(1, PixelRecord());
+    one.pixels.assign(1);
     begin_layers(one.layers, job.settings.layers, 1, job.layer_names);
-    LayeredPicture picture = to_layers(one, job.options.channels);
+    LayeredPicture picture = channels_of(one, job.options.channels);
     const PixelRect& crop = job.settings.crop;
     picture.width = crop.width;
     picture.height = crop.height;
@@ -142,18 +139,6 @@ class FramesToRender {
                             raw ? "--frames " + format_frames(job.frames, rendered) : std::string("--resume")));
 }
 
-/// Allocates the film in large pages where the system has them; page faults on small ones would take longer than a GPU
-/// needs for the pixels.
-void reserve(Film& film, uint64_t pixels) {
-    if (film.pixels.capacity() >= pixels) return;
-    film.pixels.reserve(pixels);
-    constexpr uintptr_t large_page = uintptr_t{2} << 20;
-    const auto place = reinterpret_cast<uintptr_t>(film.pixels.data());
-    const uintptr_t begin = (place + large_page - 1) / large_page * large_page;
-    const uintptr_t end = (place + pixels * sizeof(PixelRecord)) / large_page * large_page;
-    if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-}
-
 FrameStats stats_of(const Film& film, int frame, const std::string& path, double seconds, const RenderTimes& device) {
     FrameStats stats;
     stats.frame = frame;
@@ -163,6 +148,9 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
     stats.render_seconds = seconds;
     stats.device = device;
     stats.rays = film.rays;
+    stats.pruned = ledger_totals(film, film.totals.pruned);
+    stats.cut = ledger_totals(film, film.totals.cut);
+    stats.units = unit_totals(film);
     return stats;
 }
 
@@ -231,7 +219,6 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             report.begin_frame(camera.frame, rendered, frames.count(), pixels);
             FinishedFrame finished;
             finished.film = writer.take_spare();
-            reserve(finished.film, pixels);
             if (next) renderer.expect(*next, settings);
             bool whole = false;
             if (snapshots) snapshots->begin_frame(camera);
@@ -255,6 +242,9 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             finished.attributes = attributes_of(job, camera);
             finished.stats =
                 stats_of(finished.film, camera.frame, job.output.for_frame(camera.frame), seconds, renderer.times());
+            if (!settings.adaptive())
+                finished.stats.depth_loss =
+                    depth_loss(finished.stats.cut, ledger_totals(finished.film, finished.film.totals.radiance));
             finished.settings = job.settings;
             finished.strict = options.strict;
             if (options.verbose)

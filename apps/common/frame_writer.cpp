@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 
 #include "apps/common/output_name.h"
 #include "apps/common/timing.h"
+#include "scene/base/default_rounding.h"
 #include "scene/base/error.h"
 #include "scene/base/out_of_memory.h"
 #include "scene/image/exr.h"
@@ -16,13 +20,21 @@ namespace cistula {
 namespace {
 
 size_t bytes_of(const Film& film) {
-    return film.pixels.size() * sizeof(PixelRecord) + film.layers.words.size() * sizeof(int64_t);
+    return film.pixels.bytes() + film.layers.words.size() * sizeof(int64_t);
 }
 
-size_t bytes_of(const LayeredPicture& layers, const ColorPicture& color, const ColorPicture& preview) {
-    size_t bytes = (color.texels.size() + preview.texels.size()) * sizeof(glm::vec3);
-    for (const LayeredPicture::Channel& channel : layers.channels) bytes += channel.values.size() * sizeof(float);
-    return bytes;
+/// The number of values that are over the largest half, `clamped` being where their channels count them.
+uint64_t clamped_values(const LayeredPicture& picture, std::atomic<uint64_t>& clamped) {
+    constexpr size_t block = 1024;
+    const size_t pixels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
+    tbb::parallel_for(size_t{0}, (pixels + block - 1) / block, [&](size_t number) {
+        use_default_rounding();
+        std::array<float, block> values;
+        const size_t first = number * block, last = std::min(first + block, pixels);
+        for (const LayeredPicture::Channel& channel : picture.channels)
+            if (channel.half) channel.write(first, last, values.data());
+    });
+    return clamped.exchange(0);
 }
 
 }  // namespace
@@ -50,7 +62,7 @@ FrameWriter::~FrameWriter() {
 
 bool FrameWriter::has_room(size_t bytes) const {
     if (in_work_ >= std::max(limits_.frames, 1)) return false;
-    return in_work_ == 0 || bytes_ + bytes <= limits_.bytes || (in_work_ == 1 && films_ == 0);
+    return in_work_ == 0 || bytes_ + bytes <= limits_.bytes;
 }
 
 void FrameWriter::put(FinishedFrame frame) {
@@ -62,10 +74,9 @@ void FrameWriter::put(FinishedFrame frame) {
         threads_.emplace_back([this] { work(); });
         ++idle_;
     }
-    waiting_.push({next_index_++, bytes, true, std::move(frame)});
+    waiting_.push({next_index_++, bytes, std::move(frame)});
     bytes_ += bytes;
     ++in_work_;
-    ++films_;
     lock.unlock();
     changed_.notify_all();
 }
@@ -122,7 +133,7 @@ void FrameWriter::work() {
             failure = std::current_exception();
             stop_ = true;
         }
-        task.frame.film = Film();
+        Film film = std::move(task.frame.film);
         lock.lock();
         if (!failure)
             done_.emplace(task.index, std::move(task.frame.stats));
@@ -130,27 +141,11 @@ void FrameWriter::work() {
             failure_ = failure;
         pass_on();
         bytes_ -= task.bytes;
-        films_ -= task.has_film;
+        if (bytes_ + (spares_.size() + 1) * task.bytes <= limits_.bytes) spares_.push_back(std::move(film));
         --in_work_;
         ++idle_;
         changed_.notify_all();
     }
-}
-
-/// Releases a film after encoding. The encoded frame is much smaller, so there may be room for another one.
-void FrameWriter::give_film_back(Task& task, size_t bytes_of_layers) {
-    Film film = std::move(task.frame.film);
-    const size_t bytes = bytes_of(film);
-    {
-        const std::lock_guard lock(mutex_);
-        bytes_ += bytes_of_layers;
-        bytes_ -= task.bytes;
-        task.bytes = bytes_of_layers;
-        task.has_film = false;
-        --films_;
-        if (bytes_ + (spares_.size() + 1) * bytes <= limits_.bytes) spares_.push_back(std::move(film));
-    }
-    changed_.notify_all();
 }
 
 void FrameWriter::write(Task& task) {
@@ -159,34 +154,34 @@ void FrameWriter::write(Task& task) {
     const std::string path = frame.image.for_frame(stats.frame);
     const bool raw = file_kind(path) == FileKind::raw;
     LayeredPicture layers;
-    ColorPicture color, preview;
+    std::atomic<uint64_t> clamped{0};
     if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
-    stats.encode_seconds = seconds_of([&] {
-        if (raw || !frame.preview.empty()) color = to_color(frame.film);
-        if (!frame.preview.empty())
+    if (measure_) stats.hash = film_hash(frame.film);
+    if (!raw) layers = channels_of(frame.film, channels_, &clamped);
+    if (frame.strict)
+        if (const uint64_t values = clamped_values(layers, clamped); values != 0)
+            throw Error(ExitCode::failed, fmt::format("{}: not written: {}", path, over_largest_half(values)));
+    // The preview is written first: if the image is complete, --resume can rely on both.
+    if (raw || !frame.preview.empty()) {
+        ColorPicture color, preview;
+        stats.encode_seconds = seconds_of([&] {
+            color = to_color(frame.film);
+            if (frame.preview.empty()) return;
             preview = viewed(raw ? color : std::move(color), frame.view, static_cast<uint32_t>(frame.film.full_height));
-        if (!raw) layers = to_layers(frame.film, channels_, &stats.clamped);
-        layers.attributes.merge(std::move(frame.attributes));
-        if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
-    });
-    if (frame.strict && stats.clamped != 0)
-        throw Error(ExitCode::failed, fmt::format("{}: not written: {}", path, over_largest_half(stats.clamped)));
-    stats.cut = ledger_totals(frame.film, &PixelRecord::cut);
-    if (!frame.settings.adaptive())
-        stats.depth_loss = depth_loss(stats.cut, ledger_totals(frame.film, &PixelRecord::radiance));
-    if (measure_) {
-        stats.hash = film_hash(frame.film);
-        stats.pruned = ledger_totals(frame.film, &PixelRecord::pruned);
-        stats.units = unit_totals(frame.film);
+        });
+        stats.write_seconds = seconds_of([&] {
+            if (!frame.preview.empty()) write_preview(frame.preview, preview);
+            if (raw) write_raw_picture(path, color);
+        });
     }
-    give_film_back(task, bytes_of(layers, color, preview));
-    stats.write_seconds = seconds_of([&] {
-        // The preview is written first: if the image is complete, --resume can rely on both.
-        if (!frame.preview.empty()) write_preview(frame.preview, preview);
-        if (raw) return write_raw_picture(path, color);
+    if (raw) return;
+    layers.attributes.merge(std::move(frame.attributes));
+    if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
+    stats.write_seconds += seconds_of([&] {
         for (const FrameFile& file : frame_files(std::move(layers), frame.split, frame.image, stats.frame))
             write_exr(file.path, file.parts);
     });
+    stats.clamped = clamped;
 }
 
 }  // namespace cistula

@@ -38,7 +38,7 @@ struct FinishedFrame {
 /// Limits on the frames in a FrameWriter.
 struct WriterLimits {
     int frames = 1;                  // one thread each
-    size_t bytes = size_t{2} << 30;  // of films and of the layers made from them
+    size_t bytes = size_t{2} << 30;  // of films
     int exr_threads = 0;             // OpenEXR's own, shared by all frames and additional to those above
     int exr_threads_of_a_frame = 0;  // see set_exr_threads
 };
@@ -53,14 +53,14 @@ using FrameSink = std::function<void(const FrameStats&)>;
 class FrameWriter {
   public:
     /// `stop` is set as soon as a write fails. `written` receives the frames in the order of put(), one at a time, on
-    /// any thread; what it throws is a failed write. Error totals and hash are computed if `measure` is set. Sets
+    /// any thread; what it throws is a failed write. The hash is computed if `measure` is set. Sets
     /// OpenEXR's threads, so no EXR file may be read or written elsewhere during the call.
     FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits, std::atomic<bool>& stop,
                 FrameSink written);
     ~FrameWriter();
 
-    /// Adds a frame; blocks until there is room. Frames that exceed the limit of bytes on their own are processed two
-    /// at a time, only one of them as a film. Throws the first write error; the frame is then not written.
+    /// Adds a frame; blocks until there is room. Frames that exceed the limit of bytes on their own are written one
+    /// after the other. Throws the first write error; the frame is then not written.
     void put(FinishedFrame frame);
 
     /// A film that is no longer needed, for reuse of its memory; or an empty one.
@@ -72,15 +72,13 @@ class FrameWriter {
   private:
     struct Task {
         size_t index = 0;  // in the order of put()
-        size_t bytes = 0;  // memory of the film, later of its layers
-        bool has_film = true;
+        size_t bytes = 0;  // memory of the film
         FinishedFrame frame;
     };
 
     bool has_room(size_t bytes) const;  // requires mutex_
     void work();
     void write(Task& task);
-    void give_film_back(Task& task, size_t bytes_of_layers);
     void pass_on();  // requires mutex_
     void wait_for_all(std::unique_lock<std::mutex>& lock);
 
@@ -98,7 +96,7 @@ class FrameWriter {
     std::vector<Film> spares_;
     std::exception_ptr failure_;         // the first write error
     size_t next_index_ = 0, bytes_ = 0;  // bytes_: of all frames in work
-    int in_work_ = 0, films_ = 0;        // films_: frames in work that are not encoded yet
+    int in_work_ = 0;
     size_t idle_ = 0;  // threads without work, including those that have not yet woken up for a waiting frame
     bool closing_ = false;
     std::vector<std::thread> threads_;

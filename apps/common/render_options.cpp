@@ -292,6 +292,7 @@ FrameSettings frame_settings(const RenderOptions& options, const SceneDescriptio
     settings.target_error = options.target_error.value_or(0);
     settings.max_samples = options.max_samples.value_or(settings.max_samples);
     settings.layers = layers_for(options.channels);
+    settings.parts = parts_for(options.channels);
     settings.effects = options.all_effects ? all_effects : 0;
     // With a target error the depth is unlimited by default: the budget of truncation ends the ray trees.
     if (settings.adaptive()) settings.depth = options.depth.value_or(largest_depth);

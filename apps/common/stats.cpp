@@ -82,40 +82,25 @@ std::string text_of(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace
-
-namespace {
-
-/// Totals of value(pixel, channel) units over the pixels of a film.
-template <class Value>
-LedgerTotals totals_of(const Film& film, const Value& value) {
-    LedgerTotals totals;
-    for (const PixelRecord& pixel : film.pixels)
-        for (size_t c = 0; c < 3; ++c) {
-            const double units = static_cast<double>(value(pixel, c));
-            totals.mean[c] += units;
-            totals.worst[c] = std::max(totals.worst[c], units);
-        }
-    const double unit = film.unit();
-    for (size_t c = 0; c < 3; ++c) {
-        totals.mean[c] *= film.pixels.empty() ? 0 : unit / static_cast<double>(film.pixels.size());
-        totals.worst[c] *= unit;
-    }
-    return totals;
-}
-
 double largest(const std::array<double, 3>& channels) {
     return *std::max_element(channels.begin(), channels.end());
 }
 
 }  // namespace
 
-LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*member)[3]) {
-    return totals_of(film, [member](const PixelRecord& pixel, size_t c) { return (pixel.*member)[c]; });
+LedgerTotals ledger_totals(const Film& film, const Total (&ledger)[3]) {
+    LedgerTotals totals;
+    const double unit = film.unit();
+    for (size_t c = 0; c < 3; ++c) {
+        totals.mean[c] = film.pixels.empty() ? 0 : ledger[c].sum() * unit / static_cast<double>(film.pixels.size());
+        totals.worst[c] = static_cast<double>(ledger[c].most) * unit;
+    }
+    return totals;
 }
 
 LedgerTotals unit_totals(const Film& film) {
-    return totals_of(film, [&film](const PixelRecord& pixel, size_t) { return film.units_lost(pixel); });
+    const Total& units = film.totals.units;
+    return ledger_totals(film, {units, units, units});
 }
 
 DepthLoss depth_loss(const LedgerTotals& cut, const LedgerTotals& radiance) {

@@ -72,8 +72,9 @@ struct RunStats {
     FrameList resumed;  // frames that --resume skipped
 };
 
-/// The totals of one of the error ledgers over the pixels of a film.
-LedgerTotals ledger_totals(const Film& film, int64_t (PixelRecord::*ledger)[3]);
+/// The totals of one of the error ledgers over the pixels of a film: what a film's totals of it are in the scene's
+/// units.
+LedgerTotals ledger_totals(const Film& film, const Total (&ledger)[3]);
 
 /// The totals of what whole units of the sums may have taken.
 LedgerTotals unit_totals(const Film& film);

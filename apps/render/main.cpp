@@ -178,7 +178,7 @@ void judge_target(const FilmTotals& totals, const FrameSettings& settings, const
 void advise_on_memory(const RenderOptions& options, const FrameSettings& settings) {
     const PixelRect& crop = settings.crop;
     const uint64_t pixels = static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height);
-    const uint64_t mebibytes = pixels * sizeof(PixelRecord) >> 20;
+    const uint64_t mebibytes = pixels * settings.kept_parts().bytes() >> 20;
     const bool is_small = mebibytes < 64;
     set_out_of_memory_line(
         "render", is_small ? fmt::format("the scene and {} threads take most of it; allow more (ulimit -v), or give "

@@ -38,19 +38,20 @@ FrameSettings small_settings(const FrameSettings& settings) {
     small.crop.height = std::min(small_side(settings.crop.height), small.full_height - small.crop.y);
     small.supersample = 1;
     small.layers = {};
+    small.parts = {.losses = false};
     return small;
 }
 
 std::vector<double> rays_of_tiles(const Film& small, const FrameSettings& settings, const TileGrid& grid) {
     std::vector<double> rays(static_cast<size_t>(grid.count()));
     const PixelRect &crop = settings.crop, &rect = small.rect;
-    const PixelRecord* pixel = small.pixels.data();
+    size_t pixel = 0;
     for (int y = 0; y < rect.height; ++y) {
         const int row = tile_at(static_cast<int>(int64_t{y} * crop.height / rect.height), crop.height, grid.rows);
         for (int x = 0; x < rect.width; ++x, ++pixel) {
             const int column =
                 tile_at(static_cast<int>(int64_t{x} * crop.width / rect.width), crop.width, grid.columns);
-            rays[static_cast<size_t>(row * grid.columns + column)] += pixel->rays;
+            rays[static_cast<size_t>(row * grid.columns + column)] += small.pixels.sight(pixel).rays;
         }
     }
     return rays;

@@ -95,7 +95,7 @@ void measure_levels(Frames& frames, const MeasureSettings& settings, SceneRecord
     const auto [width, height] = small_size(frames.width, frames.height);
     frames.render(frames.renderers.of(scene.base), frame_settings(scene.base, width, height), film);
     std::vector<double> costs;
-    for (const PixelRecord& pixel : film.pixels) costs.push_back(pixel.rays);
+    for (size_t i = 0; i < film.pixels.size(); ++i) costs.push_back(film.pixels.sight(i).rays);
     for (const double cost : costs) {
         scene.heat_mean += cost / static_cast<double>(costs.size());
         scene.heat_most = std::max(scene.heat_most, cost);

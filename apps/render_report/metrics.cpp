@@ -29,10 +29,12 @@ Picture resolve_picture(const Film& film) {
     const double unit = film.unit();
     Picture picture{film.rect.width, film.rect.height, {}};
     picture.pixels.reserve(film.pixels.size());
-    for (const PixelRecord& pixel : film.pixels)
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        const PixelRadiance& pixel = film.pixels.radiance(i);
         picture.pixels.push_back({static_cast<double>(pixel.radiance[0]) * unit,
                                   static_cast<double>(pixel.radiance[1]) * unit,
                                   static_cast<double>(pixel.radiance[2]) * unit});
+    }
     return picture;
 }
 

@@ -9,6 +9,7 @@
 
 #include "backend_cuda/host/device_worker.h"
 #include "scene/base/default_rounding.h"
+#include "scene/film/film_difference.h"
 #include "scene/frame/frame_view.h"
 
 namespace cistula {
@@ -73,8 +74,10 @@ class CudaRenderer : public Renderer {
             return false;
         }
         expected_.reset();
+        if (settings.adaptive()) film.totals = totals_of(film);
         for (const auto& worker : workers_) {
-            film.flags |= worker->totals.flags;
+            if (!settings.adaptive()) film.totals.add(worker->totals.counts.totals);
+            film.flags |= worker->totals.counts.flags;
             times_.kernel = std::max(times_.kernel, worker->totals.kernel_seconds);
             times_.transfer = std::max(times_.transfer, worker->totals.transfer_seconds);
         }
@@ -211,7 +214,7 @@ class CudaRenderer : public Renderer {
         if (stopped) return false;
         const uint64_t before = film.rays.total();
         film.rays = RayCounts();
-        for (const auto& worker : workers_) film.rays.add(worker->totals.rays);
+        for (const auto& worker : workers_) film.rays.add(worker->totals.counts.rays);
         progress.rays += film.rays.total() - before;
         progress.pixels_done += plan.pixels_of(part);
         return true;

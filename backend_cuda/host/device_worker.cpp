@@ -7,7 +7,6 @@
 #include <mutex>
 #include <thread>
 
-#include "scene/film/put_pixels.h"
 #include "scene/frame/frame_view.h"
 
 namespace cistula {
@@ -37,6 +36,21 @@ bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
             std::this_thread::sleep_for(std::chrono::duration<double>(std::min(waited / 100, longest_nap)));
     }
     return true;
+}
+
+/// What a slot of the tally has counted.
+FrameCounts counts_of(const DeviceTally& tally, int slot) {
+    FrameCounts counts;
+    const auto& rays = tally.rays[slot];
+    counts.rays = {rays[0], rays[1], rays[2], rays[3]};
+    const Total* const from = tally.totals[slot];
+    for (int c = 0; c < 3; ++c) {
+        counts.totals.radiance[c] = from[c];
+        counts.totals.pruned[c] = from[3 + c];
+        counts.totals.cut[c] = from[6 + c];
+    }
+    counts.totals.units = from[9];
+    return counts;
 }
 
 }  // namespace
@@ -81,7 +95,8 @@ void DeviceWorker<Real>::reserve_storage(const LayerPlan& layers) {
 template <class Real>
 FrameJob DeviceWorker<Real>::job_for(const PartSlot& slot) const {
     FrameJob job;
-    job.records = slot.records.template as<PixelRecord>();
+    job.records = {slot.radiance.template as<PixelRadiance>(), slot.losses.template as<PixelLosses>(),
+                   slot.sights.template as<PixelSight>()};
     job.layers = slot.layers.template as<int64_t>();
     job.tally = slot.tally.template as<DeviceTally>();
     job.next = next_.as<unsigned int>();
@@ -100,7 +115,10 @@ void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
     const int kernel = 2 * mask + int(sampling);
     if (primed_ >> kernel & 1u) return;
     PartSlot& slot = slots_[0];
-    slot.records.reserve(most_warps * warp_threads * sizeof(PixelRecord));
+    constexpr size_t records = most_warps * warp_threads;
+    slot.radiance.reserve(records * sizeof(PixelRadiance));
+    slot.losses.reserve(records * sizeof(PixelLosses));
+    slot.sights.reserve(records * sizeof(PixelSight));
     FrameJob job = job_for(slot);  // its rectangle has no height, so its block renders no pixel
     job.blocks = next_.as<BlockPlace>();
     job.block_count = 1;
@@ -116,21 +134,26 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const Frame
     use_device(device_);
     prime(plan.sampling, plan.mask);
     if (plan.sampling == Sampling::adaptive) reserve_storage(plan.view.layers);
-    const size_t bytes = pixels * sizeof(PixelRecord);
+    const KeptParts parts = plan.settings.kept_parts();
+    const size_t bytes = pixels * parts.bytes();
     const size_t layer_bytes = pixels * size_t(plan.view.layers.words) * sizeof(int64_t);
     if (memory_limit != 0 && slots * (bytes + layer_bytes) > memory_limit) return false;
     bool room = true;
     // At most one block per tile.
     const size_t list_bytes = pixels / (tile_width * tile_height) * sizeof(BlockPlace);
     for (PartSlot& slot : slots_) {
-        room = room && slot.records.try_reserve(bytes) && slot.layers.try_reserve(layer_bytes) &&
-               slot.blocks.try_reserve(list_bytes);
+        room = room && slot.radiance.try_reserve(pixels * sizeof(PixelRadiance)) &&
+               slot.losses.try_reserve(parts.losses ? pixels * sizeof(PixelLosses) : 0) &&
+               slot.sights.try_reserve(parts.sights ? pixels * sizeof(PixelSight) : 0) &&
+               slot.layers.try_reserve(layer_bytes) && slot.blocks.try_reserve(list_bytes);
         slot.blocks_copy.reserve(list_bytes);
     }
     if (room) return true;
     // Frees what was allocated: it would be missing when less is requested.
     for (PartSlot& slot : slots_) {
-        slot.records.free();
+        slot.radiance.free();
+        slot.losses.free();
+        slot.sights.free();
         slot.layers.free();
     }
     return false;
@@ -146,6 +169,9 @@ void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips, int 
     std::copy(places.begin(), places.end(), slot.blocks_copy.template as<BlockPlace>());
     const PixelRect& rect = plan.hints->cover.rect();
     FrameJob job = job_for(slot);
+    const KeptParts parts = plan.settings.kept_parts();
+    if (!parts.losses) job.records.losses = nullptr;
+    if (!parts.sights) job.records.sights = nullptr;
     job.frame = plan.view;
     job.x = rect.x;
     job.y = rect.y;
@@ -177,17 +203,12 @@ bool DeviceWorker<Real>::fetch(int index, Film& film, const std::atomic<bool>& s
     const auto start = std::chrono::steady_clock::now();
     if (!slot.list.places().empty()) {
         totals.kernel_seconds += slot.end.since(slot.begin) * 1e-3;
-        readback_.copy(slot.records.template as<PixelRecord>(), slot.list, film);
+        readback_.copy(job_for(slot).records, slot.list, film);
         readback_.copy_layers(slot.layers.template as<int64_t>(), slot.list, film);
     }
     const DeviceTally& tally = *slot.tally_copy.template as<DeviceTally>();
-    for (const auto& counts : tally.rays) {
-        totals.rays.primary += counts[0];
-        totals.rays.reflected += counts[1];
-        totals.rays.transmitted += counts[2];
-        totals.rays.shadow += counts[3];
-    }
-    totals.flags |= tally.flags;
+    for (int i = 0; i < DeviceTally::slots; ++i) totals.counts.add(counts_of(tally, i));
+    totals.counts.flags |= tally.flags;
     totals.transfer_seconds += seconds_since(start);
     return true;
 }
@@ -212,17 +233,15 @@ template <class Real>
 void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
     std::mutex together;
     tbb::parallel_for(0, slot.list.rows(), [&](int i) {
-        const PixelWriter writer;
-        RayCounts rays;
-        uint32_t flags = 0;
+        const PixelWriter writer(film.pixels.planes());
+        FrameCounts counts;
         slot.list.for_each_gap(i, [&](int row, int begin, int end) {
-            slot.hints->fill(writer, film.rect.x + begin, film.rect.y + row, end - begin,
-                             &film.pixels[size_t(row) * size_t(film.rect.width) + size_t(begin)], rays, flags);
-            fill_background_layers(film, size_t(row) * size_t(film.rect.width) + size_t(begin), size_t(end - begin));
+            const size_t first = size_t(row) * size_t(film.rect.width) + size_t(begin);
+            slot.hints->fill(writer, film.rect.x + begin, film.rect.y + row, end - begin, first, counts);
+            fill_background_layers(film, first, size_t(end - begin));
         });
         const std::lock_guard<std::mutex> lock(together);
-        totals.rays.add(rays);
-        totals.flags |= flags;
+        totals.counts.add(counts);
     });
 }
 

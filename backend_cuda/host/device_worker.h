@@ -43,15 +43,14 @@ class DeviceWorker {
     /// Totals over all parts fetched since the caller reset them.
     struct Totals {
         double kernel_seconds = 0, transfer_seconds = 0;
-        RayCounts rays;
-        uint32_t flags = 0;
+        FrameCounts counts;  // without the totals that adaptive sampling's kernel would count
     };
     Totals totals;
 
   private:
     /// A part that is being rendered.
     struct PartSlot {
-        DeviceMemory records, layers, blocks, tally;
+        DeviceMemory radiance, losses, sights, layers, blocks, tally;
         PinnedMemory blocks_copy, tally_copy;
         CudaEvent begin, end, done;  // around the kernel; after the tally's copy too
         std::shared_ptr<const FrameHints> hints;

@@ -7,8 +7,6 @@
 #include <array>
 #include <cstring>
 
-#include "scene/film/put_pixels.h"
-
 namespace cistula {
 namespace {
 
@@ -73,20 +71,28 @@ void Readback::copy_blocks(const std::byte* from, size_t pixel_bytes, const Bloc
     }
 }
 
-void Readback::copy(const PixelRecord* records, const BlockList& list, Film& film) {
+/// Copies a part of the records, if the film keeps it.
+template <class Part>
+void Readback::copy_part(const Part* from, const BlockList& list, const Film& film, Part* to) {
+    if (to == nullptr) return;
     const auto order = rows_of_records(list.plan());
     const BlockShape shape = list.shape();
-    copy_blocks(reinterpret_cast<const std::byte*>(records), sizeof(PixelRecord), list,
+    copy_blocks(reinterpret_cast<const std::byte*>(from), sizeof(Part), list,
                 [&](const std::byte* bytes, int first, int count) {
-                    const PixelWriter writer;
+                    const PixelWriter::Fence fence;
                     for (int i = 0; i < count; ++i) {
-                        const PixelRecord* from =
-                            reinterpret_cast<const PixelRecord*>(bytes) + size_t(i) * size_t(shape.pixels());
-                        for_each_pixel(
-                            order, shape, list.places()[size_t(first + i)], film,
-                            [&](size_t pixel, size_t record) { writer.put(film.pixels[pixel], from[record]); });
+                        const Part* of = reinterpret_cast<const Part*>(bytes) + size_t(i) * size_t(shape.pixels());
+                        for_each_pixel(order, shape, list.places()[size_t(first + i)], film,
+                                       [&](size_t pixel, size_t record) { PixelWriter::put(to + pixel, of[record]); });
                     }
                 });
+}
+
+void Readback::copy(const PixelPlanes& records, const BlockList& list, Film& film) {
+    const PixelPlanes to = film.pixels.planes();
+    copy_part(records.radiance, list, film, to.radiance);
+    copy_part(records.losses, list, film, to.losses);
+    copy_part(records.sights, list, film, to.sights);
 }
 
 void Readback::copy_layers(const int64_t* layers, const BlockList& list, Film& film) {

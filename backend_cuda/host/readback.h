@@ -12,9 +12,9 @@ namespace cistula {
 /// Copies records through page-locked buffers. Belongs to the device that is current when it is made.
 class Readback {
   public:
-    /// Copies the records of all blocks of a list, stored at `records` on the device, to the film. It uses two
-    /// page-locked buffers: one is filled while threads distribute the other over the film.
-    void copy(const PixelRecord* records, const BlockList& list, Film& film);
+    /// Copies the records of all blocks of a list, whose kept parts are stored at `records` on the device, to the film.
+    /// It uses two page-locked buffers: one is filled while threads distribute the other over the film.
+    void copy(const PixelPlanes& records, const BlockList& list, Film& film);
 
     /// Copies the words of layers, as copy() does records.
     void copy_layers(const int64_t* layers, const BlockList& list, Film& film);
@@ -22,6 +22,8 @@ class Readback {
     cudaStream_t stream() const { return stream_; }
 
   private:
+    template <class Part>
+    void copy_part(const Part* from, const BlockList& list, const Film& film, Part* to);
     template <class Unpack>
     void copy_blocks(const std::byte* from, size_t pixel_bytes, const BlockList& list, const Unpack& unpack);
 

@@ -61,7 +61,6 @@ class WarpPixels {
   public:
     __device__ WarpPixels(const FrameJob& job)
         : job_(job),
-          records_(job.records),
           lane_(threadIdx.x % warp_threads),
           places_(job.block_count * warp_threads),
           at_once_(clamped(int(places_ / (gridDim.x * adaptive_shape.warps)), 1, warp_pixels)),
@@ -87,7 +86,7 @@ class WarpPixels {
         __syncwarp();
     }
 
-    /// Calls take(x, y, pixel, slot, record) for one wanted sample per lane; false if no lane has any.
+    /// Calls take(x, y, pixel, slot, sight) for one wanted sample per lane; false if no lane has any.
     template <class Take>
     __device__ bool take_samples(const Take& take) {
         const WarpScheduler pieces = WarpScheduler::of(wanted_ - given_);
@@ -97,7 +96,7 @@ class WarpPixels {
         const int x = __shfl_sync(whole_warp, x_, pixel), y = __shfl_sync(whole_warp, y_, pixel);
         const unsigned int record = __shfl_sync(whole_warp, record_, pixel);
         i += __shfl_sync(whole_warp, given_, pixel);
-        if (lane_ < pieces.total) take(x, y, pixel, storage_[pixel].pixel.wanted(i), records_[record]);
+        if (lane_ < pieces.total) take(x, y, pixel, storage_[pixel].pixel.wanted(i), job_.records.sights[record]);
         __syncwarp();
         given_ += clamped(warp_threads - pieces.before, 0, wanted_ - given_);
         return true;
@@ -130,13 +129,13 @@ class WarpPixels {
         for (int j = lane_; __any_sync(whole_warp, j < standing.total); j += warp_threads) {
             int pixel = 0, i = 0;
             standing.find(j, pixel, i);
-            PixelRecord& to = records_[__shfl_sync(whole_warp, record, pixel)];
+            const unsigned int place = __shfl_sync(whole_warp, record, pixel);
             if (j >= standing.total) continue;
             // Summed locally: reading the next sample right after an atomic addition would wait for it.
             PixelRecord cell = PixelRecord();
             storage_[pixel].pixel.accumulate(
                 i, [&](int slot, int weight) { storage_[pixel].samples[slot].give(cell, weight, Plus()); });
-            cell.give(to, AtomicAdd());
+            cell.give(job_.records.radiance[place], job_.records.losses[place], AtomicAdd());
         }
         if constexpr (layered) {
             for (unsigned int left = __ballot_sync(whole_warp, done); left != 0; left &= left - 1) {
@@ -146,7 +145,7 @@ class WarpPixels {
             }
             __syncwarp();
         }
-        if (done) storage_[lane_].pixel.describe(records_[record_]);
+        if (done) storage_[lane_].pixel.describe(job_.records.radiance[record_]);
     }
 
   private:
@@ -155,7 +154,7 @@ class WarpPixels {
         const PixelPlace in_tile = BlockPlan{PixelMapping::shared_tile}.place_of(int(place % warp_threads));
         const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
         record_ = place;
-        records_[record_] = PixelRecord();  // also beyond the rectangle: whole tiles are copied
+        job_.records.put(record_, PixelRecord());  // also beyond the rectangle: whole tiles are copied
         if (column >= job_.width || row >= job_.height) return;
         x_ = job_.x + column;
         y_ = job_.y + row;
@@ -191,7 +190,6 @@ class WarpPixels {
     }
 
     const FrameJob& job_;
-    PixelRecord* const records_;
     const int lane_;
     const unsigned int places_;  // number of pixels: a block is a tile
     const int at_once_;          // pixels; fewer in a small frame, so that all warps have some
@@ -222,15 +220,15 @@ __global__ void __launch_bounds__(adaptive_shape.threads(), least_blocks<Real>(a
     for (;;) {
         pixels.refill();
         const bool ends = stack.stopped();  // read early: the load takes a while
-        const bool any = pixels.take_samples([&](int x, int y, int pixel, int slot, PixelRecord& record) {
+        const bool any = pixels.take_samples([&](int x, int y, int pixel, int slot, PixelSight& sight) {
             LatticeStorage& storage = pixels.storage(pixel);
             TreeThreshold threshold{LatticePixel::first_threshold(job.frame.tree, storage.samples, slot)};
             PixelTask<E, Intersector, Stack> task{scene, job.frame, intersector, x, y, own, stack};
             if constexpr (E::has(fills_layers)) task.layers = {pixels.layers_of(pixel, slot)};
             const uint32_t hash = take_sample(task, slot, gradual, threshold, taken);
             storage.samples[slot].keep(taken, hash, threshold.share);
-            AtomicAdd()(record.rays, taken.rays);
-            if (LatticePixel::is_chosen(slot)) choose_sample(taken, record);
+            AtomicAdd()(sight.rays, taken.rays);
+            if (LatticePixel::is_chosen(slot)) choose_sample(taken, sight);
         });
         if (!any || __any_sync(whole_warp, ends)) break;
         pixels.template finish_round<E::has(fills_layers)>(own.flags);

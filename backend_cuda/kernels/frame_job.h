@@ -10,10 +10,12 @@
 
 namespace cistula {
 
-/// Ray counts and error flags, added up by many blocks; several slots reduce contention between them.
+/// Ray counts, totals and error flags, added up by many blocks; several slots reduce contention between them.
 struct DeviceTally {
     static constexpr int slots = 64;
+    static constexpr int totals_kept = 10;
     unsigned long long rays[slots][4];  // in the order of RayCounts
+    Total totals[slots][totals_kept];   // in the order of PixelTotals; not of frames with a target error
     unsigned int flags;
 };
 
@@ -30,10 +32,10 @@ inline constexpr int pixels_at_work = 16;
 /// A kernel's parameters: the blocks of a frame's rectangle to render.
 struct FrameJob {
     FrameView frame;
-    PixelRecord* records = nullptr;  // ordered by blocks; unset beyond the rectangle
-    int64_t* layers = nullptr;       // frame.layers.words for each record, 0 at first
-    int x = 0, y = 0;                // of the rectangle in the frame
-    int width = 0, height = 0;       // of the rectangle
+    PixelPlanes records;        // ordered by blocks; unset beyond the rectangle
+    int64_t* layers = nullptr;  // frame.layers.words for each record, 0 at first
+    int x = 0, y = 0;           // of the rectangle in the frame
+    int width = 0, height = 0;  // of the rectangle
     const BlockPlace* blocks = nullptr;
     unsigned int block_count = 0;
     PixelMapping mapping = PixelMapping::own_tiles;

@@ -7,16 +7,27 @@
 
 namespace cistula {
 
-/// Copies a block's first `count` records from shared memory to global memory.
-template <int count, int threads>
-__device__ void write_records(const PixelRecord* staged, PixelRecord* to) {
-    constexpr int words = count * int(sizeof(PixelRecord)) / int(sizeof(uint4));
-    static_assert(count * sizeof(PixelRecord) % sizeof(uint4) == 0);
+/// Copies a part of a block's first `count` records from shared memory to global memory, if it is kept.
+template <class Part, int count, int threads>
+__device__ void write_part(const PixelRecord* staged, Part* to) {
+    using Word = unsigned long long;
+    constexpr int words = int(sizeof(Part) / sizeof(Word));
+    if (to == nullptr) return;
 #pragma unroll
-    for (int i = 0; i < words; i += threads)
-        if (i + threads <= words || i + int(threadIdx.x) < words)
-            reinterpret_cast<uint4*>(to)[i + int(threadIdx.x)] =
-                reinterpret_cast<const uint4*>(staged)[i + int(threadIdx.x)];
+    for (int i = 0; i < count * words; i += threads) {
+        const int word = i + int(threadIdx.x);
+        if (i + threads <= count * words || word < count * words)
+            reinterpret_cast<Word*>(to)[word] =
+                reinterpret_cast<const Word*>(static_cast<const Part*>(staged + word / words))[word % words];
+    }
+}
+
+/// Copies a block's first `count` records to global memory, from record `first` on.
+template <int count, int threads>
+__device__ void write_records(const PixelRecord* staged, const PixelPlanes& to, size_t first) {
+    write_part<PixelRadiance, count, threads>(staged, to.radiance + first);
+    write_part<PixelLosses, count, threads>(staged, to.losses == nullptr ? nullptr : to.losses + first);
+    write_part<PixelSight, count, threads>(staged, to.sights == nullptr ? nullptr : to.sights + first);
 }
 
 template <class Real, int mask, DevicePath path>
@@ -46,7 +57,7 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
         task.layers = job.layers_of(blockIdx.x * unsigned(shape.pixels()) + (shared_tile ? lane : threadIdx.x));
     const bool is_inside = column < job.width && row < job.height;
     const int samples = job.frame.supersample * job.frame.supersample;
-    if (is_inside) begin_pixel(record);
+    begin_pixel(record);  // also beyond the rectangle, since all are counted
     for (int round = 0; round < samples; round += warps) {
         // Samples start together, so that the warps of a block do much the same at a time and share the instructions
         // and constants that are fetched.
@@ -62,11 +73,12 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
         __syncthreads();
     }
     if (warp == 0) add_block_to_tally(*job.tally, block_storage.work);
-    PixelRecord* to = job.records + blockIdx.x * unsigned(shape.pixels());
+    add_totals_to_tally<warps>(*job.tally, block_storage.records, shape.pixels());
+    const size_t first = size_t(blockIdx.x) * size_t(shape.pixels());
     if (shared_tile)
-        write_records<BlockPlan::shared_shape.pixels(), threads>(block_storage.records, to);
+        write_records<BlockPlan::shared_shape.pixels(), threads>(block_storage.records, job.records, first);
     else
-        write_records<threads, threads>(block_storage.records, to);
+        write_records<threads, threads>(block_storage.records, job.records, first);
 }
 
 /// The number of a kernel's blocks that fill this thread's current device.

@@ -15,7 +15,6 @@
 #include "cistula/traversal/bvh.h"
 #include "scene/base/default_rounding.h"
 #include "scene/compile/lane_scene.h"
-#include "scene/film/put_pixels.h"
 #include "scene/frame/frame_hints.h"
 #include "scene/frame/frame_view.h"
 
@@ -42,6 +41,49 @@ template <class Intersector>
 inline constexpr bool fills_film_layers = false;
 template <class Real>
 inline constexpr bool fills_film_layers<BvhIntersector<Real>> = true;
+
+/// A pixel to be rendered: its place in the frame, and where its result goes.
+struct TilePixel {
+    int x, y;
+    PixelRecord& record;
+    PixelLayers layers;
+};
+
+/// A tile in work: the records of its pixels where the scene may be visible, and what was counted.
+class Tile {
+  public:
+    explicit Tile(int side)
+        : records_(std::make_unique_for_overwrite<PixelRecord[]>(size_t(side) * size_t(side))),
+          places_(std::make_unique_for_overwrite<size_t[]>(size_t(side) * size_t(side))) {}
+
+    /// Begins another. `area` is relative to the film's first pixel.
+    void begin(const PixelRect& area) {
+        rect = area;
+        counts = {};
+        used_ = 0;
+    }
+    /// A record for a pixel of the film.
+    PixelRecord& record_of(size_t pixel) {
+        places_[used_] = pixel;
+        return records_[used_++];
+    }
+    /// Puts the records into the film, and counts them.
+    void put_into(Film& film) {
+        const PixelWriter writer(film.pixels.planes());
+        for (size_t i = 0; i < used_; ++i) {
+            writer.put(places_[i], records_[i]);
+            counts.totals.add(records_[i], film.units_lost(records_[i]));
+        }
+    }
+
+    PixelRect rect;
+    FrameCounts counts;
+
+  private:
+    const std::unique_ptr<PixelRecord[]> records_;
+    const std::unique_ptr<size_t[]> places_;
+    size_t used_ = 0;
+};
 
 /// The rendering of one frame on the host.
 template <class Real, class Intersector>
@@ -104,8 +146,8 @@ class FrameTask {
     using Stack = StoppableStack<StackOf<Real, E, Media>, RenderStop>;
 
     template <class E>
-    PixelTask<E, Intersector, Stack<E>> task_for(int x, int y, PixelWork& own, Stack<E>& stack) const {
-        return {scene_, frame_, intersector_, x, y, own, stack};
+    PixelTask<E, Intersector, Stack<E>> task_for(const TilePixel& pixel, PixelWork& own, Stack<E>& stack) const {
+        return {scene_, frame_, intersector_, pixel.x, pixel.y, own, stack};
     }
 
     /// Whether lanes can hold the solids that contain the camera.
@@ -125,25 +167,25 @@ class FrameTask {
             return false;  // never called
         } else {
             using E = Effects<effect_masks[mask]>;
-            return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+            return for_each_pixel([&](const TilePixel& pixel, PixelWork& own) {
                 typename Stack<E>::Storage storage;
                 Stack<E> stack(storage, RenderStop{progress_.stop});
-                PixelTask task = task_for<E>(x, y, own, stack);
-                if constexpr (mask == layered_mask) task.layers = layers_of(pixel);
-                render_pixel(task, SampleRange(), pixel);
+                PixelTask task = task_for<E>(pixel, own, stack);
+                if constexpr (mask == layered_mask) task.layers = pixel.layers;
+                render_pixel(task, SampleRange(), pixel.record);
             });
         }
     }
 
     /// Renders with a uniform grid of samples, many rays at once.
     bool render_in_lanes() {
-        return for_each_tile([&](const PixelRect& tile, Counts& counts) {
+        return for_each_tile([&](Tile& tile) {
             TileRenderer renderer(*tiles_, mask_, lane_scene_, frame_);
-            for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) {
+            for_each_covered(tile, [&](const TilePixel& pixel) {
                 const int samples = frame_.supersample * frame_.supersample;
-                renderer.add({x, y, 0, samples, {frame_.tree.threshold}, &pixel, layers_of(pixel)});
+                renderer.add({pixel.x, pixel.y, 0, samples, {frame_.tree.threshold}, &pixel.record, pixel.layers});
             });
-            renderer.render(progress_.stop, counts.rays, counts.flags);
+            renderer.render(progress_.stop, tile.counts.rays, tile.counts.flags);
         });
     }
 
@@ -152,12 +194,11 @@ class FrameTask {
 
     /// Renders sample by sample, many rays at once.
     bool render_samples_in_lanes() {
-        return for_each_tile([&](const PixelRect& tile, Counts& counts) {
+        return for_each_tile([&](Tile& tile) {
             PixelsBySample pixels(*tiles_, lane_scene_, frame_);
-            for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) {
-                pixels.add(x, y, pixel, layers_of(pixel).words);
-            });
-            pixels.render(progress_.stop, counts.rays, counts.flags);
+            for_each_covered(
+                tile, [&](const TilePixel& pixel) { pixels.add(pixel.x, pixel.y, pixel.record, pixel.layers.words); });
+            pixels.render(progress_.stop, tile.counts.rays, tile.counts.flags);
         });
     }
 
@@ -169,41 +210,31 @@ class FrameTask {
         } else {
             using E = Effects<effect_masks[mask]>;
             const bool gradual = shades_gradually(scene_);
-            return for_each_pixel([&](int x, int y, PixelRecord& pixel, PixelWork& own) {
+            return for_each_pixel([&](const TilePixel& pixel, PixelWork& own) {
                 typename Stack<E>::Storage storage;
                 Stack<E> stack(storage, RenderStop{progress_.stop});
-                PixelTask task = task_for<E>(x, y, own, stack);
+                PixelTask task = task_for<E>(pixel, own, stack);
                 std::unique_ptr<int64_t[]> samples;
                 if constexpr (mask == layered_mask) {
-                    task.layers = layers_of(pixel);
+                    task.layers = pixel.layers;
                     samples = std::make_unique_for_overwrite<int64_t[]>(size_t(lattice_samples) *
                                                                         size_t(frame_.layers.sample_words()));
                 }
-                render_adaptive_pixel(task, gradual, pixel, samples.get());
+                render_adaptive_pixel(task, gradual, pixel.record, samples.get());
             });
         }
     }
 
-    PixelLayers layers_of(const PixelRecord& pixel) {
-        return {film_.layers.of(size_t(&pixel - film_.pixels.data())), 1};
-    }
-
-    /// A tile's contribution to the film's counts.
-    struct Counts {
-        RayCounts rays;
-        uint32_t flags = 0;
-    };
-
-    /// Calls render(x, y, record, work) for each pixel of the film where the scene may be visible, in tiles.
+    /// Calls render(pixel, work) for each pixel of the film where the scene may be visible, in tiles.
     template <class Render>
     bool for_each_pixel(const Render& render) {
-        return for_each_tile([&](const PixelRect& tile, Counts& counts) {
-            for_each_covered(tile, counts, [&](int x, int y, PixelRecord& pixel) {
+        return for_each_tile([&](Tile& tile) {
+            for_each_covered(tile, [&](const TilePixel& pixel) {
                 if (stopped()) return;
                 PixelWork own;
-                render(x, y, pixel, own);
-                counts.rays.add(own.rays);
-                counts.flags |= own.flags;
+                render(pixel, own);
+                tile.counts.rays.add(own.rays);
+                tile.counts.flags |= own.flags;
             });
         });
     }
@@ -218,7 +249,7 @@ class FrameTask {
         FinishedTiles& tiles;
     };
 
-    /// Calls render(tile, counts) for each tile of the film; false if it was stopped.
+    /// Calls render(tile) for each tile of the film, and puts its records into the film; false if it was stopped.
     template <class Render>
     bool for_each_tile(const Render& render) {
         const PixelRect rect = film_.rect;
@@ -228,38 +259,40 @@ class FrameTask {
         const ShownTiles shown(progress_.tiles, film_, tile);
         tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
             use_default_rounding();
+            Tile own(tile);
             for (int64_t t = range.begin(); t != range.end(); ++t) {
                 const int x = int(t % columns) * tile, y = int(t / columns) * tile;
-                const PixelRect pixels{x, y, std::min(tile, rect.width - x), std::min(tile, rect.height - y)};
-                Counts counts;
-                render(pixels, counts);
+                own.begin({x, y, std::min(tile, rect.width - x), std::min(tile, rect.height - y)});
+                render(own);
                 if (stopped()) return;
-                progress_.pixels_done += uint64_t(pixels.width) * uint64_t(pixels.height);
-                progress_.rays += counts.rays.total();
+                own.put_into(film_);
+                progress_.pixels_done += uint64_t(own.rect.width) * uint64_t(own.rect.height);
+                progress_.rays += own.counts.rays.total();
                 const std::lock_guard<std::mutex> lock(totals);
-                film_.rays.add(counts.rays);
-                film_.flags |= counts.flags;
-                progress_.tiles.finish(pixels);
+                film_.add(own.counts);
+                progress_.tiles.finish(own.rect);
             }
         });
         return !progress_.stop.load();
     }
 
-    /// Calls render(x, y, record) for each pixel of a tile where the scene may be visible, and fills the others. `tile`
-    /// is relative to the film's first pixel.
+    /// Calls render(pixel) for each pixel of a tile where the scene may be visible, and fills the others. The pixel's
+    /// record stays where it is until the tile is put into the film.
     template <class Render>
-    void for_each_covered(const PixelRect& tile, Counts& counts, const Render& render) {
-        const PixelWriter writer;
-        for (int y = tile.y; y < tile.y + tile.height; ++y)
-            hints_.cover.for_each_part(y, tile.x, tile.x + tile.width, [&](int begin, int end, bool covered) {
-                PixelRecord* pixels = &film_.pixels[size_t(y) * size_t(film_.rect.width) + size_t(begin)];
+    void for_each_covered(Tile& tile, const Render& render) {
+        const PixelWriter writer(film_.pixels.planes());
+        const PixelRect& rect = tile.rect;
+        for (int y = rect.y; y < rect.y + rect.height; ++y)
+            hints_.cover.for_each_part(y, rect.x, rect.x + rect.width, [&](int begin, int end, bool covered) {
+                const size_t first = size_t(y) * size_t(film_.rect.width) + size_t(begin), count = size_t(end - begin);
                 if (!covered) {
-                    hints_.fill(writer, film_.rect.x + begin, film_.rect.y + y, end - begin, pixels, counts.rays,
-                                counts.flags);
-                    fill_background_layers(film_, size_t(pixels - film_.pixels.data()), size_t(end - begin));
-                    return;
+                    hints_.fill(writer, film_.rect.x + begin, film_.rect.y + y, end - begin, first, tile.counts);
+                    return fill_background_layers(film_, first, count);
                 }
-                for (int x = begin; x < end; ++x) render(film_.rect.x + x, film_.rect.y + y, pixels[x - begin]);
+                film_.layers.clear(first, count);
+                for (size_t i = 0; i < count; ++i)
+                    render(TilePixel{film_.rect.x + begin + int(i), film_.rect.y + y, tile.record_of(first + i),
+                                     PixelLayers{film_.layers.of(first + i), 1}});
             });
     }
 

@@ -5,23 +5,27 @@
 #include "backend_embree/embree/embree_tree.h"
 #include "backend_embree/host/frame_loop.h"
 #include "backend_embree/pixel_tree/pixel_recorder.h"
-#include "scene/film/film_picture.h"
+#include "scene/film/film_difference.h"
 
 namespace cistula {
 namespace {
 
 /// Whether the samples add up to the film's one pixel.
 bool same_pixel(const PixelTree& tree) {
-    Film sum;
-    sum.pixels.push_back(PixelRecord());
-    PixelRecord& pixel = sum.pixels.front();
-    pixel.z = RealTraits<float>::infinity;
+    const PixelRecord shown = tree.film.pixels.at(0);
+    PixelRecord sum = {};
+    sum.z = RealTraits<float>::infinity;
+    RayCounts rays;
     for (const SampleTree& sample : tree.samples) {
-        pixel.add(sample.record);
-        sum.rays.add(sample.rays);
+        sum.add(sample.record);
+        rays.add(sample.rays);
     }
-    const RayCounts &rays = sum.rays, &counted = tree.film.rays;
-    return film_hash(sum) == film_hash(tree.film) && rays.primary == counted.primary &&
+    sum.samples = shown.samples;
+    sum.unmet = shown.unmet;
+    sum.checked = shown.checked;
+    sum.off = shown.off;
+    const RayCounts& counted = tree.film.rays;
+    return differing_values(sum, shown) == 0 && rays.primary == counted.primary &&
            rays.reflected == counted.reflected && rays.transmitted == counted.transmitted &&
            rays.shadow == counted.shadow;
 }
@@ -54,6 +58,7 @@ PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<Real>> scene, co
 
     FrameSettings alone = settings;
     alone.crop = {x, y, 1, 1};
+    alone.parts = {};
     RenderProgress progress;
     make_embree_renderer<Real>(scene, tree)->render(camera, alone, pixel.film, progress);
     if (!same_pixel(pixel) || flags != pixel.film.flags)

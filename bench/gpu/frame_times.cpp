@@ -4,7 +4,7 @@
 
 #include "backend_cuda/host/cuda_renderer.h"
 #include "scene/description/camera_path.h"
-#include "scene/film/film_picture.h"
+#include "scene/film/film_difference.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::bench {
@@ -12,12 +12,13 @@ namespace {
 
 /// Adds the kernels' times of a frame of 3840x2160 and returns its film.
 Film time_frame(GpuRecord& record, const std::string& name, Renderer& renderer, const SceneDescription& scene,
-                int depth, int supersample, int runs) {
+                int depth, int supersample, int runs, const KeptParts& parts) {
     constexpr int warm_up = 3;
     FrameSettings settings;
     settings.set_size(3840, 2160);
     settings.depth = depth;
     settings.supersample = supersample;
+    settings.parts = parts;
     Film film;
     Timing time;
     for (int run = -warm_up; run < runs; ++run) {
@@ -37,7 +38,7 @@ void time_frames(GpuRecord& record, const std::string& folder, int runs) {
         const auto renderer = make_cuda_renderer<Real>(compile_scene<Real>(scene));
         for (const int depth : {4, 8})
             time_frame(record, fmt::format("depth:{}/{}", depth, RealTraits<Real>::name), *renderer, scene, depth, 1,
-                       runs);
+                       runs, {false, false});
     };
     time_depths(float());
     time_depths(double());
@@ -55,11 +56,11 @@ void time_devices(GpuRecord& record, const std::string& folder, int runs) {
         for (size_t d = 0; d < count; ++d) options.devices.push_back(int(d));
         const auto renderer = make_cuda_renderer<float>(compiled, options);
         const Film film = time_frame(record, fmt::format("{0}x{0}/depth:8/float/devices:{1}", samples, count),
-                                     *renderer, scene, 8, samples, runs);
+                                     *renderer, scene, 8, samples, runs, {});
         if (count == 1)
-            hash = film_hash(film);
+            hash = record_hash(film);
         else
-            record.add_parity(fmt::format("devices:{}", count), film.pixels.size(), film_hash(film) == hash ? 0 : 1);
+            record.add_parity(fmt::format("devices:{}", count), film.pixels.size(), record_hash(film) == hash ? 0 : 1);
     }
 }
 

@@ -7,7 +7,6 @@
 #include "cistula/adaptive/adaptive_pixel.h"
 #include "scene/description/without_effect.h"
 #include "scene/film/film_difference.h"
-#include "scene/film/put_pixels.h"
 #include "scene/frame/frame_view.h"
 #include "testing/generated_scene.h"
 #include "testing/reference_renderers.h"
@@ -97,7 +96,7 @@ void expect_same_with_mask(const SceneDescription& scene, const std::string& wha
         const PixelTask<E, BruteIntersector<Real>, Stack> task{
             view, frame, intersector, i % film.rect.width, i / film.rect.width, work, stack};
         render_adaptive_pixel(task, shades_gradually(view), record);
-        film.pixels[size_t(i)] = record;
+        film.pixels.set(size_t(i), record);
         film.rays.add(work.rays);
         samples += record.samples;
     }

@@ -9,7 +9,6 @@
 #include "cistula/traversal/bvh.h"
 #include "scene/compile/constant_scene.h"
 #include "scene/description/without_effect.h"
-#include "scene/film/put_pixels.h"
 #include "scene/frame/frame_view.h"
 #include "testing/generated_scene.h"
 #include "testing/support/contact_search.h"
@@ -37,9 +36,9 @@ void render_shared(const Scene& scene, const FrameView& frame, const Intersector
             film.rays.add(work.rays);
             film.flags |= work.flags;
             if (thread == 0)
-                film.pixels[size_t(i)] = part;
+                film.pixels.set(size_t(i), part);
             else
-                film.pixels[size_t(i)].add(part);
+                film.pixels.change(size_t(i), [&](PixelRecord& pixel) { pixel.add(part); });
         }
 }
 
@@ -75,7 +74,7 @@ bool check(const std::string& name, const SceneDescription& description, const F
     const auto expect_same = [&](const Film& film, const char* path) {
         const std::string where = name + ", " + path;
         EXPECT_EQ(film.flags, 0u) << where;
-        EXPECT_EQ(film_hash(film), film_hash(expected)) << where;
+        EXPECT_EQ(record_hash(film), record_hash(expected)) << where;
         EXPECT_EQ(film.rays.primary, expected.rays.primary) << where;
         EXPECT_EQ(film.rays.reflected, expected.rays.reflected) << where;
         EXPECT_EQ(film.rays.transmitted, expected.rays.transmitted) << where;

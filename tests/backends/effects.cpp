@@ -27,10 +27,10 @@ class EffectTest : public ::testing::Test {
     static uint32_t compare(const SceneDescription& scene, FrameSettings settings, const std::string& name) {
         settings.cutoff = 0;
         const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(scene), EmbreeOptions());
-        const std::string chosen = film_hash(golden::render_with(*renderer, scene, settings));
+        const std::string chosen = record_hash(golden::render_with(*renderer, scene, settings));
         const uint32_t ran = renderer->effects();
         settings.effects = all_effects;
-        EXPECT_EQ(film_hash(golden::render_with(*renderer, scene, settings)), chosen) << name;
+        EXPECT_EQ(record_hash(golden::render_with(*renderer, scene, settings)), chosen) << name;
         EXPECT_EQ(renderer->effects(), all_effects);
         return ran;
     }
@@ -110,7 +110,7 @@ TYPED_TEST(EffectTest, LightsAreSeenThroughManyFaces) {
     const FrameSettings settings = shallow_frame(scene);
     const auto hash = [&] {
         const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
-        return film_hash(golden::render_with(*renderer, scene, settings));
+        return record_hash(golden::render_with(*renderer, scene, settings));
     };
     const std::string dark = hash();
     test::add_edge_lights(scene, 4);

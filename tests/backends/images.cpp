@@ -111,20 +111,52 @@ TYPED_TEST_SUITE(Images, Reals);
 TYPED_TEST(Images, ThreadsAndTilesChangeNothing) {
     const SceneDescription scene = test::shipped_scene("platonic");
     FrameSettings settings = small_frame(scene);
-    const std::string expected = film_hash(render<TypeParam>(scene, settings));
+    const std::string expected = record_hash(render<TypeParam>(scene, settings));
     for (const size_t threads : {1, 2, 7}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         for (const int tile : {1, 7, 16, 64}) {
             settings.tile = tile;
-            EXPECT_EQ(film_hash(render<TypeParam>(scene, settings)), expected) << threads << " threads, tile " << tile;
+            EXPECT_EQ(record_hash(render<TypeParam>(scene, settings)), expected)
+                << threads << " threads, tile " << tile;
         }
     }
+}
+
+TYPED_TEST(Images, KeepWhatIsAskedFor) {
+    const SceneDescription scene = test::shipped_scene("platonic");
+    const std::shared_ptr<CompiledScene<TypeParam>> compiled = compile_scene<TypeParam>(scene);
+    build_primitive_tree(*compiled);
+    FrameSettings settings = small_frame(scene, 3);
+    settings.supersample = 2;
+    for (const double cutoff : {0.0, 0.01})
+        for (const auto& renderer : {make_embree_renderer<TypeParam>(compiled),
+                                     make_host_renderer<TypeParam>(compiled, HostIntersector::bvh)}) {
+            settings.cutoff = cutoff;
+            settings.parts = {};
+            Film whole = golden::render_with(*renderer, scene, settings);
+            Film counted = whole;
+            counted.totals = totals_of(whole);
+            EXPECT_EQ(film_difference(whole, counted).differing, 0u);
+            EXPECT_GT(counted.totals.cut[0].most, 0u);
+            for (const KeptParts& parts : {KeptParts{false, false}, KeptParts{true, false}, KeptParts{false, true}}) {
+                Film expected = whole;
+                expected.pixels.begin(whole.pixels.size(), parts);
+                for (size_t i = 0; i < whole.pixels.size(); ++i) expected.pixels.set(i, whole.pixels[i]);
+                settings.parts = parts;
+                EXPECT_EQ(film_difference(golden::render_with(*renderer, scene, settings), expected).differing, 0u);
+                EXPECT_EQ(film_hash(expected), film_hash(whole));
+            }
+        }
+    settings.cutoff = 0;
+    settings.target_error = 0.1;
+    settings.parts = {false, false};
+    EXPECT_EQ(render<TypeParam>(scene, settings).pixels.parts(), KeptParts()) << "its report needs them";
 }
 
 TYPED_TEST(Images, InstructionSetsAndTreesChangeNothing) {
     const SceneDescription scene = test::shipped_scene("mesh");
     const FrameSettings settings = small_frame(scene, 4);
-    const std::string expected = film_hash(render<TypeParam>(scene, settings));
+    const std::string expected = record_hash(render<TypeParam>(scene, settings));
     for (const InstructionSet& isa : {InstructionSet{"isa=sse2", true, 4}, InstructionSet{"isa=avx2", has_avx2(), 8},
                                       InstructionSet{"isa=avx512", has_avx512(), 16}}) {
         if (!isa.here) {
@@ -135,16 +167,16 @@ TYPED_TEST(Images, InstructionSetsAndTreesChangeNothing) {
         EmbreeOptions options;
         options.device_config = isa.config;
         options.always_tree = true;
-        EXPECT_EQ(film_hash(render<TypeParam>(scene, settings, options)), expected) << isa.config;
+        EXPECT_EQ(record_hash(render<TypeParam>(scene, settings, options)), expected) << isa.config;
     }
     EmbreeOptions quick;
     quick.tree_quality = 0;
-    EXPECT_EQ(film_hash(render<TypeParam>(scene, settings, quick)), expected);
+    EXPECT_EQ(record_hash(render<TypeParam>(scene, settings, quick)), expected);
     for (const int quality : {0, 1}) {
         auto compiled = compile_scene<TypeParam>(scene);
         build_primitive_tree(*compiled, quality);
         const auto renderer = make_host_renderer<TypeParam>(std::move(compiled), HostIntersector::bvh);
-        EXPECT_EQ(film_hash(golden::render_with(*renderer, scene, settings)), expected) << "bvh " << quality;
+        EXPECT_EQ(record_hash(golden::render_with(*renderer, scene, settings)), expected) << "bvh " << quality;
     }
 }
 
@@ -154,7 +186,8 @@ TYPED_TEST(Images, ATreeAndThePlainLoopAgree) {
         EmbreeOptions tree;
         tree.always_tree = true;
         const FrameSettings settings = small_frame(scene);
-        EXPECT_EQ(film_hash(render<TypeParam>(scene, settings)), film_hash(render<TypeParam>(scene, settings, tree)))
+        EXPECT_EQ(record_hash(render<TypeParam>(scene, settings)),
+                  record_hash(render<TypeParam>(scene, settings, tree)))
             << name;
     }
 }
@@ -163,10 +196,10 @@ TYPED_TEST(Images, EffectsThatAreNotUsedChangeNothing) {
     for (const char* name : {"benchmark", "platonic", "infinity"}) {
         const SceneDescription scene = test::shipped_scene(name);
         FrameSettings settings = small_frame(scene, 4);
-        const std::string expected = film_hash(render<TypeParam>(scene, settings));
+        const std::string expected = record_hash(render<TypeParam>(scene, settings));
         for (const uint32_t mask : effect_masks) {
             settings.effects = mask;
-            EXPECT_EQ(film_hash(render<TypeParam>(scene, settings)), expected) << name << ", mask " << mask;
+            EXPECT_EQ(record_hash(render<TypeParam>(scene, settings)), expected) << name << ", mask " << mask;
         }
     }
 }
@@ -176,9 +209,9 @@ TYPED_TEST(Images, TheOrderOfLightsChangesNothing) {
     scene.lights.push_back(scene.lights[0]);
     scene.lights.back().position = {0.3, -4, 7};
     const FrameSettings settings = small_frame(scene);
-    const std::string expected = film_hash(render<TypeParam>(scene, settings));
+    const std::string expected = record_hash(render<TypeParam>(scene, settings));
     std::reverse(scene.lights.begin(), scene.lights.end());
-    EXPECT_EQ(film_hash(render<TypeParam>(scene, settings)), expected);
+    EXPECT_EQ(record_hash(render<TypeParam>(scene, settings)), expected);
 }
 
 TYPED_TEST(Images, ACropIsThatPartOfTheFrame) {
@@ -240,7 +273,7 @@ TYPED_TEST(Images, IndexOneIsInvisible) {
             }
         EXPECT_EQ(differing, 0u) << name << ", first at " << first % 160 << ", " << first / 160;
         scene.materials[size_t(material)].index = 1.25;  // it is in view
-        EXPECT_NE(film_hash(render<TypeParam>(scene, settings)), film_hash(without)) << name;
+        EXPECT_NE(record_hash(render<TypeParam>(scene, settings)), record_hash(without)) << name;
         scene.materials[size_t(material)].index = 1;
     }
 }
@@ -255,7 +288,7 @@ TYPED_TEST(Images, ControlRegistersChangeNothing) {
     const SceneDescription scene = read();
     const FrameSettings settings = small_frame(scene, 4);
     const CameraFrame camera = camera_at(scene.camera, 0);
-    const std::string expected = film_hash(render<TypeParam>(scene, settings));
+    const std::string expected = record_hash(render<TypeParam>(scene, settings));
     const auto compiled = compile_scene<TypeParam>(scene);
     EmbreeOptions always_tree;
     always_tree.always_tree = true;
@@ -296,7 +329,7 @@ TYPED_TEST(Images, ControlRegistersChangeNothing) {
             each->render(camera, settings, film, progress);
             EXPECT_EQ(each->lanes() > 1, each == in_lanes.get());
             EXPECT_EQ(film.flags, 0u);
-            EXPECT_EQ(film_hash(film), expected) << each->intersector();
+            EXPECT_EQ(record_hash(film), expected) << each->intersector();
         }
     });
 }

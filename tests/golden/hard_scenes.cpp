@@ -181,7 +181,8 @@ TYPED_TEST(HardScenes, DoubledFacesAreSeenOnce) {
 TYPED_TEST(HardScenes, HugeAndTinyAreOnePicture) {
     const Film huge = this->render(load("huge"));
     Film tiny = this->render(load("tiny"));
-    for (PixelRecord& pixel : tiny.pixels) pixel.z *= 0x1p80f;
+    for (size_t i = 0; i < tiny.pixels.size(); ++i)
+        tiny.pixels.change(i, [](PixelRecord& pixel) { pixel.z *= 0x1p80f; });
     EXPECT_EQ(this->differing(huge, tiny), 0u);
 }
 
@@ -216,11 +217,11 @@ TYPED_TEST(HardScenes, AFarFloorIsRegular) {
     const SceneDescription scene = load("far-floor");
     const Film film = this->render(scene);
     const int width = scene.film.width, height = scene.film.height;
-    const PixelRecord* first[2] = {nullptr, nullptr};
+    const PixelRadiance* first[2] = {nullptr, nullptr};
     size_t wrong = 0;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const PixelRecord& pixel = film.pixels[size_t(y * width + x)];
+            const PixelRadiance& pixel = film.pixels.radiance(size_t(y * width + x));
             // In multiples of 8 from a corner of a cell beyond the picture's.
             const int cell = ((x - width / 2 + 800) / 8 + (y - height / 2 + 800) / 8) % 2;
             if (!first[cell]) first[cell] = &pixel;

@@ -26,7 +26,7 @@ class FilmLayers : public ::testing::Test {
         film_.full_width = film_.full_height = film_.rect.width = film_.rect.height = 1;
         film_.samples = 4;
         film_.fixed_shift = fixed_shift(4);
-        film_.pixels.assign(1, PixelRecord());
+        film_.pixels.assign(1);
         LayerNames names;
         names.objects = {"b\u00f6x", "ball"};
         names.materials = {"steel"};
@@ -34,6 +34,7 @@ class FilmLayers : public ::testing::Test {
         names.visible_lights = {"lamp"};
         names.light_groups = {"key", "fill"};
         begin_layers(film_.layers, layers_for(channels_), 1, std::make_shared<const LayerNames>(names));
+        film_.layers.clear(0, 1);
         film_.layers.center[0] = 10;
         film_.layers.unit_length = 2;
         const LayerPlan& plan = film_.layers.plan;
@@ -126,9 +127,9 @@ TEST_F(FilmLayers, MattesAreRankedByCoverage) {
 TEST_F(FilmLayers, MattesOfManyPixelsAreThoseOfEach) {
     constexpr int side = 512;
     film_.full_width = film_.full_height = film_.rect.width = film_.rect.height = side;
-    film_.pixels.assign(size_t{side} * side, PixelRecord());
+    film_.pixels.assign(size_t{side} * side);
     begin_layers(film_.layers, layers_for(channels_), film_.pixels.size(), film_.layers.names);
-    std::fill(film_.layers.words.begin(), film_.layers.words.end(), 0);
+    film_.layers.clear(0, film_.pixels.size());
     const auto coverage = [](size_t pixel) { return static_cast<int64_t>(pixel / 1024 % 4 + 1); };
     for (size_t pixel = 0; pixel < film_.pixels.size(); ++pixel)
         film_.layers.of(pixel)[film_.layers.plan.objects] =

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <random>
 #include <set>
@@ -13,6 +14,7 @@
 #include <string_view>
 
 #include "cistula/numerics/fixed_sum.h"
+#include "scene/film/film_difference.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {
@@ -28,12 +30,13 @@ Film film_of(int samples, int exponent, const std::vector<PixelRecord>& pixels) 
     film.samples = samples;
     film.fixed_shift = fixed_shift(static_cast<uint32_t>(samples));
     film.radiance_exponent = exponent;
-    film.pixels.assign(pixels.begin(), pixels.end());
+    film.pixels.begin(pixels.size());
+    for (size_t i = 0; i < pixels.size(); ++i) film.pixels.set(i, pixels[i]);
     return film;
 }
 
 PixelRecord some_pixel() {
-    return {{1, 2, 3}, 10, 11, 12, 13.5f, {0.5f, -0.5f, 0.25f}, 0, 0, 0, 0, {4, 5, 6}, {7, 8, 9}};
+    return {{{1, 2, 3}, 10, 0, 0, 0, 0}, {{4, 5, 6}, {7, 8, 9}}, {12, 13.5f, {0.5f, -0.5f, 0.25f}, 11}};
 }
 
 const LayeredPicture::Channel& channel(const LayeredPicture& picture, std::string_view name) {
@@ -70,9 +73,9 @@ TEST(FilmPicture, ChannelsAndWindows) {
 
 TEST(FilmPicture, Values) {
     const int64_t one = int64_t(1) << 60;  // four samples
-    PixelRecord lit = {{4 * one, 2 * one, one}, 3, 77, 5, 2.5f, {0, 0.6f, -0.8f}, 4, 0, 0, 0, {one, 0, 0},
-                       {one, 3 * one, 0}};
-    PixelRecord empty = {{0, 0, 0}, 0, 4, 0, infinity, {0, 0, 0}, 9, 0, 0, 0, {0, 0, 0}, {0, 0, 0}};
+    const PixelRecord lit = {
+        {{4 * one, 2 * one, one}, 3, 4, 0, 0, 0}, {{one, 0, 0}, {one, 3 * one, 0}}, {5, 2.5f, {0, 0.6f, -0.8f}, 77}};
+    const PixelRecord empty = {{{0, 0, 0}, 0, 9, 0, 0, 0}, {{0, 0, 0}, {0, 0, 0}}, {0, infinity, {0, 0, 0}, 4}};
     const Film film = film_of(4, 3, {lit, empty});
     const LayeredPicture picture = to_layers(film, everything);
     const auto expect = [&](const char* name, float first, float second) {
@@ -261,40 +264,53 @@ TEST(FilmPicture, HalfChannelsAreClampedToTheLargestHalf) {
 TEST(FilmPicture, HashIsFnv1a) {
     // An empty film gives the offset basis of the published 128-bit FNV-1a.
     EXPECT_EQ(film_hash(Film()), "6c62272e07bb014262b821756295c58d");
-    // Over zero bytes FNV-1a multiplies by the prime 2^88 + 0x13b; 100 bytes a pixel.
+    // Over zero bytes FNV-1a multiplies by the prime 2^88 + 0x13b; 32 bytes a pixel.
     Film film = film_of(1, 0, {PixelRecord{}});
     __extension__ typedef unsigned __int128 Wide;
     Wide state = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) + 0x62b821756295c58du;
-    for (int i = 0; i < 9 * 8 + 7 * 4; ++i) state *= (static_cast<Wide>(1) << 88) + 0x13b;
+    for (int i = 0; i < 32; ++i) state *= (static_cast<Wide>(1) << 88) + 0x13b;
     char text[33];
     std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(state >> 64),
                   static_cast<unsigned long long>(state));
     EXPECT_EQ(film_hash(film), text);
 }
 
-TEST(FilmPicture, HashSeesEveryFieldAndNothingElse) {
+/// Expects that a hash sees each of these changes of a pixel.
+template <class Hash>
+void expect_seen(const Hash& hash, const std::vector<std::function<void(PixelRecord&)>>& changes) {
     const Film film = film_of(1, 0, {some_pixel(), some_pixel()});
-    std::set<std::string> hashes = {film_hash(film)};
-    size_t changes = 1;
-    const auto changed = [&](auto change) {
+    std::set<std::string> hashes = {hash(film)};
+    for (const auto& change : changes) {
         Film other = film;
-        change(other.pixels[1]);
-        hashes.insert(film_hash(other));
-        ++changes;
-    };
-    for (int c = 0; c < 3; ++c) {
-        changed([c](PixelRecord& p) { p.radiance[c] ^= int64_t(1) << 61; });
-        changed([c](PixelRecord& p) { p.pruned[c] ^= 1; });
-        changed([c](PixelRecord& p) { p.cut[c] ^= 1; });
-        changed([c](PixelRecord& p) { p.normal[c] = -p.normal[c]; });
+        other.pixels.change(1, change);
+        hashes.insert(hash(other));
     }
-    changed([](PixelRecord& p) { ++p.hits; });
-    changed([](PixelRecord& p) { ++p.rays; });
-    changed([](PixelRecord& p) { p.id = -p.id; });
-    changed([](PixelRecord& p) { p.z = std::nextafter(p.z, 0.0f); });
-    changed([](PixelRecord& p) { std::swap(p.radiance[0], p.radiance[1]); });
-    EXPECT_EQ(hashes.size(), changes);
+    EXPECT_EQ(hashes.size(), 1 + changes.size());
+}
 
+TEST(FilmPicture, HashSeesRadianceHitsAndSamplesAndNothingElse) {
+    std::vector<std::function<void(PixelRecord&)>> seen, others;
+    for (int c = 0; c < 3; ++c) {
+        seen.emplace_back([c](PixelRecord& p) { p.radiance[c] ^= int64_t(1) << 61; });
+        others.emplace_back([c](PixelRecord& p) { p.pruned[c] ^= 1; });
+        others.emplace_back([c](PixelRecord& p) { p.cut[c] ^= 1; });
+        others.emplace_back([c](PixelRecord& p) { p.normal[c] = -p.normal[c]; });
+    }
+    seen.emplace_back([](PixelRecord& p) { ++p.hits; });
+    seen.emplace_back([](PixelRecord& p) { std::swap(p.radiance[0], p.radiance[1]); });
+    others.emplace_back([](PixelRecord& p) { ++p.rays; });
+    others.emplace_back([](PixelRecord& p) { p.id = -p.id; });
+    others.emplace_back([](PixelRecord& p) { p.z = std::nextafter(p.z, 0.0f); });
+    std::vector<std::function<void(PixelRecord&)>> all = seen;
+    all.insert(all.end(), others.begin(), others.end());
+    expect_seen(record_hash, all);
+    seen.emplace_back([](PixelRecord& p) { ++p.samples; });
+    expect_seen(film_hash, seen);
+
+    const Film film = film_of(1, 0, {some_pixel(), some_pixel()});
+    Film bare = film;
+    bare.pixels.assign(2, some_pixel(), {false, false});
+    EXPECT_EQ(film_hash(bare), film_hash(film));
     Film same = film;
     same.full_width = 1000;
     same.rect = {1, 2, 1, 2};
@@ -304,6 +320,28 @@ TEST(FilmPicture, HashSeesEveryFieldAndNothingElse) {
     same.rays.primary = 5;
     same.flags = 1;
     EXPECT_EQ(film_hash(same), film_hash(film));
+}
+
+TEST(FilmPicture, NeedsThePartsOfItsChannels) {
+    Film film = film_of(1, 0, {some_pixel()});
+    const auto values = [&](const OutputChannels& channels) {
+        std::vector<float> all;
+        for (const auto& each : to_layers(film, channels).channels) all.push_back(each.values.at(0));
+        return all;
+    };
+    for (bool OutputChannels::*one : {&OutputChannels::error, &OutputChannels::id, &OutputChannels::samples,
+                                      &OutputChannels::cost, &OutputChannels::z, &OutputChannels::normal}) {
+        OutputChannels channels;
+        channels.*one = true;
+        film.pixels.assign(1, some_pixel());
+        const std::vector<float> expected = values(channels);
+        const KeptParts parts = parts_for(channels);
+        film.pixels.assign(1, some_pixel(), parts);
+        EXPECT_EQ(values(channels), expected);
+        if (!parts.losses && !parts.sights) continue;
+        film.pixels.assign(1, some_pixel(), {false, false});
+        EXPECT_THROW(to_layers(film, channels), std::invalid_argument);
+    }
 }
 
 TEST(FilmPicture, RefusesInconsistentFilms) {

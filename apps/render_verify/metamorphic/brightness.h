@@ -124,7 +124,7 @@ struct ExtremeRadiance {
             scene.background = {value, value / 3, 0};
             ++tally.place;
             const Film film = stage.render(scene, frame_of(1, 1));
-            const int64_t* sums = film.pixels[0].radiance;
+            const int64_t* sums = film.pixels.radiance(0).radiance;
             const auto shown = [&](int c) {
                 return resolve<Real>(sums[c], film.fixed_shift, 1, film.radiance_exponent);
             };

@@ -70,7 +70,7 @@ struct OverflowIsSaid {
                     const std::unique_ptr<Renderer> renderer = renderers<Real>(stage.intersector)[0](compiled);
                     const Film film = film_by(*renderer, scene, frame_of(1, 1, k));
                     const int64_t all = int64_t(film.samples) << film.fixed_shift;
-                    const int64_t* sums = film.pixels[0].radiance;
+                    const int64_t* sums = film.pixels.radiance(0).radiance;
                     const bool legal = value == Real(1);
                     tally.place = place_of(at_surface, uint64_t(k), 0);
                     tally.expect((film.flags == 0) == legal && (legal || (film.flags & flag_not_finite) != 0) &&

@@ -42,7 +42,7 @@ CISTULA_HOST_NOINLINE uint32_t take_sample(const PixelTask<E, Intersector, Stack
 }
 
 /// Copies the data that belong to a single sample: id, depth and normal.
-CISTULA_INLINE void choose_sample(const PixelRecord& sample, PixelRecord& pixel) {
+CISTULA_INLINE void choose_sample(const PixelSight& sample, PixelSight& pixel) {
     pixel.id = sample.id;
     pixel.z = sample.z;
     for (int c = 0; c < 3; ++c) pixel.normal[c] = sample.normal[c];

@@ -100,7 +100,7 @@ class LatticePixel {
     }
 
     /// Writes what is known of a pixel that is done, beside its sums.
-    CISTULA_INLINE void describe(PixelRecord& record) const {
+    CISTULA_INLINE void describe(PixelRadiance& record) const {
         record.samples = uint32_t(tally_.due);
         record.unmet = tally_.unmet;
         record.checked = tally_.check != Check::none;

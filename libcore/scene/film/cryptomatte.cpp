@@ -123,15 +123,17 @@ std::string manifest_of(const Mattes& mattes) {
 
 }  // namespace
 
-std::vector<FilmChannel> cryptomatte_channels(const Film& film, const OutputChannels& channels) {
-    std::vector<FilmChannel> to;
+std::vector<LayeredPicture::Channel> cryptomatte_channels(const Film& film, const OutputChannels& channels) {
+    std::vector<LayeredPicture::Channel> to;
     for (Mattes& mattes : kinds(film, channels)) {
         const std::string name = mattes.name;
         const auto blocks = std::make_shared<RankedBlocks>(film, std::move(mattes));
         for (int rank = 0; rank < ranks; ++rank)
             for (const bool coverage : {false, true}) {
                 const char channel = "rgba"[rank % 2 * 2 + coverage];
-                to.push_back({fmt::format("{}{:02}.{}", name, rank / 2, channel), false,
+                to.push_back({fmt::format("{}{:02}.{}", name, rank / 2, channel),
+                              false,
+                              {},
                               [blocks, rank, coverage, &film](size_t first, size_t last, float* values) {
                                   for (const Ranks& of : blocks->of(first, last)) {
                                       const Rank& own = of[static_cast<size_t>(rank)];

@@ -1,8 +1,8 @@
-// The channels that files are made of.
+// The channels that files are made of, whose values are made as they are written.
 #pragma once
 
 #include <cstddef>
-#include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,28 +11,21 @@
 
 namespace cistula {
 
-/// A channel of a file: its name, whether it may be stored as half, and what it holds.
-struct FilmChannel {
-    std::string name;
-    bool half;
-    /// Writes the values of the film's pixels [first, last) to `to`.
-    std::function<void(size_t first, size_t last, float* to)> write;
-};
-
 /// A channel by value(pixel's number).
 template <class Value>
-FilmChannel film_channel(std::string name, bool half, Value value) {
-    return {std::move(name), half, [value = std::move(value)](size_t first, size_t last, float* to) {
+LayeredPicture::Channel film_channel(std::string name, bool half, Value value) {
+    return {std::move(name), half, {}, [value = std::move(value)](size_t first, size_t last, float* to) {
                 for (size_t pixel = first; pixel != last; ++pixel) *to++ = value(pixel);
             }};
 }
 
-/// The channels of the film's layers: divisions of the radiance, and what the middle samples met first. `film` and
-/// `colors` must outlive them.
-std::vector<FilmChannel> layer_channels(const Film& film, const OutputChannels& channels, const FilmColors& colors);
+/// The channels of the film's layers: divisions of the radiance, and what the middle samples met first. `film` must
+/// outlive them.
+std::vector<LayeredPicture::Channel> layer_channels(const Film& film, const OutputChannels& channels,
+                                                    std::shared_ptr<const FilmColors> colors);
 
 /// The channels of Cryptomatte's layers (Friedman and Jones 2015; specification 1.2.0): six ranks of id and coverage.
-std::vector<FilmChannel> cryptomatte_channels(const Film& film, const OutputChannels& channels);
+std::vector<LayeredPicture::Channel> cryptomatte_channels(const Film& film, const OutputChannels& channels);
 
 /// The header attributes that tell names by ids.
 std::vector<std::pair<std::string, std::string>> cryptomatte_attributes(const Film& film,

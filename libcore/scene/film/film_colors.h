@@ -24,7 +24,7 @@ class FilmColors {
     float error(const PixelRecord& pixel, int c) const;
 
     /// What samples that meet nothing added to a pixel, and what a file with a transparent background leaves out.
-    int64_t left_out(const PixelRecord& pixel, int c) const {
+    int64_t left_out(const PixelRadiance& pixel, int c) const {
         return transparent_ ? (film_.samples - static_cast<int64_t>(pixel.hits)) * film_.background[c] : 0;
     }
 

@@ -21,7 +21,8 @@ LayerPlan layer_plan(const LayerRequest& request, size_t light_groups) {
 void begin_layers(FilmLayers& layers, const LayerRequest& request, size_t pixels,
                   std::shared_ptr<const LayerNames> names) {
     layers.plan = layer_plan(request, names->light_groups.size());
-    layers.words.assign(pixels * static_cast<size_t>(layers.plan.words), 0);
+    layers.words.clear();  // else a larger table would be moved
+    layers.words.resize(pixels * static_cast<size_t>(layers.plan.words));
     layers.names = std::move(names);
 }
 

@@ -1,6 +1,7 @@
 // The layers of a film: what is asked for, what a backend fills, and the names that files give.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -33,19 +34,22 @@ struct LayerNames {
 /// The layers that a backend fills.
 struct FilmLayers {
     LayerPlan plan;
-    std::vector<int64_t, DefaultInitAllocator<int64_t>> words;  // plan.words for each pixel
+    std::vector<int64_t, FilmAllocator<int64_t>> words;  // plan.words for each pixel
     double center[3] = {0, 0, 0}, unit_length = 1;  // a FirstHit's position in scene units: center + position * that
     std::shared_ptr<const LayerNames> names;
 
     /// The words of a pixel.
     int64_t* of(size_t pixel) { return words.data() + pixel * static_cast<size_t>(plan.words); }
     const int64_t* of(size_t pixel) const { return words.data() + pixel * static_cast<size_t>(plan.words); }
+
+    /// Sets the words of pixels to 0, as they are before anything is added.
+    void clear(size_t first, size_t count) { std::fill_n(of(first), count * static_cast<size_t>(plan.words), 0); }
 };
 
 /// The plan for the layers of a scene with so many light groups.
 LayerPlan layer_plan(const LayerRequest& request, size_t light_groups);
 
-/// Sets up empty layers of so many pixels, in the scene's frame.
+/// Sets up layers of so many pixels, in the scene's frame, with uninitialized words.
 void begin_layers(FilmLayers& layers, const LayerRequest& request, size_t pixels,
                   std::shared_ptr<const LayerNames> names);
 

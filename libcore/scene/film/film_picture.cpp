@@ -57,19 +57,21 @@ decltype(LayeredPicture::attributes) attributes_of(const OutputChannels& channel
 }
 
 /// The film's own channels, in the order of the file.
-std::vector<FilmChannel> pixel_channels(const Film& film, const OutputChannels& channels, const FilmColors& colors) {
+std::vector<LayeredPicture::Channel> pixel_channels(const Film& film, const OutputChannels& channels,
+                                                    const std::shared_ptr<const FilmColors>& colors) {
     const bool half = channels.half;
+    const FilmPixels& pixels = film.pixels;
     const auto coverage = [&film](size_t pixel) {
-        return static_cast<float>(static_cast<double>(film.pixels[pixel].hits) / film.samples);
+        return static_cast<float>(static_cast<double>(film.pixels.radiance(pixel).hits) / film.samples);
     };
-    std::vector<FilmChannel> to;
+    std::vector<LayeredPicture::Channel> to;
     const char* const rgb[] = {"R", "G", "B"};
     for (int c = 0; c < 3; ++c)
-        to.push_back(film_channel(rgb[c], half, [&film, &colors, c](size_t pixel) {
-            const PixelRecord& of = film.pixels[pixel];
+        to.push_back(film_channel(rgb[c], half, [&pixels, colors, c](size_t pixel) {
+            const PixelRadiance& of = pixels.radiance(pixel);
             int64_t sums[3];
-            for (int k = 0; k < 3; ++k) sums[k] = of.radiance[k] - colors.left_out(of, k);
-            return colors.radiance(sums, c);
+            for (int k = 0; k < 3; ++k) sums[k] = of.radiance[k] - colors->left_out(of, k);
+            return colors->radiance(sums, c);
         }));
     if (channels.transparent)
         to.push_back(film_channel("A", half, coverage));
@@ -77,30 +79,34 @@ std::vector<FilmChannel> pixel_channels(const Film& film, const OutputChannels& 
         to.push_back(film_channel("A", half, [](size_t) { return 1.0f; }));
     if (channels.coverage) to.push_back(film_channel("coverage", half, coverage));
     for (int c = 0; c < 3 && channels.error; ++c)
-        to.push_back(film_channel(std::string("error.") + rgb[c], half, [&film, &colors, c, half](size_t pixel) {
-            const float bound = colors.error(film.pixels[pixel], c);
+        to.push_back(film_channel(std::string("error.") + rgb[c], half, [&pixels, colors, c, half](size_t pixel) {
+            const float bound = colors->error(pixels[pixel], c);
             return half ? rounded_up_to_half(bound) : bound;
         }));
     const auto add = [&](const char* name, bool wanted, auto value) {
         if (wanted)
-            to.push_back(film_channel(
-                name, false, [&film, value](size_t pixel) { return static_cast<float>(value(film.pixels[pixel])); }));
+            to.push_back(film_channel(name, false, [value](size_t pixel) { return static_cast<float>(value(pixel)); }));
     };
-    add("id", channels.id, [](const PixelRecord& pixel) { return pixel.id; });
-    add("samples", channels.samples, [](const PixelRecord& pixel) { return pixel.samples; });
-    add("cost", channels.cost, [](const PixelRecord& pixel) { return pixel.rays; });
-    add("Z", channels.z,
-        [far = channels.z_far](const PixelRecord& pixel) { return std::isinf(pixel.z) ? far : pixel.z; });
+    add("id", channels.id, [&pixels](size_t pixel) { return pixels.sight(pixel).id; });
+    add("samples", channels.samples, [&pixels](size_t pixel) { return pixels.radiance(pixel).samples; });
+    add("cost", channels.cost, [&pixels](size_t pixel) { return pixels.sight(pixel).rays; });
+    add("Z", channels.z, [&pixels, far = channels.z_far](size_t pixel) {
+        const float z = pixels.sight(pixel).z;
+        return std::isinf(z) ? far : z;
+    });
     const char* const axes[] = {"N.X", "N.Y", "N.Z"};
     for (int c = 0; c < 3 && channels.normal; ++c)
-        to.push_back(film_channel(axes[c], half, [&film, c](size_t pixel) { return film.pixels[pixel].normal[c]; }));
+        to.push_back(film_channel(axes[c], half, [&pixels, c](size_t pixel) { return pixels.sight(pixel).normal[c]; }));
     return to;
 }
 
 }  // namespace
 
-LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped) {
+LayeredPicture channels_of(const Film& film, const OutputChannels& channels, std::atomic<uint64_t>* clamped) {
     check(film);
+    const KeptParts wanted = parts_for(channels), kept = film.pixels.parts();
+    if (wanted.losses > kept.losses || wanted.sights > kept.sights)
+        throw std::invalid_argument("a film keeps the parts of its pixels that its channels are made of");
     LayeredPicture picture;
     picture.width = film.rect.width;
     picture.height = film.rect.height;
@@ -115,29 +121,35 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint6
     for (const auto& [name, text] : cryptomatte_attributes(film, channels)) picture.attributes[name] = text;
     picture.compression = channels.compression;
     picture.dwa_level = channels.dwa_level;
-    const FilmColors colors(film, channels);
-    std::vector<FilmChannel> sources = pixel_channels(film, channels, colors);
+    const auto colors = std::make_shared<const FilmColors>(film, channels);
+    picture.channels = pixel_channels(film, channels, colors);
     for (auto& more : {layer_channels(film, channels, colors), cryptomatte_channels(film, channels)})
-        sources.insert(sources.end(), more.begin(), more.end());
-    for (const FilmChannel& source : sources) {
-        picture.channels.push_back({source.name, source.half, {}});
-        picture.channels.back().values.resize(film.pixels.size());
-    }
+        picture.channels.insert(picture.channels.end(), more.begin(), more.end());
+    for (LayeredPicture::Channel& channel : picture.channels)
+        if (channel.half)
+            channel.write = [write = std::move(channel.write), clamped](size_t first, size_t last, float* to) {
+                write(first, last, to);
+                const uint64_t over = clamp_to_half(to, to + (last - first));
+                if (clamped && over != 0) *clamped += over;
+            };
+    set_container_flag(picture);
+    return picture;
+}
 
+LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped) {
+    std::atomic<uint64_t> over{0};
+    LayeredPicture picture = channels_of(film, channels, &over);
+    for (LayeredPicture::Channel& channel : picture.channels) channel.values.resize(film.pixels.size());
     // All channels of one block of pixels before the next block, while its pixels are still in a cache.
     constexpr size_t block = 1024;
-    std::atomic<uint64_t> over{0};
     tbb::parallel_for(size_t{0}, (film.pixels.size() + block - 1) / block, [&](size_t number) {
         use_default_rounding();
         const size_t first = number * block, last = std::min(first + block, film.pixels.size());
-        for (size_t i = 0; i < sources.size(); ++i) {
-            float* to = picture.channels[i].values.data();
-            sources[i].write(first, last, to + first);
-            if (sources[i].half) over += clamp_to_half(to + first, to + last);
-        }
+        for (LayeredPicture::Channel& channel : picture.channels)
+            channel.write(first, last, channel.values.data() + first);
     });
+    for (LayeredPicture::Channel& channel : picture.channels) channel.write = {};
     if (clamped) *clamped += over;
-    set_container_flag(picture);
     return picture;
 }
 
@@ -162,6 +174,10 @@ LayerRequest layers_for(const OutputChannels& channels) {
     return request;
 }
 
+KeptParts parts_for(const OutputChannels& channels) {
+    return {channels.error, channels.error || channels.id || channels.cost || channels.z || channels.normal};
+}
+
 ColorPicture to_color(const Film& film) {
     check(film);
     const FilmColors colors(film, {});
@@ -169,9 +185,11 @@ ColorPicture to_color(const Film& film) {
     picture.width = static_cast<uint32_t>(film.rect.width);
     picture.height = static_cast<uint32_t>(film.rect.height);
     picture.texels.reserve(film.pixels.size());
-    for (const PixelRecord& pixel : film.pixels)
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        const PixelRadiance& pixel = film.pixels.radiance(i);
         picture.texels.emplace_back(colors.radiance(pixel.radiance, 0), colors.radiance(pixel.radiance, 1),
                                     colors.radiance(pixel.radiance, 2));
+    }
     return picture;
 }
 

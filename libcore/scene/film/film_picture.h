@@ -1,6 +1,8 @@
 // Conversion of a film's integer sums to the channels of a file.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,8 +33,9 @@ struct OutputChannels {
 inline constexpr const char* path_layer_names[path_layer_count] = {"emission", "background", "ambient",     "diffuse",
                                                                    "specular", "reflection", "transmission"};
 
-/// The layers that a film needs for these channels.
+/// The layers, and the parts of pixels, that a film needs for these channels.
 LayerRequest layers_for(const OutputChannels& channels);
+KeptParts parts_for(const OutputChannels& channels);
 
 /// The attribute that says how many light layers the scene has.
 inline constexpr const char* light_layer_count = "cistula:lightLayers";
@@ -52,6 +55,10 @@ inline constexpr float largest_half = 65504;
 /// acesImageContainerFlag (set_container_flag).
 LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped = nullptr);
 
+/// The same, but that values are made as they are written, and counted in `clamped` each time. `film` and `clamped`
+/// must outlive them.
+LayeredPicture channels_of(const Film& film, const OutputChannels& channels, std::atomic<uint64_t>* clamped = nullptr);
+
 /// States that a file of this picture alone is a container of SMPTE ST 2065-4: R, G, B and A alone, in half, of
 /// ACES2065-1, not compressed. Takes the statement away from any other.
 void set_container_flag(LayeredPicture& picture);
@@ -59,8 +66,8 @@ void set_container_flag(LayeredPicture& picture);
 /// The mean radiance in the film's rectangle.
 ColorPicture to_color(const Film& film);
 
-/// 128-bit FNV-1a of the image as 32 hexadecimal digits: over every pixel's sums, hits, rays, id and the bits of z and
-/// normal, lowest byte first, in pixel order. Nothing else enters, so films with equal hashes hold the same image.
+/// 128-bit FNV-1a of the image as 32 hexadecimal digits: over the radiance, hits and samples of every pixel, lowest
+/// byte first, in pixel order. Nothing else enters, so films with equal hashes hold the same picture.
 std::string film_hash(const Film& film);
 
 }  // namespace cistula

@@ -35,7 +35,7 @@ std::optional<PartialFilm> FinishedTiles::copy() const {
     film.fixed_shift = film_->fixed_shift;
     std::copy_n(film_->background, 3, film.background);
     film.rounding = film_->rounding;
-    film.pixels.assign(film_->pixels.size(), PixelRecord());
+    film.pixels.assign(film_->pixels.size(), PixelRecord(), film_->pixels.parts());
     film.layers.plan = film_->layers.plan;
     film.layers.words.assign(film_->layers.words.size(), 0);
     std::copy_n(film_->layers.center, 3, film.layers.center);
@@ -49,7 +49,7 @@ std::optional<PartialFilm> FinishedTiles::copy() const {
             const auto width = static_cast<size_t>(tile.width);
             const size_t first =
                 static_cast<size_t>(y) * static_cast<size_t>(film.rect.width) + static_cast<size_t>(tile.x);
-            std::copy_n(&film_->pixels[first], width, &film.pixels[first]);
+            for (size_t i = first; i < first + width; ++i) film.pixels.set(i, film_->pixels[i]);
             if (words != 0) std::copy_n(film_->layers.of(first), width * words, film.layers.of(first));
             std::fill_n(part.done.begin() + static_cast<ptrdiff_t>(first), width, true);
             done += width;

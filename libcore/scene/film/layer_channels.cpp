@@ -12,13 +12,14 @@ constexpr const char* rgb[] = {"R", "G", "B"};
 
 /// The channels of a layer whose sums begin at word `place` of each pixel. `background`: the layer of the background,
 /// from which a transparent one leaves out what samples that meet nothing add.
-void add_sums(std::vector<FilmChannel>& to, const Film& film, const OutputChannels& channels, const FilmColors& colors,
-              const std::string& name, int place, bool background) {
-    const auto sums = [&film, &colors, place, background](size_t pixel, int c) {
+void add_sums(std::vector<LayeredPicture::Channel>& to, const Film& film, const OutputChannels& channels,
+              const std::shared_ptr<const FilmColors>& colors, const std::string& name, int place, bool background) {
+    const auto sums = [&film, colors, place, background](size_t pixel, int c) {
         const int64_t* words = film.layers.of(pixel) + place;
         int64_t own[3];
-        for (int k = 0; k < 3; ++k) own[k] = words[k] - (background ? colors.left_out(film.pixels[pixel], k) : 0);
-        return colors.radiance(own, c);
+        for (int k = 0; k < 3; ++k)
+            own[k] = words[k] - (background ? colors->left_out(film.pixels.radiance(pixel), k) : 0);
+        return colors->radiance(own, c);
     };
     for (int c = 0; c < 3; ++c)
         to.push_back(
@@ -27,7 +28,7 @@ void add_sums(std::vector<FilmChannel>& to, const Film& film, const OutputChanne
 
 /// A channel of what a pixel's middle sample met first.
 template <class Value>
-FilmChannel first_hit_channel(const Film& film, std::string name, bool half, Value value) {
+LayeredPicture::Channel first_hit_channel(const Film& film, std::string name, bool half, Value value) {
     return film_channel(std::move(name), half, [&film, value](size_t pixel) {
         FirstHit hit;
         std::memcpy(&hit, film.layers.of(pixel) + film.layers.plan.first_hit, sizeof hit);
@@ -37,8 +38,9 @@ FilmChannel first_hit_channel(const Film& film, std::string name, bool half, Val
 
 }  // namespace
 
-std::vector<FilmChannel> layer_channels(const Film& film, const OutputChannels& channels, const FilmColors& colors) {
-    std::vector<FilmChannel> to;
+std::vector<LayeredPicture::Channel> layer_channels(const Film& film, const OutputChannels& channels,
+                                                    std::shared_ptr<const FilmColors> colors) {
+    std::vector<LayeredPicture::Channel> to;
     const FilmLayers& layers = film.layers;
     for (int layer = 0; layer < path_layer_count; ++layer)
         if (channels.path[layer])
@@ -68,10 +70,10 @@ std::vector<FilmChannel> layer_channels(const Film& film, const OutputChannels& 
     for (int c = 0; c < 3 && channels.albedo; ++c)
         to.push_back(
             first_hit_channel(film, std::string("albedo.") + rgb[c], channels.half,
-                              [&colors, c](const FirstHit& hit) { return colors.reflectance(hit.albedo, c); }));
+                              [colors, c](const FirstHit& hit) { return colors->reflectance(hit.albedo, c); }));
     if (channels.depth_ray)
-        to.push_back(first_hit_channel(film, "depth_ray", false, [&channels](const FirstHit& hit) {
-            return hit.object == 0 ? channels.z_far : hit.distance;
+        to.push_back(first_hit_channel(film, "depth_ray", false, [far = channels.z_far](const FirstHit& hit) {
+            return hit.object == 0 ? far : hit.distance;
         }));
     if (channels.material_id)
         to.push_back(first_hit_channel(film, "material_id", false,

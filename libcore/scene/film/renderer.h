@@ -28,6 +28,7 @@ struct FrameSettings {
     double target_error =
         0;  // above 0: adaptive sampling on the 16 x 16 lattice; a quarter of it is the budget for the cutoff
     int max_samples = 256;    // per pixel, with a target error: 5 to 256
+    KeptParts parts;          // of the film's pixels; with a target error all are kept
     LayerRequest layers;      // not by every intersector: "exact" ones of the backends
     uint32_t effects = 0;     // mask to run; 0: the smallest that contains what the scene requires
     bool unshadowed = false;  // for measuring the cost of shadows: the image is wrong; not with a target error
@@ -47,6 +48,7 @@ struct FrameSettings {
     /// Samples along a pixel's side, or the side of the lattice of adaptive sampling.
     int grid() const { return adaptive() ? 16 : supersample; }
     double truncation() const { return adaptive() ? target_error / 4 : cutoff; }
+    KeptParts kept_parts() const { return adaptive() ? KeptParts() : parts; }
 };
 
 /// State shared between the rendering threads and an observer; all members may be read at any time.

@@ -54,6 +54,7 @@ BackgroundPixel background_pixel(const CompiledScene<Real>& scene, const FrameVi
         for (int sample = 0; sample < frame.supersample * frame.supersample; ++sample) add_sample(record);
         record.samples = pixel.work.rays.primary;
     }
+    pixel.units = units_lost(record, frame.supersample * frame.supersample);
     return pixel;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "scene/compile/compiled_scene.h"
-#include "scene/film/put_pixels.h"
 #include "scene/film/renderer.h"
 #include "scene/frame/frame_cover.h"
 
@@ -12,12 +11,14 @@ namespace cistula {
 struct BackgroundPixel {
     PixelRecord record;
     PixelWork work;
+    uint64_t units = 0;  // units_lost
 
-    /// Adds the ray counts and flags of `pixels` such pixels.
-    void count(uint64_t pixels, RayCounts& rays, uint32_t& flags) const {
+    /// Counts `pixels` such pixels.
+    void count(uint64_t pixels, FrameCounts& counts) const {
         if (pixels == 0) return;
-        rays.primary += pixels * work.rays.primary;
-        flags |= work.flags;
+        counts.rays.primary += pixels * work.rays.primary;
+        counts.flags |= work.flags;
+        counts.totals.add(record, units, pixels);
     }
 };
 
@@ -27,19 +28,19 @@ struct FrameHints {
     BackgroundPixel background, checked;  // checked: with a target error, of pixels that are
     bool adaptive = false;
 
-    /// Writes `count` pixels of a row, from (x, y) of the frame on, that show only background.
-    void fill(const PixelWriter& writer, int x, int y, int count, PixelRecord* to, RayCounts& rays,
-              uint32_t& flags) const {
+    /// Writes `count` pixels of a row, from (x, y) of the frame on, that show only background. `first`: the film's
+    /// number of the first of them.
+    void fill(const PixelWriter& writer, int x, int y, int count, size_t first, FrameCounts& counts) const {
         int checks = 0;
         for (int begin = 0, end = 0; begin < count; begin = ++end) {
             while (end < count && !(adaptive && is_checked(x + end, y))) ++end;
-            writer.fill(to + begin, size_t(end - begin), background.record);
+            writer.fill(first + size_t(begin), size_t(end - begin), background.record);
             if (end == count) break;
-            writer.fill(to + end, 1, checked.record);
+            writer.put(first + size_t(end), checked.record);
             ++checks;
         }
-        background.count(uint64_t(count - checks), rays, flags);
-        checked.count(uint64_t(checks), rays, flags);
+        background.count(uint64_t(count - checks), counts);
+        checked.count(uint64_t(checks), counts);
     }
 };
 template <class Real>

@@ -80,8 +80,9 @@ inline void fill_background_layers(Film& film, size_t first, size_t count) {
     const auto put = [&](int place, int layer, size_t pixel) {
         if (place < 0) return;
         int64_t* to = film.layers.of(pixel) + place + 3 * layer;
-        for (int c = 0; c < 3; ++c) to[c] = film.pixels[pixel].radiance[c];
+        for (int c = 0; c < 3; ++c) to[c] = film.pixels.radiance(pixel).radiance[c];
     };
+    film.layers.clear(first, count);
     if (plan.path < 0 && plan.light < 0) return;
     for (size_t pixel = first; pixel < first + count; ++pixel) {
         put(plan.path, int(PathLayer::background), pixel);
@@ -106,10 +107,8 @@ void prepare_film(Film& film, const FrameSettings& settings, const CompiledScene
     std::copy(nothing.radiance, nothing.radiance + 3, film.background);
     const double place = 2 * double(RealTraits<Real>::unit) * std::ldexp(double(scene.extent), -scene.scale);
     film.rounding = place * film.full_width / (2 * camera.camera.tan_half_width);
-    film.pixels.clear();
-    film.pixels.resize(size_t(film.rect.width) * size_t(film.rect.height));
-    film.rays = RayCounts();
-    film.flags = 0;
+    film.pixels.begin(size_t(film.rect.width) * size_t(film.rect.height), settings.kept_parts());
+    static_cast<FrameCounts&>(film) = {};
     begin_layers(film.layers, settings.layers, film.pixels.size(), scene.layer_names);
     film.layers.unit_length = elementary::power_of_two(-scene.scale);
     for (int c = 0; c < 3; ++c) film.layers.center[c] = scene.center[c];

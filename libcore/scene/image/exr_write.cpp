@@ -18,13 +18,17 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <set>
 #include <stdexcept>
 
 #include "scene/base/atomic_file.h"
+#include "scene/base/default_rounding.h"
 #include "scene/image/exr.h"
 #include "scene/image/exr_compression.h"
 
@@ -93,7 +97,7 @@ void check(const LayeredPicture& picture) {
     for (const LayeredPicture::Channel& channel : picture.channels) {
         if (channel.name.empty() || channel.name.size() > 255 || !names.insert(channel.name).second)
             throw std::invalid_argument("write_exr: channel names must differ and have 1 to 255 bytes");
-        if (channel.values.size() != pixels)
+        if (channel.values.size() != (channel.write ? 0 : pixels))
             throw std::invalid_argument("write_exr: channel " + channel.name + " must have width * height values");
     }
     // Attributes of other types under these names make files that readers reject.
@@ -163,25 +167,51 @@ Imf::Header header_of(const LayeredPicture& picture) {
     return header;
 }
 
-/// A frame buffer of a picture's channels, with what it points at.
-class Pixels {
+/// Lines of a picture, as its file stores them: OpenEXR gets as many at a time, so that no picture need be in memory.
+class Lines {
   public:
-    Pixels(const LayeredPicture& picture, const Imath::Box2i& window) : halves_(picture.channels.size()) {
-        for (size_t i = 0; i < picture.channels.size(); ++i) {
-            const LayeredPicture::Channel& channel = picture.channels[i];
-            if (channel.half) {
-                halves_[i].assign(channel.values.begin(), channel.values.end());
-                buffer_.insert(channel.name, Imf::Slice::Make(Imf::HALF, halves_[i].data(), window));
-            } else {
-                buffer_.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
-            }
+    explicit Lines(const LayeredPicture& picture) : picture_(picture), of_channels_(picture.channels.size()) {}
+
+    /// The picture's lines from `first` on.
+    Imf::FrameBuffer buffer(int first, int count) {
+        const auto width = static_cast<size_t>(picture_.width), begin = static_cast<size_t>(first) * width,
+                   end = begin + static_cast<size_t>(count) * width;
+        for (size_t i = 0; i < of_channels_.size(); ++i)
+            of_channels_[i].resize((end - begin) * (picture_.channels[i].half ? sizeof(half) : sizeof(float)));
+        tbb::parallel_for(size_t{0}, (end - begin + block - 1) / block, [&](size_t number) {
+            use_default_rounding();
+            const size_t at = begin + number * block;
+            write(at, std::min(at + block, end), number * block);
+        });
+        const int top = picture_.y + first, left = picture_.x;
+        const Imath::Box2i window(Imath::V2i(left, top), Imath::V2i(left + picture_.width - 1, top + count - 1));
+        Imf::FrameBuffer buffer;
+        for (size_t i = 0; i < of_channels_.size(); ++i) {
+            const LayeredPicture::Channel& channel = picture_.channels[i];
+            buffer.insert(channel.name,
+                          Imf::Slice::Make(channel.half ? Imf::HALF : Imf::FLOAT, of_channels_[i].data(), window));
         }
+        return buffer;
     }
-    const Imf::FrameBuffer& buffer() const { return buffer_; }
 
   private:
-    std::vector<std::vector<half>> halves_;
-    Imf::FrameBuffer buffer_;
+    static constexpr size_t block = 1024;  // pixels: of all channels in turn, while they are still in a cache
+
+    void write(size_t first, size_t last, size_t place) {
+        for (size_t i = 0; i < of_channels_.size(); ++i) {
+            const LayeredPicture::Channel& channel = picture_.channels[i];
+            std::array<float, block> values;
+            float* to = channel.half ? values.data() : reinterpret_cast<float*>(of_channels_[i].data()) + place;
+            if (channel.write)
+                channel.write(first, last, to);
+            else
+                std::copy_n(channel.values.data() + first, last - first, to);
+            if (channel.half) std::copy_n(to, last - first, reinterpret_cast<half*>(of_channels_[i].data()) + place);
+        }
+    }
+
+    const LayeredPicture& picture_;
+    std::vector<std::vector<char>> of_channels_;
 };
 
 /// A part to be written, where it lies.
@@ -192,10 +222,15 @@ struct PartToWrite {
 
 void write_pixels(Imf::OStream& stream, const std::vector<PartToWrite>& parts) {
     const int threads = std::min(Imf::globalThreadCount(), threads_of_a_file);
-    const auto write = [](auto& file, const LayeredPicture& picture) {
-        const Pixels pixels(picture, file.header().dataWindow());
-        file.setFrameBuffer(pixels.buffer());
-        file.writePixels(picture.height);
+    // Whole blocks of lines of every compression, and some for each thread.
+    const int most_lines = 256 * std::max(1, threads / 4);
+    const auto write = [&](auto& file, const LayeredPicture& picture) {
+        Lines lines(picture);
+        for (int first = 0; first < picture.height; first += most_lines) {
+            const int count = std::min(most_lines, picture.height - first);
+            file.setFrameBuffer(lines.buffer(first, count));
+            file.writePixels(count);
+        }
     };
     std::vector<Imf::Header> headers;
     for (const PartToWrite& part : parts) headers.push_back(header_of(part.picture));

@@ -1,7 +1,9 @@
 // Pictures in memory, as the readers and writers of files exchange them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -31,7 +33,8 @@ struct Ratio {
 /// written.
 enum class Compression { none, rle, zips, zip, piz, dwaa, dwab, other };
 
-/// The contents of an EXR file: named channels of width x height floats each, row-major from the top left.
+/// The contents of an EXR file: named channels of width x height floats each, row-major from the top left, in memory or
+/// made as they are written.
 struct LayeredPicture {
     int width = 0, height = 0;  // of the data window
     int x = 0, y = 0;           // top left corner in the display window
@@ -40,6 +43,8 @@ struct LayeredPicture {
         std::string name;   // "R", "error.R", "Z", "N.X", ...
         bool half = false;  // stored as half; id, Z, samples, cost are always float
         std::vector<float> values;
+        /// Writes the values [first, last) to `to`, in any thread, where `values` is empty.
+        std::function<void(size_t first, size_t last, float* to)> write = {};
     };
     std::vector<Channel> channels;
     Compression compression = Compression::zip;

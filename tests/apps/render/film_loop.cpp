@@ -26,7 +26,7 @@ class FakeRenderer : public Renderer {
         film.rect = settings.crop;
         film.full_width = settings.full_width;
         film.full_height = settings.full_height;
-        film.pixels.assign(static_cast<size_t>(film.rect.width) * static_cast<size_t>(film.rect.height), {});
+        film.pixels.assign(static_cast<size_t>(film.rect.width) * static_cast<size_t>(film.rect.height));
         if (camera.frame == stop_at) progress.stop = true;
         return !progress.stop;
     }

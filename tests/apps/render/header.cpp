@@ -35,7 +35,7 @@ CameraDescription camera_along_y(double fov) {
 Attributes attributes_of(const OutputChannels& channels) {
     Film film;
     film.full_width = film.full_height = film.rect.width = film.rect.height = 1;
-    film.pixels.assign(1, PixelRecord());
+    film.pixels.assign(1);
     return to_layers(film, channels).attributes;
 }
 

@@ -22,6 +22,7 @@
 #include "apps/common/step_progress.h"
 #include "apps/render/explain.h"
 #include "cistula/transport/ray_tree.h"
+#include "scene/film/film_difference.h"
 #include "scene/film/frame_settings.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scene.h"
@@ -563,17 +564,20 @@ TEST(Stats, LedgerTotalsAreInTheScenesUnits) {
     film.samples = 4;
     film.fixed_shift = 60;
     film.radiance_exponent = 1;
-    film.pixels.assign(2, PixelRecord());
-    film.pixels[0].pruned[1] = int64_t{1} << 60;
-    film.pixels[1].pruned[1] = int64_t{1} << 62;
-    film.pixels[1].cut[2] = int64_t{1} << 59;
-    const LedgerTotals pruned = ledger_totals(film, &PixelRecord::pruned), cut = ledger_totals(film, &PixelRecord::cut);
+    film.pixels.assign(2);
+    film.pixels.change(0, [](PixelRecord& pixel) { pixel.pruned[1] = int64_t{1} << 60; });
+    film.pixels.change(1, [](PixelRecord& pixel) {
+        pixel.pruned[1] = int64_t{1} << 62;
+        pixel.cut[2] = int64_t{1} << 59;
+        pixel.samples = 4;
+        pixel.rays = 1 << 30;
+    });
+    film.totals = totals_of(film);
+    const LedgerTotals pruned = ledger_totals(film, film.totals.pruned), cut = ledger_totals(film, film.totals.cut);
     EXPECT_EQ(pruned.mean, (std::array<double, 3>{0, 1.25, 0}));
     EXPECT_EQ(pruned.worst, (std::array<double, 3>{0, 2, 0}));
     EXPECT_EQ(cut.mean, (std::array<double, 3>{0, 0, 0.125}));
     EXPECT_EQ(cut.worst, (std::array<double, 3>{0, 0, 0.25}));
-    for (PixelRecord& pixel : film.pixels) pixel.samples = 4;
-    film.pixels[1].rays = 1 << 30;
     EXPECT_EQ(unit_totals(film).worst, (std::array<double, 3>{0x1p-31, 0x1p-31, 0x1p-31}));
     EXPECT_EQ(unit_totals(film).mean, (std::array<double, 3>{0x1p-32, 0x1p-32, 0x1p-32}));
 }

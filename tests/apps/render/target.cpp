@@ -27,11 +27,10 @@ TEST(Target, TheRateIsBoundedByThePixelsThatWereChecked) {
 
 TEST(Target, ChecksAreCountedApartFromWhatIsProven) {
     Film film;
-    film.pixels.resize(4);
+    film.pixels.assign(4);
     film.samples = 256;
-    for (PixelRecord& pixel : film.pixels) pixel = PixelRecord();
-    film.pixels[1].checked = 1;
-    film.pixels[2].checked = film.pixels[2].off = 1;
+    film.pixels.change(1, [](PixelRecord& pixel) { pixel.checked = 1; });
+    film.pixels.change(2, [](PixelRecord& pixel) { pixel.checked = pixel.off = 1; });
     FrameSettings settings;
     settings.target_error = 0.1;
     const TargetReport report = target_report(film, settings);
@@ -47,16 +46,15 @@ TEST(Target, ChecksAreCountedApartFromWhatIsProven) {
 
 TEST(Target, WholeUnitsOfTheSumsCountAsTruncation) {
     Film film;
-    film.pixels.resize(2);
+    PixelRecord pixel = {};
+    pixel.samples = 256;
+    pixel.rays = 256;
+    film.pixels.assign(2, pixel);
     film.samples = 256;
     film.fixed_shift = 54;
     film.radiance_exponent = 40;
-    for (PixelRecord& pixel : film.pixels) {
-        pixel = PixelRecord();
-        pixel.samples = 256;
-        pixel.rays = 256;
-    }
-    film.pixels[1].rays = 256 << 10;  // 2^-4 of them
+    pixel.rays = 256 << 10;  // 2^-4 of them
+    film.pixels.set(1, pixel);
     FrameSettings settings;
     settings.target_error = 0.1;
     const TargetReport report = target_report(film, settings);

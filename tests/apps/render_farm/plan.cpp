@@ -57,7 +57,8 @@ TEST(FarmPlan, RaysCountForTheTileTheyAreIn) {
     Film film;
     film.rect = small.crop;
     film.pixels.assign(16 * 8, PixelRecord());
-    for (size_t i = 0; i < film.pixels.size(); ++i) film.pixels[i].rays = i % 16 < 4 ? 10 : 1;
+    for (size_t i = 0; i < film.pixels.size(); ++i)
+        film.pixels.change(i, [i](PixelRecord& pixel) { pixel.rays = i % 16 < 4 ? 10 : 1; });
     EXPECT_EQ(rays_of_tiles(film, settings, {4, 2}), (std::vector<double>{160, 16, 16, 16, 160, 16, 16, 16}));
     settings.set_size(1, 1);
     EXPECT_EQ(small_settings(settings).crop, (PixelRect{0, 0, 1, 1}));

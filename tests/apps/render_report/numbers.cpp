@@ -25,10 +25,11 @@ Film film_of(const std::vector<std::array<int64_t, 3>>& sums, int samples = 1) {
     film.full_height = film.rect.height = 1;
     film.fixed_shift = 4;
     film.samples = samples;
-    for (const auto& sum : sums) {
+    film.pixels.begin(sums.size());
+    for (size_t i = 0; i < sums.size(); ++i) {
         PixelRecord pixel = {};
-        for (size_t c = 0; c < 3; ++c) pixel.radiance[c] = sum[c];
-        film.pixels.push_back(pixel);
+        for (size_t c = 0; c < 3; ++c) pixel.radiance[c] = sums[i][c];
+        film.pixels.set(i, pixel);
     }
     return film;
 }
@@ -93,8 +94,7 @@ TEST(Metrics, RefusePicturesOfTwoSizes) {
 
 TEST(Metrics, TheRemainderIsTheWholeLedger) {
     Film film = film_of({{0, 0, 0}, {0, 0, 0}});
-    film.pixels[1].pruned[0] = 8;
-    film.pixels[1].cut[0] = 8;
+    film.pixels.change(1, [](PixelRecord& pixel) { pixel.pruned[0] = pixel.cut[0] = 8; });
     const Remainder remainder = remainder_of(film);
     EXPECT_EQ(remainder.max, 1);
     EXPECT_DOUBLE_EQ(remainder.mean, 1.0 / 6);

@@ -38,7 +38,7 @@ void PrintTo(const Image& image, std::ostream* out) {
          << image.shadow << ", flags " << image.flags;
 }
 Image image_of(const Film& film) {
-    return {film_hash(film),       film.rays.primary, film.rays.reflected,
+    return {record_hash(film),     film.rays.primary, film.rays.reflected,
             film.rays.transmitted, film.rays.shadow,  film.flags};
 }
 Image render(Renderer& renderer, const SceneDescription& scene, const FrameSettings& settings, int frame = 0) {
@@ -382,7 +382,13 @@ TYPED_TEST(Cuda, FramesWithoutALedgerAreEqual) {
         const auto renderer = this->gpu(scene);
         Film film;
         for (int turn = 0; turn < 2; ++turn) {
-            std::memset(static_cast<void*>(film.pixels.data()), 0x5a, film.pixels.size() * sizeof(PixelRecord));
+            const PixelPlanes planes = film.pixels.planes();
+            const size_t pixels = film.pixels.size();
+            if (pixels != 0) {
+                std::memset(planes.radiance, 0x5a, pixels * sizeof(PixelRadiance));
+                std::memset(planes.losses, 0x5a, pixels * sizeof(PixelLosses));
+                std::memset(planes.sights, 0x5a, pixels * sizeof(PixelSight));
+            }
             RenderProgress progress;
             ASSERT_TRUE(renderer->render(camera_at(scene.camera, 0), settings, film, progress));
             EXPECT_EQ(image_of(film), expected) << k;
@@ -390,6 +396,27 @@ TYPED_TEST(Cuda, FramesWithoutALedgerAreEqual) {
         settings.effects = all_effects;  // the same renderer, whose records have a ledger then
         EXPECT_EQ(render(*renderer, scene, settings), expected) << k;
     }
+}
+
+TYPED_TEST(Cuda, FilmsKeepWhatIsAskedFor) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = test::shipped_scene("platonic");
+    const std::shared_ptr<const CompiledScene<TypeParam>> compiled = this->compiled(scene);
+    const auto cpu = make_embree_renderer<TypeParam>(compiled);
+    const auto gpu = this->gpu(scene);
+    for (const int k : {1, 2})
+        for (const double target : {0.0, 0.05})
+            for (const KeptParts& parts :
+                 {KeptParts{}, KeptParts{false, false}, KeptParts{true, false}, KeptParts{false, true}}) {
+                FrameSettings settings = golden::settings_for(scene);
+                settings.set_size(237, 129);
+                settings.supersample = k;
+                settings.target_error = target;
+                settings.parts = parts;
+                const FilmDifference difference = film_difference(golden::render_with(*gpu, scene, settings),
+                                                                  golden::render_with(*cpu, scene, settings));
+                EXPECT_EQ(difference.differing, 0u) << k << ", " << target << ", " << parts.bytes() << " bytes";
+            }
 }
 
 TYPED_TEST(Cuda, SharesOfAPixelsSamplesAddUp) {
