@@ -195,15 +195,11 @@ ColorPicture to_color(const Film& film) {
 
 std::string film_hash(const Film& film) {
     Fnv128 hash;
-    for (const PixelRecord& pixel : film.pixels) {
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        const PixelRadiance& pixel = film.pixels.radiance(i);
         for (const int64_t value : pixel.radiance) hash.add(value);
-        for (const int64_t value : pixel.pruned) hash.add(value);
-        for (const int64_t value : pixel.cut) hash.add(value);
         hash.add(pixel.hits);
-        hash.add(pixel.rays);
-        hash.add(pixel.id);
-        hash.add(pixel.z);
-        for (const float value : pixel.normal) hash.add(value);
+        hash.add(uint32_t{pixel.samples});
     }
     return hash.hex();
 }
