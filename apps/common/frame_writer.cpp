@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <future>
 
 #include "apps/common/output_name.h"
 #include "apps/common/timing.h"
 #include "scene/base/error.h"
 #include "scene/base/out_of_memory.h"
+#include "scene/base/stages.h"
 #include "scene/image/exr.h"
 #include "scene/image/picture_io.h"
 #include "scene/image/raw_picture.h"
@@ -44,8 +46,10 @@ FrameWriter::~FrameWriter() {
         wait_for_all(lock);
         closing_ = true;
     }
+    const InStage stage(Stage::end);
     changed_.notify_all();
     for (std::thread& thread : threads_) thread.join();
+    spares_.clear();
 }
 
 bool FrameWriter::has_room(size_t bytes) const {
@@ -56,7 +60,7 @@ bool FrameWriter::has_room(size_t bytes) const {
 void FrameWriter::put(FinishedFrame frame) {
     const size_t bytes = bytes_of(frame.film);
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return failure_ || has_room(bytes); });
+    wait_until(lock, [&] { return failure_ || has_room(bytes); });
     if (failure_) std::rethrow_exception(failure_);
     if (idle_ == waiting_.size()) {
         threads_.emplace_back([this] { work(); });
@@ -85,10 +89,19 @@ void FrameWriter::finish() {
 }
 
 void FrameWriter::wait_for_all(std::unique_lock<std::mutex>& lock) {
-    changed_.wait(lock, [this] { return in_work_ == 0; });
+    wait_until(lock, [this] { return in_work_ == 0; });
     while (!done_.empty()) {
         next_passed_ = done_.begin()->first;  // the frames before it failed
         pass_on();
+    }
+}
+
+/// Waits in the stage of the frames in work.
+template <class Condition>
+void FrameWriter::wait_until(std::unique_lock<std::mutex>& lock, const Condition& holds) {
+    while (!holds()) {
+        const InStage stage(films_ > 0 ? Stage::encode : Stage::write);
+        changed_.wait(lock);
     }
 }
 
@@ -160,6 +173,8 @@ void FrameWriter::write(Task& task) {
     const bool raw = file_kind(path) == FileKind::raw;
     LayeredPicture layers;
     ColorPicture color, preview;
+    std::future<std::string> hash;  // takes one thread longer than the rest takes all of them
+    if (measure_) hash = std::async(std::launch::async, film_hash, std::cref(frame.film));
     if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
     stats.encode_seconds = seconds_of([&] {
         if (raw || !frame.preview.empty()) color = to_color(frame.film);
@@ -175,9 +190,9 @@ void FrameWriter::write(Task& task) {
     if (!frame.settings.adaptive())
         stats.depth_loss = depth_loss(stats.cut, ledger_totals(frame.film, &PixelRecord::radiance));
     if (measure_) {
-        stats.hash = film_hash(frame.film);
         stats.pruned = ledger_totals(frame.film, &PixelRecord::pruned);
         stats.units = unit_totals(frame.film);
+        stats.hash = hash.get();
     }
     give_film_back(task, bytes_of(layers, color, preview));
     stats.write_seconds = seconds_of([&] {

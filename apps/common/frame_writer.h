@@ -81,6 +81,8 @@ class FrameWriter {
     void work();
     void write(Task& task);
     void give_film_back(Task& task, size_t bytes_of_layers);
+    template <class Condition>
+    void wait_until(std::unique_lock<std::mutex>& lock, const Condition& holds);
     void pass_on();  // requires mutex_
     void wait_for_all(std::unique_lock<std::mutex>& lock);
 

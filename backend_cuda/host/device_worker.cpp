@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "scene/base/stages.h"
 #include "scene/film/put_pixels.h"
 #include "scene/frame/frame_view.h"
 
@@ -105,7 +106,14 @@ void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
 }
 
 template <class Real>
+bool DeviceWorker<Real>::is_ready(size_t pixels, const FramePlan& plan) const {
+    return (primed_ >> (2 * plan.mask + int(plan.sampling)) & 1u) != 0 && pixels <= pixels_ &&
+           pixels * size_t(plan.view.layers.words) <= words_;
+}
+
+template <class Real>
 bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const FramePlan& plan) {
+    if (is_ready(pixels, plan)) return true;
     use_device(device_);
     prime(plan.sampling, plan.mask);
     const size_t bytes = pixels * sizeof(PixelRecord);
@@ -119,6 +127,8 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const Frame
                slot.blocks.try_reserve(list_bytes);
         slot.blocks_copy.reserve(list_bytes);
     }
+    pixels_ = room ? std::max(pixels, pixels_) : 0;
+    words_ = room ? std::max(layer_bytes / sizeof(int64_t), words_) : 0;
     if (room) return true;
     // Frees what was allocated: it would be missing when less is requested.
     for (PartSlot& slot : slots_) {
@@ -129,9 +139,9 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const Frame
 }
 
 template <class Real>
-void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips, int index) {
+void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips) {
     use_device(device_);
-    PartSlot& slot = slots_[index];
+    PartSlot& slot = slots_[started_++ % slots];
     slot.hints = plan.hints;
     slot.list = BlockList(plan.hints->cover, upload_.primitives(), strips, plan.blocks);
     const std::vector<BlockPlace>& places = slot.list.places();
@@ -161,11 +171,13 @@ void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips, int 
 }
 
 template <class Real>
-bool DeviceWorker<Real>::fetch(int index, Film& film, const std::atomic<bool>& stop) {
+bool DeviceWorker<Real>::fetch(Film& film, const std::atomic<bool>& stop) {
     use_device(device_);
-    PartSlot& slot = slots_[index];
+    PartSlot& slot = slots_[fetched_ % slots];
     fill_gaps(slot, film);  // while the kernels are at work
     if (!await(slot.done, stop)) return false;
+    ++fetched_;
+    const InStage stage(Stage::transfer);
     const auto start = std::chrono::steady_clock::now();
     if (!slot.list.places().empty()) {
         totals.kernel_seconds += slot.end.since(slot.begin) * 1e-3;
@@ -194,6 +206,7 @@ template <class Real>
 void DeviceWorker<Real>::wait() {
     use_device(device_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+    started_ = fetched_ = 0;
     if (!stop_.is_raised()) return;
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(readback_.stream()));
     stop_.lower(compute_);
