@@ -125,6 +125,7 @@ ChosenDevices choose_devices(Backend backend, const DeviceChoice& choice) {
         chosen.options.devices.push_back(device.index);
         chosen.names.push_back(device.name);
     }
+    begin_cuda_devices(chosen.options.devices);
     chosen.driver = cuda_driver_version();
     return chosen;
 }

@@ -38,8 +38,8 @@ struct ChosenDevices {
     std::string driver;  // the latest CUDA version that it supports
 };
 
-/// The devices to run on. Throws Error (device) if this build or this machine lacks them; called before the scene is
-/// compiled.
+/// The devices to run on, whose contexts it makes, all at once. Throws Error (device) if this build or this machine
+/// lacks them. It takes a good part of a second, so it may be called on a thread of its own while the scene is read.
 ChosenDevices choose_devices(Backend backend, const DeviceChoice& choice);
 
 /// The chosen GPUs among `present`. Throws Error (device) if one is missing or unusable.

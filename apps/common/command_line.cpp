@@ -16,6 +16,7 @@
 #include "scene/base/error.h"
 #include "scene/base/file_bytes.h"
 #include "scene/base/out_of_memory.h"
+#include "scene/base/stages.h"
 #include "scene/base/suggest.h"
 
 namespace cistula {
@@ -123,6 +124,7 @@ int run_program(const char* name, const char* memory_advice, const std::function
         note(fmt::format("{}: {}", name, error.what()));
         return static_cast<int>(code);
     };
+    begin_stages();
     set_out_of_memory_line(name, memory_advice);
     reserve_stack();
     open_standard_streams();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -19,6 +20,7 @@
 #include "apps/common/timing.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
+#include "scene/base/stages.h"
 #include "scene/image/exr.h"
 
 namespace cistula {
@@ -99,6 +101,7 @@ class FramesToRender {
 
     /// The next one, if it is among the `most` frames that follow.
     std::optional<CameraFrame> next(size_t most = most_frames) {
+        const InStage stage(Stage::read);
         for (; index_ < job_.frames.size() && most > 0 && !stop_; ++index_, --most) {
             if (index_ > 0 && index_ % stretch_length == 0) look_ahead();
             const CameraFrame camera = camera_at(job_.scene.camera, job_.frames[index_]);
@@ -205,13 +208,20 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
         std::optional<Snapshots> snapshots;
         if (job.snapshot_signal) snapshots.emplace(job, *job.snapshot_signal, progress.tiles, report);
         FramesToRender frames(job, progress.stop, stats.resumed, report);
-        std::optional<CameraFrame> next;
+        std::deque<CameraFrame> ahead;  // announced to the renderer, after the first
         while (true) {
-            if (!next) next = frames.next();
-            if (!next || progress.stop) break;
-            const CameraFrame camera = *next;
+            if (ahead.empty())
+                if (const std::optional<CameraFrame> next = frames.next()) ahead.push_back(*next);
+            if (ahead.empty() || progress.stop) break;
+            const CameraFrame camera = ahead.front();
+            ahead.pop_front();
             if (rendered == 0) probe_outputs(job, camera);
-            next = frames.next(most_looked_at);
+            while (ahead.size() < renderer.frames_ahead()) {
+                const std::optional<CameraFrame> next = frames.next(most_looked_at);
+                if (!next) break;
+                ahead.push_back(*next);
+                renderer.expect(*next, settings);
+            }
             progress.pixels_done = 0;
             progress.rays = 0;
             const PixelRect& crop = job.settings.crop;
@@ -219,11 +229,12 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             report.begin_frame(camera.frame, rendered, frames.count(), pixels);
             FinishedFrame finished;
             finished.film = writer.take_spare();
-            if (next) renderer.expect(*next, settings);
             bool whole = false;
             if (snapshots) snapshots->begin_frame(camera);
-            const double seconds =
-                seconds_of([&] { whole = render_frame(renderer, camera, settings, finished.film, progress); });
+            const double seconds = seconds_of([&] {
+                const InStage stage(Stage::render);
+                whole = render_frame(renderer, camera, settings, finished.film, progress);
+            });
             if (snapshots) snapshots->end_frame();
             for (const std::string& note : renderer.notes())
                 if (!options.quiet && notes.insert(note).second) report.say("render: " + note);

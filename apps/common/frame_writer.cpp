@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <future>
 
 #include "apps/common/output_name.h"
 #include "apps/common/timing.h"
 #include "scene/base/default_rounding.h"
 #include "scene/base/error.h"
 #include "scene/base/out_of_memory.h"
+#include "scene/base/stages.h"
 #include "scene/image/exr.h"
 #include "scene/image/picture_io.h"
 #include "scene/image/raw_picture.h"
@@ -56,8 +58,10 @@ FrameWriter::~FrameWriter() {
         wait_for_all(lock);
         closing_ = true;
     }
+    const InStage stage(Stage::end);
     changed_.notify_all();
     for (std::thread& thread : threads_) thread.join();
+    spares_.clear();
 }
 
 bool FrameWriter::has_room(size_t bytes) const {
@@ -68,7 +72,7 @@ bool FrameWriter::has_room(size_t bytes) const {
 void FrameWriter::put(FinishedFrame frame) {
     const size_t bytes = bytes_of(frame.film);
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return failure_ || has_room(bytes); });
+    wait_until(lock, [&] { return failure_ || has_room(bytes); });
     if (failure_) std::rethrow_exception(failure_);
     if (idle_ == waiting_.size()) {
         threads_.emplace_back([this] { work(); });
@@ -96,10 +100,18 @@ void FrameWriter::finish() {
 }
 
 void FrameWriter::wait_for_all(std::unique_lock<std::mutex>& lock) {
-    changed_.wait(lock, [this] { return in_work_ == 0; });
+    wait_until(lock, [this] { return in_work_ == 0; });
     while (!done_.empty()) {
         next_passed_ = done_.begin()->first;  // the frames before it failed
         pass_on();
+    }
+}
+
+template <class Condition>
+void FrameWriter::wait_until(std::unique_lock<std::mutex>& lock, const Condition& holds) {
+    while (!holds()) {
+        const InStage stage(Stage::write);
+        changed_.wait(lock);
     }
 }
 
@@ -155,8 +167,9 @@ void FrameWriter::write(Task& task) {
     const bool raw = file_kind(path) == FileKind::raw;
     LayeredPicture layers;
     std::atomic<uint64_t> clamped{0};
+    std::future<std::string> hash;  // takes one thread longer than the rest takes all of them
+    if (measure_) hash = std::async(std::launch::async, film_hash, std::cref(frame.film));
     if (frame.settings.adaptive()) stats.target = target_report(frame.film, frame.settings);
-    if (measure_) stats.hash = film_hash(frame.film);
     if (!raw) layers = channels_of(frame.film, channels_, &clamped);
     if (frame.strict)
         if (const uint64_t values = clamped_values(layers, clamped); values != 0)
@@ -174,6 +187,7 @@ void FrameWriter::write(Task& task) {
             if (raw) write_raw_picture(path, color);
         });
     }
+    if (measure_) stats.hash = hash.get();
     if (raw) return;
     layers.attributes.merge(std::move(frame.attributes));
     if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);

@@ -79,6 +79,8 @@ class FrameWriter {
     bool has_room(size_t bytes) const;  // requires mutex_
     void work();
     void write(Task& task);
+    template <class Condition>
+    void wait_until(std::unique_lock<std::mutex>& lock, const Condition& holds);
     void pass_on();  // requires mutex_
     void wait_for_all(std::unique_lock<std::mutex>& lock);
 

@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "apps/common/run_context.h"
+#include "scene/base/stages.h"
 #include "scene/compile/required_effects.h"
 
 namespace cistula {
@@ -24,7 +26,8 @@ uint64_t peak_memory() {
     return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-Json phase(const std::string& name, double seconds) {
+/// An entry of the benchmarks.
+Json timed(const std::string& name, double seconds) {
     return {{"name", name},
             {"run_type", "iteration"},
             {"iterations", 1},
@@ -51,7 +54,7 @@ Json target_entry(const TargetReport& target) {
 }
 
 Json frame_entry(const FrameStats& frame, const FrameSettings& settings, bool has_device) {
-    Json entry = phase(fmt::format("frame/{}", frame.frame), frame.render_seconds);
+    Json entry = timed(fmt::format("frame/{}", frame.frame), frame.render_seconds);
     entry["frame"] = frame.frame;
     entry["file"] = frame.file;
     entry["film_hash"] = frame.hash;
@@ -141,10 +144,6 @@ StatsFile::StatsFile(const std::string& path, const FrameSettings& settings, boo
     file_.write("{\n  \"benchmarks\": [");
 }
 
-void StatsFile::add_phase(const std::string& name, double seconds) {
-    add_entry(text_of(phase(name, seconds)));
-}
-
 void StatsFile::add(const FrameStats& frame) {
     add_entry(text_of(frame_entry(frame, settings_, has_device_)));
 }
@@ -155,6 +154,9 @@ void StatsFile::add_entry(const std::string& json) {
 }
 
 void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
+    const StageSeconds seconds = stage_seconds();
+    for (size_t i = 0; i < seconds.size(); ++i)
+        add_entry(text_of(timed(std::string("stage/") + stage_names[i], seconds[i])));
     const PixelRect& crop = settings_.crop;
     Json context = run_context("render");
     context.update({
@@ -174,6 +176,7 @@ void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
         {"effects", names_of_effects(stats.effects)},
         {"effects_mask", stats.effects},
         {"scene_bytes", stats.scene_bytes},
+        {"stages_ms", 1e3 * std::accumulate(seconds.begin(), seconds.end(), 0.0)},
         {"peak_rss_bytes", peak_memory()},
         {"frames_resumed", stats.resumed.part(0, stats.resumed.size())},
     });

@@ -62,7 +62,6 @@ struct FilmTotals {
 };
 
 struct RunStats {
-    double read_seconds = 0, compile_seconds = 0, tree_seconds = 0;
     std::string scene, scene_hash, intersector, driver;
     std::vector<std::string> devices;            // GPUs; empty, like the driver, if none is used
     uint32_t required_effects = 0, effects = 0;  // masks
@@ -92,11 +91,10 @@ class StatsFile {
   public:
     StatsFile(const std::string& path, const FrameSettings& settings, bool has_device);
 
-    /// Adds the entry of a phase or of a frame to the benchmarks.
-    void add_phase(const std::string& name, double seconds);
+    /// Adds the entry of a frame to the benchmarks.
     void add(const FrameStats& frame);
 
-    /// Adds the context and puts the file in its place. Throws Error (file), as all of these.
+    /// Adds the stages until now and the context, and puts the file in its place. Throws Error (file), as all of these.
     void finish(const RunStats& stats, const FilmOptions& options);
 
   private:

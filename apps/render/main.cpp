@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include <optional>
 
 #include "apps/common/backends.h"
@@ -27,6 +28,7 @@
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
 #include "scene/base/out_of_memory.h"
+#include "scene/base/stages.h"
 #include "scene/base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/precision_choice.h"
@@ -47,7 +49,8 @@ template <class Work>
 void on_threads(const RenderOptions& options, const Work& work) {
     const int threads = threads_of(options);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-    tbb::task_arena arena(threads);
+    // Above the writers' tasks: a frame that renders keeps devices busy, one that is written keeps nobody.
+    tbb::task_arena arena(threads, 1, tbb::task_arena::priority::high);
     arena.execute(work);
 }
 
@@ -71,16 +74,18 @@ struct Prepared {
 };
 
 template <class Real>
-Prepared prepare(SceneSource source, const RenderOptions& options, const CudaOptions& cuda, RunStats& stats) {
-    std::shared_ptr<const CompiledScene<Real>> compiled;
-    stats.compile_seconds += seconds_of([&] { compiled = compile_scene<Real>(std::move(source)); });
+Prepared prepare(SceneSource source, const RenderOptions& options, std::future<ChosenDevices> choice, RunStats& stats) {
+    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
     stats.scene_hash = compiled->hash;
     stats.required_effects = compiled->effects;
     print_warnings(compiled->warnings, options);
-    std::unique_ptr<Renderer> renderer;
-    stats.tree_seconds =
-        seconds_of([&] { renderer = make_renderer<Real>(options.backend, compiled, cuda, options.intersection); });
-    return {std::move(renderer), compiled->layer_names};
+    enter_stage(Stage::device);
+    const ChosenDevices devices = choice.get();
+    stats.devices = devices.names;
+    stats.driver = devices.driver;
+    enter_stage(Stage::tree);
+    return {make_renderer<Real>(options.backend, compiled, devices.options, options.intersection),
+            compiled->layer_names};
 }
 
 /// The names of the images and previews, and their frames.
@@ -191,14 +196,16 @@ void advise_on_memory(const RenderOptions& options, const FrameSettings& setting
 
 void render_scene(RenderOptions options) {
     const bool explain = options.action == Action::explain;
-    const ChosenDevices devices = explain ? ChosenDevices() : choose_devices(options.backend, options.devices);
     std::optional<UserSignal> snapshot_signal;
     if (!explain) snapshot_signal.emplace();
-    RunStats stats;
-    stats.devices = devices.names;
-    stats.driver = devices.driver;
-    SceneDescription scene;
-    stats.read_seconds = seconds_of([&] { scene = read_scene(options); });
+    // Devices take longer to begin than most scenes to be read and compiled, which goes on meanwhile.
+    std::future<ChosenDevices> devices;
+    if (!explain)
+        devices =
+            std::async(std::launch::async, [&options] { return choose_devices(options.backend, options.devices); });
+    enter_stage(Stage::read);
+    SceneDescription scene = read_scene(options);
+    enter_stage(Stage::other);
     if (explain) {
         SceneSource source = gather_scene(scene);
         choose_precision(options, source);
@@ -213,40 +220,45 @@ void render_scene(RenderOptions options) {
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
 
+    RunStats stats;
     stats.scene = options.scene;
     stats.threads = threads_of(options);
     on_threads(options, [&] {
-        SceneSource source;
-        stats.compile_seconds = seconds_of([&] { source = gather_scene(scene); });
+        enter_stage(Stage::read);
+        SceneSource source = gather_scene(scene);
+        enter_stage(Stage::other);
         RunFiles others;
         others.reads_scene(options.scene, source.files);
         others.writes(options.stats, "--stats");
         const std::vector<std::string> read = source.files;
         prepare_files(options, scene, others, read, outputs);
-        stats.compile_seconds += seconds_of([&] { choose_precision(options, source); });
-        const Prepared prepared = options.precision == Precision::double_
-                                      ? prepare<double>(std::move(source), options, devices.options, stats)
-                                      : prepare<float>(std::move(source), options, devices.options, stats);
+        enter_stage(Stage::compile);
+        choose_precision(options, source);
+        Prepared prepared = options.precision == Precision::double_
+                                ? prepare<double>(std::move(source), options, std::move(devices), stats)
+                                : prepare<float>(std::move(source), options, std::move(devices), stats);
+        enter_stage(Stage::other);
         Renderer& renderer = *prepared.renderer;
         guard.watch(progress.stop);
         std::optional<StatsFile> file;
-        if (!options.stats.empty()) {
-            file.emplace(options.stats, settings, !stats.devices.empty());
-            file->add_phase("read", stats.read_seconds);
-            file->add_phase("compile", stats.compile_seconds);
-            file->add_phase("tree", stats.tree_seconds);
-        }
+        if (!options.stats.empty()) file.emplace(options.stats, settings, !stats.devices.empty());
         const auto write_stats = [&] {
             stats.intersector = renderer.intersector();
             stats.lanes = renderer.lanes();
             stats.effects = renderer.effects();
             stats.scene_bytes = renderer.memory();
+            enter_stage(Stage::end);  // of what the renderer has, too, so that the time for that is among the stages
+            prepared.renderer.reset();
+            enter_stage(Stage::other);
             if (file) file->finish(stats, options);
         };
-        if (options.verbose)
+        if (options.verbose) {
+            const StageSeconds so_far = stage_seconds();
+            const auto seconds = [&](Stage stage) { return so_far[static_cast<size_t>(stage)]; };
             note(fmt::format("render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}",
-                             stats.read_seconds, stats.compile_seconds, stats.tree_seconds, renderer.memory(),
+                             seconds(Stage::read), seconds(Stage::compile), seconds(Stage::tree), renderer.memory(),
                              stats.scene_hash));
+        }
         FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
         job.layer_names = prepared.layer_names;
         job.snapshot_signal = &*snapshot_signal;

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <optional>
+#include <deque>
 
 #include "backend_cuda/host/device_worker.h"
 #include "scene/base/default_rounding.h"
+#include "scene/base/stages.h"
 #include "scene/film/film_difference.h"
 #include "scene/frame/frame_view.h"
 
@@ -46,18 +47,22 @@ class CudaRenderer : public Renderer {
         notes_.clear();
         times_ = {};
         prepare_film(film, settings, *scene_, camera);
+        const bool others_follow = !expected_.empty();
         if (settings.layers.any() && path_ != DevicePath::tree) {
             drop();
             take_path(DevicePath::tree);
         }
-        if (!begun_ || !same(begun_->camera, camera) || begun_->settings != settings) {
-            if (begun_) drop();
-            FramePlan fresh = planned(camera, settings);
-            begin(fresh);
-            begun_ = fresh;
+        if (begun_.empty() || !same(begun_.front().camera, camera) || begun_.front().settings != settings) {
+            if (!begun_.empty())
+                drop();
+            else if (!expected_.empty() && same(expected_.front().camera, camera))
+                expected_.pop_front();
+            FramePlan fresh = planned(camera, settings, others_follow);
+            if (!reserve(fresh)) fail_without_memory(fresh);
+            begin(std::move(fresh));
         }
-        const FramePlan plan = *begun_;
-        begun_.reset();
+        const FramePlan plan = begun_.front();
+        begun_.pop_front();
         if (!plan.fits) film.flags |= flag_media_overflow;
         effects_ = effect_masks[plan.mask];
         for (auto& worker : workers_) worker->totals = {};
@@ -73,7 +78,6 @@ class CudaRenderer : public Renderer {
             drop();
             return false;
         }
-        expected_.reset();
         if (settings.adaptive()) film.totals = totals_of(film);
         for (const auto& worker : workers_) {
             if (!settings.adaptive()) film.totals.add(worker->totals.counts.totals);
@@ -84,7 +88,10 @@ class CudaRenderer : public Renderer {
         return !progress.stop;
     }
 
-    void expect(const CameraFrame& camera, const FrameSettings& settings) override { expected_ = {camera, settings}; }
+    void expect(const CameraFrame& camera, const FrameSettings& settings) override {
+        expected_.push_back({camera, settings});
+    }
+    size_t frames_ahead() const override { return workers_.size(); }
     uint32_t effects() const override { return effects_; }
     std::string intersector() const override { return "cuda"; }
     RenderTimes times() const override { return times_; }
@@ -110,20 +117,25 @@ class CudaRenderer : public Renderer {
     void take_path(DevicePath path) {
         path_ = path;
         if (path_ == DevicePath::tree) {
+            const InStage stage(Stage::tree);
             tree_ = facet_tree(view_);
             tree_.put_into(view_);
         }
+        const InStage stage(Stage::upload);
         const SceneArena<Real> arena(view_);
         bytes_ = arena.bytes().size();
         workers_.clear();
-        for (const int index : options_.devices) {
-            use_device(index);
-            workers_.push_back(std::make_unique<DeviceWorker<Real>>(index, arena, view_, path_));
-        }
+        workers_.resize(options_.devices.size());
+        tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
+            use_device(options_.devices[d]);
+            workers_[d] = std::make_unique<DeviceWorker<Real>>(options_.devices[d], arena, view_, path_);
+        });
     }
 
-    /// The plan of a frame, undivided, whose first part is to go to a slot.
-    FramePlan planned(const CameraFrame& camera, const FrameSettings& settings, int slot = 0) const {
+    /// The plan of a frame, in parts as large as they are to be. Where others follow, so that no device waits for want
+    /// of frames, a frame of one part is a single device's: to share it would take as much time of the host for each.
+    FramePlan planned(const CameraFrame& camera, const FrameSettings& settings, bool others_follow) const {
+        const InStage stage(Stage::plan);
         use_default_rounding();
         FramePlan plan;
         plan.camera = camera;
@@ -136,80 +148,100 @@ class CudaRenderer : public Renderer {
         plan.blocks = {plan.view.supersample > 1 ? PixelMapping::shared_tile : PixelMapping::own_tiles,
                        kernel_shapes[plan.mask].warps};
         plan.hints = std::make_shared<const FrameHints>(frame_hints(*scene_, plan.view, settings));
-        plan.devices = int(workers_.size());
-        plan.first_slot = slot % DeviceWorker<Real>::slots;
-        return plan;
-    }
-
-    /// Takes memory for a planned frame and starts its first part.
-    void begin(FramePlan& plan) {
-        divide(plan);
-        start(plan, 0);
-    }
-
-    /// Divides a frame into parts that fit into memory.
-    void divide(FramePlan& plan) {
-        const PixelRect& rect = plan.settings.crop;
+        const PixelRect& rect = settings.crop;
         constexpr int width = BlockPlan::width;
         plan.strips = (rect.height + strip_rows - 1) / strip_rows;
         plan.strip_pixels = size_t((rect.width + width - 1) / width * width) * strip_rows;
-        const int most = plan.strips_per_device();
-        int wanted = int(std::clamp<size_t>(part_samples / (plan.strip_pixels * plan.samples()), 1, size_t(most)));
-        if (largest_part_ != 0) wanted = int(std::clamp<size_t>(largest_part_ / plan.strip_pixels, 1, size_t(wanted)));
-        plan.part_strips = reserve(wanted, plan);
-        plan.parts = (most + plan.part_strips - 1) / plan.part_strips;
+        size_t most = std::max<size_t>(part_samples / (plan.strip_pixels * plan.samples()), 1);
+        if (largest_part_ != 0) most = std::clamp<size_t>(largest_part_ / plan.strip_pixels, 1, most);
+        plan.devices = int(workers_.size());
+        if (others_follow && size_t(plan.strips) <= most) {
+            plan.devices = 1;
+            plan.first_device = next_device_;
+        }
+        divide(plan, int(std::min(most, size_t(plan.strips))));
+        return plan;
     }
 
-    /// Allocates memory for parts of `strips` strips, or of half as many until it fits; returns the number.
-    int reserve(int strips, const FramePlan& plan) {
-        const int wanted = strips;
+    /// Divides a frame into parts of `strips` strips for each device, at most.
+    static void divide(FramePlan& plan, int strips) {
+        plan.part_strips = std::min(strips, plan.strips_per_device());
+        plan.parts = (plan.strips_per_device() + plan.part_strips - 1) / plan.part_strips;
+    }
+
+    /// Allocates memory for a frame's parts on all devices, or for parts of half as many strips until it fits. False if
+    /// it does not.
+    bool reserve(FramePlan& plan) {
+        const InStage stage(Stage::device);
+        const size_t wanted = size_t(plan.part_strips) * plan.strip_pixels;
         const auto has_room = [&] {
-            return std::all_of(workers_.begin(), workers_.end(), [&](const auto& worker) {
-                return worker->reserve(size_t(strips) * plan.strip_pixels, options_.memory_limit, plan);
+            std::atomic<bool> all{true};
+            tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
+                if (!workers_[d]->reserve(part_pixels(plan), options_.memory_limit, plan)) all = false;
             });
+            return all.load();
         };
-        for (; !has_room(); strips = (strips + 1) / 2)
-            if (strips == 1)
-                throw Error(
-                    ExitCode::device,
+        while (!has_room()) {
+            if (plan.part_strips == 1) return false;
+            divide(plan, (plan.part_strips + 1) / 2);
+        }
+        if (part_pixels(plan) == wanted) return true;
+        largest_part_ = part_pixels(plan);
+        notes_.push_back(
+            fmt::format("the GPU's memory is short: {} pixels at a time instead of {}", largest_part_, wanted));
+        return true;
+    }
+    static size_t part_pixels(const FramePlan& plan) { return size_t(plan.part_strips) * plan.strip_pixels; }
+
+    [[noreturn]] static void fail_without_memory(const FramePlan& plan) {
+        throw Error(ExitCode::device,
                     fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or --crop needs "
                                 "less, or free memory that other programs hold",
                                 plan.strip_pixels));
-        if (strips < wanted) {
-            largest_part_ = size_t(strips) * plan.strip_pixels;
-            notes_.push_back(fmt::format("the GPU's memory is short: {} pixels at a time instead of {}",
-                                         size_t(strips) * plan.strip_pixels, size_t(wanted) * plan.strip_pixels));
-        }
-        return strips;
     }
+
+    /// Starts the first part of a frame for which there is memory.
+    void begin(FramePlan plan) {
+        start(plan, 0);
+        next_device_ = (plan.first_device + plan.devices) % int(workers_.size());
+        begun_.push_back(std::move(plan));
+    }
+
+    DeviceWorker<Real>& worker(const FramePlan& plan, int d) { return *workers_[size_t(plan.first_device + d)]; }
 
     void start(const FramePlan& plan, int part) {
-        for (size_t d = 0; d < workers_.size(); ++d)
-            if (const Strips strips = plan.strips_of(part, int(d)); strips.count > 0)
-                workers_[d]->start(plan, strips, (plan.first_slot + part) % DeviceWorker<Real>::slots);
+        for (int d = 0; d < plan.devices; ++d)
+            if (const Strips strips = plan.strips_of(part, d); strips.count > 0) worker(plan, d).start(plan, strips);
     }
 
-    /// Begins the expected frame behind the last part of this one, if it needs no other memory and no other kernel: a
-    /// kernel's first launch waits for all that runs, and writes into a slot.
-    void begin_early(const FramePlan& running) {
-        if (expected_->settings != running.settings) return;
-        FramePlan next = planned(expected_->camera, expected_->settings, running.first_slot + running.parts);
-        if (next.mask != running.mask) return;
-        begin(next);
-        begun_ = next;
+    /// Begins expected frames behind the last part of the one that runs, for as long as their devices have free slots.
+    /// A device that has work must need no other memory and no other kernel: a kernel's first launch waits for all that
+    /// runs, and writes into a slot.
+    void begin_early() {
+        const auto is_full = [](const auto& worker) { return worker->in_work() == DeviceWorker<Real>::slots; };
+        while (!expected_.empty() && (begun_.empty() || begun_.back().parts == 1) &&
+               !std::all_of(workers_.begin(), workers_.end(), is_full)) {
+            FramePlan next = planned(expected_.front().camera, expected_.front().settings, true);
+            const auto first = workers_.begin() + next.first_device;
+            if (std::any_of(first, first + next.devices, is_full)) return;
+            const bool are_ready = std::all_of(workers_.begin(), workers_.end(), [&](const auto& worker) {
+                return worker->in_work() == 0 || worker->is_ready(part_pixels(next), next);
+            });
+            if (!are_ready || !reserve(next)) return;
+            begin(std::move(next));
+            expected_.pop_front();
+        }
     }
 
     /// Starts the next part and puts this one into the film; false if that was stopped.
     bool finish(const FramePlan& plan, int part, Film& film, RenderProgress& progress) {
         if (part + 1 < plan.parts)
             start(plan, part + 1);
-        else if (expected_)
-            begin_early(plan);
-        const int slot = (plan.first_slot + part) % DeviceWorker<Real>::slots;
+        else
+            begin_early();
         std::atomic<bool> stopped{false};
-        tbb::parallel_for(size_t{0}, workers_.size(), [&](size_t d) {
-            if (plan.strips_of(part, int(d)).count > 0 && !workers_[d]->fetch(slot, film, progress.stop))
-                stopped = true;
+        tbb::parallel_for(0, plan.devices, [&](int d) {
+            if (plan.strips_of(part, d).count > 0 && !worker(plan, d).fetch(film, progress.stop)) stopped = true;
         });
         if (stopped) return false;
         const uint64_t before = film.rays.total();
@@ -225,7 +257,8 @@ class CudaRenderer : public Renderer {
     void drop() {
         for (auto& worker : workers_) worker->stop();
         for (auto& worker : workers_) worker->wait();
-        begun_.reset();
+        begun_.clear();
+        expected_.clear();
     }
 
     std::shared_ptr<const CompiledScene<Real>> scene_;
@@ -234,8 +267,9 @@ class CudaRenderer : public Renderer {
     FacetTree<Real> tree_;
     DevicePath path_;
     std::vector<std::unique_ptr<DeviceWorker<Real>>> workers_;
-    std::optional<Request> expected_;
-    std::optional<FramePlan> begun_;
+    std::deque<Request> expected_;  // announced and not begun
+    std::deque<FramePlan> begun_;   // in the order in which they are to be rendered
+    int next_device_ = 0;           // of frames that are not shared
     RenderTimes times_;
     std::vector<std::string> notes_;
     size_t bytes_ = 0, largest_part_ = 0;

@@ -24,6 +24,9 @@ struct CudaDevice {
 /// All GPUs of this machine. Throws Error (device) if there is none: no driver, a driver too old, no device.
 std::vector<CudaDevice> list_cuda_devices();
 
+/// Makes the contexts of devices, which renderers else make one after the other. Throws Error (device) where it cannot.
+void begin_cuda_devices(const std::vector<int>& devices);
+
 /// The CUDA version that the driver supports, such as "13.0", for records.
 std::string cuda_driver_version();
 

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "scene/base/stages.h"
 #include "scene/frame/frame_view.h"
 
 namespace cistula {
@@ -130,7 +131,18 @@ void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
 }
 
 template <class Real>
+bool DeviceWorker<Real>::is_ready(size_t pixels, const FramePlan& plan) const {
+    const KeptParts parts = plan.settings.kept_parts();
+    return (primed_ >> (2 * plan.mask + int(plan.sampling)) & 1u) != 0 && pixels <= pixels_ &&
+           parts.losses <= parts_.losses && parts.sights <= parts_.sights &&
+           pixels * size_t(plan.view.layers.words) <= words_ &&
+           (plan.sampling != Sampling::adaptive ||
+            (storage_blocks_ != 0 && plan.view.layers.sample_words() <= sample_words_));
+}
+
+template <class Real>
 bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const FramePlan& plan) {
+    if (is_ready(pixels, plan)) return true;
     use_device(device_);
     prime(plan.sampling, plan.mask);
     if (plan.sampling == Sampling::adaptive) reserve_storage(plan.view.layers);
@@ -148,6 +160,9 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const Frame
                slot.layers.try_reserve(layer_bytes) && slot.blocks.try_reserve(list_bytes);
         slot.blocks_copy.reserve(list_bytes);
     }
+    pixels_ = room ? pixels : 0;
+    words_ = room ? layer_bytes / sizeof(int64_t) : 0;
+    parts_ = parts;
     if (room) return true;
     // Frees what was allocated: it would be missing when less is requested.
     for (PartSlot& slot : slots_) {
@@ -160,9 +175,9 @@ bool DeviceWorker<Real>::reserve(size_t pixels, size_t memory_limit, const Frame
 }
 
 template <class Real>
-void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips, int index) {
+void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips) {
     use_device(device_);
-    PartSlot& slot = slots_[index];
+    PartSlot& slot = slots_[started_++ % slots];
     slot.hints = plan.hints;
     slot.list = BlockList(plan.hints->cover, upload_.primitives(), strips, plan.blocks);
     const std::vector<BlockPlace>& places = slot.list.places();
@@ -195,11 +210,13 @@ void DeviceWorker<Real>::start(const FramePlan& plan, const Strips& strips, int 
 }
 
 template <class Real>
-bool DeviceWorker<Real>::fetch(int index, Film& film, const std::atomic<bool>& stop) {
+bool DeviceWorker<Real>::fetch(Film& film, const std::atomic<bool>& stop) {
     use_device(device_);
-    PartSlot& slot = slots_[index];
+    PartSlot& slot = slots_[fetched_ % slots];
     fill_gaps(slot, film);  // while the kernels are at work
     if (!await(slot.done, stop)) return false;
+    ++fetched_;
+    const InStage stage(Stage::transfer);
     const auto start = std::chrono::steady_clock::now();
     if (!slot.list.places().empty()) {
         totals.kernel_seconds += slot.end.since(slot.begin) * 1e-3;
@@ -223,6 +240,7 @@ template <class Real>
 void DeviceWorker<Real>::wait() {
     use_device(device_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+    started_ = fetched_ = 0;
     if (!stop_.is_raised()) return;
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(readback_.stream()));
     stop_.lower(compute_);

@@ -24,15 +24,21 @@ class DeviceWorker {
     DeviceWorker(int device, const SceneArena<Real>& scene, const SceneView<Real>& here, DevicePath path);
 
     /// Allocates memory for parts of `pixels` pixels, counting whole blocks, in both slots, beside what a mask's kernel
-    /// allocates for itself. False if there is not enough.
+    /// allocates for itself. False if there is not enough. No part may be in work, unless is_ready().
     bool reserve(size_t pixels, size_t memory_limit, const FramePlan& plan);
 
-    /// Enqueues a part of a frame without waiting. Its slot must be free.
-    void start(const FramePlan& plan, const Strips& strips, int slot);
+    /// Whether reserve() has nothing to do.
+    bool is_ready(size_t pixels, const FramePlan& plan) const;
 
-    /// Waits for the part in a slot and puts its pixels into the film. False once `stop` is set; the part is then still
-    /// being rendered.
-    bool fetch(int slot, Film& film, const std::atomic<bool>& stop);
+    /// The number of parts that were started and not fetched.
+    int in_work() const { return started_ - fetched_; }
+
+    /// Enqueues a part of a frame without waiting. A slot must be free.
+    void start(const FramePlan& plan, const Strips& strips);
+
+    /// Waits for the part that was started first and puts its pixels into the film. False once `stop` is set; the part
+    /// is then still being rendered.
+    bool fetch(Film& film, const std::atomic<bool>& stop);
 
     /// Makes all that was started end soon, without waiting. Nothing may be started until wait() returns.
     void stop();
@@ -73,6 +79,9 @@ class DeviceWorker {
     unsigned int storage_blocks_ = 0;  // 0: storage_ is empty
     int sample_words_ = 0;             // for which storage_ has room
     uint32_t primed_ = 0;              // bit 2 m + s: mask m's kernel for Sampling s has run
+    size_t pixels_ = 0, words_ = 0;    // for which slots have room, and
+    KeptParts parts_;                  // ... the parts of pixels that they keep
+    int started_ = 0, fetched_ = 0;    // parts; number i goes to slot i % slots
     PartSlot slots_[slots];
 };
 

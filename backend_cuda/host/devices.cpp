@@ -1,6 +1,8 @@
 // The GPUs of this machine.
 #include <fmt/format.h>
 
+#include <future>
+
 #include "backend_cuda/host/cuda_check.h"
 #include "backend_cuda/host/cuda_renderer.h"
 
@@ -49,6 +51,16 @@ std::vector<CudaDevice> list_cuda_devices() {
         devices.push_back(std::move(device));
     }
     return devices;
+}
+
+void begin_cuda_devices(const std::vector<int>& devices) {
+    std::vector<std::future<void>> begun;
+    for (const int device : devices)
+        begun.push_back(std::async(std::launch::async, [device] {
+            CISTULA_CUDA_CHECK(cudaSetDevice(device));
+            CISTULA_CUDA_CHECK(cudaFree(nullptr));  // before CUDA 12 the first call makes the context
+        }));
+    for (std::future<void>& device : begun) device.get();
 }
 
 std::string cuda_driver_version() {

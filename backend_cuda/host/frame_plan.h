@@ -19,12 +19,12 @@ struct FramePlan {
     Sampling sampling = Sampling::uniform;
     int mask = 0;             // index of effect_masks
     bool fits = true;         // whether the camera's interior list had room
-    int devices = 1;          // strip s of the rectangle belongs to device s % devices
+    int first_device = 0;     // of those that share the frame
+    int devices = 1;          // strip s of the rectangle belongs to device s % devices of them
     int strips = 0;           // of the whole rectangle
     size_t strip_pixels = 0;  // of whole blocks
     int part_strips = 0;      // of a part, per device
     int parts = 0;
-    int first_slot = 0;  // slot of the first part
 
     /// The number of strips of the device that has most.
     int strips_per_device() const { return (strips + devices - 1) / devices; }

@@ -10,8 +10,8 @@
 namespace cistula {
 namespace {
 
-constexpr size_t staging_bytes = size_t{32} << 20;
-constexpr int blocks_together = 16;  // that a host thread unpacks at a time
+constexpr size_t staging_bytes = size_t{8} << 20;  // locking more pages takes longer than the copies gain
+constexpr int blocks_together = 16;                // that a host thread unpacks at a time
 
 constexpr size_t most_records = most_warps * warp_threads;  // records of a block
 using RecordOrder = std::array<uint8_t, most_records>;

@@ -1,10 +1,12 @@
 // 128-bit FNV-1a, for hashes of films, scenes and cameras.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 
 #include "cistula/numerics/portable.h"
 
@@ -20,8 +22,10 @@ class Fnv128 {
     }
     template <std::integral T>
     void add(T value) {
-        const auto bits = static_cast<uint64_t>(value);
-        for (size_t i = 0; i < sizeof(T); ++i) add_byte(static_cast<unsigned char>(bits >> (8 * i)));
+        auto bits = static_cast<uint64_t>(static_cast<std::make_unsigned_t<T>>(value));
+        size_t i = 0;
+        for (; bits != 0; ++i, bits >>= 8) add_byte(static_cast<unsigned char>(bits));
+        if (i < sizeof(T)) state_ *= powers[sizeof(T) - i];  // the zeros above
     }
     void add(float value) { add(bits_as<uint32_t>(value)); }
     void add(double value) { add(bits_as<uint64_t>(value)); }
@@ -37,6 +41,13 @@ class Fnv128 {
   private:
     __extension__ typedef unsigned __int128 Wide;
     static constexpr Wide prime = (static_cast<Wide>(1) << 88) + 0x13b;
+
+    /// The prime to the power of 0 to 8: what as many zeros do.
+    static constexpr std::array<Wide, 9> powers = [] {
+        std::array<Wide, 9> all{1};
+        for (size_t i = 1; i < all.size(); ++i) all[i] = all[i - 1] * prime;
+        return all;
+    }();
 
     void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * prime; }
 

@@ -75,9 +75,12 @@ class Renderer {
     virtual bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                         RenderProgress& progress) = 0;
 
-    /// Announces the frame after the next one to be rendered, so that a device can start it early. A wrong announcement
-    /// costs time and nothing else.
+    /// Announces a frame that is to be rendered after the next one and those announced before it, so that a device can
+    /// start it early. A wrong announcement costs time and nothing else.
     virtual void expect(const CameraFrame&, const FrameSettings&) {}
+
+    /// How many frames after the next one are worth announcing.
+    virtual size_t frames_ahead() const { return 1; }
 
     /// The mask of effects that the last render used.
     virtual uint32_t effects() const = 0;

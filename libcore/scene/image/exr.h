@@ -28,7 +28,8 @@ void write_exr(const std::string& path, const LayeredPicture& picture);
 void write_exr(const std::string& path, const std::vector<PicturePart>& parts);
 
 /// Sets the number of OpenEXR's own threads, shared by all files of the process, and how many of them compress what one
-/// call of write_exr writes. 0, the default: every caller compresses by itself. Not while a file is written or read.
+/// call of write_exr writes, but for zip and zips, which TBB's do. 0, the default: every caller does that by itself.
+/// Not while a file is written or read.
 void set_exr_threads(int threads, int of_a_file);
 
 /// Reads all channels as floats, in the order of the file (by name), with the attributes of the types that write_exr

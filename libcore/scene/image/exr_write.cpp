@@ -31,11 +31,12 @@
 #include "scene/base/default_rounding.h"
 #include "scene/image/exr.h"
 #include "scene/image/exr_compression.h"
+#include "scene/image/exr_zip.h"
 
 namespace cistula {
 namespace {
 
-/// The number of OpenEXR's threads that compress one file.
+/// The number of OpenEXR's threads that compress one file, where it does.
 int threads_of_a_file = 0;
 
 /// A stream that reports write errors, so that a full disk is noticed: OpenEXR's destructor ignores them.
@@ -146,7 +147,6 @@ Imf::Header header_of(const LayeredPicture& picture) {
     const Imath::Box2i data(Imath::V2i(picture.x, picture.y),
                             Imath::V2i(picture.x + picture.width - 1, picture.y + picture.height - 1));
     Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, compression_of(picture.compression));
-    header.zipCompressionLevel() = 1;  // docs/decisions/0039-quick-zip.md
     header.dwaCompressionLevel() = picture.dwa_level;
     for (const auto& [name, value] : picture.attributes) {
         if (const auto* text = std::get_if<std::string>(&value))
@@ -220,7 +220,21 @@ struct PartToWrite {
     const LayeredPicture& picture;
 };
 
+bool is_zipped(const PartToWrite& part) {
+    return part.picture.compression == Compression::zip || part.picture.compression == Compression::zips;
+}
+
 void write_pixels(Imf::OStream& stream, const std::vector<PartToWrite>& parts) {
+    std::vector<Imf::Header> headers;
+    std::vector<const LayeredPicture*> pictures;
+    for (const PartToWrite& part : parts) {
+        headers.push_back(header_of(part.picture));
+        pictures.push_back(&part.picture);
+        if (parts.size() == 1) continue;
+        headers.back().setName(part.name);
+        headers.back().setType(Imf::SCANLINEIMAGE);
+    }
+    if (std::all_of(parts.begin(), parts.end(), is_zipped)) return write_zipped(stream, std::move(headers), pictures);
     const int threads = std::min(Imf::globalThreadCount(), threads_of_a_file);
     // Whole blocks of lines of every compression, and some for each thread.
     const int most_lines = 256 * std::max(1, threads / 4);
@@ -232,20 +246,14 @@ void write_pixels(Imf::OStream& stream, const std::vector<PartToWrite>& parts) {
             file.writePixels(count);
         }
     };
-    std::vector<Imf::Header> headers;
-    for (const PartToWrite& part : parts) headers.push_back(header_of(part.picture));
     if (parts.size() == 1) {
         Imf::OutputFile file(stream, headers.front(), threads);
-        return write(file, parts.front().picture);
-    }
-    for (size_t i = 0; i < parts.size(); ++i) {
-        headers[i].setName(parts[i].name);
-        headers[i].setType(Imf::SCANLINEIMAGE);
+        return write(file, *pictures.front());
     }
     Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threads);
     for (size_t i = 0; i < parts.size(); ++i) {
         Imf::OutputPart part(file, static_cast<int>(i));
-        write(part, parts[i].picture);
+        write(part, *pictures[i]);
     }
 }
 
@@ -273,7 +281,7 @@ void write_parts(const std::string& path, const std::vector<PartToWrite>& parts)
     const bool lacked_memory = errno == ENOMEM;
     stream.close();
     if (stream.error_number() != 0) throw file_error(path, "write", stream.error_number());
-    if (lacks_chunks(target.descriptor())) {
+    if (!std::all_of(parts.begin(), parts.end(), is_zipped) && lacks_chunks(target.descriptor())) {
         if (lacked_memory) throw std::bad_alloc();
         throw file_error(path, "write", std::string("OpenEXR left out a part of it; is there enough memory?"));
     }

@@ -39,6 +39,9 @@ class FakeRenderer : public Renderer {
     std::vector<std::string> notes() const override { return {"memory is short"}; }
     size_t memory() const override { return 0; }
 
+    size_t frames_ahead() const override { return ahead; }
+
+    size_t ahead = 1;
     std::string asked;
     std::vector<size_t> sizes;  // of the films as they came
     int stop_at = -1;
@@ -95,12 +98,17 @@ class FilmLoop : public RenderProgram {
     std::string warning_;                      // that comes of it
 };
 
-TEST_F(FilmLoop, AnnouncesTheNextFrameBeforeItAsksForOne) {
+TEST_F(FilmLoop, AnnouncesTheNextFramesBeforeItAsksForOne) {
     film({0, 5, 2}, Backend::cuda);
     EXPECT_EQ(renderer_.asked, " +5 0 +2 5 2");
     renderer_.asked.clear();
+    renderer_.ahead = 3;
+    film({0, 5, 2, 3, 4, 1}, Backend::cuda);
+    EXPECT_EQ(renderer_.asked, " +5 +2 +3 0 +4 5 +1 2 3 4 1");
+    renderer_.asked.clear();
+    renderer_.ahead = 1;
     options_.resume = true;
-    std::filesystem::remove(file("f.00.exr"));
+    for (const char* removed : {"f.00.exr", "f.03.exr"}) std::filesystem::remove(file(removed));
     film({0, 5, 2, 3}, Backend::cuda);
     EXPECT_EQ(renderer_.asked, " +3 0 3");
     EXPECT_EQ(stats_.resumed, (std::vector<int>{5, 2}));
@@ -131,7 +139,7 @@ TEST_F(FilmLoop, FramesArePassedOnInTheOrderOfTheFilmWithTheDevicesTimes) {
         stats.finish(stats_, options_);
         return bytes_of(file("stats.json"));
     };
-    EXPECT_EQ(nlohmann::json::parse(text(false)).at("benchmarks").size(), 20u);
+    EXPECT_EQ(nlohmann::json::parse(text(false)).at("benchmarks").size(), 20u + stage_names.size());
     EXPECT_EQ(text(false).find("kernel_ms"), std::string::npos);
     EXPECT_EQ(text(false).find("transfer_ms"), std::string::npos);
     EXPECT_NE(text(true).find("\"kernel_ms\": 250.0"), std::string::npos);
