@@ -128,7 +128,7 @@ class PixelWriter {
         ~Fence() { _mm_sfence(); }
     };
 
-    explicit PixelWriter(const PixelPlanes& to) : to_(to) {}
+    explicit PixelWriter(const PixelPlanes& to) : to_(to), fence_() {}
 
     void put(size_t pixel, const PixelRecord& from) const {
         put<PixelRadiance>(to_.radiance + pixel, from);

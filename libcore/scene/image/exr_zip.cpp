@@ -15,6 +15,8 @@
 #include <new>
 #include <string_view>
 
+#include "scene/base/default_rounding.h"
+
 namespace cistula {
 namespace {
 
@@ -68,10 +70,14 @@ class ChunkPacker {
         return made;
     }
 
-    static uint16_t* put_line(const LayeredPicture::Channel& channel, const LayeredPicture& picture, int y,
-                              uint16_t* to) {
-        const auto width = static_cast<size_t>(picture.width);
-        const float* values = channel.values.data() + static_cast<size_t>(y) * width;
+    uint16_t* put_line(const LayeredPicture::Channel& channel, const LayeredPicture& picture, int y, uint16_t* to) {
+        const auto width = static_cast<size_t>(picture.width), first = static_cast<size_t>(y) * width;
+        const float* values = channel.values.data() + first;
+        if (channel.write) {
+            line_.resize(width);
+            channel.write(first, first + width, line_.data());
+            values = line_.data();
+        }
         if (channel.half) {
             for (size_t x = 0; x < width; ++x) to[x] = half(values[x]).bits();
             return to + width;
@@ -95,6 +101,7 @@ class ChunkPacker {
     }
 
     Compressor compressor_ = compressor();
+    std::vector<float> line_;
     std::vector<uint16_t> words_;
     std::vector<uint8_t> predicted_;
     std::vector<char> packed_;
@@ -163,6 +170,7 @@ void write_zipped(Imf::OStream& stream, std::vector<Imf::Header> headers,
     };
     tbb::enumerable_thread_specific<ChunkPacker> packers;
     const auto pack = [&](Place place) {
+        use_default_rounding();  // of floats that are made here
         const PartLines& part = parts[place.part];
         const int first = place.chunk * part.lines;
         const std::string_view packed = packers.local().pack(part, first);
