@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <set>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include "cistula/numerics/transmittance.h"
 #include "scene/base/error.h"
@@ -372,6 +375,71 @@ TYPED_TEST(CompileScene, AbsorptionIsMeasuredByItsSolids) {
     scene.materials[2].absorption.z = 1e7;
     expect_error([&] { compile_scene<TypeParam>(scene); }, ExitCode::usage,
                  "material amber has an absorption above 2^20");
+}
+
+/// Hundreds of bodies of every kind in contact, some given with few digits, and a mesh of many groups.
+SceneDescription crowded_scene() {
+    SceneDescription scene = varied_scene();
+    for (int i = 0; i < 600; ++i) {
+        const glm::dvec3 place{10 + 0.1 * (i % 10), 0.1 * (i / 10 % 10), 0.1 * (i / 100)};
+        SolidObject cube = solid(PlatonicSolid::cube, place, 0.05 * std::sqrt(3.0));
+        cube.radius += i % 7 == 0 ? 1e-7 : 0;
+        if (i % 3 == 0) {
+            add_object(scene, cube, 1);
+            continue;
+        }
+        TrianglesObject mesh = triangulated_solid(cube);
+        if (i % 3 == 1)
+            mesh.keep_triangles = true;
+        else
+            mesh.triangles.pop_back();
+        add_object(scene, mesh, 1);
+    }
+    add_object(scene, bumpy_sphere(20'000, 0.9), 1);
+    return scene;
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+TYPED_TEST(CompileScene, ThreadsChangeNothing) {
+    const SceneDescription description = crowded_scene();
+    const auto compiled_on = [&](int threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, size_t(threads));
+        return tbb::task_arena(threads).execute([&] { return compile_scene<TypeParam>(description); });
+    };
+    const auto expected = compiled_on(1);
+    EXPECT_GT(expected->shared_planes.size(), 20u);
+    EXPECT_GT(expected->clusters.size(), 2000u);
+    EXPECT_FALSE(expected->warnings.empty());
+    for (const int threads : {2, 5}) {
+        const auto scene = compiled_on(threads);
+        EXPECT_EQ(scene->hash, expected->hash);
+        EXPECT_EQ(scene->warnings, expected->warnings);
+        EXPECT_TRUE(same_bytes(scene->solids, expected->solids));
+        EXPECT_TRUE(std::equal(
+            scene->slabs.begin(), scene->slabs.end(), expected->slabs.begin(), expected->slabs.end(),
+            [](const auto& a, const auto& b) { return a.normal == b.normal && a.low == b.low && a.high == b.high; }));
+        EXPECT_TRUE(same_bytes(scene->slab_planes, expected->slab_planes));
+        EXPECT_TRUE(same_bytes(scene->triangle_planes, expected->triangle_planes));
+        EXPECT_TRUE(same_bytes(scene->near_planes, expected->near_planes));
+        EXPECT_TRUE(same_bytes(scene->plane_solids, expected->plane_solids));
+        EXPECT_TRUE(same_bytes(scene->incidents, expected->incidents));
+        ASSERT_EQ(scene->shared_planes.size(), expected->shared_planes.size());
+        for (size_t i = 0; i < scene->shared_planes.size(); ++i) {
+            const auto &plane = scene->shared_planes[i], &other = expected->shared_planes[i];
+            EXPECT_TRUE(plane.normal == other.normal && plane.offset == other.offset && plane.slack == other.slack);
+        }
+        ASSERT_EQ(scene->clusters.size(), expected->clusters.size());
+        for (size_t i = 0; i < scene->clusters.size(); ++i) {
+            const auto &cluster = scene->clusters[i], &other = expected->clusters[i];
+            EXPECT_EQ(std::memcmp(cluster.corner, other.corner, sizeof cluster.corner), 0);
+            EXPECT_EQ(std::memcmp(cluster.height, other.height, sizeof cluster.height), 0);
+            EXPECT_EQ(std::memcmp(cluster.triangle, other.triangle, sizeof cluster.triangle), 0);
+        }
+    }
 }
 
 TYPED_TEST(CompileScene, WrongScenesNameThePlace) {

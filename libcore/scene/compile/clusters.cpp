@@ -21,40 +21,41 @@ struct GroupBox {
     float low[3], high[3];
 };
 
-GroupBox box_of(const std::vector<GroupBox>& boxes, uint32_t begin, uint32_t end) {
-    GroupBox all = boxes[begin];
-    for (uint32_t i = begin + 1; i < end; ++i) {
-        for (int axis = 0; axis < 3; ++axis) {
-            all.low[axis] = min_or_second(boxes[i].low[axis], all.low[axis]);
-            all.high[axis] = max_or_second(boxes[i].high[axis], all.high[axis]);
-        }
+void add(GroupBox& all, const GroupBox& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        all.low[axis] = min_or_second(box.low[axis], all.low[axis]);
+        all.high[axis] = max_or_second(box.high[axis], all.high[axis]);
     }
-    return all;
 }
 
-/// Adds a node over groups [begin, end) and returns its number. The groups are in the order of the builder's tree, so
-/// halves are neighbors and no second build is needed.
-uint32_t halve(Tree& tree, const std::vector<GroupBox>& boxes, uint32_t begin, uint32_t end) {
+/// Adds a node over groups [begin, end), the next, and returns its box. The groups are in the order of the builder's
+/// tree, so halves are neighbors and no second build is needed.
+GroupBox halve(Tree& tree, const std::vector<GroupBox>& boxes, uint32_t begin, uint32_t end) {
+    constexpr GroupBox nothing{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     const auto number = static_cast<uint32_t>(tree.nodes.size());
+    GroupBox all = nothing;
     tree.nodes.emplace_back();
     const uint32_t middle = begin + (end - begin + 1) / 2;
     for (int side = 0; side < 2; ++side) {
         const uint32_t first = side ? middle : begin, last = side ? end : middle;
         int32_t child = ~static_cast<int32_t>(first);
         uint32_t count = last - first;
+        GroupBox box = nothing;
         if (count > 2) {
-            child = static_cast<int32_t>(halve(tree, boxes, first, last));
+            child = static_cast<int32_t>(tree.nodes.size());
             count = 0;
+            box = halve(tree, boxes, first, last);
+        } else {
+            for (uint32_t i = first; i < last; ++i) add(box, boxes[i]);
         }
         TreeNode& node = tree.nodes[number];
         node.child[side] = child;
         node.count[side] = count;
-        GroupBox box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-        if (first < last) box = box_of(boxes, first, last);
         std::copy(box.low, box.low + 3, node.low[side]);
         std::copy(box.high, box.high + 3, node.high[side]);
+        add(all, box);
     }
-    return number;
+    return all;
 }
 
 }  // namespace

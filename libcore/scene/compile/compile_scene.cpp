@@ -1,8 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -30,10 +35,11 @@ namespace {
 
 using glm::dvec3;
 
-/// Returns memory to the system that the allocator keeps after a tree build, before the largest arrays are filled.
-void return_free_memory() {
+/// Returns memory to the system that the allocator keeps after the tree build of a large mesh, before the largest
+/// arrays are filled.
+void return_free_memory([[maybe_unused]] uint32_t triangles) {
 #ifdef __GLIBC__
-    malloc_trim(0);
+    if (triangles >= 100'000) malloc_trim(0);
 #endif
 }
 
@@ -80,10 +86,8 @@ class Compiler {
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             scene_.solid_names.push_back(source_.solids[i].name);
             scene_.solids[i].material = source_.solids[i].material;
-            if (source_.solids[i].platonic) continue;
-            hash_mesh(i);
-            compile_mesh(i);
         }
+        compile_meshes();
         settle_on_faces();
         add_shared_planes(scene_, bodies_.contacts);
         list_shared_planes(scene_, bodies_, places_.boxes);
@@ -146,20 +150,26 @@ class Compiler {
 
     /// Finds the solids with an inside that may share a face with another solid (surface_event.h).
     void find_touching_solids() {
-        std::vector<uint32_t> order;
-        for (uint32_t i = 0; i < scene_.solids.size(); ++i)
-            if (scene_.solids[i].kind != SolidKind::sheet && !places_.boxes[i].empty()) order.push_back(i);
-        std::sort(order.begin(), order.end(),
-                  [&](uint32_t a, uint32_t b) { return places_.boxes[a].low.x < places_.boxes[b].low.x; });
-        const auto near = [&](const Box& a, const Box& b, int axis) {
-            return a.low[axis] <= b.high[axis] + touching && b.low[axis] <= a.high[axis] + touching;
+        const auto may_share = [&](uint32_t i) {
+            return scene_.solids[i].kind != SolidKind::sheet && !places_.boxes[i].empty();
         };
-        for (size_t i = 0; i < order.size(); ++i)
-            for (size_t j = i + 1; j < order.size() && near(places_.boxes[order[i]], places_.boxes[order[j]], 0); ++j) {
-                if (near(places_.boxes[order[i]], places_.boxes[order[j]], 1) &&
-                    near(places_.boxes[order[i]], places_.boxes[order[j]], 2))
-                    scene_.solids[order[i]].may_touch = scene_.solids[order[j]].may_touch = 1;
-            }
+        const auto near = [&](const Box& a, const Box& b) {
+            for (int axis = 0; axis < 3; ++axis)
+                if (!(a.low[axis] <= b.high[axis] + touching && b.low[axis] <= a.high[axis] + touching)) return false;
+            return true;
+        };
+        const auto count = static_cast<uint32_t>(scene_.solids.size());
+        std::vector<RTCBuildPrimitive> primitives;
+        for (uint32_t i = 0; i < count; ++i)
+            if (may_share(i)) primitives.push_back(padded_primitive(places_.boxes[i], touching, i));
+        const Tree tree = build_tree(primitives, 0);
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            const Box& own = places_.boxes[i];
+            if (may_share(i))
+                scene_.solids[i].may_touch = any_in_box(tree, padded(own, touching), [&](uint32_t other) {
+                    return other != i && near(own, places_.boxes[other]);
+                });
+        });
     }
 
     /// Finds solids that overlap no other. An optimization, skipped for scenes with very many pairs.
@@ -181,15 +191,74 @@ class Compiler {
         }
     }
 
-    void compile_mesh(uint32_t number) {
+    /// What takes long for a mesh and needs nothing of others.
+    struct PreparedMesh {
+        ApexHeights heights;
+        Groups groups;
+        Tree tree;  // over groups
+        ApexFaults faults;
+        Box box;
+    };
+
+    NormalizedMesh placed_mesh(uint32_t number) const {
+        return {source_.solids[number].mesh, normalization_, bodies_.contacts.solids[number].points,
+                sizeof(Real) == sizeof(float)};
+    }
+
+    PreparedMesh prepare(uint32_t number) {
         SourceSolid& from = source_.solids[number];
-        if (by_planes_[number]) return;
-        const std::vector<dvec3>& moved = bodies_.contacts.solids[number].points;
-        const NormalizedMesh mesh(from.mesh, normalization_, moved, sizeof(Real) == sizeof(float));
-        ApexHeights heights = apex_heights(mesh, link_edges(from.mesh));
-        const Groups groups = group_triangles(mesh);
-        prepare(number, mesh, groups, heights);
-        return_free_memory();
+        const NormalizedMesh mesh = placed_mesh(number);
+        PreparedMesh prepared;
+        prepared.heights =
+            apex_heights(mesh, from.edges.next.empty() ? link_edges(from.mesh) : std::exchange(from.edges, {}));
+        prepared.groups = group_triangles(mesh);
+        prepared.tree = group_tree(mesh, prepared.groups);
+        prepared.faults = check_apexes(mesh, prepared.groups, prepared.tree, prepared.heights);
+        prepared.box = tbb::parallel_reduce(
+            tbb::blocked_range<uint32_t>(0, mesh.size(), 4096), Box(),
+            [&](const auto& range, Box box) {
+                for (uint32_t t = range.begin(); t != range.end(); ++t)
+                    for (const dvec3& corner : mesh.triangle(t)) box.add(corner);
+                return box;
+            },
+            [](Box box, const Box& next) {
+                if (!next.empty()) box.add(next.low), box.add(next.high);
+                return box;
+            });
+        return prepared;
+    }
+
+    /// Hashes and compiles the meshes in order. Small ones are prepared side by side, some at a time.
+    void compile_meshes() {
+        constexpr uint32_t most_at_once = 4096, most_triangles = 100'000;  // but for those of the last
+        const auto count = static_cast<uint32_t>(source_.solids.size());
+        std::vector<PreparedMesh> prepared;
+        for (uint32_t first = 0, end = 0; first < count; first = end) {
+            for (size_t triangles = 0; end < count && end - first < most_at_once && triangles < most_triangles; ++end)
+                triangles += source_.solids[end].mesh.triangles.size();
+            const auto is_mesh = [&](uint32_t i) { return !source_.solids[i].platonic && !by_planes_[i]; };
+            prepared.resize(end - first);
+            tbb::parallel_invoke(
+                [&] {
+                    for (uint32_t i = first; i < end; ++i)
+                        if (!source_.solids[i].platonic) hash_mesh(i);
+                },
+                [&] {
+                    tbb::parallel_for(first, end, [&](uint32_t i) {
+                        if (is_mesh(i)) prepared[i - first] = prepare(i);
+                    });
+                });
+            for (uint32_t i = first; i < end; ++i)
+                if (is_mesh(i)) compile_mesh(i, std::move(prepared[i - first]));
+        }
+    }
+
+    void compile_mesh(uint32_t number, PreparedMesh prepared) {
+        SourceSolid& from = source_.solids[number];
+        const NormalizedMesh mesh = placed_mesh(number);
+        find_lights_on(number, mesh, prepared);
+        prepared.tree = {};
+        return_free_memory(mesh.size());
 
         Solid& solid = scene_.solids[number];
         solid.kind = from.closed ? SolidKind::mesh : SolidKind::sheet;
@@ -197,12 +266,13 @@ class Compiler {
         solid.flat = !from.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * normalization_.extent, solid) ? 1 : 0;
         solid.first_triangle = triangle_count_;
         solid.first_uv = static_cast<uint32_t>(scene_.uvs.size());
-        append_clusters(mesh, groups, heights, number, triangle_count_, scene_.clusters);
+        append_clusters(mesh, prepared.groups, prepared.heights, number, triangle_count_, scene_.clusters);
+        places_.boxes[number] = prepared.box;
         const bool textured = source_.materials[from.material].texture >= 0;
-        for (uint32_t t = 0; t < mesh.size(); ++t)
+        const bool outlined = mesh.size() <= most_outlined;
+        for (uint32_t t = 0; t < mesh.size() && (textured || outlined); ++t)
             for (const uint32_t corner : mesh.corners(t)) {
-                places_.boxes[number].add(mesh.vertex(corner));
-                if (mesh.size() <= most_outlined) scene_.hulls[number].points.push_back(mesh.vertex(corner));
+                if (outlined) scene_.hulls[number].points.push_back(mesh.vertex(corner));
                 if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
             }
         triangle_count_ += mesh.size();
@@ -229,23 +299,23 @@ class Compiler {
         return true;
     }
 
-    /// The steps that need the tree over groups, which is freed before the clusters are filled.
-    void prepare(uint32_t number, const NormalizedMesh& mesh, const Groups& groups, ApexHeights& heights) {
-        const Tree tree = group_tree(mesh, groups);
+    /// Finds which lights lie on a mesh and how near others come, and warns of what was found wrong with it.
+    void find_lights_on(uint32_t number, const NormalizedMesh& mesh, const PreparedMesh& prepared) {
         const SourceSolid& from = source_.solids[number];
-        const ApexFaults faults = check_apexes(mesh, groups, tree, heights);
         const auto warn_of = [&](uint32_t sides, const char* what) {
             if (sides > 0 && from.closed)
                 scene_.warnings.push_back(from.place + ": " + from.name + ": the mesh " + what + std::to_string(sides) +
                                           " sides of triangles; rays may leak there");
         };
-        warn_of(faults.crossed, "passes through itself at ");
-        warn_of(faults.unchecked, "is too crowded to be checked at ");
+        warn_of(prepared.faults.crossed, "passes through itself at ");
+        warn_of(prepared.faults.unchecked, "is too crowded to be checked at ");
         const SolidContacts& contacts = bodies_.contacts.solids[number];
-        find_triangle_incidents(lights_, NormalizedMesh(from.mesh, normalization_, contacts.points, false), groups,
-                                tree, number, triangle_count_, contacts.reach, incident_reach(), light_faces_);
-        places_.distances[number] = light_distances(lights_, mesh, groups, tree, number, triangle_count_, light_faces_,
-                                                    normalization_.extent, 2 * incident_reach());
+        find_triangle_incidents(lights_, NormalizedMesh(from.mesh, normalization_, contacts.points, false),
+                                prepared.groups, prepared.tree, number, triangle_count_, contacts.reach,
+                                incident_reach(), light_faces_);
+        places_.distances[number] =
+            light_distances(lights_, mesh, prepared.groups, prepared.tree, number, triangle_count_, light_faces_,
+                            normalization_.extent, 2 * incident_reach());
     }
 
     /// Moves lights onto the faces on which they lie; distances from where they were then say nothing.

@@ -1,10 +1,14 @@
 #include "scene/compile/contacts.h"
 
 #include <algorithm>
+#include <atomic>
+#include <iterator>
 #include <set>
 #include <unordered_map>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include "cistula/geometry/ray.h"
 #include "scene/compile/contact_moves.h"
@@ -50,32 +54,55 @@ class ContactSearch {
     // ---- bodies and faces
 
     void find_bodies() {
-        std::vector<Box> boxes;
+        const auto count = uint32_t(source_.solids.size());
+        std::vector<const ConvexSolid*> planes(count, nullptr);
         size_t next_platonic = 0;
-        for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-            boxes.push_back(source_.solids[i].platonic ? platonic_[next_platonic++].box : sizes_[i].box);
+        for (uint32_t i = 0; i < count; ++i)
+            if (source_.solids[i].platonic) planes[i] = &platonic_[next_platonic++];
+        std::vector<Box> boxes(count);
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            boxes[i] = planes[i] ? planes[i]->box : sizes_[i].box;
             contacts_.solids[i].reach = reach_of(i);
-            range_.near = max_or_second(contacts_.solids[i].reach.own, range_.near);
-        }
+        });
+        for (const SolidContacts& solid : contacts_.solids) range_.near = max_or_second(solid.reach.own, range_.near);
         const NearSolids near(boxes, pad());
-        next_platonic = 0;
-        for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-            const ConvexSolid* planes = source_.solids[i].platonic ? &platonic_[next_platonic++] : nullptr;
-            if (!boxes[i].empty() && (near.meets_another(boxes[i], i) || may_overlap_itself(i)))
-                add_body(i, planes, near);
-        }
+        std::vector<uint8_t> wanted(count);
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            wanted[i] = !boxes[i].empty() && (near.meets_another(boxes[i], i) || may_overlap_itself(i));
+        });
+        std::vector<uint32_t> numbers;
+        for (uint32_t i = 0; i < count; ++i)
+            if (wanted[i]) body_of_[i] = uint32_t(numbers.size()), numbers.push_back(i);
+        bodies_.resize(numbers.size());
+        tbb::parallel_for(size_t(0), numbers.size(),
+                          [&](size_t b) { bodies_[b] = body_of(numbers[b], planes[numbers[b]], near); });
+    }
+
+    /// Runs add(first, end, found) for parts of a number of things on all threads, and returns what each part found, in
+    /// order.
+    template <class Found, class Add>
+    static std::vector<Found> find_in_parts(size_t count, const Add& add) {
+        constexpr size_t part = 256;
+        std::vector<Found> found((count + part - 1) / part);
+        tbb::parallel_for(size_t(0), found.size(),
+                          [&](size_t i) { add(part * i, std::min(part * (i + 1), count), found[i]); });
+        return found;
     }
 
     /// Makes faces of the parts of bodies that come near others; `joined`: of triangles that lie in one plane together.
     void find_faces(bool joined) {
         faces_.clear();
-        for (const ContactBody& body : bodies_)
-            if (body.planes)
-                add_platonic_faces(body, *source_.solids[body.solid].platonic, faces_);
-            else if (joined)
-                add_mesh_faces(body, body.near, body.reach.own, faces_);
-            else
-                add_triangles(body, body.near, faces_);
+        const auto add_faces = [&](size_t first, size_t end, std::vector<FlatFace>& faces) {
+            for (size_t b = first; b < end; ++b)
+                if (const ContactBody& body = bodies_[b]; body.planes)
+                    add_platonic_faces(body, *source_.solids[body.solid].platonic, faces);
+                else if (joined)
+                    add_mesh_faces(body, body.near, body.reach.own, faces);
+                else
+                    add_triangles(body, body.near, faces);
+        };
+        for (std::vector<FlatFace>& faces : find_in_parts<std::vector<FlatFace>>(bodies_.size(), add_faces))
+            std::move(faces.begin(), faces.end(), std::back_inserter(faces_));
     }
 
     /// Moves what touches, but for the digits of a file, into one plane.
@@ -126,7 +153,7 @@ class ContactSearch {
         return !from.closed && from.mesh.triangles.size() <= most_with_own;
     }
 
-    void add_body(uint32_t number, const ConvexSolid* planes, const NearSolids& near) {
+    ContactBody body_of(uint32_t number, const ConvexSolid* planes, const NearSolids& near) const {
         const SourceSolid& from = source_.solids[number];
         ContactBody body;
         body.solid = number;
@@ -142,14 +169,18 @@ class ContactSearch {
             body.facets.assign(from.mesh.triangles.begin(), from.mesh.triangles.end());
         }
         body.welded = weld(body.points);
+        if (planes) return body;
         const bool all = may_overlap_itself(number);
-        for (uint32_t t = 0; t < body.facets.size() && !planes; ++t) {
-            Box box;
-            for (const uint32_t corner : body.facets[t]) box.add(body.points[corner]);
-            if (all || near.meets_another(box, number)) body.near.push_back(t);
-        }
-        body_of_[number] = uint32_t(bodies_.size());
-        bodies_.push_back(std::move(body));
+        const auto find_near = [&](size_t first, size_t end, std::vector<uint32_t>& found) {
+            for (auto t = uint32_t(first); t < end; ++t) {
+                Box box;
+                for (const uint32_t corner : body.facets[t]) box.add(body.points[corner]);
+                if (all || near.meets_another(box, number)) found.push_back(t);
+            }
+        };
+        for (const auto& found : find_in_parts<std::vector<uint32_t>>(body.facets.size(), find_near))
+            body.near.insert(body.near.end(), found.begin(), found.end());
+        return body;
     }
 
     /// Finds the sheets that may overlap themselves and lie in one plane.
@@ -172,41 +203,70 @@ class ContactSearch {
 
     const ContactBody& body(const FlatFace& face) const { return bodies_[body_of_[face.solid]]; }
 
+    /// What comes near one another of the faces of a part.
+    struct FoundPairs {
+        std::vector<Pair> touching, near;
+        std::vector<std::pair<uint32_t, uint32_t>> reaching;
+    };
+
     void find_pairs(const PlaneSets& sets) {
         std::vector<RTCBuildPrimitive> primitives;
         for (uint32_t i = 0; i < faces_.size(); ++i) primitives.push_back(padded_primitive(faces_[i].box, pad(), i));
         const Tree tree = build_tree(primitives, 0);
-        size_t tried = 0;
-        for (uint32_t i = 0; i < faces_.size(); ++i)
-            for_each_in_box(tree, padded(faces_[i].box, pad()), [&](uint32_t j) {
-                if (j <= i || !touch(faces_[i].box, faces_[j].box, pad())) return;
-                const bool one_solid = faces_[i].solid == faces_[j].solid;
-                if (one_solid && !may_overlap_itself(faces_[i].solid)) return;
-                if (++tried > most_near_pairs) refuse_crowd(faces_[i].solid);
-                compare(i, j, one_solid, sets);
-            });
+        std::atomic<size_t> tried{0};
+        const auto find = [&](size_t first, size_t end, FoundPairs& found) {
+            for (auto i = uint32_t(first); i < end && tried <= most_near_pairs; ++i)
+                tried +=
+                    for_each_near(tree, i, [&](uint32_t j, bool one_solid) { compare(i, j, one_solid, sets, found); });
+        };
+        for (const FoundPairs& found : find_in_parts<FoundPairs>(faces_.size(), find)) {
+            pairs_.insert(pairs_.end(), found.touching.begin(), found.touching.end());
+            reaching_.insert(reaching_.end(), found.reaching.begin(), found.reaching.end());
+            for (const Pair& near : found.near)
+                add_near(faces_[near.first], faces_[near.second], near.distance, contacts_.near);
+        }
+        if (tried > most_near_pairs) refuse_crowd(tree);
     }
 
-    [[noreturn]] void refuse_crowd(uint32_t solid) const {
-        throw scene_error(*source_.description, source_.solids[solid].place,
+    /// Calls visit(j, one_solid) for the later faces that come near a face, at most one more than may be in all.
+    /// Returns their number.
+    template <class Visit>
+    size_t for_each_near(const Tree& tree, uint32_t i, const Visit& visit) const {
+        size_t count = 0;
+        any_in_box(tree, padded(faces_[i].box, pad()), [&](uint32_t j) {
+            if (j <= i || !touch(faces_[i].box, faces_[j].box, pad())) return false;
+            const bool one_solid = faces_[i].solid == faces_[j].solid;
+            if (one_solid && !may_overlap_itself(faces_[i].solid)) return false;
+            if (++count > most_near_pairs) return true;
+            visit(j, one_solid);
+            return false;
+        });
+        return count;
+    }
+
+    [[noreturn]] void refuse_crowd(const Tree& tree) const {
+        size_t tried = 0;
+        uint32_t i = 0;
+        while ((tried += for_each_near(tree, i, [](uint32_t, bool) {})) <= most_near_pairs) ++i;
+        throw scene_error(*source_.description, source_.solids[faces_[i].solid].place,
                           "more than " + std::to_string(most_near_pairs / 1'000'000) +
                               " million pairs of faces come near one another, as where many objects are in one "
                               "place; leave out those that are there several times");
     }
 
-    void compare(uint32_t i, uint32_t j, bool one_solid, const PlaneSets& sets) {
+    void compare(uint32_t i, uint32_t j, bool one_solid, const PlaneSets& sets, FoundPairs& found) const {
         const FlatFace &a = faces_[i], &b = faces_[j];
         if (one_solid && sets.exact() && !is_flat_[body_of_[a.solid]] && !overlapping(i, j)) return;
-        if (touch(a.box, b.box, reach * tau())) reaching_.push_back({i, j});
+        if (touch(a.box, b.box, reach * tau())) found.reaching.push_back({i, j});
         const auto& [large, small] = sets.is_larger(i, j) ? std::pair(i, j) : std::pair(j, i);
         const double distance =
             farthest_from(faces_[large].normal, faces_[large].offset, body(faces_[small]), faces_[small]);
         const double tolerance = sets.tolerance(faces_[large], faces_[small]);
         if (distance <= tolerance && touch(a.box, b.box, tolerance))
-            pairs_.push_back({distance, i, j});
+            found.touching.push_back({distance, i, j});
         else if (!sets.exact() && distance <= range_.near && !range_.given && touch(a.box, b.box, distance) &&
                  !one_solid && magnitude(dot(a.normal, b.normal)) > 0.5)
-            add_near(a, b, distance, contacts_.near);
+            found.near.push_back({distance, i, j});
     }
 
     double tau() const { return 0x1p-20 * normalization_.extent; }
@@ -223,7 +283,7 @@ class ContactSearch {
     }
 
     void join_pairs(PlaneSets& sets) {
-        std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+        tbb::parallel_sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
             if (a.distance != b.distance) return a.distance < b.distance;
             return a.first != b.first ? a.first < b.first : a.second < b.second;
         });
@@ -285,19 +345,25 @@ class ContactSearch {
         std::vector<std::vector<BoundFace>> bound(bodies_.size());
         for (uint32_t i = 0; i < faces_.size(); ++i)
             if (plane_[i] != no_plane) bound[body_of_[faces_[i].solid]].push_back({&faces_[i], plane_[i]});
-        for (size_t b = 0; b < bodies_.size(); ++b) {
-            if (bound[b].empty()) continue;
+        std::vector<std::vector<BoundFace>> left(bodies_.size());
+        std::vector<double> farthest(bodies_.size(), 0);
+        tbb::parallel_for(size_t(0), bodies_.size(), [&](size_t b) {
+            if (bound[b].empty()) return;
             ContactBody& body = bodies_[b];
             const std::vector<dvec3> given = body.points;
-            for (const BoundFace& left : move_into_planes(body, bound[b], equations_, areas_, rounding_))
-                leave(left, sets);
-            double farthest = 0;
+            left[b] = move_into_planes(body, bound[b], equations_, areas_, rounding_);
             for (size_t i = 0; i < given.size(); ++i)
-                if (body.welded[i] != no_vertex) farthest = max_or_second(length(body.points[i] - given[i]), farthest);
-            if (!(farthest > 0)) continue;
+                if (body.welded[i] != no_vertex)
+                    farthest[b] = max_or_second(length(body.points[i] - given[i]), farthest[b]);
+        });
+        for (size_t b = 0; b < bodies_.size(); ++b) {
+            ContactBody& body = bodies_[b];
+            for (const BoundFace& face : left[b]) leave(face, sets);
+            if (!(farthest[b] > 0)) continue;
             body.moved = true;
             contacts_.solids[body.solid].points = body.points;
-            if (farthest > contacts_.farthest_move) contacts_.farthest_move = farthest, contacts_.moved = body.solid;
+            if (farthest[b] > contacts_.farthest_move)
+                contacts_.farthest_move = farthest[b], contacts_.moved = body.solid;
         }
     }
 
@@ -354,6 +420,7 @@ class ContactSearch {
 
     /// Takes out of the pairs that could not be moved into one plane those that lie in one all the same.
     void forget_joined() {
+        if (contacts_.apart.empty()) return;
         std::set<std::pair<uint32_t, uint32_t>> joined;
         for (const Pair& pair : pairs_)
             if (in_contact(pair)) joined.insert(std::minmax(faces_[pair.first].solid, faces_[pair.second].solid));

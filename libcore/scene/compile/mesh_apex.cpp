@@ -1,27 +1,30 @@
 #include "scene/compile/mesh_apex.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+
+#include "cistula/lanes/lanes.h"
 
 namespace cistula {
 namespace {
 
 using glm::dvec3;
 
-struct Neighbor {
-    uint32_t number;
-    std::array<dvec3, 3> corner;
-    Box box;
-};
+/// Triangles are looked at side by side: each lane has the bits that a number would have.
+constexpr int width = lane_bytes / int(sizeof(double));
+using Numbers = Lanes<double, width>;
+using Vectors = Vec3<Numbers>;
+using Mask = Numbers::Mask;
 
-bool apart(const Box& a, const Box& b) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return true;
-    return false;
-}
+/// Some triangles near a group's.
+struct NeighborBlock {
+    LaneVectors<Numbers> corner[3], low, high;  // and their boxes
+    uint32_t number[width];
+};
 
 Box box_of(const std::array<dvec3, 3>& corner) {
     Box box;
@@ -29,80 +32,137 @@ Box box_of(const std::array<dvec3, 3>& corner) {
     return box;
 }
 
+bool apart(const Box& a, const Box& b) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return true;
+    return false;
+}
+
+Mask meet(const Box& box, const NeighborBlock& block) {
+    const Vectors low = block.low.all(), high = block.high.all();
+    const Vectors box_low = spread<Numbers>(box.low), box_high = spread<Numbers>(box.high);
+    return (box_low.x <= high.x) & (low.x <= box_high.x) & (box_low.y <= high.y) & (low.y <= box_high.y) &
+           (box_low.z <= high.z) & (low.z <= box_high.z);
+}
+
 /// Six times the signed volume of a tetrahedron: positive if a, b, c are counter-clockwise seen from `top`.
-double volume(const dvec3& top, const dvec3& a, const dvec3& b, const dvec3& c) {
+Numbers volume(const Vectors& top, const Vectors& a, const Vectors& b, const Vectors& c) {
     return dot(top - a, cross(b - a, c - a));
 }
 
-/// Whether an open segment passes through a triangle, given the volumes between its ends and the triangle. Touching
-/// with an end does not count.
-bool crosses(const dvec3& from, double from_volume, const dvec3& to, double to_volume, const std::array<dvec3, 3>& q) {
-    if (!((from_volume > 0 && to_volume < 0) || (from_volume < 0 && to_volume > 0))) return false;
-    const double a = volume(from, to, q[0], q[1]), b = volume(from, to, q[1], q[2]), c = volume(from, to, q[2], q[0]);
-    return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
+Mask have_opposite_signs(const Numbers& a, const Numbers& b) {
+    const Numbers zero(0);
+    return ((a > zero) & (b < zero)) | ((a < zero) & (b > zero));
 }
 
-/// Place of another triangle relative to a tetrahedron's base.
-struct Placement {
-    int shared[3] = {-1, -1, -1};  // for each of its corners the corner of the base at the same position; -1: none
-    double highest = -INFINITY;    // of its corners over the base; shared ones are at 0
+/// Whether a line, from its start to its end, passes by the sides of a triangle alike. The segment between crosses the
+/// triangle if its ends lie on either side of it.
+Mask passes_through(const Vectors& from, const Vectors& to, const Vectors& q0, const Vectors& q1, const Vectors& q2) {
+    const Numbers zero(0), a = volume(from, to, q0, q1), b = volume(from, to, q1, q2), c = volume(from, to, q2, q0);
+    return ((a >= zero) & (b >= zero) & (c >= zero)) | ((a <= zero) & (b <= zero) & (c <= zero));
+}
+
+/// Some triangles as they lie to another, the base of tetrahedra.
+struct PlacedBlock {
+    PlacedBlock(const std::array<dvec3, 3>& base, const dvec3& unit_normal, const LaneVectors<Numbers> (&at)[3],
+                int number)
+        : count(number) {
+        for (int k = 0; k < 3; ++k) corner[k] = at[k].all();
+        normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+        middle = (corner[0] + corner[1] + corner[2]) / Numbers(3);
+        const Vectors b[3] = {spread<Numbers>(base[0]), spread<Numbers>(base[1]), spread<Numbers>(base[2])};
+        for (Mask& one : touched) one = Mask(false);
+        Mask above(false), below(false);
+        for (int k = 0; k < 3; ++k) {
+            Mask shared[3];
+            for (int i = 0; i < 3; ++i) {
+                shared[i] = (corner[k].x == b[i].x) & (corner[k].y == b[i].y) & (corner[k].z == b[i].z);
+                touched[i] |= shared[i];
+            }
+            for (int i = 0; i < 3; ++i) off_side[k][i] = !(shared[(i + 1) % 3] | shared[(i + 2) % 3]);
+            const Numbers over = dot(spread<Numbers>(unit_normal), corner[k] - b[0]);
+            const Mask own = off_side[k][0] & !shared[0];
+            above |= own & (over > Numbers(0));
+            below |= own & (over < Numbers(0));
+        }
+        for (int i = 0; i < 3; ++i) base_volume[i] = dot(b[i] - corner[0], normal);
+        const Mask used = Mask::first(count);
+        rises[0] = (below & used).bits();
+        rises[1] = (above & used).bits();
+    }
+
+    int count;          // of lanes in use
+    uint32_t rises[2];  // lanes with a corner over the base, on each side of it
+    Vectors corner[3], normal, middle;
+    Mask touched[3];         // by a corner of the triangle: each corner of the base
+    Mask off_side[3][3];     // each corner of the triangle is at neither end of the base's edge opposite corner i
+    Numbers base_volume[3];  // of each corner of the base, over the triangle
 };
 
 /// The tetrahedron between a triangle and its apex on one side. It shrinks with the apex' height.
-struct ApexView {
+class ApexView {
+  public:
     ApexView(const std::array<dvec3, 3>& base, const dvec3& unit_normal)
-        : corner(base), centroid((base[0] + base[1] + base[2]) / 3.0), up(unit_normal) {}
+        : corner_(base), centroid_((base[0] + base[1] + base[2]) / 3.0), up_(unit_normal) {}
 
-    std::array<dvec3, 3> corner;
-    dvec3 centroid, up;  // unit normal on that side
-
-    Placement placement(const std::array<dvec3, 3>& q) const {
-        Placement place;
-        for (int k = 0; k < 3; ++k) {
-            for (int i = 0; i < 3; ++i)
-                if (q[k] == corner[i]) place.shared[k] = i;
-            const double over = place.shared[k] < 0 ? dot(up, q[k] - corner[0]) : 0;
-            place.highest = max_or_second(over, place.highest);
+    /// Which of some triangles intersect the tetrahedron of that height other than through its base, of those that rise
+    /// over it.
+    uint32_t blocked_by(const PlacedBlock& q, uint32_t rising, float height) {
+        set_height(height);
+        const Mask wanted = Mask::of_bits(rising);
+        const Vectors apex = spread<Numbers>(apex_);
+        const Vectors base[3] = {spread<Numbers>(corner_[0]), spread<Numbers>(corner_[1]), spread<Numbers>(corner_[2])};
+        Mask blocked = holds(q.middle, apex, base[0]) & wanted;
+        const Numbers apex_volume = dot(apex - q.corner[0], q.normal);
+        for (int i = 0; i < 3; ++i) {
+            const Mask across = have_opposite_signs(apex_volume, q.base_volume[i]) & !q.touched[i] & wanted;
+            if (any(across)) blocked |= across & passes_through(apex, base[i], q.corner[0], q.corner[1], q.corner[2]);
         }
-        return place;
-    }
-
-    /// Whether another triangle intersects the tetrahedron other than through its base.
-    bool blocked_by(const std::array<dvec3, 3>& q, const Placement& place, double height) const {
-        const int* const shared = place.shared;
-        const dvec3 apex = along(centroid, height, up);
-        const dvec3 plane = cross(q[1] - q[0], q[2] - q[0]);
-        const double apex_volume = dot(apex - q[0], plane);
-        for (int i = 0; i < 3; ++i)
-            if (shared[0] != i && shared[1] != i && shared[2] != i &&
-                crosses(apex, apex_volume, corner[i], dot(corner[i] - q[0], plane), q))
-                return true;
+        const Vectors from_apex[3] = {q.corner[0] - apex, q.corner[1] - apex, q.corner[2] - apex};
         for (int i = 0; i < 3; ++i) {  // the side opposite corner i
-            const int b = (i + 1) % 3, c = (i + 2) % 3;
-            const std::array<dvec3, 3> face{apex, corner[b], corner[c]};
-            const dvec3 side = cross(face[1] - face[0], face[2] - face[0]);
-            double beyond[3];
-            for (int k = 0; k < 3; ++k) beyond[k] = dot(q[k] - face[0], side);
+            const Vectors side = spread<Numbers>(side_[i]);
+            Numbers beyond[3];
+            for (int k = 0; k < 3; ++k) beyond[k] = dot(from_apex[k], side);
             for (int k = 0; k < 3; ++k) {
                 const int l = (k + 1) % 3;
                 // An edge that starts at a corner of a side only touches that side.
-                const bool touches = shared[k] == b || shared[k] == c || shared[l] == b || shared[l] == c;
-                if (!touches && crosses(q[k], beyond[k], q[l], beyond[l], face)) return true;
+                const Mask across =
+                    have_opposite_signs(beyond[k], beyond[l]) & q.off_side[k][i] & q.off_side[l][i] & wanted;
+                if (any(across))
+                    blocked |=
+                        across & passes_through(q.corner[k], q.corner[l], apex, base[(i + 1) % 3], base[(i + 2) % 3]);
             }
         }
-        return holds(apex, q);
+        return blocked.bits();
     }
 
-    bool holds(const dvec3& apex, const std::array<dvec3, 3>& q) const {
-        const dvec3 middle = (q[0] + q[1] + q[2]) / 3.0;
-        if (!(dot(up, middle - corner[0]) > 0)) return false;
+  private:
+    void set_height(float height) {
+        if (height == height_) return;
+        height_ = height;
+        apex_ = along(centroid_, static_cast<double>(height), up_);
         for (int i = 0; i < 3; ++i) {
-            const dvec3 &b = corner[(i + 1) % 3], &c = corner[(i + 2) % 3];
-            const double there = volume(middle, apex, b, c), within = volume(centroid, apex, b, c);
-            if (!(within > 0 ? there > 0 : there < 0)) return false;
+            side_[i] = cross(corner_[(i + 1) % 3] - apex_, corner_[(i + 2) % 3] - apex_);
+            within_[i] = dot(centroid_ - apex_, side_[i]);
         }
-        return true;
     }
+
+    /// Which points lie in the tetrahedron.
+    Mask holds(const Vectors& points, const Vectors& apex, const Vectors& first) const {
+        const Numbers zero(0);
+        Mask in = dot(spread<Numbers>(up_), points - first) > zero;
+        for (int i = 0; i < 3; ++i) {
+            const Numbers there = dot(points - apex, spread<Numbers>(side_[i]));
+            in &= within_[i] > 0 ? there > zero : there < zero;
+        }
+        return in;
+    }
+
+    std::array<dvec3, 3> corner_;
+    dvec3 centroid_, up_;  // unit normal on that side
+    float height_ = -1;
+    dvec3 apex_, side_[3];  // normals of the sides opposite each corner, not of unit length
+    double within_[3];      // of the centroid, over each side
 };
 
 /// Cost of an exact test of a tetrahedron against a triangle, of which 1 is a look at its corners.
@@ -127,14 +187,9 @@ class ApexCheck {
         for (uint32_t i = groups_.first[group]; i < groups_.first[group + 1]; ++i) {
             const uint32_t t = groups_.order[i];
             const auto corner = mesh_.triangle(t);
-            Box box = box_of(corner);
-            const double h = max_or_second(heights_.side[0][t], heights_.side[1][t]);
-            box.low -= dvec3{h};
-            box.high += dvec3{h};
-            near_.clear();
-            for (const Neighbor& other : around_)
-                if (other.number != t && !apart(box, other.box)) near_.push_back(&other);
-            check_triangle(t, corner, limits.cost_a_side, faults);
+            const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+            const double size = length(normal);
+            if (size > 0) check_triangle(t, corner, normal / size, limits.cost_a_side, faults);
         }
         return faults;
     }
@@ -152,68 +207,128 @@ class ApexCheck {
         reach.low -= dvec3{highest};
         reach.high += dvec3{highest};
         around_.clear();
-        size_t looked_at = 0;
+        size_t looked_at = 0, found = 0;
         all_around_ = !any_in_box(tree_, reach, [&](uint32_t other) {
             for (uint32_t i = groups_.first[other]; i < groups_.first[other + 1]; ++i) {
                 const auto corner = mesh_.triangle(groups_.order[i]);
                 const Box box = box_of(corner);
-                if (!apart(reach, box)) around_.push_back({groups_.order[i], corner, box});
+                if (apart(reach, box)) continue;
+                if (found % width == 0) around_.emplace_back();
+                const int lane = int(found++ % width);
+                NeighborBlock& block = around_.back();
+                for (size_t k = 0; k < 3; ++k) block.corner[k].set(lane, corner[k]);
+                block.low.set(lane, box.low);
+                block.high.set(lane, box.high);
+                block.number[lane] = groups_.order[i];
             }
             looked_at += groups_.first[other + 1] - groups_.first[other];
             return looked_at > most;
         });
+        if (around_.empty()) return;
+        for (int lane = int((found - 1) % width) + 1; lane < width; ++lane) {  // boxes that meet none
+            around_.back().low.set(lane, dvec3(INFINITY));
+            around_.back().high.set(lane, dvec3(-INFINITY));
+        }
     }
 
-    void check_triangle(uint32_t t, const std::array<dvec3, 3>& corner, size_t most_cost, ApexFaults& faults) {
-        const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-        const double size = length(normal);
-        if (!(size > 0)) return;
-        for (int side = 0; side < 2; ++side) {
-            const ApexView view(corner, side ? normal / size : -normal / size);
-            float& height = heights_.side[side][t];
-            int halvings = 0;
-            size_t cost = 0;
-            bool through = false, all = all_around_;
-            for (const Neighbor* other : near_) {
-                if (cost >= most_cost) {
+    /// Places the triangles around one: all of them, or the first so many. Returns whether these are all.
+    bool place_near(uint32_t t, const std::array<dvec3, 3>& corner, const dvec3& unit_normal, size_t most) {
+        Box box = box_of(corner);
+        const double h = max_or_second(heights_.side[0][t], heights_.side[1][t]);
+        box.low -= dvec3{h};
+        box.high += dvec3{h};
+        near_.clear();
+        LaneVectors<Numbers> at[3] = {};
+        size_t found = 0;
+        bool all = true;
+        for (const NeighborBlock& block : around_)
+            for_each_lane(meet(box, block), [&](int from) {
+                if (block.number[from] == t) return;
+                if (found == most) {
                     all = false;
-                    break;
+                    return;
                 }
-                ++cost;
-                const Placement place = view.placement(other->corner);
-                const auto blocked = [&](float at) {
-                    cost += cost_of_test;
-                    return view.blocked_by(other->corner, place, static_cast<double>(at));
-                };
-                if (!(height > 0) || !(place.highest > 0)) continue;
-                if (!blocked(height)) continue;
-                // A triangle that passes through the base blocks every apex; no height is better than the one that the
-                // other neighbors allow.
-                float lower = height;
-                int more = 0;
-                bool free = false;
-                while (!free && halvings + more < most_halvings) {
-                    lower /= 2;
-                    ++more;
-                    free = !blocked(lower);
-                }
-                through |= !free;
-                if (!free) continue;
-                height = lower;
-                halvings += more;
-            }
-            faults.crossed += through;
-            faults.unchecked += !through && !all;
+                const int lane = int(found++ % width);
+                for (int k = 0; k < 3; ++k) at[k].set(lane, block.corner[k][from]);
+                if (lane == width - 1) near_.emplace_back(corner, unit_normal, at, width);
+            });
+        if (found % width != 0) near_.emplace_back(corner, unit_normal, at, int(found % width));
+        return all && all_around_;
+    }
+
+    void check_triangle(uint32_t t, const std::array<dvec3, 3>& corner, const dvec3& unit_normal, size_t most_cost,
+                        ApexFaults& faults) {
+        const bool all_placed = place_near(t, corner, unit_normal, most_cost);
+        for (int side = 0; side < 2; ++side) {
+            ApexView view(corner, side ? unit_normal : -unit_normal);
+            Lowering at{heights_.side[side][t]};
+            const bool all = std::all_of(near_.begin(), near_.end(), [&](const PlacedBlock& block) {
+                return lower(view, block, block.rises[side], most_cost, at);
+            });
+            faults.crossed += at.through;
+            faults.unchecked += !at.through && !(all && all_placed);
         }
+    }
+
+    /// An apex that is lowered.
+    struct Lowering {
+        float& height;
+        int halvings = 0;
+        size_t cost = 0;       // of what was looked at
+        bool through = false;  // a triangle passes through the base
+    };
+
+    /// Lowers an apex until none of some triangles, of which those that rise over the base may, block it. Returns
+    /// whether the cost allowed to look at all.
+    static bool lower(ApexView& view, const PlacedBlock& block, uint32_t rising, size_t most_cost, Lowering& at) {
+        uint32_t blocked = 0;
+        float known_at = -1;  // the height at which they are blocked
+        const auto find_blocked = [&] {
+            if (known_at != at.height) blocked = view.blocked_by(block, rising, at.height);
+            known_at = at.height;
+        };
+        if (!(at.height > 0)) rising = 0;
+        const size_t whole = size_t(block.count) + cost_of_test * size_t(std::popcount(rising));
+        if (at.cost + whole <= most_cost) {
+            if (rising != 0) find_blocked();
+            if (blocked == 0) {
+                at.cost += whole;
+                return true;
+            }
+        }
+        for (int lane = 0; lane < block.count; ++lane) {
+            if (at.cost >= most_cost) return false;
+            ++at.cost;
+            if (!(at.height > 0) || !(rising >> lane & 1)) continue;
+            at.cost += cost_of_test;
+            find_blocked();
+            if (!(blocked >> lane & 1)) continue;
+            // A triangle that passes through the base blocks every apex; no height is better than the one that the
+            // other neighbors allow.
+            float lower = at.height;
+            int more = 0;
+            bool free = false;
+            while (!free && at.halvings + more < most_halvings) {
+                lower /= 2;
+                ++more;
+                at.cost += cost_of_test;
+                free = view.blocked_by(block, 1u << lane, lower) == 0;
+            }
+            at.through |= !free;
+            if (!free) continue;
+            at.height = lower;
+            at.halvings += more;
+        }
+        return true;
     }
 
     const NormalizedMesh& mesh_;
     const Groups& groups_;
     const Tree& tree_;
     ApexHeights& heights_;
-    std::vector<Neighbor> around_;
-    bool all_around_ = true;  // they are all in around_
-    std::vector<const Neighbor*> near_;
+    std::vector<NeighborBlock> around_;
+    bool all_around_ = true;         // they are all in around_
+    std::vector<PlacedBlock> near_;  // of the triangle that is checked
 };
 
 }  // namespace

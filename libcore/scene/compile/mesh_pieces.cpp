@@ -149,7 +149,7 @@ class PieceSearch {
     bool try_to_close(const Selection& selection, AtCrowdedEdges crowded, MeshPieces& found) const {
         found = {};
         found.faults = selection.faults;
-        const EdgePairs pairs = pair_edges(mesh_.vertices, selection.corners, crowded);
+        EdgePairs pairs = pair_edges(mesh_.vertices, selection.corners, crowded);
         found.faults.open_edges = pairs.open;
         found.faults.crowded_edges = pairs.crowded;
         if (!pairs.complete() || selection.source.empty()) return false;
@@ -166,6 +166,8 @@ class PieceSearch {
         if (surface.pieces.empty()) return false;
         found.closed = true;
         arrange_bodies(selection, surface, found);
+        if (crowded == AtCrowdedEdges::none && selection.source.size() == mesh_.triangles.size())
+            found.edges.next = std::move(pairs.mate);
         return true;
     }
 

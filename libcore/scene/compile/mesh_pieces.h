@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/compile/mesh_edges.h"
 #include "scene/description/mesh_source.h"
 
 namespace cistula {
@@ -35,6 +36,7 @@ struct MeshPieces {
     std::vector<uint32_t> solid;
     double volume = 0;  // six times that within its outermost pieces; negative if these are wound inward in the mesh
     std::vector<double> thickness;  // of each solid, in scene units: the least volume / area of its bodies
+    MeshEdges edges;                // of a mesh that is closed by edges of two triangles each, all there are; else none
     MeshFaults faults;
 };
 

@@ -181,7 +181,7 @@ std::vector<MeshGroup> join_groups(std::vector<MeshPart> parts, bool one_materia
     return groups;
 }
 
-void add_mesh_solids(SceneSource& source, SourceSolid solid, const MeshPieces& pieces) {
+void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces) {
     warn(source, solid, pieces);
     solid.closed = pieces.closed;
     const bool all_kept = pieces.source.size() == solid.mesh.triangles.size();
@@ -208,6 +208,8 @@ void add_mesh_solids(SceneSource& source, SourceSolid solid, const MeshPieces& p
     if (!all_kept || any_turned) {
         solid.mesh.owned_triangles = std::move(triangles[0]);
         solid.mesh.triangles = solid.mesh.owned_triangles;
+    } else {
+        solid.edges = std::move(pieces.edges);
     }
     if (pieces.closed) solid.thickness = pieces.thickness[0];
     source.solids.push_back(std::move(solid));

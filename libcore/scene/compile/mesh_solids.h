@@ -20,6 +20,6 @@ struct MeshGroup {
 std::vector<MeshGroup> join_groups(std::vector<MeshPart> parts, bool one_material);
 
 /// Adds the solids of a mesh, which is `solid.mesh`, and warnings about it.
-void add_mesh_solids(SceneSource& source, SourceSolid solid, const MeshPieces& pieces);
+void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces);
 
 }  // namespace cistula

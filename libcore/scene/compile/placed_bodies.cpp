@@ -1,6 +1,8 @@
 #include "scene/compile/placed_bodies.h"
 
-#include <algorithm>
+#include <optional>
+
+#include <tbb/parallel_for.h>
 
 #include "cistula/lights/edge_lights.h"
 #include "scene/compile/convex_mesh.h"
@@ -36,23 +38,27 @@ void move_vertices(std::vector<ConvexSolid>& convex, const Contacts& contacts) {
 }  // namespace
 
 PlacedBodies::PlacedBodies(const SceneSource& source) : normalization(find_normalization(source)) {
-    std::vector<ConvexSolid> platonic;
-    sizes.resize(source.solids.size());
-    for (uint32_t i = 0; i < source.solids.size(); ++i) {
+    const auto count = uint32_t(source.solids.size());
+    sizes.resize(count);
+    std::vector<std::optional<ConvexSolid>> by_planes(count);
+    tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
         const SourceSolid& solid = source.solids[i];
         if (solid.platonic)
-            platonic.push_back(convex_solid(*solid.platonic, i, normalization));
+            by_planes[i] = convex_solid(*solid.platonic, i, normalization);
         else
             sizes[i] = mesh_size(solid.mesh, normalization, least_share(Precision::double_) * normalization.extent);
-    }
+    });
+    std::vector<ConvexSolid> platonic;
+    for (std::optional<ConvexSolid>& solid : by_planes)
+        if (solid) platonic.push_back(std::move(*solid));
     contacts = find_contacts(source, normalization, platonic, sizes);
     move_vertices(platonic, contacts);
-    convex = std::move(platonic);
-    for (uint32_t i = 0; i < source.solids.size(); ++i)
-        if (std::optional<ConvexSolid> mesh = convex_mesh(source, i, normalization, contacts))
-            convex.push_back(std::move(*mesh));
-    std::sort(convex.begin(), convex.end(),
-              [](const ConvexSolid& a, const ConvexSolid& b) { return a.solid < b.solid; });
+    tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+        if (!source.solids[i].platonic) by_planes[i] = convex_mesh(source, i, normalization, contacts);
+    });
+    for (ConvexSolid& solid : platonic) by_planes[solid.solid] = std::move(solid);
+    for (std::optional<ConvexSolid>& solid : by_planes)
+        if (solid) convex.push_back(std::move(*solid));
     for (ConvexSolid& solid : convex) bind_slabs(solid);
 }
 

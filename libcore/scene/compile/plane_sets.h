@@ -1,7 +1,6 @@
 // Sets of faces that touch in one plane, joined pair by pair (docs/rules.md, 11, A5). Private to libcore/scene.
 #pragma once
 
-#include <map>
 #include <unordered_map>
 #include <vector>
 
@@ -47,7 +46,7 @@ class PlaneSets {
     const ContactRange& range_;
     const double exact_;
     UnionFind roots_;
-    std::map<uint32_t, Set> sets_;  // by root; of faces that are in pairs
+    std::unordered_map<uint32_t, Set> sets_;  // by root; of faces that are in pairs
 };
 
 }  // namespace cistula

@@ -119,7 +119,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
             throw scene_error(scene, object.place,
                               "the mesh brings no material of its own (" + mesh.file + "); name one with \"material\"");
         }
-        add_mesh_solids(source, std::move(solid), pieces);
+        add_mesh_solids(source, std::move(solid), std::move(pieces));
     }
 }
 
@@ -198,8 +198,8 @@ SceneSource gathered_scene(const SceneDescription& description) {
             solid.mesh.uvs = triangles.uvs;
             solid.mesh.rounding = coordinate_rounding(triangles.vertices);
             solid.keep_triangles = triangles.keep_triangles;
-            const MeshPieces pieces = find_pieces(solid.mesh);
-            add_mesh_solids(source, std::move(solid), pieces);
+            MeshPieces pieces = find_pieces(solid.mesh);
+            add_mesh_solids(source, std::move(solid), std::move(pieces));
             continue;
         }
         source.solids.push_back(std::move(solid));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/base/error.h"
+#include "scene/compile/mesh_edges.h"
 #include "scene/description/description.h"
 #include "scene/description/mesh_source.h"
 
@@ -18,6 +19,7 @@ struct SourceSolid {
     const SolidObject* platonic = nullptr;  // null: the solid is `mesh`
     /// The triangles that are rendered, in file order; those of a closed mesh counter-clockwise seen from outside.
     MeshSource mesh;
+    MeshEdges edges;              // of the mesh, if they were found when it was found to be closed; else none
     bool closed = true;           // the solid has an inside; if it is a mesh, its triangles surround a volume
     double thickness = 0;         // of a closed mesh, in scene units: the least volume / area of its bodies
     uint32_t body = 0;            // of several solids that one mesh makes, from 0; they share its name

@@ -23,7 +23,7 @@ struct Written {
 };
 
 Written written(double number) {
-    char text[40];
+    char text[40] = {};  // atoi reads on to a zero
     const auto end = std::to_chars(text, text + sizeof(text), std::abs(number), std::chars_format::scientific).ptr;
     const std::string_view all(text, size_t(end - text));
     const size_t e = all.find('e');

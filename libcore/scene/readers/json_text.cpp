@@ -16,6 +16,8 @@ namespace {
 
 constexpr size_t most_levels = 64;          // of arrays and objects in one another
 constexpr size_t most_entries = 4'000'000;  // keys, strings, arrays and objects, which take more memory than text
+constexpr size_t fewest_places = 4;         // of an array that is not empty; as a point has; of an object twice that
+constexpr size_t most_compared = 16;        // keys of an object that are compared each with each
 constexpr size_t levels_of_a_scene = 6;     // the scene, "objects", an object, "triangles", "vertices", a point
 
 /// nlohmann's message without its prefix, and with the quoted last token shortened to its end.
@@ -63,8 +65,10 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     }
     bool key(string_t& name) override {
         auto& members = open_.back()->get_ref<Json::object_t&>();
-        members.emplace_back(name, Json());
-        if (!names_.back().insert(name).second) fail("duplicate key; give it once");
+        if (members.size() == members.capacity()) enlarge(members);
+        const bool is_new = is_new_key(members, name);
+        members.emplace_back(std::move(name), Json());
+        if (!is_new) fail("duplicate key; give it once");
         return count();
     }
     bool end_object() override {
@@ -77,7 +81,8 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
         return count();
     }
     bool end_array() override {
-        open_.back()->get_ref<Json::array_t&>().shrink_to_fit();
+        auto& elements = open_.back()->get_ref<Json::array_t&>();
+        if (elements.size() > fewest_places) elements.shrink_to_fit();
         open_.pop_back();
         return true;
     }
@@ -105,12 +110,31 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
                             most_entries / 1'000'000));
         return true;
     }
+    /// Makes room for more members. The vector itself would copy them all, with everything in them: their names are
+    /// const, so that they cannot be moved.
+    static void enlarge(Json::object_t& members) {
+        Json::object_t larger;
+        larger.reserve(std::max(2 * members.size(), 2 * fewest_places));
+        for (auto& [name, value] : members) larger.emplace_back(name, std::move(value));
+        members.swap(larger);
+    }
+    /// Adds a key to those of the innermost object, which a set holds only where they are many.
+    bool is_new_key(const Json::object_t& members, const std::string& name) {
+        std::unordered_set<std::string>& names = names_.back();
+        if (members.size() < most_compared)
+            return std::none_of(members.begin(), members.end(), [&](const auto& m) { return m.first == name; });
+        if (names.empty())
+            for (const auto& member : members) names.insert(member.first);
+        return names.insert(name).second;
+    }
     Json& slot(Json value) {
         if (open_.empty()) return root_ = std::move(value);
         Json& parent = *open_.back();
         if (parent.is_array()) {
-            parent.push_back(std::move(value));
-            return parent.back();
+            auto& elements = parent.get_ref<Json::array_t&>();
+            if (elements.empty()) elements.reserve(fewest_places);
+            elements.push_back(std::move(value));
+            return elements.back();
         }
         return parent.get_ref<Json::object_t&>().back().second = std::move(value);
     }

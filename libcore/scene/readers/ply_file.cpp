@@ -186,9 +186,11 @@ class PlyReader {
         value_at_ = at_;
         if (bytes_.size() - at_ < type.size)
             fail("the file ends in element " + quoted(element_->name) + ": it is cut short");
-        char bytes[8];
-        for (size_t i = 0; i < type.size; ++i) bytes[i] = bytes_[at_ + (big_endian_ ? type.size - 1 - i : i)];
+        const char* const from = bytes_.data() + at_;
         at_ += type.size;
+        if (!big_endian_) return type.load(from);
+        char bytes[8];
+        for (size_t i = 0; i < type.size; ++i) bytes[i] = from[type.size - 1 - i];
         return type.load(bytes);
     }
 

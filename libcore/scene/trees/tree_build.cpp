@@ -143,9 +143,20 @@ RTCBuildPrimitive padded_primitive(const Box& box, double pad, uint32_t number) 
     return p;
 }
 
+QueryBox::QueryBox(const Box& box) {
+    for (int axis = 0; axis < 3; ++axis)
+        low[axis] = rounded_up(box.low[axis]), high[axis] = rounded_down(box.high[axis]);
+}
+
 Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives) {
     Groups groups;
     if (primitives.empty()) return groups;
+    if (primitives.size() <= group_size) {  // the builder makes one leaf of so few, in ten times the time
+        for (const RTCBuildPrimitive& p : primitives) groups.order.push_back(p.primID);
+        std::sort(groups.order.begin(), groups.order.end());
+        groups.first = {0, static_cast<uint32_t>(primitives.size())};
+        return groups;
+    }
     GroupLeaves leaves{primitives.data(), std::vector<uint64_t>(primitives.size()), {}};
     const RTCDevice device = builder_device();
     const BvhPointer bvh(rtcNewBVH(device));

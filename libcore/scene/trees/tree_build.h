@@ -29,10 +29,18 @@ struct Tree {
 /// quick; 1: the builder's best without splitting primitives. Reorders `primitives`.
 Tree build_tree(std::vector<RTCBuildPrimitive>& primitives, int quality);
 
+/// A box that meets the same boxes of floats as one of doubles does.
+struct QueryBox {
+    float low[3], high[3];
+
+    explicit QueryBox(const Box& box);
+};
+
 /// Whether found(item) holds for an item of a leaf whose box overlaps `box`; asks no further once it does.
 template <class Found>
 bool any_in_box(const Tree& tree, const Box& box, const Found& found) {
     if (tree.nodes.empty()) return false;
+    const QueryBox query(box);
     int32_t stack[max_tree_depth + 1] = {0};
     int size = 1;
     while (size > 0) {
@@ -40,7 +48,8 @@ bool any_in_box(const Tree& tree, const Box& box, const Found& found) {
         for (int side = 0; side < 2; ++side) {
             bool apart = false;
             for (int axis = 0; axis < 3; ++axis)
-                apart |= node.low[side][axis] > box.high[axis] || node.high[side][axis] < box.low[axis];
+                apart |=
+                    bool(int(node.low[side][axis] > query.high[axis]) | int(node.high[side][axis] < query.low[axis]));
             if (apart) continue;
             const int32_t child = node.child[side];
             if (child >= 0) {
