@@ -166,9 +166,10 @@ Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
     return attributes;
 }
 
-// Every core compresses that has no rays to trace. A GPU renders much faster than frames are compressed, so several
-// frames are written at once, and a few cores share each: with one frame per core, cores would idle until as many
-// frames are rendered, and again while the last ones are written. At least two frames, so that one is encoded while the
+// Every core compresses that has no rays to trace: TBB's by zip, which go where there is work, and OpenEXR's threads by
+// others. A GPU renders much faster than frames are compressed, so several frames are written at once, and of OpenEXR's
+// threads a few share each: with one frame per core, cores would idle until as many frames are rendered, and again
+// while the last ones are written. At least two frames, so that one is encoded while the
 // other is compressed. The CPU backend writes one, with all cores: it has memory for no more than two films.
 WriterLimits writer_limits(const FilmOptions& options, size_t frames) {
     constexpr int few = 4;  // a frame queues twice as many blocks of lines, and others wait behind them

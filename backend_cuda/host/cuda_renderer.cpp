@@ -55,10 +55,10 @@ class CudaRenderer : public Renderer {
         if (begun_.empty() || !same(begun_.front().camera, camera) || begun_.front().settings != settings) {
             if (!begun_.empty())
                 drop();
-            else if (!expected_.empty() && same(expected_.front().camera, camera))
+            else if (is_announced_)
                 expected_.pop_front();
             FramePlan fresh = planned(camera, settings, others_follow);
-            if (!reserve(fresh)) fail_without_memory(fresh);
+            reserve(fresh);
             begin(std::move(fresh));
         }
         const FramePlan plan = begun_.front();
@@ -85,6 +85,7 @@ class CudaRenderer : public Renderer {
             times_.kernel = std::max(times_.kernel, worker->totals.kernel_seconds);
             times_.transfer = std::max(times_.transfer, worker->totals.transfer_seconds);
         }
+        is_announced_ = !begun_.empty() || !expected_.empty();
         return !progress.stop;
     }
 
@@ -169,9 +170,8 @@ class CudaRenderer : public Renderer {
         plan.parts = (plan.strips_per_device() + plan.part_strips - 1) / plan.part_strips;
     }
 
-    /// Allocates memory for a frame's parts on all devices, or for parts of half as many strips until it fits. False if
-    /// it does not.
-    bool reserve(FramePlan& plan) {
+    /// Allocates memory for a frame's parts on all devices, or for parts of half as many strips until it fits.
+    void reserve(FramePlan& plan) {
         const InStage stage(Stage::device);
         const size_t wanted = size_t(plan.part_strips) * plan.strip_pixels;
         const auto has_room = [&] {
@@ -182,23 +182,20 @@ class CudaRenderer : public Renderer {
             return all.load();
         };
         while (!has_room()) {
-            if (plan.part_strips == 1) return false;
-            divide(plan, (plan.part_strips + 1) / 2);
-        }
-        if (part_pixels(plan) == wanted) return true;
-        largest_part_ = part_pixels(plan);
-        notes_.push_back(
-            fmt::format("the GPU's memory is short: {} pixels at a time instead of {}", largest_part_, wanted));
-        return true;
-    }
-    static size_t part_pixels(const FramePlan& plan) { return size_t(plan.part_strips) * plan.strip_pixels; }
-
-    [[noreturn]] static void fail_without_memory(const FramePlan& plan) {
-        throw Error(ExitCode::device,
+            if (plan.part_strips == 1)
+                throw Error(
+                    ExitCode::device,
                     fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or --crop needs "
                                 "less, or free memory that other programs hold",
                                 plan.strip_pixels));
+            divide(plan, (plan.part_strips + 1) / 2);
+        }
+        if (part_pixels(plan) == wanted) return;
+        largest_part_ = part_pixels(plan);
+        notes_.push_back(
+            fmt::format("the GPU's memory is short: {} pixels at a time instead of {}", largest_part_, wanted));
     }
+    static size_t part_pixels(const FramePlan& plan) { return size_t(plan.part_strips) * plan.strip_pixels; }
 
     /// Starts the first part of a frame for which there is memory.
     void begin(FramePlan plan) {
@@ -215,8 +212,8 @@ class CudaRenderer : public Renderer {
     }
 
     /// Begins expected frames behind the last part of the one that runs, for as long as their devices have free slots.
-    /// A device that has work must need no other memory and no other kernel: a kernel's first launch waits for all that
-    /// runs, and writes into a slot.
+    /// They must need no other memory and no other kernel: a kernel's first launch waits for all that runs, and writes
+    /// into a slot.
     void begin_early() {
         const auto is_full = [](const auto& worker) { return worker->in_work() == DeviceWorker<Real>::slots; };
         while (!expected_.empty() && (begun_.empty() || begun_.back().parts == 1) &&
@@ -224,10 +221,8 @@ class CudaRenderer : public Renderer {
             FramePlan next = planned(expected_.front().camera, expected_.front().settings, true);
             const auto first = workers_.begin() + next.first_device;
             if (std::any_of(first, first + next.devices, is_full)) return;
-            const bool are_ready = std::all_of(workers_.begin(), workers_.end(), [&](const auto& worker) {
-                return worker->in_work() == 0 || worker->is_ready(part_pixels(next), next);
-            });
-            if (!are_ready || !reserve(next)) return;
+            const auto is_ready = [&](const auto& worker) { return worker->is_ready(part_pixels(next), next); };
+            if (!std::all_of(workers_.begin(), workers_.end(), is_ready)) return;
             begin(std::move(next));
             expected_.pop_front();
         }
@@ -259,6 +254,7 @@ class CudaRenderer : public Renderer {
         for (auto& worker : workers_) worker->wait();
         begun_.clear();
         expected_.clear();
+        is_announced_ = false;
     }
 
     std::shared_ptr<const CompiledScene<Real>> scene_;
@@ -269,6 +265,7 @@ class CudaRenderer : public Renderer {
     std::vector<std::unique_ptr<DeviceWorker<Real>>> workers_;
     std::deque<Request> expected_;  // announced and not begun
     std::deque<FramePlan> begun_;   // in the order in which they are to be rendered
+    bool is_announced_ = false;     // the next frame that is asked for is the first of these
     int next_device_ = 0;           // of frames that are not shared
     RenderTimes times_;
     std::vector<std::string> notes_;

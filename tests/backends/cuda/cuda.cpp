@@ -189,6 +189,29 @@ TYPED_TEST(Cuda, SeveralSharesOfOneFrameAreTheSame) {
         }
 }
 
+TYPED_TEST(Cuda, FramesOfAFilmAreTheSameWhicheverDeviceHasThem) {
+    CISTULA_NEEDS_GPU();
+    const SceneDescription scene = test::shipped_scene("seed");
+    const FrameSettings settings = golden::settings_for(scene);
+    std::vector<int> all;
+    for (const CudaDevice& device : list_cuda_devices())
+        if (device.obstacle.empty()) all.push_back(device.index);
+    for (const std::vector<int>& devices : std::vector<std::vector<int>>{{0}, {0, 0}, {0, 0, 0}, all})
+        for (const size_t limit : {size_t{0}, size_t{2} << 20}) {  // of one part, and of several
+            CudaOptions options;
+            options.devices = devices;
+            options.memory_limit = limit;
+            const auto renderer = this->gpu(scene, options);
+            constexpr int frames = 9;
+            for (int frame = 0, announced = 0; frame < frames; ++frame) {
+                while (announced < std::min(frame + int(renderer->frames_ahead()), frames - 1))
+                    renderer->expect(camera_at(scene.camera, ++announced), settings);
+                EXPECT_EQ(render(*renderer, scene, settings, frame), this->expected(scene, settings, frame))
+                    << "frame " << frame << ", " << devices.size() << " shares, limit " << limit;
+            }
+        }
+}
+
 TYPED_TEST(Cuda, WhatWasAnnouncedNeverShows) {
     CISTULA_NEEDS_GPU();
     const SceneDescription scene = test::shipped_scene("seed");
