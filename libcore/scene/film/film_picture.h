@@ -55,8 +55,8 @@ inline constexpr float largest_half = 65504;
 /// acesImageContainerFlag (set_container_flag).
 LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped = nullptr);
 
-/// The same, but that values are made as they are written, and counted in `clamped` each time. `film` and `clamped`
-/// must outlive them.
+/// All channels of a file as to_layers gives them, but that values are made as they are written, and counted in
+/// `clamped` each time. `film` and `clamped` must outlive them.
 LayeredPicture channels_of(const Film& film, const OutputChannels& channels, std::atomic<uint64_t>* clamped = nullptr);
 
 /// States that a file of this picture alone is a container of SMPTE ST 2065-4: R, G, B and A alone, in half, of

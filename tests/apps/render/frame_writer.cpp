@@ -136,7 +136,9 @@ TEST_F(Writers, TheFirstFailureEndsAllAndIsTheOneReported) {
     {
         FrameWriter writer({}, false, {4}, stop_, sink_);
         writer.put(frame(0, big));
-        writer.put(frame(1, big, "a.exr"));
+        FinishedFrame slow = frame(1, big, "a.exr");
+        slow.preview = path("a.png");  // is written first, and takes its time
+        writer.put(std::move(slow));
         writer.put(frame(2, small, "b.exr"));  // fails long before the one before it
         const std::string first = failure_of([&] { writer.finish(); });
         EXPECT_NE(first.find("b.exr"), std::string::npos) << first;

@@ -383,7 +383,12 @@ TEST(RenderOptions, OptionsOverrideTheScene) {
     EXPECT_EQ(own.supersample, 2);
     EXPECT_EQ(own.depth, 7);
     EXPECT_EQ(own.cutoff, 0.25);
-    EXPECT_EQ(own, frame_settings(scene));
+    EXPECT_EQ(own.parts, (KeptParts{false, false}));
+    FrameSettings of_scene = frame_settings(scene);
+    of_scene.parts = own.parts;
+    EXPECT_EQ(own, of_scene);
+    EXPECT_EQ(frame_settings(parse({"s", "--layers", "error"}), scene).parts, KeptParts());
+    EXPECT_EQ(frame_settings(parse({"s", "--layers", "Z"}), scene).parts, (KeptParts{false, true}));
     const FrameSettings given = frame_settings(
         parse({"s", "--res", "20x10", "--crop", "5x10+15+0", "--supersample", "1", "--depth", "1", "--cutoff", "0"}),
         scene);
