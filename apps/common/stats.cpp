@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "apps/common/run_context.h"
 #include "scene/base/stages.h"
@@ -24,15 +23,6 @@ uint64_t peak_memory() {
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
-}
-
-/// An entry of the benchmarks.
-Json timed(const std::string& name, double seconds) {
-    return {{"name", name},
-            {"run_type", "iteration"},
-            {"iterations", 1},
-            {"real_time", seconds * 1e3},
-            {"time_unit", "ms"}};
 }
 
 Json ledger(const LedgerTotals& totals) {
@@ -54,8 +44,8 @@ Json target_entry(const TargetReport& target) {
 }
 
 Json frame_entry(const FrameStats& frame, const FrameSettings& settings, bool has_device) {
-    Json entry = timed(fmt::format("frame/{}", frame.frame), frame.render_seconds);
-    entry["frame"] = frame.frame;
+    Json entry = {{"name", fmt::format("frame/{}", frame.frame)}, {"run_type", "iteration"}, {"iterations", 1},
+                  {"real_time", frame.render_seconds * 1e3},      {"time_unit", "ms"},       {"frame", frame.frame}};
     entry["file"] = frame.file;
     entry["film_hash"] = frame.hash;
     entry["pixels"] = static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
@@ -145,18 +135,14 @@ StatsFile::StatsFile(const std::string& path, const FrameSettings& settings, boo
 }
 
 void StatsFile::add(const FrameStats& frame) {
-    add_entry(text_of(frame_entry(frame, settings_, has_device_)));
-}
-
-void StatsFile::add_entry(const std::string& json) {
-    file_.write((is_empty_ ? "\n" : ",\n") + json);
+    file_.write((is_empty_ ? "\n" : ",\n") + text_of(frame_entry(frame, settings_, has_device_)));
     is_empty_ = false;
 }
 
 void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
     const StageSeconds seconds = stage_seconds();
-    for (size_t i = 0; i < seconds.size(); ++i)
-        add_entry(text_of(timed(std::string("stage/") + stage_names[i], seconds[i])));
+    Json stages;
+    for (size_t i = 0; i < seconds.size(); ++i) stages[stage_names[i]] = seconds[i] * 1e3;
     const PixelRect& crop = settings_.crop;
     Json context = run_context("render");
     context.update({
@@ -176,7 +162,7 @@ void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
         {"effects", names_of_effects(stats.effects)},
         {"effects_mask", stats.effects},
         {"scene_bytes", stats.scene_bytes},
-        {"stages_ms", 1e3 * std::accumulate(seconds.begin(), seconds.end(), 0.0)},
+        {"stages_ms", stages},
         {"peak_rss_bytes", peak_memory()},
         {"frames_resumed", stats.resumed.part(0, stats.resumed.size())},
     });

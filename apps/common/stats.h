@@ -1,4 +1,4 @@
-// The JSON written by --stats, in Google Benchmark's format: one entry per phase and frame, and a context.
+// The JSON written by --stats, in Google Benchmark's format: one entry per frame, and a context with the stages.
 #pragma once
 
 #include <algorithm>
@@ -94,12 +94,11 @@ class StatsFile {
     /// Adds the entry of a frame to the benchmarks.
     void add(const FrameStats& frame);
 
-    /// Adds the stages until now and the context, and puts the file in its place. Throws Error (file), as all of these.
+    /// Adds the context, with the stages until now, and puts the file in its place. Throws Error (file), as all of
+    /// these.
     void finish(const RunStats& stats, const FilmOptions& options);
 
   private:
-    void add_entry(const std::string& json);
-
     AtomicFile file_;
     const FrameSettings settings_;
     const bool has_device_;

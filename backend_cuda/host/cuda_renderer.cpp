@@ -30,8 +30,11 @@ class CudaRenderer : public Renderer {
   public:
     CudaRenderer(std::shared_ptr<const CompiledScene<Real>> scene, const CudaOptions& options)
         : scene_(std::move(scene)), options_(options), view_(scene_->view()) {
-        const std::vector<CudaDevice> known = list_cuda_devices();
-        for (const int index : options_.devices) require(known, index);
+        {
+            const InStage stage(Stage::device);
+            const std::vector<CudaDevice> known = list_cuda_devices();
+            for (const int index : options_.devices) require(known, index);
+        }
         take_path(options_.always_tree ? DevicePath::tree : path_for(view_));
     }
 

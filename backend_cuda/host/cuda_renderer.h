@@ -31,7 +31,7 @@ void begin_cuda_devices(const std::vector<int>& devices);
 std::string cuda_driver_version();
 
 struct CudaOptions {
-    std::vector<int> devices = {0};  // CudaDevice::index; all share every frame, by interleaved tiles
+    std::vector<int> devices = {0};  // CudaDevice::index; they share frames or take turns
     // The following options never change the image.
     size_t memory_limit = 0;   // bytes of device memory for pixels; 0: all that is free
     bool always_tree = false;  // use a tree even where a plain loop is faster; for tests

@@ -461,7 +461,7 @@ TEST_F(RenderProgram, StatsAreJson) {
     EXPECT_FALSE(has("effects_required", "absorption"));
     std::map<std::string, nlohmann::json> entries;
     for (const auto& entry : stats.at("benchmarks")) entries[entry.at("name")] = entry;
-    for (const char* name : {"stage/read", "stage/compile", "stage/render", "frame/0", "frame/1", "frame/2"}) {
+    for (const char* name : {"frame/0", "frame/1", "frame/2"}) {
         ASSERT_EQ(entries.count(name), 1u) << name;
         EXPECT_GE(entries[name].at("real_time").get<double>(), 0);
         EXPECT_EQ(entries[name].at("time_unit"), "ms");
@@ -492,21 +492,17 @@ TEST_F(RenderProgram, StagesAddUpToTheWholeCommand) {
         expect_done({"s.json", "-q", "-o", "a.exr", "-f", "0", "--res", "480x360", "--supersample", "12", "--stats",
                      "s.stats.json"});
         const double all = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        std::map<std::string, double> stages;
+        const auto stages = nlohmann::json::parse(bytes_of(file("s.stats.json")))
+                                .at("context")
+                                .at("stages_ms")
+                                .get<std::map<std::string, double>>();
         double sum = 0;
-        const auto stats = nlohmann::json::parse(bytes_of(file("s.stats.json")));
-        for (const auto& entry : stats.at("benchmarks")) {
-            const std::string name = entry.at("name");
-            if (name.rfind("stage/", 0) != 0) continue;
-            stages[name] = entry.at("real_time").get<double>() / 1e3;
-            sum += stages[name];
-        }
+        for (const auto& [name, milliseconds] : stages) sum += milliseconds / 1e3;
         EXPECT_EQ(stages.size(), stage_names.size());
         EXPECT_LE(sum, all);
-        EXPECT_NEAR(stats.at("context").at("stages_ms").get<double>(), 1e3 * sum, 1e-6 * sum);
-        EXPECT_GT(stages["stage/start"], 0);
-        EXPECT_GT(stages["stage/render"], 0.5 * sum);
-        named = std::max(named, (sum - stages["stage/other"]) / all);
+        EXPECT_GT(stages.at("start"), 0);
+        EXPECT_GT(stages.at("render"), 500 * sum);
+        named = std::max(named, (sum - stages.at("other") / 1e3) / all);
     }
     EXPECT_GE(named, 0.95);
 }
