@@ -49,8 +49,7 @@ template <class Work>
 void on_threads(const RenderOptions& options, const Work& work) {
     const int threads = threads_of(options);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-    // Above the writers' tasks: a frame that renders keeps devices busy, one that is written keeps nobody.
-    tbb::task_arena arena(threads, 1, tbb::task_arena::priority::high);
+    tbb::task_arena arena(threads);
     arena.execute(work);
 }
 
