@@ -187,8 +187,10 @@ void FrameWriter::write(Task& task) {
             if (raw) write_raw_picture(path, color);
         });
     }
-    if (measure_) stats.hash = hash.get();
-    if (raw) return;
+    if (raw) {
+        if (measure_) stats.hash = hash.get();
+        return;
+    }
     layers.attributes.merge(std::move(frame.attributes));
     if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
     stats.write_seconds += seconds_of([&] {
@@ -196,6 +198,7 @@ void FrameWriter::write(Task& task) {
             write_exr(file.path, file.parts);
     });
     stats.clamped = clamped;
+    if (measure_) stats.hash = hash.get();
 }
 
 }  // namespace cistula
