@@ -7,7 +7,7 @@ include(CMakePackageConfigHelpers)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS libcore/cistula.h)
 file(STRINGS libcore/cistula.h _headers REGEX "^#include \"")
 list(TRANSFORM _headers REPLACE "^#include \"([^\"]+)\".*" "\\1")
-list(APPEND _headers cistula.h scene/base/pixel_rect.h scene/base/shown_text.h scene/compile/effect_reason.h scene/compile/hull.h scene/description/coordinate_rounding.h scene/description/mesh_source.h
+list(APPEND _headers cistula.h scene/base/pixel_rect.h scene/base/shown_text.h scene/compile/effect_reason.h scene/compile/hull.h scene/compile/mesh_edges.h scene/description/coordinate_rounding.h scene/description/mesh_source.h
     scene/film/film_layers.h
     scene/film/film_memory.h
     scene/film/film_pixels.h

@@ -159,12 +159,11 @@ CISTULA_INLINE IndexOf<Lanes<T, n>> repeated(const Lanes<T, n>& i, uint32_t size
     return rests.all();
 }
 /// Texels in lanes.
-template <class T, int n, class Scene>
-CISTULA_INLINE Vec3<Lanes<T, n>> texel_at(const Scene& scene, const Texture& texture, const Lanes<T, n>& i,
+template <class T, int n>
+CISTULA_INLINE Vec3<Lanes<T, n>> texel_at(const Vec3<float>* texels, const Texture& texture, const Lanes<T, n>& i,
                                           const Lanes<T, n>& j) {
     const auto row = repeated(j, texture.height), column = repeated(i, texture.width);
-    return vectors_at<3>(&scene.texels.data[texture.first_texel].x,
-                         row * IndexOf<Lanes<T, n>>(int(texture.width)) + column);
+    return vectors_at<3>(&texels->x, row * IndexOf<Lanes<T, n>>(int(texture.width)) + column);
 }
 
 /// Finds the surfaces of hits in the lanes of `who`; others hold arbitrary numbers, but the first material.

@@ -54,19 +54,19 @@ CISTULA_INLINE Vec2<Real> first_texel(const Texture& texture, const Vec2<Real>& 
     return {floor_of(place.x - offset), floor_of(place.y - offset)};
 }
 
-/// The texel in column i and row j, integers. (In lanes: lane_surface.h.)
-template <class Real, class Scene>
-CISTULA_INLINE Vec3<Real> texel_at(const Scene& scene, const Texture& texture, Real i, Real j) {
-    const Vec3<float>* texels = scene.texels.data + texture.first_texel;
+/// The texel in column i and row j, integers, of a texture's texels. (In lanes: lane_surface.h.)
+template <class Real>
+CISTULA_INLINE Vec3<Real> texel_at(const Vec3<float>* texels, const Texture& texture, Real i, Real j) {
     return Vec3<Real>(texels[repeated(j, texture.height) * texture.width + repeated(i, texture.width)]);
 }
 
 /// The color of a texture at uv, the object's coordinates.
 template <class Real, class Scene>
 CISTULA_HD inline Vec3<Real> texture_at(const Scene& scene, const Texture& texture, const Vec2<Real>& uv) {
+    const Vec3<float>* texels = scene.texels.data + texture.first_texel;  // a reference to the scene would slow kernels
     const Vec2<Real> place = in_texels(texture, uv);
     const Real x = place.x, y = place.y;
-    const auto texel = [&](Real i, Real j) { return texel_at(scene, texture, i, j); };
+    const auto texel = [&](Real i, Real j) { return texel_at(texels, texture, i, j); };
     if (texture.filter == TextureFilter::nearest) return texel(floor_of(x), floor_of(y));
     return bilinear(x, y, texel);
 }
