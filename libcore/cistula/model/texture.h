@@ -63,7 +63,7 @@ CISTULA_INLINE Vec3<Real> texel_at(const Vec3<float>* texels, const Texture& tex
 /// The color of a texture at uv, the object's coordinates.
 template <class Real, class Scene>
 CISTULA_HD inline Vec3<Real> texture_at(const Scene& scene, const Texture& texture, const Vec2<Real>& uv) {
-    const Vec3<float>* texels = scene.texels.data + texture.first_texel;  // a reference to the scene would slow kernels
+    const Vec3<float>* texels = scene.texels.data + texture.first_texel;
     const Vec2<Real> place = in_texels(texture, uv);
     const Real x = place.x, y = place.y;
     const auto texel = [&](Real i, Real j) { return texel_at(texels, texture, i, j); };
