@@ -187,16 +187,14 @@ void FrameWriter::write(Task& task) {
             if (raw) write_raw_picture(path, color);
         });
     }
-    if (raw) {
-        if (measure_) stats.hash = hash.get();
-        return;
+    if (!raw) {
+        layers.attributes.merge(std::move(frame.attributes));
+        if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
+        stats.write_seconds += seconds_of([&] {
+            for (const FrameFile& file : frame_files(std::move(layers), frame.split, frame.image, stats.frame))
+                write_exr(file.path, file.parts);
+        });
     }
-    layers.attributes.merge(std::move(frame.attributes));
-    if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
-    stats.write_seconds += seconds_of([&] {
-        for (const FrameFile& file : frame_files(std::move(layers), frame.split, frame.image, stats.frame))
-            write_exr(file.path, file.parts);
-    });
     stats.clamped = clamped;
     if (measure_) stats.hash = hash.get();
 }

@@ -202,10 +202,7 @@ class Lines {
             const LayeredPicture::Channel& channel = picture_.channels[i];
             std::array<float, block> values;
             float* to = channel.half ? values.data() : reinterpret_cast<float*>(of_channels_[i].data()) + place;
-            if (channel.write)
-                channel.write(first, last, to);
-            else
-                std::copy_n(channel.values.data() + first, last - first, to);
+            channel.put(first, last, to);
             if (channel.half) std::copy_n(to, last - first, reinterpret_cast<half*>(of_channels_[i].data()) + place);
         }
     }

@@ -72,17 +72,13 @@ class ChunkPacker {
 
     uint16_t* put_line(const LayeredPicture::Channel& channel, const LayeredPicture& picture, int y, uint16_t* to) {
         const auto width = static_cast<size_t>(picture.width), first = static_cast<size_t>(y) * width;
-        const float* values = channel.values.data() + first;
-        if (channel.write) {
-            line_.resize(width);
-            channel.write(first, first + width, line_.data());
-            values = line_.data();
-        }
+        line_.resize(width);
+        channel.put(first, first + width, line_.data());
         if (channel.half) {
-            for (size_t x = 0; x < width; ++x) to[x] = half(values[x]).bits();
+            for (size_t x = 0; x < width; ++x) to[x] = half(line_[x]).bits();
             return to + width;
         }
-        std::memcpy(to, values, width * sizeof(float));
+        std::memcpy(to, line_.data(), width * sizeof(float));
         return to + 2 * width;
     }
 

@@ -1,6 +1,7 @@
 // Pictures in memory, as the readers and writers of files exchange them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -45,6 +46,14 @@ struct LayeredPicture {
         std::vector<float> values;
         /// Writes the values [first, last) to `to`, in any thread, where `values` is empty.
         std::function<void(size_t first, size_t last, float* to)> write = {};
+
+        /// Puts the values [first, last) there, whether they are in memory or made now.
+        void put(size_t first, size_t last, float* to) const {
+            if (write)
+                write(first, last, to);
+            else
+                std::copy_n(values.data() + first, last - first, to);
+        }
     };
     std::vector<Channel> channels;
     Compression compression = Compression::zip;
