@@ -47,10 +47,10 @@ FrameCounts counts_of(const DeviceTally& tally, int slot) {
     const Total* const from = tally.totals[slot];
     for (int c = 0; c < 3; ++c) {
         counts.totals.radiance[c] = from[c];
-        counts.totals.pruned[c] = from[3 + c];
-        counts.totals.cut[c] = from[6 + c];
+        counts.totals.pruned[c] = from[7 + c];
+        counts.totals.cut[c] = from[3 + c];
     }
-    counts.totals.units = from[9];
+    counts.totals.units = from[6];
     return counts;
 }
 

@@ -67,13 +67,16 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     }
     if (is_inside) end_pixel(record, own);
     __syncthreads();
+    static_assert(BlockPlan::shared_shape.pixels() == warp_threads);
     if (shared_tile) {
         if (warp == 0)
             for (int other = 1; other < warps; ++other) record.add(block_storage.records[other * warp_threads + lane]);
         __syncthreads();
     }
     if (warp == 0) add_block_to_tally(*job.tally, block_storage.work);
-    add_totals_to_tally<warps>(*job.tally, block_storage.records, shape.pixels());
+    if (!shared_tile || warp == warps - 1)
+        add_totals_to_tally<E::has(keeps_budget)>(*job.tally,
+                                                  block_storage.records + (shared_tile ? 0 : threadIdx.x - lane));
     const size_t first = size_t(blockIdx.x) * size_t(shape.pixels());
     if (shared_tile)
         write_records<BlockPlan::shared_shape.pixels(), threads>(block_storage.records, job.records, first);

@@ -103,31 +103,34 @@ __device__ void add_block_to_tally(DeviceTally& tally, const PixelWork (&work)[t
     add_to_tally(tally, rays, flags);
 }
 
-/// Number i of those whose totals are kept, in the order of PixelTotals.
+/// Number i of those whose totals are kept, in the order of DeviceTally::totals.
 __device__ inline unsigned long long counted_number(const PixelRecord& record, int i) {
-    if (i == DeviceTally::totals_kept - 1) return record.rays;  // units_lost without a target error
-    const int64_t* const of = i < 3 ? record.radiance : i < 6 ? record.pruned : record.cut;
-    return (unsigned long long)of[i % 3];
+    if (i == 6) return record.rays;  // units_lost without a target error
+    const int64_t* const of = i < 3 ? record.radiance : i < 6 ? record.cut : record.pruned;
+    return (unsigned long long)of[i < 6 ? i % 3 : i - 7];
 }
 
-/// Adds the numbers of a block's first records to the totals; each warp some of them.
-template <int warps>
-__device__ void add_totals_to_tally(DeviceTally& tally, const PixelRecord* records, int count) {
+/// Adds the numbers of as many records as a warp has lanes to the totals. Four lanes add up each number: a block ends
+/// no sooner than this, so it is to take few steps.
+template <bool has_budget>
+__device__ void add_totals_to_tally(DeviceTally& tally, const PixelRecord* records) {
+    constexpr int kept = has_budget ? DeviceTally::totals_kept : DeviceTally::without_budget;
+    constexpr int lanes = 4, together = warp_threads / lanes;
     const int lane = threadIdx.x % warp_threads;
     Total* to = tally.totals[blockIdx.x % DeviceTally::slots];
 #pragma unroll 1
-    for (int i = threadIdx.x / warp_threads; i < DeviceTally::totals_kept; i += warps) {
+    for (int i = lane / lanes; i < (kept + together - 1) / together * together; i += together) {
         Total total;
-        for (int record = lane; record < count; record += warp_threads) total.add(counted_number(records[record], i));
-        if (!__any_sync(0xffffffffu, total.most != 0)) continue;
-        for (int step = warp_threads / 2; step > 0; step /= 2) {
+        for (int record = lane % lanes; i < kept && record < warp_threads; record += lanes)
+            total.add(counted_number(records[record], i));
+        for (int step = lanes / 2; step > 0; step /= 2) {
             Total other;
             other.low = __shfl_xor_sync(0xffffffffu, total.low, step);
             other.high = __shfl_xor_sync(0xffffffffu, total.high, step);
             other.most = __shfl_xor_sync(0xffffffffu, total.most, step);
             total.add(other);
         }
-        if (lane != 0) continue;
+        if (lane % lanes != 0 || total.most == 0) continue;
         atomicAdd(&to[i].low, total.low);
         if (total.high != 0) atomicAdd(&to[i].high, total.high);
         atomicMax(&to[i].most, total.most);
