@@ -90,8 +90,7 @@ struct Rounded {
         for_each_rounding(stage, [&](Writing writing, uint64_t i) {
             writing.rounds_rest = rounds_rest;
             const SceneDescription scene = scene_of(build, i % 2 == 1);
-            expect_same_picture(stage, tally, written(scene, writing),
-                                contact::film_of(stage, written(scene, with_all_digits(writing))), i);
+            expect_same_picture(stage, tally, written(scene, writing), written(scene, with_all_digits(writing)), i);
         });
     }
 };
@@ -126,8 +125,7 @@ struct ContactKey {
             const SceneDescription scene = scene_of(i % 2 == 1 ? stack : on_floor, i % 4 >= 2);
             SceneDescription joined = written(scene, writing);
             joined.contact = 4e-4;
-            expect_same_picture(stage, tally, joined, contact::film_of(stage, written(scene, with_all_digits(writing))),
-                                i);
+            expect_same_picture(stage, tally, joined, written(scene, with_all_digits(writing)), i);
         }
     }
 };
@@ -140,8 +138,7 @@ struct SolidsOnFloor {
 
     static void render(Stage& stage, Tally& tally) {
         for_each_rounding(stage, [&](const Writing& writing, uint64_t i) {
-            expect_same_picture(stage, tally, scene_of_solids(writing),
-                                contact::film_of(stage, scene_of_solids(with_all_digits(writing))), i);
+            expect_same_picture(stage, tally, scene_of_solids(writing), scene_of_solids(with_all_digits(writing)), i);
         });
     }
 
@@ -187,7 +184,7 @@ struct FloatOnFloor {
             for (size_t k = 1; k < given.objects.size(); ++k)
                 for (dvec3& vertex : std::get<TrianglesObject>(given.objects[k].shape).vertices)
                     vertex = dvec3(glm::vec3(vertex));
-            expect_same_picture(stage, tally, given, contact::film_of(stage, expected), number++);
+            expect_same_picture(stage, tally, given, expected, number++);
         }
     }
 };

@@ -26,7 +26,7 @@ struct Apart {
         for_each_rounding(stage, [&](const Writing& writing, uint64_t i) {
             const double size = is_small ? 0.05 : 1, share = i % 4 < 2 ? 1e-3 : 1e-2;
             const auto film = [&](double gap) { return written(with_gap(size, gap, i % 2 == 1), writing); };
-            expect_same_picture(stage, tally, film(share), contact::film_of(stage, film(share * 1.0625)), i);
+            expect_same_picture(stage, tally, film(share), film(share * 1.0625), i);
         });
     }
 };
@@ -46,7 +46,7 @@ struct Mistaken {
 
     static void render(Stage& stage, Tally& tally) {
         expect_same_picture(stage, tally, with_gap(1, touches ? 1e-3 : 0, false),
-                            contact::film_of(stage, with_gap(1, touches ? 0 : 1e-3, false)), 0);
+                            with_gap(1, touches ? 0 : 1e-3, false), 0);
     }
 };
 struct BrokenContact : Mistaken<true> {

@@ -140,6 +140,10 @@ inline void expect_same_picture(const Stage& stage, Tally& tally, const SceneDes
                                 uint64_t number) {
     contact::expect_one_of(tally, contact::film_of(stage, scene), {&expected}, place_of_scene(number));
 }
+inline void expect_same_picture(const Stage& stage, Tally& tally, const SceneDescription& scene,
+                                const SceneDescription& expected, uint64_t number) {
+    expect_same_picture(stage, tally, scene, contact::film_of(stage, expected), number);
+}
 
 /// The mean radiance of a pixel, with all digits of its sums.
 inline double radiance(const Film& film, size_t pixel, int channel = 0) {

@@ -182,8 +182,7 @@ struct Later {
             const bool triangles = i % 2 == 1;
             for (const bool swapped : {false, true}) {
                 const auto [apart, both] = pair(from, to, swapped, triangles);
-                expect_same_picture(stage, tally, written(both, writing),
-                                    contact::film_of(stage, written(apart, writing)), 2 * i + swapped);
+                expect_same_picture(stage, tally, written(both, writing), written(apart, writing), 2 * i + swapped);
             }
         }
     }

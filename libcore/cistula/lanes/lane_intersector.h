@@ -239,19 +239,13 @@ struct LaneIntersector {
     CISTULA_INLINE void closest_in_solid(const IndexedSolid<ScalarOf<Real>>& next, const Ray<Real, Media>& ray,
                                          const Index& left, const Mask& inside, const Mask& outside,
                                          Hit<Real>& best) const {
-        if (!any(inside)) {
-            const auto line =
-                convex_lanes::cross<Real, convex_lanes::entering>(scene, next.solid, ray.origin, ray.direction, left);
-            const Mask meets = outside & is_met(line, scene.extent);
-            if (any(meets))
-                take_entry<Real>(
-                    meets, next.index, line.enter, [&] { return line.enter_face; }, ray, best);
-            return;
-        }
-        const auto line = convex_lanes::cross<Real, convex_lanes::entering | convex_lanes::inside>(
-            scene, next.solid, ray.origin, ray.direction, left);
-        take_exit<Real>(
-            inside, next.index, line.leave, [&] { return line.leave_face; }, best);
+        const auto line = any(inside) ? convex_lanes::cross<Real, convex_lanes::entering | convex_lanes::inside>(
+                                            scene, next.solid, ray.origin, ray.direction, left)
+                                      : convex_lanes::cross<Real, convex_lanes::entering>(scene, next.solid, ray.origin,
+                                                                                          ray.direction, left);
+        if (any(inside))
+            take_exit<Real>(
+                inside, next.index, line.leave, [&] { return line.leave_face; }, best);
         const Mask meets = outside & is_met(line, scene.extent);
         if (any(meets))
             take_entry<Real>(
