@@ -13,8 +13,8 @@ namespace cistula {
 /// Ray counts, totals and error flags, added up by many blocks; several slots reduce contention between them.
 struct DeviceTally {
     static constexpr int slots = 64;
-    static constexpr int totals_kept = 10, without_budget = 7;  // the first of them, where nothing is pruned
-    unsigned long long rays[slots][4];                          // in the order of RayCounts
+    static constexpr int totals_kept = 10, unless_pruned = 7;  // the first of them, where a block prunes nothing
+    unsigned long long rays[slots][4];                         // in the order of RayCounts
     Total totals[slots][totals_kept];  // radiance, cut, units, pruned; not of frames with a target error
     unsigned int flags;
 };

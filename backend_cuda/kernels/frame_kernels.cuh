@@ -75,8 +75,7 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     }
     if (warp == 0) add_block_to_tally(*job.tally, block_storage.work);
     if (!shared_tile || warp == warps - 1)
-        add_totals_to_tally<E::has(keeps_budget)>(*job.tally,
-                                                  block_storage.records + (shared_tile ? 0 : threadIdx.x - lane));
+        add_totals_to_tally(*job.tally, block_storage.records + (shared_tile ? 0 : threadIdx.x - lane));
     const size_t first = size_t(blockIdx.x) * size_t(shape.pixels());
     if (shared_tile)
         write_records<BlockPlan::shared_shape.pixels(), threads>(block_storage.records, job.records, first);

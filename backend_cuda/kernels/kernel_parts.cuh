@@ -112,11 +112,12 @@ __device__ inline unsigned long long counted_number(const PixelRecord& record, i
 
 /// Adds the numbers of as many records as a warp has lanes to the totals. Four lanes add up each number: a block ends
 /// no sooner than this, so it is to take few steps.
-template <bool has_budget>
-__device__ void add_totals_to_tally(DeviceTally& tally, const PixelRecord* records) {
-    constexpr int kept = has_budget ? DeviceTally::totals_kept : DeviceTally::without_budget;
+__device__ inline void add_totals_to_tally(DeviceTally& tally, const PixelRecord* records) {
     constexpr int lanes = 4, together = warp_threads / lanes;
     const int lane = threadIdx.x % warp_threads;
+    const int64_t* const pruned = records[lane].pruned;
+    const int kept = __any_sync(0xffffffffu, (pruned[0] | pruned[1] | pruned[2]) != 0) ? DeviceTally::totals_kept
+                                                                                       : DeviceTally::unless_pruned;
     Total* to = tally.totals[blockIdx.x % DeviceTally::slots];
 #pragma unroll 1
     for (int i = lane / lanes; i < (kept + together - 1) / together * together; i += together) {
