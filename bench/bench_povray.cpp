@@ -1,12 +1,15 @@
-// Cistula against POV-Ray 3.7, on scenes/benchmark.json and on solids of glass: the time to trace them, and whether the
-// pictures agree. bench_povray [FOLDER]: scenes and pictures go there (out/bench).
+// Cistula against POV-Ray 3.7, on scenes/benchmark.json, solids of glass and a mesh between mirrors: the time to trace
+// them on 1, 2 and all threads, and whether the pictures agree. bench_povray [FOLDER]: scenes and pictures go there
+// (out/bench).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
+#include <thread>
 
 #include "povray_scene.h"
 #include "program.h"
@@ -17,7 +20,7 @@
 namespace cistula::bench {
 namespace {
 
-constexpr int width = 640, height = 480, threads = 2, repetitions = 5;
+constexpr int width = 640, height = 480, repetitions = 5;
 /// A difference that 8 bits do not show.
 constexpr float visible = 0.004f;
 
@@ -44,13 +47,13 @@ double povray_trace_seconds(const std::string& log) {
     return std::stod(log.substr(begin + 1));
 }
 
-double run_povray(const Work& work) {
+double run_povray(const Work& work, int threads) {
     return povray_trace_seconds(
         output_of(fmt::format("povray {} {} +FE +W{} +H{} +WT{} -A -D -V", quoted("+I" + work.povray_scene.string()),
                               quoted("+O" + work.povray_image.string()), width, height, threads)));
 }
 
-nlohmann::json run_cistula(const Work& work) {
+nlohmann::json run_cistula(const Work& work, int threads) {
     output_of(
         fmt::format("{} {} -o {} --res {}x{} --depth {} --cutoff 0 --supersample 1 --threads {} --stats {} "
                     "--progress none -q",
@@ -62,13 +65,13 @@ nlohmann::json run_cistula(const Work& work) {
     throw Error(ExitCode::failed, work.stats.string() + ": names no frame");
 }
 
-void time_povray(benchmark::State& state, const Work& work) {
-    for (auto _ : state) state.SetIterationTime(run_povray(work));
+void time_povray(benchmark::State& state, const Work& work, int threads) {
+    for (auto _ : state) state.SetIterationTime(run_povray(work, threads));
 }
 
-void time_cistula(benchmark::State& state, const Work& work) {
+void time_cistula(benchmark::State& state, const Work& work, int threads) {
     for (auto _ : state) {
-        const nlohmann::json frame = run_cistula(work);
+        const nlohmann::json frame = run_cistula(work, threads);
         state.SetIterationTime(frame.at("render_ms").get<double>() / 1e3);
         state.counters["rays"] = frame.at("rays").at("total").get<double>();
         state.counters["rays_per_second"] = frame.at("rays_per_second").get<double>();
@@ -82,10 +85,10 @@ const LayeredPicture::Channel& channel(const LayeredPicture& picture, std::strin
 }
 
 /// Per pixel the largest difference of its channels; POV-Ray writes half floats, which at 1 are 0.0005 apart.
-void compare_images(benchmark::State& state, const Work& work) {
+void compare_images(benchmark::State& state, const Work& work, int threads) {
     for (auto _ : state) {
-        run_povray(work);
-        run_cistula(work);
+        run_povray(work, threads);
+        run_cistula(work, threads);
         const LayeredPicture theirs = read_exr(work.povray_image.string()), ours = read_exr(work.image.string());
         if (theirs.width != width || theirs.height != height || ours.width != width || ours.height != height)
             throw Error(ExitCode::failed, "the pictures to compare differ in size");
@@ -139,23 +142,41 @@ std::filesystem::path write_glass_scene(const std::filesystem::path& folder) {
     return path;
 }
 
+/// A file of mesh.json's scene, without what POV-Ray lacks: colored highlights and our textures.
+std::filesystem::path write_mesh_scene(const std::filesystem::path& folder) {
+    nlohmann::json scene = nlohmann::json::parse(std::ifstream(scene_file("mesh.json")));
+    scene.erase("$schema");
+    scene["materials"]["copper"].erase("specular_color");
+    scene["textures"] = {{"marble", {{"checker", {0.8, 0.3}}, {"repeat", {4, 4}}}}};
+    scene["objects"][0]["mesh"] = std::filesystem::absolute(scene_file("knot.ply")).string();
+    const std::filesystem::path path = folder / "knot_between_mirrors.json";
+    std::ofstream file(path);
+    file << scene.dump(2);
+    if (!file.flush()) throw Error(ExitCode::file, path.string() + ": cannot be written");
+    return path;
+}
+
 void register_all(const std::vector<std::string>& arguments) {
     const std::filesystem::path folder = arguments.empty() ? "out/bench" : arguments[0];
     std::filesystem::create_directories(folder);
-    for (const Work& work :
-         {Work(scene_file("benchmark.json"), 16, folder), Work(write_glass_scene(folder), 24, folder)}) {
+    const int cores = int(std::thread::hardware_concurrency());
+    for (const Work& work : {Work(scene_file("benchmark.json"), 16, folder),
+                             Work(write_glass_scene(folder), 24, folder), Work(write_mesh_scene(folder), 12, folder)}) {
         const SceneDescription scene = read_scene(work.scene.string());
         std::ofstream file(work.povray_scene);
         file << povray_scene(scene, camera_at(scene.camera, 0), width, height, work.depth);
         if (!file.flush()) throw Error(ExitCode::file, work.povray_scene.string() + ": cannot be written");
-        const auto add = [&](const char* name, void (*run)(benchmark::State&, const Work&)) {
-            return benchmark::RegisterBenchmark((work.scene.filename().string() + "/" + name).c_str(), run, work)
+        const auto add = [&](std::string name, void (*run)(benchmark::State&, const Work&, int), int threads) {
+            name = work.scene.filename().string() + "/" + name;
+            return benchmark::RegisterBenchmark(name.c_str(), run, work, threads)
                 ->Iterations(1)
                 ->Unit(benchmark::kMillisecond);
         };
-        add("povray", time_povray)->UseManualTime();
-        add("cistula", time_cistula)->UseManualTime();
-        add("images", compare_images)->Repetitions(1);
+        for (const int threads : std::set{1, 2, cores}) {
+            add(fmt::format("povray/threads:{}", threads), time_povray, threads)->UseManualTime();
+            add(fmt::format("cistula/threads:{}", threads), time_cistula, threads)->UseManualTime();
+        }
+        add("images", compare_images, cores)->Repetitions(1);
     }
 }
 
