@@ -83,8 +83,7 @@ Prepared prepare(SceneSource source, const RenderOptions& options, std::future<C
     stats.devices = devices.names;
     stats.driver = devices.driver;
     enter_stage(Stage::tree);
-    return {make_renderer<Real>(options.backend, compiled, devices.options, options.intersection),
-            compiled->layer_names};
+    return {make_renderer<Real>(options.backend, compiled, devices.options), compiled->layer_names};
 }
 
 /// The names of the images and previews, and their frames.
@@ -297,7 +296,7 @@ template <class Real>
 std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const RenderOptions& options,
                                       const CudaOptions& cuda) {
     return make_renderer<Real>(options.backend, std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene)),
-                               cuda, options.intersection);
+                               cuda);
 }
 
 void measure_scene(RenderOptions options) {

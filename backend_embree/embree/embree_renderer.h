@@ -26,10 +26,4 @@ std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledSce
 template <class Real>
 std::unique_ptr<Renderer> make_constant_renderer(std::shared_ptr<const CompiledScene<Real>> scene);
 
-/// A renderer over Embree's own triangles, convex solids included. Its image differs: approximate at edges and where
-/// bodies touch, with hits in float whatever Real is. For previews and comparisons (native_intersector.h).
-template <class Real>
-std::unique_ptr<Renderer> make_native_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
-                                               const EmbreeOptions& options = {});
-
 }  // namespace cistula
