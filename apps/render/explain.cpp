@@ -65,7 +65,7 @@ std::string explain_table(const std::string& scene, const Explanation& explanati
     if (costs)
         table += fmt::format(
             "Cost: the share of the time that goes without the effect, medians of {} frames of {:.3g} ms; a few "
-            "percent are noise. Both kinds of shadow are taken out together.\n",
+            "percent are noise. No scene can do without its shadows, which are not measured.\n",
             costs->runs, costs->frame_ms);
     return table;
 }

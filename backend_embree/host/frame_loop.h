@@ -100,10 +100,9 @@ class FrameTask {
             film.flags |= flag_media_overflow;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
-        if (in_lanes != nullptr && !settings.unshadowed && camera_fits_lanes())
-            tiles_ = tile_functions(*in_lanes, settings.lanes);
+        if (in_lanes != nullptr && camera_fits_lanes()) tiles_ = tile_functions(*in_lanes, settings.lanes);
         mask_ = mask_to_run(compiled.effects, settings, frame_);
-        if (tiles_ == nullptr && mask_ < effect_mask_count) mask_ = limited_mask;
+        if (tiles_ == nullptr && mask_ != layered_mask) mask_ = limited_mask;
     }
 
     /// The effects that are compiled into the code that runs.
@@ -117,7 +116,7 @@ class FrameTask {
         if (tiles_ != nullptr) return goes_by_sample() ? render_samples_in_lanes() : render_in_lanes();
         if constexpr (fills_film_layers<Intersector>)
             if (settings_.layers.any()) return render_one_by_one<layered_mask>();
-        return mask_ == unshadowed_mask ? render_one_by_one<unshadowed_mask>() : render_one_by_one<limited_mask>();
+        return render_one_by_one<limited_mask>();
     }
 
   private:

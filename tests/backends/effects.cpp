@@ -129,23 +129,6 @@ TYPED_TEST(EffectTest, ACameraInASolidCallsForInsides) {
     EXPECT_TRUE(this->compare(scene, shallow_frame(scene), "inside") & effect_insides);
 }
 
-TYPED_TEST(EffectTest, WithoutShadowsNothingIsDarker) {
-    const SceneDescription scene = test::shipped_scene("benchmark");
-    FrameSettings settings = shallow_frame(scene);
-    const auto renderer = make_embree_renderer<TypeParam>(compile_scene<TypeParam>(scene), EmbreeOptions());
-    const Film shadowed = golden::render_with(*renderer, scene, settings);
-    settings.unshadowed = true;
-    const Film lit = golden::render_with(*renderer, scene, settings);
-    EXPECT_EQ(lit.rays.shadow, 0u);
-    int brighter = 0;
-    for (size_t i = 0; i < lit.pixels.size(); ++i)
-        for (int c = 0; c < 3; ++c) {
-            EXPECT_GE(lit.pixels[i].radiance[c], shadowed.pixels[i].radiance[c]);
-            brighter += lit.pixels[i].radiance[c] > shadowed.pixels[i].radiance[c];
-        }
-    EXPECT_GT(brighter, 1000);
-}
-
 TEST(WithoutEffect, TheSceneNoLongerCallsForIt) {
     for (const char* name : {"benchmark", "platonic", "glass", "mesh", "seed", "infinity"}) {
         const SceneDescription scene = test::shipped_scene(name);

@@ -73,13 +73,10 @@ inline constexpr uint32_t effect_masks[] = {
     all_effects,
     all_effects | keeps_budget,
     all_effects | keeps_budget | fills_layers,
-    // Never chosen: measures shadows' cost.
-    (all_effects & ~(effect_opaque_shadows | effect_transparent_shadows)) | keeps_budget,
 };
 inline constexpr int compiled_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
-inline constexpr int unshadowed_mask = compiled_mask_count - 1;
-inline constexpr int layered_mask = compiled_mask_count - 2;
-inline constexpr int limited_mask = compiled_mask_count - 3;
+inline constexpr int layered_mask = compiled_mask_count - 1;
+inline constexpr int limited_mask = compiled_mask_count - 2;
 /// The number of masks that scenes are rendered with, without a budget and layers; the last of them is all_effects.
 inline constexpr int effect_mask_count = limited_mask;
 static_assert(effect_masks[effect_mask_count - 1] == all_effects);

@@ -23,13 +23,12 @@ struct FrameSettings {
     double cutoff = 0;    // error budget per pixel in the scene's radiance units
     double target_error =
         0;  // above 0: adaptive sampling on the 16 x 16 lattice; a quarter of it is the budget for the cutoff
-    int max_samples = 256;    // per pixel, with a target error: 5 to 256
-    KeptParts parts;          // of the film's pixels; with a target error all are kept
-    LayerRequest layers;      // by the renderers of the backends, and "bvh"
-    uint32_t effects = 0;     // mask to run; 0: the smallest that contains what the scene requires
-    bool unshadowed = false;  // for measuring the cost of shadows: the image is wrong; not with a target error
-    int tile = 16;            // side of a tile in pixels; never changes the image
-    int lanes = 0;            // rays traced at once on the host, at most; 0: as many as can be. Never changes the image
+    int max_samples = 256;  // per pixel, with a target error: 5 to 256
+    KeptParts parts;        // of the film's pixels; with a target error all are kept
+    LayerRequest layers;    // by the renderers of the backends, and "bvh"
+    uint32_t effects = 0;   // mask to run; 0: the smallest that contains what the scene requires
+    int tile = 16;          // side of a tile in pixels; never changes the image
+    int lanes = 0;          // rays traced at once on the host, at most; 0: as many as can be. Never changes the image
 
     bool operator==(const FrameSettings&) const = default;
 
