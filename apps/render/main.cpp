@@ -207,7 +207,7 @@ void render_scene(RenderOptions options) {
     if (explain) {
         SceneSource source = gather_scene(scene);
         choose_precision(options, source);
-        return print(explain_table(scene.source, explain_scene(std::move(source), options.precision)));
+        return print(explain_table(scene.source, explain_scene(std::move(source), options.precision), options.backend));
     }
 
     if (const std::string warning = open_config_view(options.view); !warning.empty())
@@ -316,7 +316,7 @@ void measure_scene(RenderOptions options) {
         };
         const int frame = options.frames.empty() ? 0 : options.frames.front();
         const EffectCosts costs = measure_effects(scene, explanation.effects, frame, settings, make, progress);
-        print(explain_table(scene.source, explanation, &costs));
+        print(explain_table(scene.source, explanation, options.backend, &costs));
     });
 }
 

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -102,7 +103,7 @@ class FrameTask {
             throw Error(ExitCode::usage, "this intersector has no layers");
         if (in_lanes != nullptr && camera_fits_lanes()) tiles_ = tile_functions(*in_lanes, settings.lanes);
         mask_ = mask_to_run(compiled.effects, settings, frame_);
-        if (tiles_ == nullptr && mask_ != layered_mask) mask_ = limited_mask;
+        if (mask_ != layered_mask) mask_ = tiles_ != nullptr ? std::max(mask_, least_lane_mask) : limited_mask;
     }
 
     /// The effects that are compiled into the code that runs.
