@@ -302,6 +302,18 @@ TEST(Backends, WithoutCudaThereIsNothingInstead) {
     EXPECT_EQ(list_devices_text(), "no GPU: this build has no CUDA backend\n");
 }
 
+TEST(Backends, WithOneKernelThereIsNothingInstead) {
+    if (!has_cuda_backend() || CISTULA_EVERY_KERNEL) GTEST_SKIP() << "this build has every kernel, or none";
+    const std::string message =
+        "this build has one kernel of many, to see that it compiles, and uses no GPU; make with CUDA=yes, or CMake "
+        "with "
+        "-DCISTULA_EVERY_KERNEL=ON, builds all; --backend embree renders on the CPU";
+    EXPECT_ERROR(choose_devices(Backend::cuda, {}), ExitCode::device, message);
+    EXPECT_ERROR(make_renderer<float>(Backend::cuda, compile_scene<float>(SceneDescription()), {}), ExitCode::device,
+                 message);
+    EXPECT_EQ(list_devices_text(), message + "\n");
+}
+
 TEST(Stats, NameTheGpusWhereOnesRan) {
     RunStats stats;
     RenderOptions options;
