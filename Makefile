@@ -15,7 +15,7 @@ NAME  := $(basename $(notdir $(SCENE)))
 setup = $(if $(filter no,$(SETUP)),@true,@cmake/install-packages $(1))
 configure = @cmake/configure $(1) $(2) $(CMAKE_ARGS)
 
-# of `make render`, which cmake/configure reads: yes compiles kernels where there is no GPU, too
+# which cmake/configure reads: yes compiles all kernels where there is no GPU, too
 CUDA   ?=
 
 .DEFAULT_GOAL := help
@@ -102,6 +102,7 @@ bench: ## build the benchmarks and run them; bars and records into out/bench
 	@cmake --build $(BUILD) --target render benchmarks
 	bench/run $(BUILD)
 
+gpu-check: export CUDA = yes
 gpu-check: ## on a machine with a GPU: compare it with the CPU bit for bit, and time it; bars and records into out/bench
 	$(call setup,packages.txt)
 	$(call configure,$(PRESET))
@@ -129,6 +130,8 @@ define build_installed
 	@cmake -B $(BUILD) >/dev/null
 	@cmake --build $(BUILD) --target installed
 endef
+
+install package: export CUDA = yes
 
 install: ## install programs, manuals, libraries, headers, scenes, documents and the CMake package under PREFIX (/usr/local)
 	$(build_installed)

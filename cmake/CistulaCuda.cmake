@@ -1,6 +1,7 @@
 # Finds nvcc: $CUDACXX or -DCMAKE_CUDA_COMPILER, the PATH, the toolkit installed by `make cuda-toolkit` in .cuda/. Sets
 # CISTULA_CUDA, or prints in one line why there is no CUDA backend.
 option(CISTULA_WITH_CUDA "Build the CUDA backend where nvcc is found" ON)
+option(CISTULA_EVERY_KERNEL "Build the kernels of all effect masks; OFF: one source of them, to see that it compiles, and no GPU is used" ON)
 option(CISTULA_EVERY_GPU "Build kernels for every GPU of capability 7.5 and above that nvcc knows" OFF)
 set(CISTULA_CUDA OFF)
 set(_why "")

@@ -36,17 +36,28 @@ made "release $alone -DCISTULA_WITH_CUDA=OFF" render
 made '' render
 made "release --fresh $alone -DCISTULA_WITH_CUDA=ON" render CUDA=yes
 made '' render
-made 'release --fresh' build
+made 'release --fresh -DCISTULA_EVERY_KERNEL=ON' build
 made '' render
 made '' render CUDA=yes
-made "release --fresh -DCMAKE_CUDA_ARCHITECTURES=75;80 -DX=1" build CMAKE_ARGS="'-DCMAKE_CUDA_ARCHITECTURES=75;80' -DX=1"
+made "release --fresh -DCISTULA_EVERY_KERNEL=ON -DCMAKE_CUDA_ARCHITECTURES=75;80 -DX=1" build CMAKE_ARGS="'-DCMAKE_CUDA_ARCHITECTURES=75;80' -DX=1"
 made '' render
-made 'release --fresh' build
+made 'release --fresh -DCISTULA_EVERY_KERNEL=ON' build
 rm build/release/.configured  # as by `cmake --preset release`
 made '' render
 rm -r build
 made "release $alone -DCISTULA_WITH_CUDA=OFF -DCISTULA_WITH_OIIO=ON" render CMAKE_ARGS=-DCISTULA_WITH_OIIO=ON
-made "debug" build PRESET=debug
+made 'debug -DCISTULA_EVERY_KERNEL=OFF' build PRESET=debug
+made '' test PRESET=debug
+made '' render PRESET=debug
+made 'debug --fresh -DCISTULA_EVERY_KERNEL=ON' render PRESET=debug CUDA=yes
+made '' build PRESET=debug
+made 'release-all -DCISTULA_EVERY_KERNEL=ON' build PRESET=release-all
+for target in install package gpu-check; do
+    rm -r build
+    made 'release -DCISTULA_EVERY_KERNEL=OFF' build
+    made 'release --fresh -DCISTULA_EVERY_KERNEL=ON' "$target"
+    made '' test
+done
 
 # wanted LIST: what install-packages says that it wants where there is no apt-get
 wanted() { bash -c 'command() { return 1; }; source cmake/install-packages "$1"' wanted "$1" 2>&1 | sed -n 2p; }

@@ -22,13 +22,6 @@ std::string describe(const CudaDevice& device) {
     throw Error(ExitCode::device, message);
 }
 
-template <class Real>
-std::unique_ptr<Renderer> make_host_backend(std::shared_ptr<const CompiledScene<Real>> scene,
-                                            Intersection intersection) {
-    if (intersection == Intersection::native) return make_native_renderer<Real>(std::move(scene));
-    return make_embree_renderer<Real>(std::move(scene));
-}
-
 #if !CISTULA_HAS_CUDA
 [[noreturn]] void fail_without_cuda() {
     fail_device("--backend cuda: this build has no CUDA backend; --backend embree renders on the CPU");
@@ -43,16 +36,6 @@ Backend parse_backend(const std::string& text) {
 
 const char* backend_name(Backend backend) {
     return backend == Backend::cuda ? "cuda" : "embree";
-}
-
-Intersection parse_intersection(const std::string& text, Backend backend) {
-    const auto intersection =
-        chosen<Intersection>("--intersector", text, {{"exact", Intersection::exact}, {"native", Intersection::native}});
-    if (intersection == Intersection::native && backend != Backend::embree)
-        fail_usage(
-            fmt::format("--intersector native: Embree's own triangles, and --backend is {}; leave one of the two out",
-                        backend_name(backend)));
-    return intersection;
 }
 
 DeviceChoice parse_devices(const std::string& text, Backend backend) {
@@ -140,9 +123,9 @@ std::string list_devices_text() {
 
 template <class Real>
 std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
-                                        const CudaOptions& options, Intersection intersection) {
+                                        const CudaOptions& options) {
     if (backend == Backend::cuda) return make_cuda_renderer<Real>(std::move(scene), options);
-    return make_host_backend<Real>(std::move(scene), intersection);
+    return make_embree_renderer<Real>(std::move(scene));
 }
 
 #else
@@ -164,16 +147,16 @@ std::string list_devices_text() {
 
 template <class Real>
 std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
-                                        const CudaOptions&, Intersection intersection) {
+                                        const CudaOptions&) {
     if (backend == Backend::cuda) fail_without_cuda();
-    return make_host_backend<Real>(std::move(scene), intersection);
+    return make_embree_renderer<Real>(std::move(scene));
 }
 
 #endif
 
 template std::unique_ptr<Renderer> make_renderer<float>(Backend, std::shared_ptr<const CompiledScene<float>>,
-                                                        const CudaOptions&, Intersection);
+                                                        const CudaOptions&);
 template std::unique_ptr<Renderer> make_renderer<double>(Backend, std::shared_ptr<const CompiledScene<double>>,
-                                                         const CudaOptions&, Intersection);
+                                                         const CudaOptions&);
 
 }  // namespace cistula

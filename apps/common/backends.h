@@ -18,10 +18,6 @@ enum class Backend { embree, cuda };
 Backend parse_backend(const std::string& text);
 const char* backend_name(Backend backend);
 
-/// The intersection named by --intersector: "exact" or "native". Throws Error (usage), also for native on another
-/// backend than Embree.
-Intersection parse_intersection(const std::string& text, Backend backend);
-
 /// The GPUs named by --device: a list, or all usable ones.
 struct DeviceChoice {
     bool all = false;
@@ -49,11 +45,10 @@ std::vector<CudaDevice> pick_devices(const DeviceChoice& choice, const std::vect
 std::string list_devices_text();
 std::string list_devices_text(const std::vector<CudaDevice>& devices);
 
-/// A renderer on the backend, never on another one. Throws Error (device) if this build lacks the backend. Native
-/// intersection is only for Embree: parse_intersection rejects it for others.
+/// A renderer on the backend, never on another one. Throws Error (device) if this build lacks the backend.
 template <class Real>
 std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
-                                        const CudaOptions& options, Intersection intersection = Intersection::exact);
+                                        const CudaOptions& options);
 
 /// Whether this build has the CUDA backend, independent of GPUs in this machine.
 bool has_cuda_backend();

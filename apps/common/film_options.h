@@ -14,7 +14,6 @@ namespace cistula {
 
 struct FilmOptions {
     Backend backend = Backend::embree;
-    Intersection intersection = Intersection::exact;
     Precision precision = Precision::single_;
     OutputChannels channels;
     Split split = Split::none;  // of the layers

@@ -11,9 +11,8 @@ namespace cistula {
 struct OptionTexts {
     std::string scene, output, preview, stats, frames, resolution, crop, tiles, tile, supersample, depth, lanes, cutoff,
         target_error, max_samples, threads, layers, z_far, dwa_level, device, pixel, json, explain, max_texture_gb;
-    std::string backend = "embree", precision = "auto", intersector = "exact", effects = "auto", bits = "float",
-                progress = "auto", color_space = "lin_rec709_scene", background = "opaque", compression = "zip",
-                split = "none";
+    std::string backend = "embree", precision = "auto", effects = "auto", bits = "float", progress = "auto",
+                color_space = "lin_rec709_scene", background = "opaque", compression = "zip", split = "none";
     ViewTexts view;
     bool resume = false, strict = false, quiet = false, verbose = false, version = false, print_template = false,
          list_devices = false;

@@ -55,8 +55,6 @@ void declare_render_options(CLI::App& app, OptionTexts& texts) {
     app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU)")->type_name("NAME");
     app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
         ->type_name("LIST");
-    app.add_option("--intersector", texts.intersector, "exact, or native: Embree's own triangles, approximate at edges")
-        ->type_name("NAME");
     app.add_flag("--list-devices", texts.list_devices, "print the GPUs, or why there is none, and exit");
     app.add_option("--res", texts.resolution, "full frame in pixels")->type_name("WxH");
     app.add_option("--crop", texts.crop, "render these pixels only; the file's data window")->type_name("WxH+X+Y");
@@ -149,7 +147,6 @@ RenderOptions checked_options(const OptionTexts& texts) {
     options.json = texts.json;
     options.backend = parse_backend(texts.backend);
     options.devices = parse_devices(texts.device, options.backend);
-    options.intersection = parse_intersection(texts.intersector, options.backend);
     options.wanted_precision = chosen<std::optional<Precision>>(
         "--precision", texts.precision,
         {{"auto", std::nullopt}, {"float", Precision::single_}, {"double", Precision::double_}});

@@ -9,8 +9,6 @@
 namespace cistula {
 namespace {
 
-constexpr uint32_t shadows = effect_opaque_shadows | effect_transparent_shadows;
-
 /// A way to render the frame, and its times.
 struct Variant {
     std::unique_ptr<Renderer> renderer;
@@ -37,25 +35,16 @@ EffectCosts measure_effects(const SceneDescription& scene, const std::vector<Eff
     const uint32_t needed = required_effects(reasons);
     progress.begin("compiling", std::popcount(needed));
     std::vector<Variant> variants;
-    const auto add = [&](const SceneDescription& of, FrameSettings how) {
-        variants.push_back({make(of), how, {}});
+    const auto add = [&](const SceneDescription& of) {
+        variants.push_back({make(of), settings, {}});
         return variants.size() - 1;
     };
-    add(scene, settings);
-    // The mask without shadows has all other effects, so it is compared with the mask of all effects.
-    size_t with_shadows = 0, without_shadows = 0;
-    if ((needed & shadows) != 0) {
-        FrameSettings how = settings;
-        how.effects = all_effects;
-        with_shadows = add(scene, how);
-        how.unshadowed = true;
-        without_shadows = add(scene, how);
-    }
+    add(scene);
     std::vector<std::pair<uint32_t, size_t>> taken_out;  // effect and its variant; 0: none
     for (const EffectReason& reason : reasons) {
         if (!reason.needed) continue;
         const auto less = without_effect(scene, reason.effect);
-        taken_out.push_back({reason.effect, less ? add(*less, settings) : 0});
+        taken_out.push_back({reason.effect, less ? add(*less) : 0});
         progress.advance();
     }
     const CameraFrame camera = camera_at(scene.camera, frame);
@@ -64,15 +53,9 @@ EffectCosts measure_effects(const SceneDescription& scene, const std::vector<Eff
         for (Variant& variant : variants) variant.run(camera, progress, run >= 0);
 
     EffectCosts result{variants[0].time.median(), runs, {}};
-    const auto share = [&](size_t with, size_t without) {
-        return 1 - variants[without].time.median() / variants[with].time.median();
-    };
     for (const auto& [effect, variant] : taken_out) {
         EffectCost cost{effect, std::nullopt};
-        if ((effect & shadows) != 0)
-            cost.share = share(with_shadows, without_shadows);
-        else if (variant != 0)
-            cost.share = share(0, variant);
+        if (variant != 0) cost.share = 1 - variants[variant].time.median() / variants[0].time.median();
         result.costs.push_back(cost);
     }
     return result;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 
 #include "scene/base/shown_text.h"
@@ -45,10 +46,11 @@ Explanation explain_scene(SceneSource source, Precision precision) {
     return precision == Precision::double_ ? explained<double>(std::move(source)) : explained<float>(std::move(source));
 }
 
-std::string explain_table(const std::string& scene, const Explanation& explanation, const EffectCosts* costs) {
+std::string explain_table(const std::string& scene, const Explanation& explanation, Backend backend,
+                          const EffectCosts* costs) {
     const std::vector<EffectReason>& reasons = explanation.effects;
     const uint32_t required = required_effects(reasons);
-    const int chosen = least_mask(required);
+    const int first = backend == Backend::embree ? least_lane_mask : 0, chosen = std::max(least_mask(required), first);
     const uint32_t mask = effect_masks[chosen];
 
     constexpr const char* row = "{:<20} {:<7} {:<9} {}{}\n";
@@ -60,12 +62,13 @@ std::string explain_table(const std::string& scene, const Explanation& explanati
                              (mask & reason.effect) != 0 ? "in" : "left out", cost_of(reason.effect),
                              one_line(reason.because));
     table += fmt::format("\nMask {} of {} runs. Left out: {}. In without need: {}; never a bit of the image.\n",
-                         chosen + 1, effect_mask_count, list_of(all_effects & ~mask), list_of(mask & ~required));
+                         chosen - first + 1, effect_mask_count - first, list_of(all_effects & ~mask),
+                         list_of(mask & ~required));
     for (const std::string& overlap : explanation.overlaps) table += overlap + '\n';
     if (costs)
         table += fmt::format(
             "Cost: the share of the time that goes without the effect, medians of {} frames of {:.3g} ms; a few "
-            "percent are noise. Both kinds of shadow are taken out together.\n",
+            "percent are noise. No scene can do without its shadows, which are not measured.\n",
             costs->runs, costs->frame_ms);
     return table;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/backends.h"
 #include "effect_costs.h"
 #include "scene/compile/required_effects.h"
 
@@ -17,8 +18,9 @@ struct Explanation {
 Explanation explain_scene(SceneSource source, Precision precision);
 
 /// A table of effects, one per line: its name, whether the scene needs it, whether the code to be run includes it, and
-/// why. Then the compiled mask to be run and what it leaves out, and which transparent bodies overlap. With `costs`
-/// also each effect's share of the time.
-std::string explain_table(const std::string& scene, const Explanation& explanation, const EffectCosts* costs = nullptr);
+/// why. Then what the code leaves out, and which transparent bodies overlap. With `costs` also each effect's share of
+/// the time.
+std::string explain_table(const std::string& scene, const Explanation& explanation, Backend backend,
+                          const EffectCosts* costs = nullptr);
 
 }  // namespace cistula

@@ -83,8 +83,7 @@ Prepared prepare(SceneSource source, const RenderOptions& options, std::future<C
     stats.devices = devices.names;
     stats.driver = devices.driver;
     enter_stage(Stage::tree);
-    return {make_renderer<Real>(options.backend, compiled, devices.options, options.intersection),
-            compiled->layer_names};
+    return {make_renderer<Real>(options.backend, compiled, devices.options), compiled->layer_names};
 }
 
 /// The names of the images and previews, and their frames.
@@ -208,7 +207,7 @@ void render_scene(RenderOptions options) {
     if (explain) {
         SceneSource source = gather_scene(scene);
         choose_precision(options, source);
-        return print(explain_table(scene.source, explain_scene(std::move(source), options.precision)));
+        return print(explain_table(scene.source, explain_scene(std::move(source), options.precision), options.backend));
     }
 
     if (const std::string warning = open_config_view(options.view); !warning.empty())
@@ -297,7 +296,7 @@ template <class Real>
 std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const RenderOptions& options,
                                       const CudaOptions& cuda) {
     return make_renderer<Real>(options.backend, std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene)),
-                               cuda, options.intersection);
+                               cuda);
 }
 
 void measure_scene(RenderOptions options) {
@@ -317,7 +316,7 @@ void measure_scene(RenderOptions options) {
         };
         const int frame = options.frames.empty() ? 0 : options.frames.front();
         const EffectCosts costs = measure_effects(scene, explanation.effects, frame, settings, make, progress);
-        print(explain_table(scene.source, explanation, &costs));
+        print(explain_table(scene.source, explanation, options.backend, &costs));
     });
 }
 

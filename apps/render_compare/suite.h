@@ -23,8 +23,7 @@ struct SuiteSettings {
     std::optional<double> cutoff, target_error;
     std::optional<int> max_samples;
     std::optional<Precision> precision;  // none: auto
-    Intersection intersection = Intersection::exact;
-    std::string layers;  // as given
+    std::string layers;                  // as given
     OutputChannels channels;
     Thresholds thresholds;
     std::vector<Backend> backends = {Backend::embree};

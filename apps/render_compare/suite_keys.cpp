@@ -12,7 +12,6 @@ namespace {
 constexpr double most = 1e30;
 
 constexpr std::string_view precision_choices[] = {"auto", "float", "double"};
-constexpr std::string_view intersector_choices[] = {"exact", "native"};
 constexpr std::string_view bits_choices[] = {"float", "half"};
 constexpr std::string_view background_choices[] = {"opaque", "transparent"};
 constexpr std::string_view backend_choices[] = {"embree", "cuda"};
@@ -55,7 +54,6 @@ constexpr Key case_list[] = {
     number("target_error", {0, most, true}),
     whole("max_samples", least_lattice_samples, lattice_samples),
     choice("precision", precision_choices, "\"auto\""),
-    choice("intersector", intersector_choices, "\"exact\""),
     text("layers"),
     choice("bits", bits_choices, "\"float\""),
     choice("background", background_choices, "\"opaque\""),

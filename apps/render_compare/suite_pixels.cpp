@@ -88,8 +88,7 @@ void explain_golden(const SuiteCase& one, const SceneDescription& scene, FrameSe
         why.golden_note = "only its values are known: its header does not name a scene";
     } else if (!has_same(golden, fresh, "cistula:sceneHash") || !has_same(golden, fresh, "cistula:cameraHash")) {
         why.golden_note = "only its values are known: it shows the scene, or the camera, as it was before a change";
-    } else if (attribute_of<double>(golden, "cistula:targetError") ||
-               attribute_of<std::string>(golden, "cistula:intersector") || !read_header(golden, settings, precision)) {
+    } else if (attribute_of<double>(golden, "cistula:targetError") || !read_header(golden, settings, precision)) {
         why.golden_note = "only its values are known: its header names no grid of samples to follow";
     } else {
         Followed followed = follow_pixel(one, scene, settings, precision, frame, pixel);
@@ -142,8 +141,8 @@ SuitePixelWhy why_pixel(const SuiteResult& result, const std::string& folder, co
                         const LayeredPicture& fresh, const SuitePixel& pixel) {
     const SuiteCase& one = *result.of;
     SuitePixelWhy why;
-    if (one.intersection == Intersection::native || one.target_error) {
-        why.fresh_note = "rays of exact images by a grid of samples are followed, and this is none";
+    if (one.target_error) {
+        why.fresh_note = "rays of images by a grid of samples are followed, and this is none";
         return why;
     }
     const SceneDescription scene = read_scene(one.scene_path(folder));

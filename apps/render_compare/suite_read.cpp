@@ -147,8 +147,6 @@ void read_settings(JsonObject& keys, SuiteSettings& settings) {
     if (keys.has("precision"))
         settings.precision = std::array<std::optional<Precision>, 3>{
             std::nullopt, Precision::single_, Precision::double_}[size_t(keys.read_choice("precision"))];
-    if (keys.has("intersector"))
-        settings.intersection = keys.read_choice("intersector") == 1 ? Intersection::native : Intersection::exact;
     read_channels(keys, settings);
     if (keys.has("thresholds")) settings.thresholds = thresholds_in(keys.at("thresholds"));
     if (keys.has("backends"))
@@ -216,11 +214,6 @@ SuiteCase read_case(const JsonValue& value, const SuiteSettings& defaults) {
     read_golden(keys, one);
     keys.finish();
     if (one.scene.empty()) value.fail("missing key 'scene', which \"defaults\" may have: expected a scene's file");
-    if (one.intersection == Intersection::native) {
-        if (!one.layers.empty()) value.fail("\"layers\" are parts of the exact image; leave \"intersector\" out");
-        if (one.backends != std::vector{Backend::embree})
-            value.fail("\"intersector\": \"native\" is Embree's; \"backends\" must be [\"embree\"]");
-    }
     return one;
 }
 

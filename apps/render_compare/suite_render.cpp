@@ -37,7 +37,7 @@ void compile(SceneSource source, PreparedCase& to, Backend backend, const CudaOp
     notes.insert(notes.end(), compiled->warnings.begin(), compiled->warnings.end());
     require_light_layers(to.one.channels, *compiled->layer_names);
     to.scene_hash = compiled->hash;
-    to.renderer = make_renderer<Real>(backend, compiled, cuda, to.one.intersection);
+    to.renderer = make_renderer<Real>(backend, compiled, cuda);
 }
 
 SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& progress) {
@@ -60,8 +60,7 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
     picture = to_layers(film, one.channels, &clamped);
     if (clamped > 0) result.notes.push_back("clamped: " + over_largest_half(clamped));
     round_to_stored(picture);
-    picture.attributes.merge(
-        header_attributes(prepared.scene_hash, prepared.settings, prepared.precision, camera, one.intersection));
+    picture.attributes.merge(header_attributes(prepared.scene_hash, prepared.settings, prepared.precision, camera));
     add_film_attributes(prepared.scene.film, picture.attributes);
     if (prepared.settings.adaptive()) add_target_attributes(target_report(film, prepared.settings), picture.attributes);
     result.film_hash = film_hash(film);

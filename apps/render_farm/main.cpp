@@ -29,9 +29,9 @@ struct PreparedFilm {
 };
 
 template <class Real>
-PreparedFilm prepare_film(SceneSource source, const RenderOptions& options) {
+PreparedFilm prepare_film(SceneSource source) {
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
-    return {make_renderer<Real>(Backend::embree, compiled, {}, options.intersection), compiled->layer_names};
+    return {make_renderer<Real>(Backend::embree, compiled, {}), compiled->layer_names};
 }
 
 /// The name of a job: letters, digits and a few signs of the scene's name.
@@ -89,8 +89,8 @@ void write_job(const FarmOptions& farm) {
             : std::nullopt;
     SceneSource source = gather_scene(scene);
     options.precision = choose_precision(options.wanted_precision, smallest_part(source)).precision;
-    const PreparedFilm film = options.precision == Precision::double_ ? prepare_film<double>(std::move(source), options)
-                                                                      : prepare_film<float>(std::move(source), options);
+    const PreparedFilm film = options.precision == Precision::double_ ? prepare_film<double>(std::move(source))
+                                                                      : prepare_film<float>(std::move(source));
     require_light_layers(options.channels, *film.layer_names);
     const MeasuredFrames measured = measure_tiles(*film.renderer, scene, settings, frames, grid, progress);
 

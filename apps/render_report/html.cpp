@@ -66,8 +66,7 @@ std::string setting_text(const Setting& s) {
                                      ? "target error " + number_text(s.target_error)
                                      : fmt::format("{}×{} samples, depth {}, {}", s.supersample, s.supersample, s.depth,
                                                    s.cutoff > 0 ? "cutoff " + number_text(s.cutoff) : "no cutoff");
-    return accuracy + (s.precision == Precision::double_ ? ", double" : ", float") +
-           (s.intersector == "exact" ? "" : ", " + s.intersector);
+    return accuracy + (s.precision == Precision::double_ ? ", double" : ", float");
 }
 
 std::string image_tag(const Image& image, const std::string& description) {

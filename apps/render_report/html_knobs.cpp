@@ -181,12 +181,6 @@ std::string knob_html(const Shown& shown, const Knob& knob, const Alone& alone) 
         return switch_table(shown, knob, alone,
                             {"Precision: float against double, one sample, and what double costs", "RMSE of float",
                              "float", "double", [](Setting& setting) { setting.precision = Precision::double_; }});
-    if (knob.name == "intersector") {
-        const std::string name = escaped(alone.entries.front()->setting.intersector);
-        return switch_table(shown, knob, alone,
-                            {"Intersector: " + name + " against the exact one, one sample", "RMSE of " + name, name,
-                             "exact", [](Setting& setting) { setting.intersector = "exact"; }});
-    }
     if (knob.name == "target") return target_html(shown);
     return pair_of_charts(shown, knob, alone);
 }

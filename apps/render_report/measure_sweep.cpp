@@ -25,8 +25,7 @@ double least_samples(const Setting& setting) {
 bool is_harder(const Setting& setting, const Setting& other) {
     const auto cutoff = [](const Setting& s) { return frame_settings(s, 1, 1).truncation(); };
     return other.depth <= setting.depth && cutoff(other) >= cutoff(setting) && other.precision <= setting.precision &&
-           other.intersector == setting.intersector && other.adaptive() == setting.adaptive() &&
-           least_samples(other) <= least_samples(setting);
+           other.adaptive() == setting.adaptive() && least_samples(other) <= least_samples(setting);
 }
 
 void note_times(const Renderer& renderer, double seconds, Entry& entry) {
@@ -37,20 +36,10 @@ void note_times(const Renderer& renderer, double seconds, Entry& entry) {
     entry.transfer.runs.push_back(times.transfer * 1e3);
 }
 
-std::vector<std::string> other_intersectors(Backend backend) {
-    std::vector<std::string> names;
-    for (const Intersector& one : intersectors())
-        if (one.offered(backend) && one.name != Setting().intersector) names.push_back(one.name);
-    return names;
-}
-
 class Sweep {
   public:
     Sweep(Frames& frames, const MeasureSettings& settings, SceneRecord& scene)
-        : frames_(frames),
-          settings_(settings),
-          scene_(scene),
-          plan_(plan_sweep(scene.base, settings.quick, other_intersectors(settings.machine.backend))) {
+        : frames_(frames), settings_(settings), scene_(scene), plan_(plan_sweep(scene.base, settings.quick)) {
         // Easier settings first, so that harder ones can be predicted from them.
         std::stable_sort(plan_.begin(), plan_.end(), [](const PlannedSetting& a, const PlannedSetting& b) {
             const auto effort = [](const Setting& s) {

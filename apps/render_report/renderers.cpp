@@ -1,37 +1,16 @@
 #include "renderers.h"
 
-#include <algorithm>
-#include <stdexcept>
-
 #include "apps/common/timing.h"
 #include "scene/compile/compiled_scene.h"
 
 namespace cistula::report {
 namespace {
 
-template <class Real>
-std::unique_ptr<Renderer> make_exact(const Machine& machine, std::shared_ptr<const CompiledScene<Real>> scene) {
-    return make_renderer<Real>(machine.backend, std::move(scene), machine.cuda);
-}
-
-template <class Real>
-std::unique_ptr<Renderer> make_native(const Machine& machine, std::shared_ptr<const CompiledScene<Real>> scene) {
-    return make_renderer<Real>(machine.backend, std::move(scene), machine.cuda, Intersection::native);
-}
-
 Stage stage(const char* name, Precision precision, double seconds) {
     return {name, precision_name(precision), {{seconds * 1e3}}};
 }
 
 }  // namespace
-
-const std::vector<Intersector>& intersectors() {
-    static const std::vector<Intersector> all = {
-        {"exact", [](Backend) { return true; }, make_exact<float>, make_exact<double>},
-        {"native", [](Backend backend) { return backend == Backend::embree; }, make_native<float>, make_native<double>},
-    };
-    return all;
-}
 
 const std::shared_ptr<const CompiledScene<float>>& Renderers::single() {
     if (!single_)
@@ -48,21 +27,16 @@ const std::shared_ptr<const CompiledScene<double>>& Renderers::twice() {
 }
 
 Renderer& Renderers::of(const Setting& setting) {
-    std::unique_ptr<Renderer>& renderer = made_[{setting.precision, setting.intersector}];
+    std::unique_ptr<Renderer>& renderer = made_[setting.precision];
     if (renderer) return *renderer;
-    const auto& table = intersectors();
-    const auto found = std::find_if(table.begin(), table.end(),
-                                    [&](const Intersector& one) { return one.name == setting.intersector; });
-    if (found == table.end()) throw std::invalid_argument("no intersector is called " + setting.intersector);
-    if (setting.precision == Precision::double_) {
-        const auto& scene = twice();
-        stages_.push_back(
-            stage("prepare", setting.precision, seconds_of([&] { renderer = found->make_double(machine_, scene); })));
-    } else {
-        const auto& scene = single();
-        stages_.push_back(
-            stage("prepare", setting.precision, seconds_of([&] { renderer = found->make_single(machine_, scene); })));
-    }
+    const auto prepare = [&](const auto& scene) {
+        const double seconds = seconds_of([&] { renderer = make_renderer(machine_.backend, scene, machine_.cuda); });
+        stages_.push_back(stage("prepare", setting.precision, seconds));
+    };
+    if (setting.precision == Precision::double_)
+        prepare(twice());
+    else
+        prepare(single());
     return *renderer;
 }
 

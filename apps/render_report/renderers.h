@@ -1,10 +1,8 @@
-// The renderers of one scene: one for each precision and intersector in use, created on first use.
+// The renderers of one scene: one for each precision in use, created on first use.
 #pragma once
 
 #include <map>
 #include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/common/backends.h"
@@ -18,15 +16,6 @@ struct Machine {
     Backend backend = Backend::embree;
     CudaOptions cuda;
 };
-
-/// An intersector of the host or the device, by its name in settings. A new one needs a line in renderers.cpp.
-struct Intersector {
-    const char* name;
-    bool (*offered)(Backend);  // whether a backend has it
-    std::unique_ptr<Renderer> (*make_single)(const Machine&, std::shared_ptr<const CompiledScene<float>>);
-    std::unique_ptr<Renderer> (*make_double)(const Machine&, std::shared_ptr<const CompiledScene<double>>);
-};
-const std::vector<Intersector>& intersectors();
 
 class Renderers {
   public:
@@ -46,7 +35,7 @@ class Renderers {
     const Machine machine_;
     std::shared_ptr<const CompiledScene<float>> single_;
     std::shared_ptr<const CompiledScene<double>> twice_;
-    std::map<std::pair<Precision, std::string>, std::unique_ptr<Renderer>> made_;
+    std::map<Precision, std::unique_ptr<Renderer>> made_;
     std::vector<Stage> stages_;
 };
 

@@ -11,7 +11,6 @@ void to_json(Json& json, const Setting& setting) {
             {"cutoff", setting.cutoff},
             {"precision", precision_name(setting.precision)},
             {"supersample", setting.supersample},
-            {"intersector", setting.intersector},
             {"target_error", setting.target_error}};
 }
 
@@ -20,7 +19,6 @@ void from_json(const Json& json, Setting& setting) {
     setting.cutoff = json.at("cutoff");
     setting.precision = json.at("precision") == "double" ? Precision::double_ : Precision::single_;
     setting.supersample = json.at("supersample");
-    setting.intersector = json.at("intersector");
     setting.target_error = json.at("target_error");
 }
 
@@ -43,11 +41,9 @@ FrameSettings frame_settings(const Setting& setting, int width, int height) {
 }
 
 std::string setting_name(const Setting& setting) {
-    const std::string intersector = setting.intersector == "exact" ? "" : "/" + setting.intersector;
-    if (setting.adaptive())
-        return fmt::format("target:{}/{}{}", setting.target_error, precision_name(setting.precision), intersector);
-    return fmt::format("depth:{}/cutoff:{}/{}/samples:{}x{}{}", setting.depth, setting.cutoff,
-                       precision_name(setting.precision), setting.supersample, setting.supersample, intersector);
+    if (setting.adaptive()) return fmt::format("target:{}/{}", setting.target_error, precision_name(setting.precision));
+    return fmt::format("depth:{}/cutoff:{}/{}/samples:{}x{}", setting.depth, setting.cutoff,
+                       precision_name(setting.precision), setting.supersample, setting.supersample);
 }
 
 std::string command_line(const std::string& scene, int width, int height, const Setting& setting,
@@ -55,10 +51,8 @@ std::string command_line(const std::string& scene, int width, int height, const 
     const std::string accuracy = setting.adaptive() ? fmt::format("--target-error {}", setting.target_error)
                                                     : fmt::format("--supersample {} --depth {} --cutoff {}",
                                                                   setting.supersample, setting.depth, setting.cutoff);
-    return fmt::format("render {} --res {}x{} {} --precision {}{}{}", scene, width, height, accuracy,
-                       precision_name(setting.precision),
-                       setting.intersector == "exact" ? "" : " --intersector " + setting.intersector,
-                       backend == "embree" ? "" : " --backend " + backend);
+    return fmt::format("render {} --res {}x{} {} --precision {}{}", scene, width, height, accuracy,
+                       precision_name(setting.precision), backend == "embree" ? "" : " --backend " + backend);
 }
 
 const char* precision_name(Precision precision) {

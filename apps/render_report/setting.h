@@ -14,8 +14,7 @@ struct Setting {
     double cutoff = 0;
     Precision precision = Precision::single_;
     int supersample = 1;
-    std::string intersector = "exact";  // a name from renderers.cpp
-    double target_error = 0;            // above 0: adaptive sampling; supersample and cutoff are ignored
+    double target_error = 0;  // above 0: adaptive sampling; supersample and cutoff are ignored
 
     bool adaptive() const { return target_error > 0; }
     bool operator==(const Setting&) const = default;
@@ -30,8 +29,7 @@ FrameSettings frame_settings(const Setting& setting, int width, int height);
 /// The setting with a target error: largest depth, one sample and no cutoff, since the target decides these.
 Setting with_target(Setting setting, double target_error);
 
-/// The setting's name: "depth:4/cutoff:0/float/samples:1x1", or "target:0.01/float"; intersectors other than the exact
-/// ones are appended.
+/// The setting's name: "depth:4/cutoff:0/float/samples:1x1", or "target:0.01/float".
 std::string setting_name(const Setting& setting);
 
 /// The command that renders with this setting: "render scenes/platonic.json --res 1280x720 --depth 4 ...".

@@ -40,8 +40,6 @@ const std::vector<Knob>& knobs() {
         {"samples", "Samples", "samples per pixel", true,
          [](const Setting& s) { return double(s.supersample) * s.supersample; }},
         {"precision", "Precision", "surfaces along a path", false, [](const Setting& s) { return double(s.depth); }},
-        {"intersector", "Intersector", "surfaces along a path", false,
-         [](const Setting& s) { return double(s.depth); }},
         {"target", "Target error", "target error", true, [](const Setting& s) { return s.target_error; }},
     };
     return all;
@@ -52,7 +50,7 @@ Setting reference_setting(const Setting& base, bool quick) {
                 reference_supersample);
 }
 
-std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const std::vector<std::string>& others) {
+std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick) {
     constexpr Precision single = Precision::single_, twice = Precision::double_;
     Plan plan;
     plan.add(base);
@@ -83,13 +81,6 @@ std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const st
             with(base, base.depth, 0, single, reference_supersample);
     for (const int depth : depths)
         plan.add(with(base, depth, 0, single, 1)).alone["precision"] = with(base, depth, 0, twice, 1);
-    for (const std::string& other : others)
-        for (const int depth : depths) {
-            const Setting exact = with(base, depth, 0, single, 1);
-            Setting setting = exact;
-            setting.intersector = other;
-            plan.add(setting).alone["intersector"] = exact;
-        }
     // A target covers all of the error. For comparison with small targets: the whole lattice without a target, with
     // more or equal truncation.
     for (const double cutoff : cutoffs)

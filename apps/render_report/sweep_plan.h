@@ -26,9 +26,8 @@ struct Knob {
 /// The knobs in page order. A new one needs a line here and values in plan_sweep.
 const std::vector<Knob>& knobs();
 
-/// All settings, without duplicates. `base`: the scene's depth, no cutoff, float, one sample. `others`: intersectors
-/// besides the exact one.
-std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick, const std::vector<std::string>& others = {});
+/// All settings, without duplicates. `base`: the scene's depth, no cutoff, float, one sample.
+std::vector<PlannedSetting> plan_sweep(const Setting& base, bool quick);
 
 inline constexpr int deepest = 256;                       // depth of the reference and of references for single knobs
 inline constexpr double knob_reference_cutoff = 0x1p-40;  // truncation budget of a pixel in references for single knobs

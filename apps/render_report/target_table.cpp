@@ -12,9 +12,7 @@ std::optional<UniformRow> uniform_row(const std::vector<const Entry*>& entries, 
     UniformRow row;
     for (const Entry* entry : entries) {
         const Setting& s = entry->setting;
-        if (s.adaptive() || s.supersample != uniform_supersample || s.precision != Precision::single_ ||
-            s.intersector != Setting().intersector)
-            continue;
+        if (s.adaptive() || s.supersample != uniform_supersample || s.precision != Precision::single_) continue;
         if (row.uniform == nullptr || entry->error.rmse < row.uniform->error.rmse) row.uniform = entry;
     }
     if (row.uniform == nullptr || targets.empty()) return std::nullopt;

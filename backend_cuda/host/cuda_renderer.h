@@ -21,7 +21,8 @@ struct CudaDevice {
     std::string obstacle;
 };
 
-/// All GPUs of this machine. Throws Error (device) if there is none: no driver, a driver too old, no device.
+/// All GPUs of this machine. Throws Error (device) if there is none (no driver, a driver too old, no device), or if
+/// this build has not every kernel.
 std::vector<CudaDevice> list_cuda_devices();
 
 /// Makes the contexts of devices, which renderers else make one after the other. Throws Error (device) where it cannot.

@@ -30,6 +30,11 @@ bool kernels_run_on_capability(int capability) {
 }  // namespace
 
 std::vector<CudaDevice> list_cuda_devices() {
+    if (!CISTULA_EVERY_KERNEL)
+        throw Error(
+            ExitCode::device,
+            "this build has one kernel of many, to see that it compiles, and uses no GPU; make with CUDA=yes, or "
+            "CMake with -DCISTULA_EVERY_KERNEL=ON, builds all; --backend embree renders on the CPU");
     int count = 0;
     const cudaError_t error = cudaGetDeviceCount(&count);
     if (error != cudaSuccess) fail_no_device(error);

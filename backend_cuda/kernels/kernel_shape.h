@@ -35,7 +35,6 @@ inline constexpr KernelShape kernel_shapes[] = {
     {8, {3, 2}, {3, 2}},  // everything
     {8, {3, 2}, {3, 2}},  // everything and a budget
     {8, {3, 2}, {3, 2}},  // everything and layers
-    {8, {3, 2}, {3, 2}},  // everything but shadows
 };
 static_assert(sizeof kernel_shapes / sizeof kernel_shapes[0] == compiled_mask_count, "a row for each mask");
 

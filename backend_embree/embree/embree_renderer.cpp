@@ -2,7 +2,6 @@
 
 #include "backend_embree/embree/embree_tree.h"
 #include "backend_embree/host/frame_loop.h"
-#include "scene/compile/constant_scene.h"
 #include "scene/compile/lane_scene.h"
 
 namespace cistula {
@@ -18,19 +17,12 @@ class EmbreeRenderer : public Renderer {
     EmbreeRenderer(std::shared_ptr<const CompiledScene<Real>> scene, const EmbreeOptions& options,
                    std::shared_ptr<const EmbreeTree<Real>> tree)
         : scene_(std::move(scene)), view_(scene_->view()), options_(options), tree_(std::move(tree)) {
-        if (tree_) return;
-        if (!options.always_tree) {
-            if (takes_loop(view_)) plain_ = make_constant_renderer<Real>(scene_);
-            if (!plain_) in_lanes_ = lane_scene(view_);
-        }
-        if (!plain_ && !in_lanes_) build_tree();
+        if (!tree_ && !options.always_tree) in_lanes_ = lane_scene(view_);
+        if (!tree_ && !in_lanes_) build_tree();
     }
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
-        used_plain_ = plain_ && !settings.layers.any();
-        if (used_plain_) return plain_->render(camera, settings, film, progress);
-        if (plain_ && !in_lanes_) in_lanes_ = lane_scene(view_);
         EmbreeIntersector<Real> intersector{view_, tree_ ? tree_->scene() : nullptr};
         FrameTask task(*scene_, intersector, camera, settings, film, progress,
                        in_lanes_ ? &in_lanes_->scene() : nullptr);
@@ -42,29 +34,22 @@ class EmbreeRenderer : public Renderer {
         }
         return task.run();
     }
-    uint32_t effects() const override { return used_plain_ ? plain_->effects() : effects_; }
-    int lanes() const override { return used_plain_ ? plain_->lanes() : lanes_; }
+    uint32_t effects() const override { return effects_; }
+    int lanes() const override { return lanes_; }
     std::string intersector() const override { return "embree"; }
     size_t memory() const override {
-        return (plain_ ? plain_->memory() : scene_->memory()) + (in_lanes_ ? in_lanes_->memory() : 0) +
-               (tree_ ? tree_->memory() : 0);
+        return scene_->memory() + (in_lanes_ ? in_lanes_->memory() : 0) + (tree_ ? tree_->memory() : 0);
     }
 
   private:
-    void build_tree() {
-        EmbreeOptions options = options_;
-        options.always_tree = true;
-        tree_ = embree_tree(view_, options);
-    }
+    void build_tree() { tree_ = std::make_shared<const EmbreeTree<Real>>(view_, options_); }
 
     std::shared_ptr<const CompiledScene<Real>> scene_;
     SceneView<Real> view_;
     EmbreeOptions options_;
     std::shared_ptr<const EmbreeTree<Real>> tree_;  // built when a frame needs it, or before all if every frame does
-    std::unique_ptr<Renderer> plain_;  // set if a loop over few primitives replaces the tree in frames without layers
     std::unique_ptr<const OwnedLaneScene<Real>> in_lanes_;  // set if rays may be traced in lanes
     // Of the last frame:
-    bool used_plain_ = false;
     uint32_t effects_ = 0;
     int lanes_ = 1;
 };

@@ -12,24 +12,13 @@ namespace cistula {
 struct EmbreeOptions {
     std::string device_config;  // for rtcNewDevice, e.g. "isa=avx2"; never changes the image
     int tree_quality = 1;       // 0 quick, 1 high; never changes the image
-    bool always_tree = false;   // use a tree even for up to 16 primitives; for tests
+    bool always_tree = false;   // trace one ray after the other, through Embree's tree; for tests
 };
 
 /// The CPU renderer. It uses the threads of the TBB arena or global_control that the caller set up. Throws Error
 /// (device) if Embree fails.
 template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
-                                               const EmbreeOptions& options = {});
-
-/// A renderer over a ConstantScene, as on the device, where the effect mask reaches the primitive tests. Null if the
-/// scene does not fit.
-template <class Real>
-std::unique_ptr<Renderer> make_constant_renderer(std::shared_ptr<const CompiledScene<Real>> scene);
-
-/// A renderer over Embree's own triangles, convex solids included. Its image differs: approximate at edges and where
-/// bodies touch, with hits in float whatever Real is. For previews and comparisons (native_intersector.h).
-template <class Real>
-std::unique_ptr<Renderer> make_native_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options = {});
 
 }  // namespace cistula

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "backend_embree/host/frame_loop.h"
-#include "scene/compile/constant_scene.h"
 
 namespace cistula {
 
@@ -50,15 +49,7 @@ void EmbreeTree<Real>::build(const SceneView<Real>& scene, const EmbreeOptions& 
     device_.check("building the tree");
 }
 
-template <class Real>
-std::shared_ptr<const EmbreeTree<Real>> embree_tree(const SceneView<Real>& scene, const EmbreeOptions& options) {
-    if (!options.always_tree && takes_loop(scene)) return nullptr;
-    return std::make_shared<const EmbreeTree<Real>>(scene, options);
-}
-
 template class EmbreeTree<float>;
 template class EmbreeTree<double>;
-template std::shared_ptr<const EmbreeTree<float>> embree_tree(const SceneView<float>&, const EmbreeOptions&);
-template std::shared_ptr<const EmbreeTree<double>> embree_tree(const SceneView<double>&, const EmbreeOptions&);
 
 }  // namespace cistula

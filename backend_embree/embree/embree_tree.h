@@ -27,11 +27,7 @@ class EmbreeTree {
     ScenePointer scene_;
 };
 
-/// The tree for a renderer of the scene; null where a plain loop is used.
-template <class Real>
-std::shared_ptr<const EmbreeTree<Real>> embree_tree(const SceneView<Real>& scene, const EmbreeOptions& options);
-
-/// A renderer that shares an existing tree of the scene.
+/// A renderer that traces one ray after the other through an existing tree of the scene.
 template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                std::shared_ptr<const EmbreeTree<Real>> tree);

@@ -4,11 +4,10 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <array>
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <utility>
 
 #include "backend_embree/lanes/pixels_by_sample.h"
 #include "cistula/lanes/lane_scene.h"
@@ -26,15 +25,6 @@ struct RenderStop {
 
     bool operator()() const { return flag.load(std::memory_order_relaxed); }
 };
-
-/// Whether an intersector is compiled for every effect mask. The device's traversal and the plain loop over a SceneView
-/// are references here and compiled with all effects only, which saves compile time.
-template <class Intersector>
-inline constexpr bool runs_every_mask = true;
-template <class Real>
-inline constexpr bool runs_every_mask<BvhIntersector<Real>> = false;
-template <class Real>
-inline constexpr bool runs_every_mask<BruteIntersector<Real>> = false;
 
 /// Whether an intersector is compiled for layers: the backends' own.
 template <class Intersector>
@@ -85,7 +75,7 @@ class Tile {
     size_t used_ = 0;
 };
 
-/// The rendering of one frame on the host.
+/// The rendering of one frame on the host: many rays at once, or one after the other with code for all effects.
 template <class Real, class Intersector>
 class FrameTask {
   public:
@@ -109,16 +99,15 @@ class FrameTask {
         if (!(in_lanes != nullptr ? find_camera_solids(*in_lanes, frame_)
                                   : find_camera_solids(scene_, intersector, frame_)))
             film.flags |= flag_media_overflow;
-        mask_ = mask_to_run(compiled.effects, settings, frame_);
-        if (!runs_every_mask<Intersector> && mask_ < effect_mask_count) mask_ = limited_mask;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
             throw Error(ExitCode::usage, "this intersector has no layers");
-        if (in_lanes == nullptr || mask_ == unshadowed_mask || !camera_fits_lanes()) return;
-        tiles_ = tile_functions(*in_lanes, settings.lanes);
+        if (in_lanes != nullptr && camera_fits_lanes()) tiles_ = tile_functions(*in_lanes, settings.lanes);
+        mask_ = mask_to_run(compiled.effects, settings, frame_);
+        if (mask_ != layered_mask) mask_ = tiles_ != nullptr ? std::max(mask_, least_lane_mask) : limited_mask;
     }
 
-    /// The effects that are compiled into the code that runs (mask_to_run; all of them for references).
-    uint32_t effects() const { return effect_masks[mask_]; }
+    /// The effects that are compiled into the code that runs.
+    uint32_t effects() const { return effect_masks[mask_] & all_effects; }
 
     /// The number of rays that are traced at once.
     int lanes() const { return tiles_ != nullptr ? tiles_->lanes : 1; }
@@ -126,19 +115,9 @@ class FrameTask {
     /// Renders the frame; false if it was stopped.
     bool run() {
         if (tiles_ != nullptr) return goes_by_sample() ? render_samples_in_lanes() : render_in_lanes();
-        if (settings_.layers.any())
-            return settings_.adaptive() ? render_adaptive<layered_mask>() : render_mask<layered_mask>();
-        if (settings_.adaptive()) return render_adaptive<limited_mask>();
-        if constexpr (!runs_every_mask<Intersector>) {
-            return mask_ == unshadowed_mask ? render_mask<unshadowed_mask>() : render_mask<limited_mask>();
-        } else {
-            using Render = bool (FrameTask::*)();
-            static constexpr auto table = []<size_t... I>(std::index_sequence<I...>) {
-                return std::array<Render, sizeof...(I)>{&FrameTask::render_mask<int(I)>...};
-            }
-            (std::make_index_sequence<compiled_mask_count>());
-            return (this->*table[size_t(mask_)])();
-        }
+        if constexpr (fills_film_layers<Intersector>)
+            if (settings_.layers.any()) return render_one_by_one<layered_mask>();
+        return render_one_by_one<limited_mask>();
     }
 
   private:
@@ -160,21 +139,23 @@ class FrameTask {
 
     bool stopped() const { return progress_.stop.load(std::memory_order_relaxed); }
 
+    /// Renders one ray after the other.
+    template <int mask>
+    bool render_one_by_one() {
+        return settings_.adaptive() ? render_adaptive<mask>() : render_grid<mask>();
+    }
+
     /// Renders with a uniform grid of samples.
     template <int mask>
-    bool render_mask() {
-        if constexpr (mask == layered_mask && !fills_film_layers<Intersector>) {
-            return false;  // never called
-        } else {
-            using E = Effects<effect_masks[mask]>;
-            return for_each_pixel([&](const TilePixel& pixel, PixelWork& own) {
-                typename Stack<E>::Storage storage;
-                Stack<E> stack(storage, RenderStop{progress_.stop});
-                PixelTask task = task_for<E>(pixel, own, stack);
-                if constexpr (mask == layered_mask) task.layers = pixel.layers;
-                render_pixel(task, SampleRange(), pixel.record);
-            });
-        }
+    bool render_grid() {
+        using E = Effects<effect_masks[mask]>;
+        return for_each_pixel([&](const TilePixel& pixel, PixelWork& own) {
+            typename Stack<E>::Storage storage;
+            Stack<E> stack(storage, RenderStop{progress_.stop});
+            PixelTask task = task_for<E>(pixel, own, stack);
+            if constexpr (mask == layered_mask) task.layers = pixel.layers;
+            render_pixel(task, SampleRange(), pixel.record);
+        });
     }
 
     /// Renders with a uniform grid of samples, many rays at once.
@@ -205,24 +186,20 @@ class FrameTask {
     /// Renders with a target error.
     template <int mask>
     bool render_adaptive() {
-        if constexpr (mask == layered_mask && !fills_film_layers<Intersector>) {
-            return false;  // never called
-        } else {
-            using E = Effects<effect_masks[mask]>;
-            const bool gradual = shades_gradually(scene_);
-            return for_each_pixel([&](const TilePixel& pixel, PixelWork& own) {
-                typename Stack<E>::Storage storage;
-                Stack<E> stack(storage, RenderStop{progress_.stop});
-                PixelTask task = task_for<E>(pixel, own, stack);
-                std::unique_ptr<int64_t[]> samples;
-                if constexpr (mask == layered_mask) {
-                    task.layers = pixel.layers;
-                    samples = std::make_unique_for_overwrite<int64_t[]>(size_t(lattice_samples) *
-                                                                        size_t(frame_.layers.sample_words()));
-                }
-                render_adaptive_pixel(task, gradual, pixel.record, samples.get());
-            });
-        }
+        using E = Effects<effect_masks[mask]>;
+        const bool gradual = shades_gradually(scene_);
+        return for_each_pixel([&](const TilePixel& pixel, PixelWork& own) {
+            typename Stack<E>::Storage storage;
+            Stack<E> stack(storage, RenderStop{progress_.stop});
+            PixelTask task = task_for<E>(pixel, own, stack);
+            std::unique_ptr<int64_t[]> samples;
+            if constexpr (mask == layered_mask) {
+                task.layers = pixel.layers;
+                samples = std::make_unique_for_overwrite<int64_t[]>(size_t(lattice_samples) *
+                                                                    size_t(frame_.layers.sample_words()));
+            }
+            render_adaptive_pixel(task, gradual, pixel.record, samples.get());
+        });
     }
 
     /// Calls render(pixel, work) for each pixel of the film where the scene may be visible, in tiles.

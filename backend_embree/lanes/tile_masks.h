@@ -1,9 +1,7 @@
-// The tile renderers of one number type and instruction set, for every effect mask that scenes are rendered with.
+// The tile renderers of one number type and instruction set, for the effect masks from least_lane_mask on.
 #pragma once
 
-#include <array>
 #include <atomic>
-#include <utility>
 
 #include "backend_embree/lanes/lane_rays.h"
 #include "backend_embree/lanes/tile_functions.h"
@@ -36,15 +34,9 @@ class MaskTile : public AnyTile {
 /// The tile of a mask without a budget, or of layered_mask.
 template <class Real>
 AnyTile* make_mask_tile(int mask, const LaneScene<ScalarOf<Real>>& scene, const FrameView& frame) {
-    using Make = AnyTile* (*)(const LaneScene<ScalarOf<Real>>&, const FrameView&);
-    static constexpr auto table = []<size_t... i>(std::index_sequence<i...>) {
-        return std::array<Make, sizeof...(i)>{[](const LaneScene<ScalarOf<Real>>& s, const FrameView& f) -> AnyTile* {
-            return new MaskTile<Real, Effects<effect_masks[i]>>(s, f);
-        }...};
-    }
-    (std::make_index_sequence<effect_mask_count>());
     if (mask == layered_mask) return new MaskTile<Real, Effects<effect_masks[layered_mask]>>(scene, frame);
-    return table[size_t(mask)](scene, frame);
+    if (mask > least_lane_mask) return new MaskTile<Real, Effects<all_effects>>(scene, frame);
+    return new MaskTile<Real, Effects<effect_masks[least_lane_mask]>>(scene, frame);
 }
 
 /// The functions of a number type of lanes.

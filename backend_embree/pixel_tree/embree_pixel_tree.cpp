@@ -50,11 +50,10 @@ PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<Real>> scene, co
                             const FrameSettings& settings, int x, int y) {
     use_default_rounding();
     const SceneView<Real> view = scene->view();
-    const std::shared_ptr<const EmbreeTree<Real>> tree = embree_tree(view, EmbreeOptions());
+    const auto tree = std::make_shared<const EmbreeTree<Real>>(view, EmbreeOptions());
     uint32_t flags = 0;
     PixelTree pixel =
-        tree ? record_pixel(*scene, view, EmbreeIntersector<Real>{view, tree->scene()}, camera, settings, x, y, flags)
-             : record_pixel(*scene, view, BruteIntersector<Real>{view}, camera, settings, x, y, flags);
+        record_pixel(*scene, view, EmbreeIntersector<Real>{view, tree->scene()}, camera, settings, x, y, flags);
 
     FrameSettings alone = settings;
     alone.crop = {x, y, 1, 1};

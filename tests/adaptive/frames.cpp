@@ -255,9 +255,6 @@ TEST(Adaptive, RefusesWhatMakesNoSense) {
         EXPECT_THROW(frame_view(*compiled, camera_at(scene.camera, 0), settings), Error) << most;
     }
     settings.max_samples = 256;
-    settings.unshadowed = true;
-    EXPECT_THROW(frame_view(*compiled, camera_at(scene.camera, 0), settings), Error);
-    settings.unshadowed = false;
     for (const double target : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
         settings.target_error = target;
         EXPECT_THROW(frame_view(*compiled, camera_at(scene.camera, 0), settings), Error) << target;

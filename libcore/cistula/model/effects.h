@@ -73,16 +73,15 @@ inline constexpr uint32_t effect_masks[] = {
     all_effects,
     all_effects | keeps_budget,
     all_effects | keeps_budget | fills_layers,
-    // Never chosen: measures shadows' cost.
-    (all_effects & ~(effect_opaque_shadows | effect_transparent_shadows)) | keeps_budget,
 };
 inline constexpr int compiled_mask_count = sizeof(effect_masks) / sizeof(effect_masks[0]);
-inline constexpr int unshadowed_mask = compiled_mask_count - 1;
-inline constexpr int layered_mask = compiled_mask_count - 2;
-inline constexpr int limited_mask = compiled_mask_count - 3;
+inline constexpr int layered_mask = compiled_mask_count - 1;
+inline constexpr int limited_mask = compiled_mask_count - 2;
 /// The number of masks that scenes are rendered with, without a budget and layers; the last of them is all_effects.
 inline constexpr int effect_mask_count = limited_mask;
 static_assert(effect_masks[effect_mask_count - 1] == all_effects);
+/// The first of the masks that the CPU's tiles in lanes are compiled for: on a CPU lesser ones are hardly quicker.
+inline constexpr int least_lane_mask = effect_mask_count - 2;
 
 /// The index in effect_masks of the smallest mask that contains `required`.
 constexpr int least_mask(uint32_t required) {

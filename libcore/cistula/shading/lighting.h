@@ -110,19 +110,17 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             lights = lights & !is_nothing(lit);
             if (!any(lights)) continue;
             Throughput<Real, E> arrives(Real(1));
-            if constexpr (E::has(effect_opaque_shadows | effect_transparent_shadows)) {
-                ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, event.hit, *around), aim.distance,
-                                              &light};
-                find_start_plane<E>(scene, shadow.ray);
-                if constexpr (meets_contacts<E, Media> && !in_lanes<Real>)
-                    if (meshes) count_meshes(scene, intersector, shadow.ray);
-                rays.add_shadow(lights);
-                if constexpr (in_lanes<Real>)
-                    arrives = intersector.template transmittance<E>(shadow, lights);
-                else
-                    arrives = intersector.template transmittance<E>(shadow);
-                observer.arrives(i, shadow, arrives);
-            }
+            ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, event.hit, *around), aim.distance,
+                                          &light};
+            find_start_plane<E>(scene, shadow.ray);
+            if constexpr (meets_contacts<E, Media> && !in_lanes<Real>)
+                if (meshes) count_meshes(scene, intersector, shadow.ray);
+            rays.add_shadow(lights);
+            if constexpr (in_lanes<Real>)
+                arrives = intersector.template transmittance<E>(shadow, lights);
+            else
+                arrives = intersector.template transmittance<E>(shadow);
+            observer.arrives(i, shadow, arrives);
             const auto diffuse = [&] {
                 return weight * (arrives * phong<Real, Effects<E::mask & ~effect_specular>>(
                                                m, s.color, light, aim.cosine, Real(0), aim.distance));

@@ -51,7 +51,7 @@ std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
 }
 
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
-                             const CameraFrame& camera, Intersection intersection) {
+                             const CameraFrame& camera) {
     Attributes attributes = {
         {"cistula:cameraHash", camera_hash(camera.camera)},
         {"cistula:cutoff", settings.truncation()},
@@ -72,7 +72,6 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
         attributes["cistula:maxSamples"] = settings.max_samples;
         attributes["cistula:targetError"] = settings.target_error;
     }
-    if (intersection == Intersection::native) attributes["cistula:intersector"] = std::string("native");
     return attributes;
 }
 

@@ -14,10 +14,9 @@ namespace cistula {
 using Attributes = decltype(LayeredPicture::attributes);
 
 /// The attributes: scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera,
-/// worldToNDC, screenWindowWidth, imageCounter, and the intersector if it is not the exact one. docs/programs.md
-/// documents each, with those that to_layers() gives.
+/// worldToNDC, screenWindowWidth, imageCounter. docs/programs.md documents each, with those that to_layers() gives.
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
-                             const CameraFrame& camera, Intersection intersection = Intersection::exact);
+                             const CameraFrame& camera);
 
 /// Adds what the scene says of the film: framesPerSecond, owner and comments, where given.
 void add_film_attributes(const FilmDescription& film, Attributes& attributes);

@@ -15,10 +15,6 @@ namespace cistula {
 
 enum class Precision { single_, double_ };
 
-/// How hits are found. exact: the one hit rule, with the same bits everywhere. native: Embree's own triangles,
-/// approximate at edges.
-enum class Intersection { exact, native };
-
 struct FrameSettings {
     int full_width = 640, full_height = 480;
     PixelRect crop;       // the pixels to render; the whole frame: {0, 0, full_width, full_height}
@@ -27,13 +23,12 @@ struct FrameSettings {
     double cutoff = 0;    // error budget per pixel in the scene's radiance units
     double target_error =
         0;  // above 0: adaptive sampling on the 16 x 16 lattice; a quarter of it is the budget for the cutoff
-    int max_samples = 256;    // per pixel, with a target error: 5 to 256
-    KeptParts parts;          // of the film's pixels; with a target error all are kept
-    LayerRequest layers;      // not by every intersector: "exact" ones of the backends
-    uint32_t effects = 0;     // mask to run; 0: the smallest that contains what the scene requires
-    bool unshadowed = false;  // for measuring the cost of shadows: the image is wrong; not with a target error
-    int tile = 16;            // side of a tile in pixels; never changes the image
-    int lanes = 0;            // rays traced at once on the host, at most; 0: as many as can be. Never changes the image
+    int max_samples = 256;  // per pixel, with a target error: 5 to 256
+    KeptParts parts;        // of the film's pixels; with a target error all are kept
+    LayerRequest layers;    // by the renderers of the backends, and "bvh"
+    uint32_t effects = 0;   // mask to run; 0: the smallest that contains what the scene requires
+    int tile = 16;          // side of a tile in pixels; never changes the image
+    int lanes = 0;          // rays traced at once on the host, at most; 0: as many as can be. Never changes the image
 
     bool operator==(const FrameSettings&) const = default;
 
@@ -88,7 +83,7 @@ class Renderer {
     /// The maximum number of rays that the last render traced at once.
     virtual int lanes() const { return 1; }
 
-    /// The name of the intersector: "embree", "native", "bvh", "brute" or "cuda".
+    /// The name of the intersector: "embree", "bvh", "brute" or "cuda".
     virtual std::string intersector() const = 0;
 
     /// Times of the last frame for backends with devices of their own; zeros for others.

@@ -29,8 +29,6 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
         refuse("supersample " + std::to_string(settings.supersample) + ": must be from 1 to 64");
     if (!(settings.cutoff >= 0)) refuse("cutoff: must be at least 0");
     if (!(settings.target_error >= 0)) refuse("target error: must be at least 0");
-    if (settings.unshadowed && settings.adaptive()) refuse("target error: not of a frame without shadows");
-    if (settings.unshadowed && settings.layers.any()) refuse("layers: not of a frame without shadows");
     if (settings.layers.light && scene.layer_names->light_groups.size() > size_t(most_light_groups))
         refuse("light layers: the scene has " + std::to_string(scene.layer_names->light_groups.size()) +
                " groups of lights; put lights together with \"group\", at most " + std::to_string(most_light_groups) +
@@ -65,7 +63,6 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
 /// Index in effect_masks of the kernel for a scene that requires `effects`. Call it after find_camera_solids: a
 /// camera inside a body adds effects. Adaptive sampling runs with all effects.
 inline int mask_to_run(uint32_t effects, const FrameSettings& settings, const FrameView& frame) {
-    if (settings.unshadowed) return unshadowed_mask;
     if (settings.layers.any()) return layered_mask;
     if (frame.tree.budget != 0 || settings.adaptive()) return limited_mask;
     uint32_t of_camera = 0;

@@ -302,6 +302,18 @@ TEST(Backends, WithoutCudaThereIsNothingInstead) {
     EXPECT_EQ(list_devices_text(), "no GPU: this build has no CUDA backend\n");
 }
 
+TEST(Backends, WithOneKernelThereIsNothingInstead) {
+    if (!has_cuda_backend() || CISTULA_EVERY_KERNEL) GTEST_SKIP() << "this build has every kernel, or none";
+    const std::string message =
+        "this build has one kernel of many, to see that it compiles, and uses no GPU; make with CUDA=yes, or CMake "
+        "with "
+        "-DCISTULA_EVERY_KERNEL=ON, builds all; --backend embree renders on the CPU";
+    EXPECT_ERROR(choose_devices(Backend::cuda, {}), ExitCode::device, message);
+    EXPECT_ERROR(make_renderer<float>(Backend::cuda, compile_scene<float>(SceneDescription()), {}), ExitCode::device,
+                 message);
+    EXPECT_EQ(list_devices_text(), message + "\n");
+}
+
 TEST(Stats, NameTheGpusWhereOnesRan) {
     RunStats stats;
     RenderOptions options;
@@ -614,14 +626,17 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     for (int i = 0; i < effect_count; ++i)
         reasons.push_back(
             {1u << i, (1u << i) == effect_diffuse, (1u << i) == effect_diffuse ? "material clay" : "no reason"});
-    const std::string table = explain_table("s.json", {reasons, {"a and b overlap"}});
+    const std::string table = explain_table("s.json", {reasons, {"a and b overlap"}}, Backend::cuda);
     EXPECT_NE(table.find("diffuse              yes     in        material clay\n"), std::string::npos) << table;
     EXPECT_NE(table.find("fresnel              no      left out  no reason\n"), std::string::npos) << table;
-    EXPECT_NE(table.find("Mask 1 of "), std::string::npos) << table;
+    EXPECT_NE(table.find("Mask 1 of 5 "), std::string::npos) << table;
+    const std::string on_cpu = explain_table("s.json", {reasons, {}}, Backend::embree);
+    EXPECT_NE(on_cpu.find("Mask 1 of 2 "), std::string::npos) << on_cpu;
+    EXPECT_NE(on_cpu.find("tint                 no      in        no reason\n"), std::string::npos) << on_cpu;
     EXPECT_EQ(table.find("cost"), std::string::npos) << table;
     EXPECT_NE(table.find("\na and b overlap\n"), std::string::npos) << table;
     const EffectCosts costs{12.5, 7, {{effect_diffuse, 0.25}}};
-    const std::string measured = explain_table("s.json", {reasons, {}}, &costs);
+    const std::string measured = explain_table("s.json", {reasons, {}}, Backend::cuda, &costs);
     EXPECT_NE(measured.find("diffuse              yes     in        25.0 %   material clay\n"), std::string::npos)
         << measured;
     EXPECT_NE(measured.find("fresnel              no      left out  -        no reason\n"), std::string::npos)

@@ -642,27 +642,6 @@ TEST_F(RenderProgram, ThePrecisionIsTheOneThatTheSceneNeedsUnlessOneIsWanted) {
     EXPECT_EQ(precision(), "float");
 }
 
-TEST_F(RenderProgram, NativeImagesSaySoAndAreNotResumedAsExactOnes) {
-    const auto intersector = [&] {
-        return nlohmann::json::parse(bytes_of(file("s.stats.json"))).at("context").at("intersector").get<std::string>();
-    };
-    const Arguments exact{"s.json", "-o", "a.exr", "--resume", "--stats", "s.stats.json"};
-    Arguments native = exact;
-    native.insert(native.end(), {"--intersector", "native"});
-    expect_done(native);
-    EXPECT_EQ(intersector(), "native");
-    EXPECT_EQ(std::get<std::string>(read_exr(file("a.exr")).attributes.at("cistula:intersector")), "native");
-    EXPECT_NE(run(native).error.find("1 of 1 frames are complete"), std::string::npos);
-    expect_done(exact);
-    EXPECT_EQ(intersector(), "embree");
-    EXPECT_EQ(read_exr(file("a.exr")).attributes.count("cistula:intersector"), 0u);
-    const std::string bytes = bytes_of(file("a.exr"));
-    expect_done({"s.json", "-o", "b.exr", "--intersector", "exact"});
-    EXPECT_EQ(bytes_of(file("b.exr")), bytes);
-    expect_done(native);
-    EXPECT_NE(bytes_of(file("a.exr")), bytes);
-}
-
 TEST_F(RenderProgram, ProgressAndSilence) {
     const Arguments film{"s.json", "-o", "a.##.exr"};
     const auto error_of = [&](const Arguments& more) {

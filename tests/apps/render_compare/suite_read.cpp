@@ -80,7 +80,6 @@ TEST_F(SuiteFile, HasTheOptionsOfRender) {
     EXPECT_EQ(adaptive.target_error, 0.02);
     EXPECT_EQ(adaptive.max_samples, 64);
     EXPECT_TRUE(std::isinf(adaptive.channels.z_far));
-    EXPECT_EQ(read_case(R"("intersector": "native")").intersection, Intersection::native);
 }
 
 TEST_F(SuiteFile, LeavesTheRestToTheScene) {
@@ -179,10 +178,6 @@ TEST_F(SuiteFile, WhatExcludesEachOtherIsSaid) {
                         "out");
     expect_refused_case(R"("hash": "00000000000000000000000000000000", "thresholds": {"fail": 1})",
                         " /cases/0/thresholds: a \"hash\" is equal or not; give a \"golden\" image");
-    expect_refused_case(R"("intersector": "native", "backends": ["cuda"])",
-                        " /cases/0: \"intersector\": \"native\" is Embree's; \"backends\" must be [\"embree\"]");
-    expect_refused_case(R"("intersector": "native", "layers": "N")",
-                        " /cases/0: \"layers\" are parts of the exact image; leave \"intersector\" out");
 }
 
 TEST_F(SuiteFile, AMissingFileIsSaid) {

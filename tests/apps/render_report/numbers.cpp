@@ -145,7 +145,7 @@ TEST(SweepPlan, HasEverySettingOnceAndEveryKnob) {
     for (const bool quick : {false, true}) {
         Setting base;
         base.depth = 5;
-        const auto plan = plan_sweep(base, quick, {"native"});
+        const auto plan = plan_sweep(base, quick);
         std::map<std::string, size_t> of_knob;
         for (size_t i = 0; i < plan.size(); ++i) {
             for (size_t j = 0; j < i; ++j) EXPECT_FALSE(plan[i].setting == plan[j].setting);
@@ -176,14 +176,12 @@ TEST(Setting, ATargetStandsForSamplesAndCutoff) {
     Setting setting;
     setting.supersample = 3;
     setting.cutoff = 0.5;
-    setting.intersector = "native";
     EXPECT_EQ(setting_name(setting).rfind("depth:4/", 0), 0u);
     setting = with_target(setting, 0.004);
-    EXPECT_EQ(setting_name(setting), "target:0.004/float/native");
-    EXPECT_EQ(setting_text(setting), "target error 0.004, float, native");
+    EXPECT_EQ(setting_name(setting), "target:0.004/float");
+    EXPECT_EQ(setting_text(setting), "target error 0.004, float");
     EXPECT_EQ(command_line("a.json", 64, 48, setting, "embree"),
-              "render a.json --res 64x48 --target-error 0.004 --precision float --intersector native");
-    setting.intersector = "exact";
+              "render a.json --res 64x48 --target-error 0.004 --precision float");
     setting.precision = Precision::double_;
     EXPECT_EQ(command_line("a.json", 64, 48, setting, "cuda"),
               "render a.json --res 64x48 --target-error 0.004 --precision double --backend cuda");
@@ -194,15 +192,6 @@ TEST(Setting, ATargetStandsForSamplesAndCutoff) {
     EXPECT_EQ(frame.truncation(), 0.001);
     EXPECT_EQ(frame.grid(), 16);
     EXPECT_EQ(frame_settings(Setting(), 64, 48).target_error, 0);
-}
-
-TEST(Intersectors, NativeIsEmbreesAlone) {
-    std::map<std::string, const Intersector*> by_name;
-    for (const Intersector& one : intersectors()) by_name[one.name] = &one;
-    ASSERT_EQ(by_name.count("native"), 1u);
-    EXPECT_TRUE(by_name["native"]->offered(Backend::embree));
-    EXPECT_FALSE(by_name["native"]->offered(Backend::cuda));
-    EXPECT_TRUE(by_name["exact"]->offered(Backend::cuda));
 }
 
 // ---- targets beside fixed settings
