@@ -55,7 +55,7 @@ layers() {
     while [ $# -gt 0 ]; do
         folder=$1
         shift
-        found=(libcore/"$name/$folder"/*)
+        found=(libcore/"$name/$folder"/**/*.{h,cpp})
         later="$*"
         [ -z "$later" ] || includes "${found[@]}" | { grep -E "\"$name/(${later// /|})/" || true; } |
             fail "$name/$folder lies below ${later// /, }"
@@ -66,7 +66,7 @@ layers() {
 
 check() {
     cd "$1"
-    local core=(libcore/cistula/*/*) scene=(libcore/scene/*/*) embree=(backend_embree/**/*.{h,cpp})
+    local core=(libcore/cistula/*/*) scene=(libcore/scene/**/*.{h,cpp}) embree=(backend_embree/**/*.{h,cpp})
     local cuda=(backend_cuda/**/*.{h,cuh,cpp,cu,cu.in}) apps=(apps/**/*.{h,cpp,cu,cpp.in,cu.in}) bench=(bench/**/*.{h,cpp,cu})
     local testing=(testing/**/*.{h,cpp,cu})
     local headers=({libcore,backend_embree,backend_cuda,apps,testing}/**/*.h)
