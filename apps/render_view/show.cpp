@@ -10,7 +10,7 @@
 #include "id_colors.h"
 #include "scene/image/color/file_colors.h"
 #include "scene/image/color/srgb_codes.h"
-#include "scene/image/exr/exr_chroma.h"
+#include "scene/image/exr/exr_file.h"
 
 namespace cistula {
 namespace {

@@ -1,6 +1,6 @@
 // Headers of EXR files that claim more than the file has, or that the library reads as something else than they say,
 // are refused before the library takes memory for them.
-#include "scene/image/exr/exr_header.h"
+#include "scene/image/exr/exr_checks.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,6 @@
 #include <cstring>
 
 #include "scene/image/color/srgb_codes.h"
-#include "scene/image/view/bloom.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {

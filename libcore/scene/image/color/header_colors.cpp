@@ -1,4 +1,4 @@
-#include "scene/image/color/header_colors.h"
+#include "scene/image/color/stated_colors.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/image/color/icc_profile.h"
-#include "scene/image/color/stated_colors.h"
 #include "scene/image/color/tiff_tags.h"
 
 namespace cistula {

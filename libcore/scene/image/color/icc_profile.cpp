@@ -1,4 +1,4 @@
-#include "scene/image/color/icc_profile.h"
+#include "scene/image/color/stated_colors.h"
 
 #include <fmt/format.h>
 

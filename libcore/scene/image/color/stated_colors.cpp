@@ -12,7 +12,6 @@
 #include "cistula/numerics/portable.h"
 #include "scene/base/big_endian.h"
 #include "scene/image/color/color_encoding.h"
-#include "scene/image/color/header_colors.h"
 
 namespace cistula {
 namespace {

@@ -2,42 +2,184 @@
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
-#include <OpenEXR/ImfInputPart.h>
-#include <OpenEXR/ImfPartType.h>
-#include <OpenEXR/ImfTiledInputPart.h>
 
+#include <array>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
 #include <stdexcept>
-#include <type_traits>
+#include <string_view>
 
-#include "scene/image/exr/exr_header.h"
+#include "scene/base/shown_text.h"
 
 namespace cistula {
 namespace {
 
-constexpr int largest_tile_side = 8192;  // the library holds a whole tile in memory, as its header says
+constexpr uint32_t magic = 20000630, several_parts = 0x1000;
+constexpr size_t longest_name = 255;
+constexpr int64_t offset_bytes = 8;  // of a chunk, in the table that precedes the pixels
 
-int lines_per_chunk(Imf::Compression compression) {
-    switch (compression) {
-        case Imf::NO_COMPRESSION:
-        case Imf::RLE_COMPRESSION:
-        case Imf::ZIPS_COMPRESSION:
-            return 1;
-        case Imf::ZIP_COMPRESSION:
-        case Imf::PXR24_COMPRESSION:
-            return 16;
-        case Imf::PIZ_COMPRESSION:
-        case Imf::B44_COMPRESSION:
-        case Imf::B44A_COMPRESSION:
-        case Imf::DWAA_COMPRESSION:
-            return 32;
-        case Imf::DWAB_COMPRESSION:
-            return 256;
-        default:
-            return 1;
+/// A file of numbers, lowest byte first.
+class HeaderBytes {
+  public:
+    explicit HeaderBytes(const std::string& path)
+        : file_(path, std::ios::binary), size_(static_cast<int64_t>(std::filesystem::file_size(path))) {}
+
+    int64_t size() const { return size_; }
+    int64_t left() { return size_ - static_cast<int64_t>(file_.tellg()); }
+    int64_t place() { return static_cast<int64_t>(file_.tellg()); }
+    void go_to(int64_t place) { file_.seekg(place); }
+    bool fails() const { return !file_; }
+
+    uint32_t number() {
+        std::array<unsigned char, 4> bytes{};
+        file_.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
+        return bytes[0] | uint32_t{bytes[1]} << 8 | uint32_t{bytes[2]} << 16 | uint32_t{bytes[3]} << 24;
     }
+    int32_t whole() { return static_cast<int32_t>(number()); }
+
+    /// Text up to a zero byte; nothing if there is none in reach.
+    std::optional<std::string> name() {
+        std::string text;
+        for (char c = 0; file_.get(c) && text.size() <= longest_name;) {
+            if (c == 0) return text;
+            text += c;
+        }
+        return std::nullopt;
+    }
+
+  private:
+    std::ifstream file_;
+    int64_t size_;
+};
+
+[[noreturn]] void fail(const std::string& what) {
+    throw std::runtime_error("its header says that it has " + what + ", more than its bytes can hold; it is damaged");
 }
+
+/// The bytes of a value of each type that has a size of its own. The library reads so many, whatever the size that the
+/// file says.
+const std::map<std::string_view, int32_t> fixed_sizes = {{"box2i", 16},
+                                                         {"box2f", 16},
+                                                         {"chromaticities", 32},
+                                                         {"compression", 1},
+                                                         {"deepImageState", 1},
+                                                         {"double", 8},
+                                                         {"envmap", 1},
+                                                         {"float", 4},
+                                                         {"int", 4},
+                                                         {"keycode", 28},
+                                                         {"lineOrder", 1},
+                                                         {"m33d", 72},
+                                                         {"m33f", 36},
+                                                         {"m44d", 128},
+                                                         {"m44f", 64},
+                                                         {"rational", 8},
+                                                         {"tiledesc", 9},
+                                                         {"timecode", 8},
+                                                         {"v2d", 16},
+                                                         {"v2f", 8},
+                                                         {"v2i", 8},
+                                                         {"v3d", 24},
+                                                         {"v3f", 12},
+                                                         {"v3i", 12}};
+
+/// One header: its attributes up to an empty name.
+class HeaderCheck {
+  public:
+    explicit HeaderCheck(HeaderBytes& bytes) : bytes_(bytes) {}
+
+    /// False where the header ends early.
+    bool run() {
+        for (;;) {
+            const std::optional<std::string> name = bytes_.name();
+            if (!name) return false;
+            if (name->empty()) break;
+            const std::optional<std::string> type = bytes_.name();
+            const int32_t size = bytes_.whole();
+            if (!type || bytes_.fails()) return false;
+            if (size < 0 || size > bytes_.left())
+                fail("an attribute " + quoted(std::string_view(*name)) + " of " +
+                     std::to_string(static_cast<uint32_t>(size)) + " bytes");
+            const int64_t end = bytes_.place() + size;
+            const auto fixed = fixed_sizes.find(*type);
+            if (fixed != fixed_sizes.end() && size != fixed->second) fail_size(*name, *type);
+            look_at(*name, *type, end);
+            bytes_.go_to(end);
+        }
+        check_chunks();
+        return true;
+    }
+
+  private:
+    [[noreturn]] static void fail_size(const std::string& name, const std::string& type) {
+        throw std::runtime_error("the attribute " + quoted(std::string_view(name)) +
+                                 " of its header does not have the size of its type, " +
+                                 quoted(std::string_view(type)) + "; it is damaged");
+    }
+
+    /// Channels up to an empty name: the library stops there, whatever the size that the file says. False where they do
+    /// not end at `end`.
+    bool channels_end_at(int64_t end) {
+        constexpr int64_t bytes_after_name = 16;
+        while (bytes_.place() < end) {
+            const std::optional<std::string> channel = bytes_.name();
+            if (!channel) return false;
+            if (channel->empty()) return bytes_.place() == end;
+            bytes_.go_to(bytes_.place() + bytes_after_name);
+        }
+        return false;
+    }
+
+    /// Reads what the library takes memory by, and what it reads by another size than the attribute's own.
+    void look_at(const std::string& name, const std::string& type, int64_t end) {
+        if (type == "chlist") {
+            if (!channels_end_at(end)) fail_size(name, type);
+        } else if (type == "floatvector") {
+            if ((end - bytes_.place()) % 4 != 0) fail_size(name, type);
+        } else if (type == "stringvector") {
+            while (bytes_.place() + 4 <= end) {
+                const int32_t size = bytes_.whole();
+                if (size < 0 || bytes_.place() + size > end)
+                    fail("a text too long in " + quoted(std::string_view(name)));
+                bytes_.go_to(bytes_.place() + size);
+            }
+            if (bytes_.place() != end) fail_size(name, type);
+        } else if (type == "preview") {
+            const int64_t width = bytes_.number(), height = bytes_.number();
+            if (width != 0 && height > (end - bytes_.place()) / 4 / width) fail("a preview too large");
+            if (bytes_.place() + 4 * width * height != end) fail_size(name, type);
+        } else if (type == "idmanifest") {
+            if (bytes_.number() / 2048 > static_cast<uint32_t>(end - bytes_.place())) fail("a manifest too large");
+        } else if (name == "dataWindow" && type == "box2i") {
+            const int64_t left = bytes_.whole(), top = bytes_.whole(), right = bytes_.whole(), bottom = bytes_.whole();
+            width_ = right - left + 1;
+            height_ = bottom - top + 1;
+        } else if (name == "tiles" && type == "tiledesc") {
+            tile_width_ = bytes_.number();
+            tile_height_ = bytes_.number();
+        }
+    }
+
+    /// Chunks have an offset each in the file: tiles, or at most 256 lines.
+    void check_chunks() const {
+        if (width_ <= 0 || height_ <= 0) return;
+        constexpr int64_t most_lines = 256;
+        const int64_t lines = tile_height_ > 0 ? tile_height_ : most_lines;
+        const int64_t columns = tile_width_ > 0 ? (width_ + tile_width_ - 1) / tile_width_ : 1;
+        const int64_t rows = (height_ + lines - 1) / lines;
+        if (columns > bytes_.size() / offset_bytes / rows)
+            fail(std::to_string(width_) + "x" + std::to_string(height_) + " pixels");
+    }
+
+    HeaderBytes& bytes_;
+    int64_t width_ = 0, height_ = 0, tile_width_ = 0, tile_height_ = 0;
+};
+
+constexpr int largest_tile_side = 8192;  // the library holds a whole tile in memory, as its header says
 
 void limit_sizes() {
     static const bool once = [] {
@@ -49,6 +191,20 @@ void limit_sizes() {
 }
 
 }  // namespace
+
+void check_exr_header(const std::string& path) {
+    HeaderBytes bytes(path);
+    if (bytes.number() != magic) return;
+    const bool has_parts = (bytes.number() & several_parts) != 0;
+    do {
+        if (!HeaderCheck(bytes).run()) return;
+        if (!has_parts) return;
+        const int64_t place = bytes.place();
+        const std::optional<std::string> next = bytes.name();
+        if (!next || next->empty()) return;  // an empty header ends the list
+        bytes.go_to(place);
+    } while (!bytes.fails());
+}
 
 void check_before_opening(const std::string& path) {
     limit_sizes();
@@ -73,45 +229,6 @@ void check_claim(const Imf::Header& header, const std::string& path) {
         throw std::runtime_error("it says that it has " + std::to_string(static_cast<int64_t>(width)) + "x" +
                                  std::to_string(static_cast<int64_t>(height)) +
                                  " pixels, more than its bytes can hold; it is damaged");
-}
-
-template <class File>
-void check_chunks(File& file) {
-    if (!file.isComplete()) throw std::runtime_error("the file is not complete: chunks of pixels are missing");
-    if constexpr (!std::is_same_v<File, Imf::TiledInputPart>) {
-        if (file.header().hasTileDescription()) return;
-        const Imath::Box2i window = file.header().dataWindow();
-        const int step = lines_per_chunk(file.header().compression());
-        for (int64_t y = window.min.y; y <= window.max.y; y += step) {
-            const char* bytes = nullptr;
-            int count = 0;
-            file.rawPixelData(static_cast<int>(y), bytes, count);
-        }
-    }
-}
-
-template void check_chunks(Imf::InputFile& file);
-template void check_chunks(Imf::InputPart& file);
-template void check_chunks(Imf::TiledInputPart& file);
-
-void check_sampling(const Imf::Header& header, bool is_chroma) {
-    const Imf::ChannelList& channels = header.channels();
-    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
-        const std::string name = channel.name();
-        check_sampling(name, channel.channel(), is_chroma && (name == "RY" || name == "BY"));
-    }
-}
-
-void check_sampling(const std::string& name, const Imf::Channel& channel, bool may_be_halved) {
-    const int x = channel.xSampling, y = channel.ySampling;
-    if ((x != 1 || y != 1) && !(may_be_halved && x == 2 && y == 2))
-        throw std::runtime_error("channel " + name + " is subsampled; convert it to one value per pixel" +
-                                 (may_be_halved ? ", or one for two by two" : ""));
-}
-
-void check_flat(const Imf::Header& header, const std::string& subject) {
-    if (header.hasType() && Imf::isDeepData(header.type()))
-        throw std::runtime_error(subject + " is deep, with several samples in a pixel; flatten it first");
 }
 
 }  // namespace cistula

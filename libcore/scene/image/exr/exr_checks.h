@@ -1,8 +1,7 @@
 // What is checked of an OpenEXR file before its pixels are read, for all of its readers. Private to image/.
 #pragma once
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfForward.h>
 
 #include <cerrno>
 #include <exception>
@@ -34,22 +33,12 @@ auto with_file_errors(const std::string& path, Read read) {
 /// its limits are set, and check_exr_header.
 void check_before_opening(const std::string& path);
 
-/// Throws for several samples in a pixel; the message calls the part `subject`.
-void check_flat(const Imf::Header& header, const std::string& subject = "it");
-
-/// Throws unless a channel has one value per pixel, or, where it `may_be_halved`, one for two by two.
-void check_sampling(const std::string& name, const Imf::Channel& channel, bool may_be_halved = false);
-
-/// Throws unless all channels have one value per pixel; where `is_chroma`, RY and BY may have one for two by two.
-void check_sampling(const Imf::Header& header, bool is_chroma = false);
+/// Throws std::runtime_error for a header that says more than the file's bytes can hold: the OpenEXR library takes the
+/// memory for attributes and tables of chunks before it reads them. Says nothing of files that are no EXR or whose
+/// header ends early, which the library refuses by itself. Layout: "OpenEXR File Layout", openexr.com.
+void check_exr_header(const std::string& path);
 
 /// Throws for a header that says more pixels than a file of its size can hold, before memory is taken for them.
 void check_claim(const Imf::Header& header, const std::string& path);
-
-/// Throws unless every chunk is present. The table of offsets is not enough: it precedes the pixels, so a truncated
-/// file has all of it. Tiles are checked when their pixels are read. File: Imf::InputFile, Imf::InputPart
-/// or Imf::TiledInputPart.
-template <class File>
-void check_chunks(File& file);
 
 }  // namespace cistula

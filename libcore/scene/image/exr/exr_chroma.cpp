@@ -1,4 +1,4 @@
-#include "scene/image/exr/exr_chroma.h"
+#include "scene/image/exr/exr_file.h"
 
 #include <algorithm>
 #include <vector>

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/image/exr/exr.h"
 #include "scene/image/picture/picture.h"
 #include "scene/image/picture/stored_picture.h"
 
@@ -36,6 +37,7 @@ struct ExrPart {
     std::string name;           // files of one part need not have one
     int width = 0, height = 0;  // of the data window
     int full_height = 0;        // of the display window
+    Compression compression = Compression::other;
     PixelRect data, display;
     std::vector<ExrLevel> levels;  // {0, 0} is the whole resolution, and first
     decltype(LayeredPicture::attributes) attributes;
@@ -47,8 +49,9 @@ struct ExrPart {
 /// The file stays open, so what is read is what the headers said.
 class ExrFile {
   public:
-    /// Reads the headers. Scan line and tiled parts. Throws Error(ExitCode::file); deep data is refused.
-    explicit ExrFile(const std::string& path);
+    /// Reads the headers. Scan line and tiled parts. Throws Error(ExitCode::file); deep data is refused, and so is a
+    /// first part with a `size_problem`.
+    explicit ExrFile(const std::string& path, const SizeProblem& size_problem = {});
     ~ExrFile();
     ExrFile(const ExrFile&) = delete;
     ExrFile& operator=(const ExrFile&) = delete;
@@ -62,6 +65,13 @@ class ExrFile {
     std::vector<ExrChannel> read(size_t part, const std::vector<size_t>& channels, ExrLevel level,
                                  PixelRect& window) const;
 
+    /// A picture whose texels have the values of the first channel as red, of the second as green, of the third as
+    /// blue; those of subsampled channels in the first of their pixels alone. Throws Error(ExitCode::file).
+    ColorPicture read_colors(size_t part, const std::vector<size_t>& channels) const;
+
+    /// Throws Error(ExitCode::file) unless all pixels of a part are there.
+    void check_complete(size_t part) const;
+
   private:
     struct Open;
 
@@ -73,5 +83,11 @@ class ExrFile {
 /// All of a file as it stands: parts, levels, channels and attributes. Throws Error(ExitCode::file); deep data is
 /// refused.
 StoredFile read_stored_exr(const std::string& path);
+
+/// Makes R, G and B of texels that hold RY = (R - Y) / Y, Y and BY = (B - Y) / Y. A channel that `is_halved` holds in
+/// the texels of even x and y alone; the others are filtered from these as OpenEXR's RgbaInputFile does, and colors
+/// that this made more saturated than their neighbors are desaturated, as there. In double, so that the same file gives
+/// the same bits with every version of that library. `weights` are the shares of R, G and B in Y.
+void colors_from_chroma(ColorPicture& picture, const bool (&is_halved)[3], const glm::dvec3& weights);
 
 }  // namespace cistula

@@ -1,195 +1,148 @@
 #include "scene/image/exr/exr_header.h"
 
-#include <array>
-#include <cstdint>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <optional>
-#include <stdexcept>
-#include <string_view>
+#include <OpenEXR/ImfAttribute.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfRationalAttribute.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTileDescription.h>
+#include <OpenEXR/ImfVersion.h>
+#include <fmt/format.h>
 
-#include "scene/base/shown_text.h"
+#include <algorithm>
+#include <bit>
+#include <set>
+#include <string_view>
 
 namespace cistula {
 namespace {
 
-constexpr uint32_t magic = 20000630, several_parts = 0x1000;
-constexpr size_t longest_name = 255;
-constexpr int64_t offset_bytes = 8;  // of a chunk, in the table that precedes the pixels
+static_assert(std::endian::native == std::endian::little, "numbers in EXR files begin with their lowest byte");
 
-/// A file of numbers, lowest byte first.
-class HeaderBytes {
+/// A stream into memory.
+class MemoryStream : public Imf::OStream {
   public:
-    explicit HeaderBytes(const std::string& path)
-        : file_(path, std::ios::binary), size_(static_cast<int64_t>(std::filesystem::file_size(path))) {}
+    MemoryStream() : Imf::OStream("memory") {}
 
-    int64_t size() const { return size_; }
-    int64_t left() { return size_ - static_cast<int64_t>(file_.tellg()); }
-    int64_t place() { return static_cast<int64_t>(file_.tellg()); }
-    void go_to(int64_t place) { file_.seekg(place); }
-    bool fails() const { return !file_; }
-
-    uint32_t number() {
-        std::array<unsigned char, 4> bytes{};
-        file_.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
-        return bytes[0] | uint32_t{bytes[1]} << 8 | uint32_t{bytes[2]} << 16 | uint32_t{bytes[3]} << 24;
+    void write(const char bytes[], int count) override {
+        const auto size = static_cast<size_t>(count);
+        if (place_ + size > bytes_.size()) bytes_.resize(place_ + size);
+        std::copy(bytes, bytes + count, bytes_.begin() + static_cast<std::ptrdiff_t>(place_));
+        place_ += size;
     }
-    int32_t whole() { return static_cast<int32_t>(number()); }
+    uint64_t tellp() override { return place_; }
+    void seekp(uint64_t at) override { place_ = static_cast<size_t>(at); }
 
-    /// Text up to a zero byte; nothing if there is none in reach.
-    std::optional<std::string> name() {
-        std::string text;
-        for (char c = 0; file_.get(c) && text.size() <= longest_name;) {
-            if (c == 0) return text;
-            text += c;
-        }
-        return std::nullopt;
-    }
+    std::string take() { return std::move(bytes_); }
 
   private:
-    std::ifstream file_;
-    int64_t size_;
+    std::string bytes_;
+    size_t place_ = 0;
 };
 
-[[noreturn]] void fail(const std::string& what) {
-    throw std::runtime_error("its header says that it has " + what + ", more than its bytes can hold; it is damaged");
+/// Numbers with blanks between, each the shortest text that reads back as the same.
+template <class Number>
+std::string numbers_text(std::string_view bytes) {
+    std::vector<Number> numbers(bytes.size() / sizeof(Number));
+    std::copy_n(bytes.data(), numbers.size() * sizeof(Number), reinterpret_cast<char*>(numbers.data()));
+    return fmt::format("{}", fmt::join(numbers, " "));
 }
 
-/// The bytes of a value of each type that has a size of its own. The library reads so many, whatever the size that the
-/// file says.
-const std::map<std::string_view, int32_t> fixed_sizes = {{"box2i", 16},
-                                                         {"box2f", 16},
-                                                         {"chromaticities", 32},
-                                                         {"compression", 1},
-                                                         {"deepImageState", 1},
-                                                         {"double", 8},
-                                                         {"envmap", 1},
-                                                         {"float", 4},
-                                                         {"int", 4},
-                                                         {"keycode", 28},
-                                                         {"lineOrder", 1},
-                                                         {"m33d", 72},
-                                                         {"m33f", 36},
-                                                         {"m44d", 128},
-                                                         {"m44f", 64},
-                                                         {"rational", 8},
-                                                         {"tiledesc", 9},
-                                                         {"timecode", 8},
-                                                         {"v2d", 16},
-                                                         {"v2f", 8},
-                                                         {"v2i", 8},
-                                                         {"v3d", 24},
-                                                         {"v3f", 12},
-                                                         {"v3i", 12}};
+std::string text_of(std::string_view type, std::string_view bytes) {
+    static const std::set<std::string_view> floats = {"float", "floatvector", "box2f", "v2f",
+                                                      "v3f",   "m33f",        "m44f",  "chromaticities"};
+    static const std::set<std::string_view> doubles = {"double", "v2d", "v3d", "m33d", "m44d"};
+    static const std::set<std::string_view> wholes = {"int", "box2i", "v2i", "v3i", "keycode"};
+    if (type == "string") return std::string(bytes);
+    if (type == "rational" && bytes.size() == 8)
+        return numbers_text<int32_t>(bytes.substr(0, 4)) + "/" + numbers_text<uint32_t>(bytes.substr(4));
+    if (floats.count(type) > 0) return numbers_text<float>(bytes);
+    if (doubles.count(type) > 0) return numbers_text<double>(bytes);
+    if (wholes.count(type) > 0) return numbers_text<int32_t>(bytes);
+    constexpr size_t shown_bytes = 32;
+    const std::string_view first = bytes.substr(0, shown_bytes);
+    std::string text = fmt::format("{} byte{}:", bytes.size(), bytes.size() == 1 ? "" : "s");
+    for (const char byte : first) text += fmt::format(" {:02x}", static_cast<unsigned char>(byte));
+    return text + (bytes.size() > first.size() ? " ..." : "");
+}
 
-/// One header: its attributes up to an empty name.
-class HeaderCheck {
-  public:
-    explicit HeaderCheck(HeaderBytes& bytes) : bytes_(bytes) {}
-
-    /// False where the header ends early.
-    bool run() {
-        for (;;) {
-            const std::optional<std::string> name = bytes_.name();
-            if (!name) return false;
-            if (name->empty()) break;
-            const std::optional<std::string> type = bytes_.name();
-            const int32_t size = bytes_.whole();
-            if (!type || bytes_.fails()) return false;
-            if (size < 0 || size > bytes_.left())
-                fail("an attribute " + quoted(std::string_view(*name)) + " of " +
-                     std::to_string(static_cast<uint32_t>(size)) + " bytes");
-            const int64_t end = bytes_.place() + size;
-            const auto fixed = fixed_sizes.find(*type);
-            if (fixed != fixed_sizes.end() && size != fixed->second) fail_size(*name, *type);
-            look_at(*name, *type, end);
-            bytes_.go_to(end);
-        }
-        check_chunks();
-        return true;
-    }
-
-  private:
-    [[noreturn]] static void fail_size(const std::string& name, const std::string& type) {
-        throw std::runtime_error("the attribute " + quoted(std::string_view(name)) +
-                                 " of its header does not have the size of its type, " +
-                                 quoted(std::string_view(type)) + "; it is damaged");
-    }
-
-    /// Channels up to an empty name: the library stops there, whatever the size that the file says. False where they do
-    /// not end at `end`.
-    bool channels_end_at(int64_t end) {
-        constexpr int64_t bytes_after_name = 16;
-        while (bytes_.place() < end) {
-            const std::optional<std::string> channel = bytes_.name();
-            if (!channel) return false;
-            if (channel->empty()) return bytes_.place() == end;
-            bytes_.go_to(bytes_.place() + bytes_after_name);
-        }
-        return false;
-    }
-
-    /// Reads what the library takes memory by, and what it reads by another size than the attribute's own.
-    void look_at(const std::string& name, const std::string& type, int64_t end) {
-        if (type == "chlist") {
-            if (!channels_end_at(end)) fail_size(name, type);
-        } else if (type == "floatvector") {
-            if ((end - bytes_.place()) % 4 != 0) fail_size(name, type);
-        } else if (type == "stringvector") {
-            while (bytes_.place() + 4 <= end) {
-                const int32_t size = bytes_.whole();
-                if (size < 0 || bytes_.place() + size > end)
-                    fail("a text too long in " + quoted(std::string_view(name)));
-                bytes_.go_to(bytes_.place() + size);
-            }
-            if (bytes_.place() != end) fail_size(name, type);
-        } else if (type == "preview") {
-            const int64_t width = bytes_.number(), height = bytes_.number();
-            if (width != 0 && height > (end - bytes_.place()) / 4 / width) fail("a preview too large");
-            if (bytes_.place() + 4 * width * height != end) fail_size(name, type);
-        } else if (type == "idmanifest") {
-            if (bytes_.number() / 2048 > static_cast<uint32_t>(end - bytes_.place())) fail("a manifest too large");
-        } else if (name == "dataWindow" && type == "box2i") {
-            const int64_t left = bytes_.whole(), top = bytes_.whole(), right = bytes_.whole(), bottom = bytes_.whole();
-            width_ = right - left + 1;
-            height_ = bottom - top + 1;
-        } else if (name == "tiles" && type == "tiledesc") {
-            tile_width_ = bytes_.number();
-            tile_height_ = bytes_.number();
-        }
-    }
-
-    /// Chunks have an offset each in the file: tiles, or at most 256 lines.
-    void check_chunks() const {
-        if (width_ <= 0 || height_ <= 0) return;
-        constexpr int64_t most_lines = 256;
-        const int64_t lines = tile_height_ > 0 ? tile_height_ : most_lines;
-        const int64_t columns = tile_width_ > 0 ? (width_ + tile_width_ - 1) / tile_width_ : 1;
-        const int64_t rows = (height_ + lines - 1) / lines;
-        if (columns > bytes_.size() / offset_bytes / rows)
-            fail(std::to_string(width_) + "x" + std::to_string(height_) + " pixels");
-    }
-
-    HeaderBytes& bytes_;
-    int64_t width_ = 0, height_ = 0, tile_width_ = 0, tile_height_ = 0;
-};
+/// What is said elsewhere: windows, channels, names, and how the pixels are packed.
+bool is_said_elsewhere(std::string_view name) {
+    static const std::set<std::string_view> names = {"channels", "dataWindow",  "displayWindow",      "name",
+                                                     "type",     "compression", "lineOrder",          "tiles",
+                                                     "version",  "chunkCount",  "dwaCompressionLevel"};
+    return names.count(name) > 0;
+}
 
 }  // namespace
 
-void check_exr_header(const std::string& path) {
-    HeaderBytes bytes(path);
-    if (bytes.number() != magic) return;
-    const bool has_parts = (bytes.number() & several_parts) != 0;
-    do {
-        if (!HeaderCheck(bytes).run()) return;
-        if (!has_parts) return;
-        const int64_t place = bytes.place();
-        const std::optional<std::string> next = bytes.name();
-        if (!next || next->empty()) return;  // an empty header ends the list
-        bytes.go_to(place);
-    } while (!bytes.fails());
+std::map<std::string, StoredAttribute> exr_header_values(const Imf::Header& header) {
+    std::map<std::string, StoredAttribute> values;
+    for (auto entry = header.begin(); entry != header.end(); ++entry) {
+        if (is_said_elsewhere(entry.name())) continue;
+        MemoryStream stream;
+        entry.attribute().writeValueTo(stream, Imf::EXR_VERSION);
+        const std::string type = entry.attribute().typeName(), bytes = stream.take();
+        values[entry.name()] = {type, bytes, text_of(type, bytes)};
+    }
+    return values;
+}
+
+std::map<std::string, std::string> exr_packing(const Imf::Header& header) {
+    std::map<std::string, std::string> packing;
+    packing["compression"] = fmt::format("number {}", static_cast<int>(header.compression()));
+    for (const NamedCompression& named : compressions)
+        if (named.theirs == header.compression()) packing["compression"] = named.name;
+    const Imf::LineOrder order = header.lineOrder();
+    packing["order of lines"] = order == Imf::INCREASING_Y ? "downward" : order == Imf::DECREASING_Y ? "upward" : "any";
+    packing["tiles"] = header.hasTileDescription()
+                           ? fmt::format("{}x{}", header.tileDescription().xSize, header.tileDescription().ySize)
+                           : "none";
+    return packing;
+}
+
+Compression compression_of(Imf::Compression compression) {
+    for (const NamedCompression& named : compressions)
+        if (named.theirs == compression) return named.ours;
+    return Compression::other;
+}
+
+ExrAttributes read_attributes(const Imf::Header& header) {
+    ExrAttributes attributes;
+    for (auto entry = header.begin(); entry != header.end(); ++entry) {
+        const std::string name = entry.name();
+        // Every file has these, and every part.
+        if (name == "pixelAspectRatio" || (name == "screenWindowWidth" && header.screenWindowWidth() == 1)) continue;
+        if (name == "name" || name == "type" || name == "chunkCount") continue;
+        const Imf::Attribute& attribute = entry.attribute();
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
+            attributes[name] = text->value();
+        } else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&attribute)) {
+            attributes[name] = whole->value();
+        } else if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) {
+            attributes[name] = number->value();
+        } else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) {
+            attributes[name] = static_cast<double>(single->value());
+        } else if (const auto* ratio = dynamic_cast<const Imf::RationalAttribute*>(&attribute)) {
+            attributes[name] = Ratio{ratio->value().n, ratio->value().d};
+        } else if (const auto* list = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute)) {
+            attributes[name] = std::vector<float>(list->value());
+        } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute)) {
+            const float* first = matrix->value().getValue();
+            attributes[name] = std::vector<float>(first, first + 16);
+        } else if (const auto* colors = dynamic_cast<const Imf::ChromaticitiesAttribute*>(&attribute)) {
+            const Imf::Chromaticities& c = colors->value();
+            attributes[name] =
+                std::vector<float>{c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y};
+        }
+    }
+    return attributes;
 }
 
 }  // namespace cistula

@@ -30,7 +30,7 @@
 #include "scene/base/atomic_file.h"
 #include "scene/base/default_rounding.h"
 #include "scene/image/exr/exr.h"
-#include "scene/image/exr/exr_compression.h"
+#include "scene/image/exr/exr_header.h"
 #include "scene/image/exr/exr_zip.h"
 
 namespace cistula {
@@ -138,7 +138,7 @@ void insert(Imf::Header& header, const std::string& name, const std::vector<floa
 
 Imf::Compression compression_of(Compression compression) {
     for (const NamedCompression& named : compressions)
-        if (named.ours == compression) return named.theirs;
+        if (named.ours == compression && compression != Compression::other) return named.theirs;
     throw std::invalid_argument("write_exr: no such compression");
 }
 

@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-/// Reads one texture as linear Rec. 709 by a TextureReader (texture_reader.h) of its own, within the default limits;
+/// Reads one texture as linear Rec. 709 by a TextureReader (picture_reader.h) of its own, within the default limits;
 /// every texel must be finite and not negative. `encoding` says what its numbers mean, as a texture's key "colorspace"
 /// does (docs/scene.md). Other pictures than .data and .out need the program cistula-read-picture, and those that are
 /// not OpenEXR the module libcistula_oiio.so beside it. Starting it takes a while, so one TextureReader for several is

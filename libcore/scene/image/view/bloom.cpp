@@ -1,4 +1,4 @@
-#include "scene/image/view/bloom.h"
+#include "scene/image/view/picture_view.h"
 
 #include <algorithm>
 #include <utility>

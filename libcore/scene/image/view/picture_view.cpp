@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "cistula/numerics/elementary.h"
-#include "scene/image/view/bloom.h"
 
 namespace cistula {
 
