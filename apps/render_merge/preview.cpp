@@ -4,8 +4,8 @@
 
 #include "scene/base/error.h"
 #include "scene/image/color/color_space.h"
-#include "scene/image/picture/picture_io.h"
 #include "scene/image/picture/picture.h"
+#include "scene/image/picture/picture_io.h"
 
 namespace cistula {
 namespace {
