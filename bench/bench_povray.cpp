@@ -14,7 +14,7 @@
 #include "povray_scene.h"
 #include "program.h"
 #include "scene/base/error.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::bench {

@@ -12,7 +12,7 @@ list(APPEND _headers cistula.h scene/base/pixel_rect.h scene/base/shown_text.h s
     scene/film/film_memory.h
     scene/film/film_pixels.h
     scene/film/finished_tiles.h
-    scene/image/color_space.h)
+    scene/image/color/color_space.h)
 foreach(_header IN LISTS _headers)
     cmake_path(GET _header PARENT_PATH _folder)
     install(FILES "libcore/${_header}" DESTINATION "${CISTULA_INSTALL_HEADERS}/${_folder}")

@@ -15,7 +15,7 @@
 #include "scene/film/frame_header.h"         // header_attributes
 #include "scene/film/frame_settings.h"       // frame_settings
 #include "scene/film/renderer.h"             // FrameSettings, Renderer
-#include "scene/image/exr.h"                 // write_exr
-#include "scene/image/picture.h"             // ColorPicture, LayeredPicture
-#include "scene/image/picture_io.h"          // write_preview, read_texture
+#include "scene/image/exr/exr.h"             // write_exr
+#include "scene/image/picture/picture.h"     // ColorPicture, LayeredPicture
+#include "scene/image/picture/picture_io.h"  // write_preview, read_texture
 #include "scene/readers/read_scene.h"        // read_scene

@@ -55,7 +55,7 @@ layers() {
     while [ $# -gt 0 ]; do
         folder=$1
         shift
-        found=(libcore/"$name/$folder"/*)
+        found=(libcore/"$name/$folder"/**/*.{h,cpp})
         later="$*"
         [ -z "$later" ] || includes "${found[@]}" | { grep -E "\"$name/(${later// /|})/" || true; } |
             fail "$name/$folder lies below ${later// /, }"
@@ -66,7 +66,7 @@ layers() {
 
 check() {
     cd "$1"
-    local core=(libcore/cistula/*/*) scene=(libcore/scene/*/*) embree=(backend_embree/**/*.{h,cpp})
+    local core=(libcore/cistula/*/*) scene=(libcore/scene/**/*.{h,cpp}) embree=(backend_embree/**/*.{h,cpp})
     local cuda=(backend_cuda/**/*.{h,cuh,cpp,cu,cu.in}) apps=(apps/**/*.{h,cpp,cu,cpp.in,cu.in}) bench=(bench/**/*.{h,cpp,cu})
     local testing=(testing/**/*.{h,cpp,cu})
     local headers=({libcore,backend_embree,backend_cuda,apps,testing}/**/*.h)
@@ -135,7 +135,7 @@ check() {
 }
 
 good_tree() {
-    mkdir -p "$1"/{libcore/cistula/{numerics,model,lights},libcore/scene/{base,frame},backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
+    mkdir -p "$1"/{libcore/cistula/{numerics,model,lights},libcore/scene/{base,image/exr,frame},backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
     printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$1/$portable"
     printf 'add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu)\ntarget_compile_options(gpu_check_fast PRIVATE --use_fast_math)\n' >"$1/bench/gpu/CMakeLists.txt"
     printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/numerics/portable.h"\n// not std::pow(x)\n' >"$1/libcore/cistula/model/good.h"
@@ -164,6 +164,8 @@ all_rules() {
     breaks libcore/cistula/a.h '#include "cistula/numerics/portable.h"'
     breaks libcore/scene/base/a.h '#include "scene/film/film.h"'
     breaks libcore/scene/base/a.cpp '#include "scene/frame/frame_view.h"'
+    breaks libcore/scene/image/exr/a.cpp '#include "scene/film/film.h"'
+    breaks libcore/scene/image/exr/a.cpp '#include "backend_embree/embree/embree_renderer.h"'
     breaks libcore/scene/frame/a.cpp '#include "scene/film.h"'
     breaks libcore/scene/frame/a.cpp '#include "testing/generated_scene.h"'
     breaks backend_embree/host/a.cpp '#include "testing/generated_scene.h"'

@@ -21,7 +21,7 @@
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
 #include "scene/base/stages.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 
 namespace cistula {
 namespace {

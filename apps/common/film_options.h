@@ -8,7 +8,7 @@
 #include "scene/film/film_picture.h"
 #include "scene/film/renderer.h"
 #include "scene/film/split_picture.h"
-#include "scene/image/picture_view.h"
+#include "scene/image/view/picture_view.h"
 
 namespace cistula {
 

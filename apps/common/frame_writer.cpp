@@ -14,9 +14,9 @@
 #include "scene/base/error.h"
 #include "scene/base/out_of_memory.h"
 #include "scene/base/stages.h"
-#include "scene/image/exr.h"
-#include "scene/image/picture_io.h"
-#include "scene/image/raw_picture.h"
+#include "scene/image/exr/exr.h"
+#include "scene/image/picture/picture_io.h"
+#include "scene/image/picture/raw_picture.h"
 
 namespace cistula {
 namespace {

@@ -18,7 +18,7 @@
 #include "apps/common/stats.h"
 #include "scene/film/film.h"
 #include "scene/film/film_picture.h"
-#include "scene/image/picture_view.h"
+#include "scene/image/view/picture_view.h"
 
 namespace cistula {
 

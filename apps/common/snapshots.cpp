@@ -6,8 +6,8 @@
 #include "scene/base/out_of_memory.h"
 #include "scene/film/film_picture.h"
 #include "scene/film/split_picture.h"
-#include "scene/image/exr.h"
-#include "scene/image/raw_picture.h"
+#include "scene/image/exr/exr.h"
+#include "scene/image/picture/raw_picture.h"
 
 namespace cistula {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene/image/picture_view.h"
+#include "scene/image/view/picture_view.h"
 
 namespace CLI {
 class App;

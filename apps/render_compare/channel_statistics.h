@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/image/stored_picture.h"
+#include "scene/image/picture/stored_picture.h"
 #include "selection.h"
 
 namespace cistula {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "channel_statistics.h"
-#include "scene/image/picture.h"
-#include "scene/image/stored_picture.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/picture/stored_picture.h"
 #include "selection.h"
 
 namespace cistula {

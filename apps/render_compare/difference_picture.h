@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "scene/image/picture.h"
-#include "scene/image/stored_picture.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/picture/stored_picture.h"
 #include "selection.h"
 
 namespace cistula {

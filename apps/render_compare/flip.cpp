@@ -24,9 +24,9 @@
 #include "picture_pairs.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/file_bytes.h"
-#include "scene/image/exr.h"
-#include "scene/image/png.h"
-#include "scene/image/srgb_codes.h"
+#include "scene/image/color/srgb_codes.h"
+#include "scene/image/exr/exr.h"
+#include "scene/image/picture/png.h"
 
 namespace cistula {
 namespace {

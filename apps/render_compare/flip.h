@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene/image/stored_picture.h"
+#include "scene/image/picture/stored_picture.h"
 #include "selection.h"
 
 namespace cistula {

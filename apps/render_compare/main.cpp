@@ -12,8 +12,8 @@
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
 #include "scene/base/shown_text.h"
-#include "scene/image/exr.h"
-#include "scene/image/stored_reader.h"
+#include "scene/image/exr/exr.h"
+#include "scene/image/reader/picture_reader.h"
 #include "suite_program.h"
 #include "sums.h"
 

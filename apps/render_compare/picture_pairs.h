@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/image/stored_picture.h"
+#include "scene/image/picture/stored_picture.h"
 
 namespace cistula {
 

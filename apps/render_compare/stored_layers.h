@@ -1,8 +1,8 @@
 // Pictures in memory as their file would have them.
 #pragma once
 
-#include "scene/image/picture.h"
-#include "scene/image/stored_picture.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/picture/stored_picture.h"
 
 namespace cistula {
 

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "report.h"
-#include "scene/image/picture_hash.h"
-#include "scene/image/picture_lookup.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/picture/picture_hash.h"
 
 namespace cistula {
 namespace {

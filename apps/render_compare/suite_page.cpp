@@ -10,7 +10,7 @@
 #include "apps/common/page_parts.h"
 #include "apps/common/run_context.h"
 #include "scene/base/error.h"
-#include "scene/image/png.h"
+#include "scene/image/picture/png.h"
 #include "suite_pixels.h"
 
 namespace cistula {

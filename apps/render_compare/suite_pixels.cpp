@@ -12,8 +12,8 @@
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/scene_names.h"
-#include "scene/image/picture_hash.h"
-#include "scene/image/picture_lookup.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/picture/picture_hash.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula {

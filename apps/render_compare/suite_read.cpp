@@ -9,7 +9,7 @@
 #include "apps/common/layer_list.h"
 #include "apps/common/output_name.h"
 #include "scene/base/file_bytes.h"
-#include "scene/image/color_space.h"
+#include "scene/image/color/color_space.h"
 #include "scene/readers/json_reader.h"
 #include "suite.h"
 #include "suite_keys.h"

@@ -14,7 +14,7 @@
 #include "scene/compile/precision_choice.h"
 #include "scene/compile/scene_source.h"
 #include "scene/film/frame_settings.h"
-#include "scene/image/picture_hash.h"
+#include "scene/image/picture/picture_hash.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula {

@@ -11,7 +11,7 @@
 #include "apps/common/interrupt.h"
 #include "scene/base/error.h"
 #include "scene/base/out_of_memory.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 
 namespace cistula {
 namespace {

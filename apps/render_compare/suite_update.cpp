@@ -7,7 +7,7 @@
 #include "apps/common/output_name.h"
 #include "json_edit.h"
 #include "scene/base/atomic_file.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 
 namespace cistula {
 

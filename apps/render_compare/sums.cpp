@@ -9,7 +9,7 @@
 
 #include "scene/description/light_group.h"
 #include "scene/film/film_picture.h"
-#include "scene/image/picture_lookup.h"
+#include "scene/image/picture/picture.h"
 
 namespace cistula {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/image/picture.h"
+#include "scene/image/picture/picture.h"
 
 namespace cistula {
 

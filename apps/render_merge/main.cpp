@@ -10,7 +10,7 @@
 #include "options.h"
 #include "preview.h"
 #include "scene/base/error.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 
 namespace cistula {
 namespace {

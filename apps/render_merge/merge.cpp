@@ -9,7 +9,7 @@
 #include "apps/common/snapshots.h"
 #include "apps/common/tiles.h"
 #include "scene/base/error.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "uncovered.h"
 
 namespace cistula {

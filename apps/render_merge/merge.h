@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scene/film/film.h"
-#include "scene/image/picture.h"
+#include "scene/image/picture/picture.h"
 
 namespace cistula {
 

@@ -8,7 +8,7 @@
 #include "apps/common/frame_list.h"
 #include "apps/common/output_name.h"
 #include "apps/common/tiles.h"
-#include "scene/image/picture_view.h"
+#include "scene/image/view/picture_view.h"
 
 namespace cistula {
 

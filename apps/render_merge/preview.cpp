@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "scene/base/error.h"
-#include "scene/image/color_space.h"
-#include "scene/image/picture_io.h"
-#include "scene/image/picture_lookup.h"
+#include "scene/image/color/color_space.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/picture/picture_io.h"
 
 namespace cistula {
 namespace {

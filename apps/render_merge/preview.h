@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "scene/image/picture.h"
-#include "scene/image/picture_view.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/view/picture_view.h"
 
 namespace cistula {
 

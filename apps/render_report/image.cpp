@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "apps/common/page_parts.h"
-#include "scene/image/png.h"
+#include "scene/image/picture/png.h"
 
 namespace cistula::report {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "record.h"
-#include "scene/image/picture.h"
+#include "scene/image/picture/picture.h"
 
 namespace cistula::report {
 

@@ -12,7 +12,7 @@
 #include "scene/base/error.h"
 #include "scene/compile/required_effects.h"
 #include "scene/film/film_picture.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "small_frame.h"
 
 namespace cistula::report {

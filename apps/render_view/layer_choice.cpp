@@ -67,10 +67,9 @@ std::string layer_table(const std::vector<ExrPart>& parts, const std::vector<Lay
         const ExrPart& part = parts[layer.part];
         std::string channels;
         for (const size_t channel : layer.channels) channels += " " + one_line(part.channels[channel].name);
-        constexpr const char* types[] = {"half", "float", "uint"};
         table += fmt::format("{:<{}}  {:<19}  {:<11}  {}{}\n", one_line(layer.name), width, kind_name(layer.kind),
                              fmt::format("{}x{}", part.width, part.height),
-                             types[static_cast<size_t>(part.channels[layer.channels[0]].type)], channels);
+                             type_name(part.channels[layer.channels[0]].type), channels);
     }
     return table;
 }

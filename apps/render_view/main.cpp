@@ -7,7 +7,7 @@
 #include "layer_choice.h"
 #include "options.h"
 #include "scene/base/file_bytes.h"
-#include "scene/image/picture_io.h"
+#include "scene/image/picture/picture_io.h"
 #include "sheet.h"
 
 namespace cistula {

@@ -7,7 +7,7 @@
 
 #include "apps/common/command_line.h"
 #include "scene/base/suggest.h"
-#include "scene/image/srgb_codes.h"
+#include "scene/image/color/srgb_codes.h"
 
 namespace cistula {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "layers.h"
-#include "scene/image/picture_view.h"
+#include "scene/image/view/picture_view.h"
 
 namespace cistula {
 

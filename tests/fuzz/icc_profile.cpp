@@ -1,5 +1,5 @@
 // ICC profiles of pictures.
-#include "scene/image/icc_profile.h"
+#include "scene/image/color/stated_colors.h"
 
 #include <stdexcept>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "mesh_checks.h"
-#include "scene/image/texture_reader.h"
+#include "scene/image/reader/picture_reader.h"
 #include "testing/support/scratch_directory.h"
 
 namespace {

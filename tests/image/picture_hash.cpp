@@ -4,8 +4,8 @@
 #include <functional>
 #include <set>
 
-#include "scene/image/exr.h"
-#include "scene/image/picture_hash.h"
+#include "scene/image/exr/exr.h"
+#include "scene/image/picture/picture_hash.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {

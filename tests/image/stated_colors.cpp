@@ -1,5 +1,5 @@
 // What the headers of PNG and Radiance pictures say of their colors.
-#include "scene/image/stated_colors.h"
+#include "scene/image/color/stated_colors.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/description/camera_path.h"
-#include "scene/image/picture_io.h"
+#include "scene/image/picture/picture_io.h"
 
 int main(int argc, char** argv) try {
     cistula::SceneDescription description;

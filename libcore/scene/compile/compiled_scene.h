@@ -55,8 +55,8 @@ struct CompiledScene {
 };
 
 /// Reads the meshes and textures that the description names and compiles. Textures other than .data are read by a child
-/// process, the program cistula-read-picture, which must be found (scene/image/reader_path.h). Throws Error with the
-/// place.
+/// process, the program cistula-read-picture, which must be found (scene/image/reader/reader_process.h). Throws Error
+/// with the place.
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description);
 

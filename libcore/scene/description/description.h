@@ -35,7 +35,7 @@ struct TextureDescription {
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
     bool bilinear = true;    // ignored by a checkerboard, which is always nearest
     glm::dvec2 repeat{1};    // factor on uv; a checkerboard's period is 1 in uv: two cells
-    std::string colorspace;  // one of color_encoding_names (image/color_encoding.h); empty: what the file says
+    std::string colorspace;  // one of color_encoding_names (image/color/color_encoding.h); empty: what the file says
     bool strict = false;     // texels of the file that are negative or not finite are an error, and not clamped
     std::string place;       // "/textures/tiles", "line 3"
 };

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "scene/film/film.h"
-#include "scene/image/color_space.h"
-#include "scene/image/picture.h"
+#include "scene/image/color/color_space.h"
+#include "scene/image/picture/picture.h"
 
 namespace cistula {
 

@@ -7,7 +7,7 @@
 
 #include "scene/description/camera_path.h"
 #include "scene/film/renderer.h"
-#include "scene/image/picture.h"
+#include "scene/image/picture/picture.h"
 
 namespace cistula {
 

@@ -7,7 +7,7 @@
 
 #include "scene/base/suggest.h"
 #include "scene/description/light_group.h"
-#include "scene/image/color_encoding.h"
+#include "scene/image/color/color_encoding.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/scene_keys.h"
 

@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "scene/readers/read_scene.h"
 #include "testing/support/render_program.h"
 

@@ -10,7 +10,7 @@
 
 #include "cistula/numerics/fixed_sum.h"
 #include "scene/base/error.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 

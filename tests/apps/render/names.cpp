@@ -10,7 +10,7 @@
 
 #include "scene/base/shown_text.h"
 #include "scene/film/murmur3.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

@@ -13,7 +13,7 @@
 #include "apps/common/render_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "scene/compile/scene_names.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/golden.h"
 #include "testing/support/render_program.h"
 

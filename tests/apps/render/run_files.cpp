@@ -4,7 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/render_program.h"
 

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/render_program.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scene/base/error.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/run_program.h"
 
 namespace cistula {

@@ -10,7 +10,7 @@
 
 #include "apps/render_compare/fixture.h"
 #include "scene/base/error.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {

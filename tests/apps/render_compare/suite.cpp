@@ -9,8 +9,8 @@
 
 #include "apps/common/backends.h"
 #include "scene/base/error.h"
-#include "scene/image/exr.h"
-#include "scene/image/picture_hash.h"
+#include "scene/image/exr/exr.h"
+#include "scene/image/picture/picture_hash.h"
 #include "testing/support/gpu.h"
 #include "testing/support/run_program.h"
 

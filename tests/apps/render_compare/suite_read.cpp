@@ -9,7 +9,7 @@
 #include "apps/render_compare/suite.h"
 #include "apps/render_compare/suite_keys.h"
 #include "scene/base/error.h"
-#include "scene/image/color_space.h"
+#include "scene/image/color/color_space.h"
 #include "scene/readers/json_reader.h"
 #include "testing/support/schema_keys.h"
 #include "testing/support/scratch_directory.h"

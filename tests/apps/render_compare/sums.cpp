@@ -5,7 +5,7 @@
 
 #include "scene/base/error.h"
 #include "scene/film/film_picture.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/run_program.h"
 
 namespace cistula {

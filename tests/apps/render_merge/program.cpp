@@ -4,7 +4,7 @@
 
 #include "apps/common/tiles.h"
 #include "apps/render_merge/uncovered.h"
-#include "scene/image/exr.h"
+#include "scene/image/exr/exr.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

@@ -7,7 +7,7 @@
 
 #include "bombs.h"
 #include "scene/base/error.h"
-#include "scene/image/texture_reader.h"
+#include "scene/image/reader/picture_reader.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "scene/base/error.h"
-#include "scene/image/texture_reader.h"
+#include "scene/image/reader/picture_reader.h"
 #include "testing/support/byte_order.h"
 #include "testing/support/scratch_directory.h"
 
