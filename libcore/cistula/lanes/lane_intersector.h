@@ -44,7 +44,7 @@ struct LaneIntersector {
             if (scene.meshes.any) shadow_start(scene, shadow, who, sum);
         const Index beside = beside_start<E>(shadow.ray);
         if (scene.tree.empty())
-            shadow_in_loop(shadow, who, beside, sum);
+            shadow_in_loop(shadow, beside, sum);
         else
             shadow_in_tree(shadow, beside, sum);
         return sum.template transmittance<Real>(scene);
@@ -142,33 +142,15 @@ struct LaneIntersector {
     }
 
     template <class E>
-    CISTULA_INLINE void shadow_in_loop(const ShadowRay<Real, Media>& shadow, const Mask& who, const Index& beside,
+    CISTULA_INLINE void shadow_in_loop(const ShadowRay<Real, Media>& shadow, const Index& beside,
                                        ShadowSum<E, Real>& sum) const {
-        const Ray<Real, Media>& ray = shadow.ray;
-        Index near = -1;  // the plan's masks
-        uint32_t beyond = 0;
-        if (scene.plan != nullptr) {
-            const auto light = uint32_t(shadow.light - scene.lights.data);
-            beyond = scene.plan->beyond[light];
-            if (scene.solids.size <= native::table_entries<sizeof(T)>)
-                near = looked_up(scene.tables.near[light], ray.from_solid) |
-                       minus_one_where(ray.from_solid == int(no_solid));
-            else
-                for_each_value(who & (ray.from_solid != int(no_solid)), ray.from_solid,
-                               [&](uint32_t from, const Mask& same) {
-                                   assign_where(same, near, Index(int32_t(scene.plan->near[from][light])));
-                               });
-        }
         Mask open = !sum.is_blocked();
         for (uint32_t p = 0; E::solids && p < scene.convex_copies.size && any(open); ++p) {
-            shadow_solid(p, shadow, open, (near & int32_t(1u << p)) != 0, (beyond >> p & 1u) != 0, beside, sum);
+            shadow_solid(p, shadow, open, beside, sum);
             open = !sum.is_blocked();
         }
         for (uint32_t i = 0; E::triangles && i < scene.clusters.size && any(open); ++i) {
-            Mask asked = open;
-            if (scene.plan != nullptr) asked &= (near & int32_t(1u << (ShadowPlan::first_cluster + i))) != 0;
-            if (!any(asked)) continue;
-            shadow_cluster_in_loop(i, shadow, asked, sum);
+            shadow_cluster_in_loop(i, shadow, open, sum);
             open = !sum.is_blocked();
         }
     }
@@ -192,20 +174,17 @@ struct LaneIntersector {
             scene.tree, scene.tree_items, LaneBoxRay<Real>(ray.origin, ray.direction, Real(0)), !sum.is_blocked(),
             [&] { return select(sum.is_blocked(), Real(-1), far); },
             [&](uint32_t primitive, const Mask& near) {
-                if (is_solid<E>(scene, primitive))
-                    return shadow_solid(primitive, shadow, near, true, false, beside, sum);
+                if (is_solid<E>(scene, primitive)) return shadow_solid(primitive, shadow, near, beside, sum);
                 const uint32_t cluster = primitive - scene.convex.size;
                 const Mask reaches = reaching(cluster, ray, near, shadow.distance);
                 if (any(reaches)) shadow_cluster(cluster, shadow, triangle_ray, reaches, sum);
             });
     }
 
-    /// Adds a convex solid, by its place among them. `near`: whether it may lie on the way of rays from outside;
-    /// `beyond`: whether the light is well outside of it.
+    /// Adds a convex solid, by its place among them.
     template <class E>
     CISTULA_INLINE void shadow_solid(uint32_t place, const ShadowRay<Real, Media>& shadow, const Mask& who,
-                                     const Mask& near, bool beyond, const Index& beside,
-                                     ShadowSum<E, Real>& sum) const {
+                                     const Index& beside, ShadowSum<E, Real>& sum) const {
         const Ray<Real, Media>& ray = shadow.ray;
         const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[place];
         const uint32_t index = next.index;
@@ -214,14 +193,9 @@ struct LaneIntersector {
             const Mask contains = ray.media.contains(index);
             inside = who & contains;
             outside = !contains;
-            if (!E::has(effect_absorption) && beyond) {
-                const Mask leaves = inside & (ray.from_solid == int(index));
-                sum.cross(scene.materials[next.solid.material], leaves);
-                inside = inside & !leaves;
-            }
         }
         const Mask on_plane = is_beside<E>(index, beside);
-        Mask reaches = who & near & outside;
+        Mask reaches = who & outside;
         if constexpr (!E::has(effect_contacts)) reaches &= ray.from_solid != int(index);
         if (any(reaches))
             reaches &= !misses_bounds(next.sphere, ray.origin, ray.direction, shadow.distance);

@@ -34,7 +34,6 @@ struct SolidTables {
     SolidTable<Real> diffuse, local, reflection, transmission;
     SolidTable<Integer> integer_exponent, fresnel, material, texture;
     SolidTable<Integer> first_slab, is_convex;
-    SolidTable<Integer> near[ShadowPlan::lights];  // of a ShadowPlan
 };
 
 /// Some of the solids of a LaneScene: a bit each of the first 31, and 1 for each that is among them.
@@ -128,17 +127,16 @@ struct LaneScene : SceneView<Real> {
     Span<SheetPlane<Real>> planes;           // of the clusters
     Span<TriangleSides<Real>> sides;         // by slot
     CachedTransmittance<Real> cached_transmittances[4];
-    const ShadowPlan* plan = nullptr;  // of a scene that is small enough for one
-    uint32_t closed = 0;               // solids i < closed are closed, others sheets
-    int least_lanes = 1;               // with fewer, one ray after the other is faster
-    bool named = false;                // whether InteriorSets are numbers, not bits
-    SolidSet meshes, isolated;         // closed meshes; convex solids near which nothing else is
-    SolidSet transparent, absorbing;   // closed solids that light passes; in which it is absorbed
-    SolidSet clear, transmitting;      // of all solids, those of a clear material; of one that transmits
-    Span<uint32_t> numbers, places;    // the scene's own number of each solid, and the reverse
-    Span<uint32_t> convex_places;      // of each convex solid, its place among them
-    Span<PlaneBodies> plane_bodies;    // of each of shared_planes, if InteriorSets are bits
-    bool has_opaque_fresnel = false;   // whether any opaque material is
+    uint32_t closed = 0;              // solids i < closed are closed, others sheets
+    int least_lanes = 1;              // with fewer, one ray after the other is faster
+    bool named = false;               // whether InteriorSets are numbers, not bits
+    SolidSet meshes, isolated;        // closed meshes; convex solids near which nothing else is
+    SolidSet transparent, absorbing;  // closed solids that light passes; in which it is absorbed
+    SolidSet clear, transmitting;     // of all solids, those of a clear material; of one that transmits
+    Span<uint32_t> numbers, places;   // the scene's own number of each solid, and the reverse
+    Span<uint32_t> convex_places;     // of each convex solid, its place among them
+    Span<PlaneBodies> plane_bodies;   // of each of shared_planes, if InteriorSets are bits
+    bool has_opaque_fresnel = false;  // whether any opaque material is
     SolidTables<Real> tables;
 };
 

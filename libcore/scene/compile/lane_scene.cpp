@@ -10,7 +10,6 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/constant_scene.h"
 #include "scene/compile/scene_copies.h"
-#include "scene/compile/shadow_plan.h"
 
 namespace cistula {
 namespace {
@@ -42,14 +41,6 @@ bool fits_lanes(const SceneView<Real>& scene) {
         return std::all_of(cluster.triangle, cluster.triangle + cluster.count,
                            [](uint32_t triangle) { return triangle <= LaneKey::faces; });
     });
-}
-
-/// Whether a scene may have a ShadowPlan: it is small, and no solids touch.
-template <class Real>
-bool fits_plan(const SceneView<Real>& scene) {
-    return scene.shared_planes.empty() && scene.solids.size <= ShadowPlan::solids &&
-           scene.lights.size <= ShadowPlan::lights && scene.convex.size <= ShadowPlan::convex &&
-           scene.clusters.size <= ShadowPlan::clusters;
 }
 
 }  // namespace
@@ -150,10 +141,6 @@ void OwnedLaneScene<Real>::find_tree() {
     if (takes_loop(scene_) && !scene_.meshes.any) {  // of a mesh, nothing but boxes tells what a ray misses
         scene_.tree = {};
         scene_.tree_items = {};
-        if (!fits_plan(scene_)) return;
-        plan_.clear(scene_.convex.size, scene_.clusters.size);
-        plan_shadows(scene_, plan_);
-        scene_.plan = &plan_;
         return;
     }
     PrimitiveTree tree = primitive_tree(scene_);
@@ -190,8 +177,6 @@ void OwnedLaneScene<Real>::fill_tables() {
         set(tables.texture, material.texture);
         set(tables.first_slab, int(solid.first_slab));
         set(tables.is_convex, int(solid.kind == SolidKind::convex));
-        for (uint32_t light = 0; scene_.plan != nullptr && light < scene_.lights.size; ++light)
-            set(tables.near[light], int32_t(scene_.plan->near[i][light]));
     }
 }
 

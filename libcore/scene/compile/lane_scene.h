@@ -40,7 +40,6 @@ class OwnedLaneScene {
     std::vector<Incident> incidents_;
     std::vector<PlaneBodies> plane_bodies_;
     std::vector<TreeNode> tree_;
-    ShadowPlan plan_;
 };
 
 /// The LaneScene of a view; null if the scene does not fit: it has too many solids or triangles, or
