@@ -11,11 +11,10 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <exception>
+#include <new>
+#include <stdexcept>
 
-#include "scene/base/error.h"
 #include "scene/base/file_bytes.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/base/stages.h"
 #include "scene/base/suggest.h"
 
@@ -117,26 +116,32 @@ void note(const std::string& line) {
     std::fputs((message_line(line) + "\n").c_str(), stderr);
 }
 
-int run_program(const char* name, const char* memory_advice, const std::function<int()>& work) {
-    const auto fail = [name](const std::exception& error, ExitCode code) {
-        end_if_out_of_memory(error);
-        claim_end();
-        note(fmt::format("{}: {}", name, error.what()));
-        return static_cast<int>(code);
-    };
+Failure failure_of(const std::exception& error, const std::string& memory_advice) {
+    const std::string_view text = error.what();
+    const auto says = [&](const char* words) { return text.find(words) != std::string_view::npos; };
+    if (says("Resource temporarily unavailable"))  // of the system, by the standard library or TBB
+        return {"cannot start a thread, for want of memory or of processes (ulimit -u); " + memory_advice,
+                ExitCode::failed};
+    if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error) ||
+        says("Cannot allocate memory") ||
+        says("failed to map segment from shared object"))  // the loader's, of a module
+        return {"out of memory; " + memory_advice, ExitCode::failed};
+    const auto* ours = dynamic_cast<const Error*>(&error);
+    return {error.what(), ours ? ours->code() : ExitCode::failed};
+}
+
+int run_program(const char* name, const std::string& memory_advice, const std::function<int()>& work) {
     begin_stages();
-    set_out_of_memory_line(name, memory_advice);
-    reserve_stack();
     open_standard_streams();
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit then is a write error
     // So is a pipe that nobody reads. A handler, unlike SIG_IGN, leaves it to InterruptGuard to catch what others send.
     if (std::signal(SIGPIPE, SIG_IGN) == SIG_DFL) std::signal(SIGPIPE, [](int) {});
     try {
         return work();
-    } catch (const Error& error) {
-        return fail(error, error.code());
     } catch (const std::exception& error) {
-        return fail(error, ExitCode::failed);
+        const Failure failure = failure_of(error, memory_advice);
+        note(fmt::format("{}: {}", name, failure.text));
+        return static_cast<int>(failure.code);
     }
 }
 

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <charconv>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "scene/base/error.h"
 
 namespace CLI {
 class App;
@@ -67,9 +70,19 @@ void print(const std::string& text);
 /// Writes a line to standard error. A failure changes nothing: what is said there never decides about files.
 void note(const std::string& line);
 
+/// What is told of an error that ends a program.
+struct Failure {
+    std::string text;  // without the program's name
+    ExitCode code;
+};
+
+/// An exception as it is told: where memory ran out or a thread could not be started, that, and `memory_advice`.
+Failure failure_of(const std::exception& error, const std::string& memory_advice);
+
 /// Runs a program's work and returns the exit code; exceptions become a line on standard error that begins with `name`.
-/// `memory_advice`: advice on using less memory, for when it runs out. Standard streams that are closed are opened on
-/// /dev/null first, so that no file takes their numbers; writing to a closed pipe is an error of that write alone.
-int run_program(const char* name, const char* memory_advice, const std::function<int()>& work);
+/// `memory_advice`: advice on using less memory, for when it runs out; `work` may change it. Standard streams that are
+/// closed are opened on /dev/null first, so that no file takes their numbers; writing to a closed pipe is an error of
+/// that write alone.
+int run_program(const char* name, const std::string& memory_advice, const std::function<int()>& work);
 
 }  // namespace cistula

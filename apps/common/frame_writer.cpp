@@ -12,7 +12,6 @@
 #include "apps/common/timing.h"
 #include "scene/base/default_rounding.h"
 #include "scene/base/error.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/base/stages.h"
 #include "scene/image/exr.h"
 #include "scene/image/picture_io.h"
@@ -60,7 +59,7 @@ FrameWriter::~FrameWriter() {
     }
     const InStage stage(Stage::end);
     changed_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
+    threads_.clear();
     spares_.clear();
 }
 
@@ -140,8 +139,7 @@ void FrameWriter::work() {
         std::exception_ptr failure;
         try {
             write(task);
-        } catch (const std::exception& error) {
-            end_if_out_of_memory(error);
+        } catch (...) {
             failure = std::current_exception();
             stop_ = true;
         }

@@ -101,7 +101,7 @@ class FrameWriter {
     int in_work_ = 0;
     size_t idle_ = 0;  // threads without work, including those that have not yet woken up for a waiting frame
     bool closing_ = false;
-    std::vector<std::thread> threads_;
+    std::vector<std::jthread> threads_;
 };
 
 }  // namespace cistula

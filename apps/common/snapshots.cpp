@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/common/command_line.h"
 #include "apps/common/progress_record.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/film/film_picture.h"
 #include "scene/film/split_picture.h"
 #include "scene/image/exr.h"
@@ -62,8 +62,7 @@ void Snapshots::write() {
             return say(fmt::format("no snapshot: no pixel of frame {} is done", camera->frame));
         write(*camera, std::move(*part));
     } catch (const std::exception& error) {
-        end_if_out_of_memory(error);
-        say(fmt::format("no snapshot: {}", error.what()));
+        say(fmt::format("no snapshot: {}", failure_of(error, "it copies the frame").text));
     }
 }
 

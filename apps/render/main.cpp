@@ -27,7 +27,6 @@
 #include "explain.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/base/stages.h"
 #include "scene/base/suggest.h"
 #include "scene/compile/compiled_scene.h"
@@ -177,22 +176,19 @@ void judge_target(const FilmTotals& totals, const FrameSettings& settings, const
     if (!options.quiet) note(fmt::format("render: {}", text));
 }
 
-/// Sets what is said when memory runs out.
-void advise_on_memory(const RenderOptions& options, const FrameSettings& settings) {
+/// What is advised when memory runs out.
+std::string advice_on_memory(const RenderOptions& options, const FrameSettings& settings) {
     const PixelRect& crop = settings.crop;
     const uint64_t pixels = static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height);
     const uint64_t mebibytes = pixels * settings.kept_parts().bytes() >> 20;
-    const bool is_small = mebibytes < 64;
-    set_out_of_memory_line(
-        "render", is_small ? fmt::format("the scene and {} threads take most of it; allow more (ulimit -v), or give "
-                                         "fewer --threads",
-                                         threads_of(options))
-                           : fmt::format("a frame of {}x{} takes {} MiB of it while it is rendered; a smaller --res or "
-                                         "--crop needs less",
-                                         crop.width, crop.height, mebibytes));
+    if (mebibytes < 64)
+        return fmt::format("the scene and {} threads take most of it; allow more (ulimit -v), or give fewer --threads",
+                           threads_of(options));
+    return fmt::format("a frame of {}x{} takes {} MiB of it while it is rendered; a smaller --res or --crop needs less",
+                       crop.width, crop.height, mebibytes);
 }
 
-void render_scene(RenderOptions options) {
+void render_scene(RenderOptions options, std::string& memory_advice) {
     const bool explain = options.action == Action::explain;
     std::optional<UserSignal> snapshot_signal;
     if (!explain) snapshot_signal.emplace();
@@ -213,7 +209,7 @@ void render_scene(RenderOptions options) {
     if (const std::string warning = open_config_view(options.view); !warning.empty())
         print_warnings({warning}, options);
     const FrameSettings settings = frame_settings(options, scene);
-    advise_on_memory(options, settings);
+    memory_advice = advice_on_memory(options, settings);
     Outputs outputs = plan_outputs(options, scene);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
@@ -360,7 +356,7 @@ void report_pixel(RenderOptions options) {
         report_pixel<float>(options, scene, std::move(source), settings, camera);
 }
 
-void run(const RenderOptions& options) {
+void run(const RenderOptions& options, std::string& memory_advice) {
     switch (options.action) {
         case Action::print_help:
             return print(help_text());
@@ -376,25 +372,19 @@ void run(const RenderOptions& options) {
             return measure_scene(options);
         case Action::explain:
         case Action::render:
-            return render_scene(options);
+            return render_scene(options, memory_advice);
     }
 }
 
 /// Runs, and tells programs that read the progress of an error that ends it.
-void run_and_record(const RenderOptions& options) {
-    const auto record = [&](const std::exception& error, ExitCode code) {
-        const std::string lines = failure_record(options.progress, error.what(), code);
-        if (lines.empty()) return;
-        std::fputs((lines + "\n").c_str(), stdout);
-        std::fflush(stdout);
-    };
+void run_and_record(const RenderOptions& options, std::string& memory_advice) {
     try {
-        run(options);
-    } catch (const Error& error) {
-        record(error, error.code());
-        throw;
+        run(options, memory_advice);
     } catch (const std::exception& error) {
-        record(error, ExitCode::failed);
+        const Failure failure = failure_of(error, memory_advice);
+        const std::string lines = failure_record(options.progress, failure.text, failure.code);
+        if (!lines.empty()) std::fputs((lines + "\n").c_str(), stdout);
+        std::fflush(stdout);
         throw;
     }
 }
@@ -404,8 +394,9 @@ void run_and_record(const RenderOptions& options) {
 
 int main(int argc, char** argv) {
     using namespace cistula;
-    return run_program("render", "a smaller --res or --crop needs less", [&] {
-        run_and_record(parse_options(argc, argv));
+    std::string memory_advice = "a smaller --res or --crop needs less";
+    return run_program("render", memory_advice, [&] {
+        run_and_record(parse_options(argc, argv), memory_advice);
         return static_cast<int>(ExitCode::done);
     });
 }
