@@ -96,7 +96,7 @@ constexpr size_t most_looked_at = 4;
 /// The frames of a job that are still to be rendered, found as they are asked for.
 class FramesToRender {
   public:
-    FramesToRender(const FilmJob& job, const std::atomic<bool>& stop, FrameList& resumed, FilmProgress& report)
+    FramesToRender(const FilmJob& job, const std::atomic<bool>& stop, std::vector<int>& resumed, FilmProgress& report)
         : job_(job), stop_(stop), resumed_(resumed), report_(report) {}
 
     /// The next one, if it is among the `most` frames that follow.
@@ -122,13 +122,13 @@ class FramesToRender {
   private:
     void look_ahead() {
         if (!job_.look_ahead) return;
-        const std::string warning = job_.look_ahead(job_.frames.part(index_ - 1, stretch_length + 1));
+        const std::string warning = job_.look_ahead(frames_from(job_.frames, index_ - 1, stretch_length + 1));
         if (!warning.empty() && !job_.options.quiet) report_.say("render: warning: " + warning);
     }
 
     const FilmJob& job_;
     const std::atomic<bool>& stop_;
-    FrameList& resumed_;
+    std::vector<int>& resumed_;
     FilmProgress& report_;
     size_t index_ = 0;
 };

@@ -25,7 +25,7 @@ struct FilmJob {
     const FrameSettings& settings;
     const OutputName& output;
     const OutputName& preview;  // empty text: none
-    const FrameList& frames;
+    const std::vector<int>& frames;
     std::shared_ptr<const LayerNames> layer_names = std::make_shared<const LayerNames>();
     /// Called for each frame whose files are whole, in the film's order, on any thread, one at a time.
     FrameSink written = {};
@@ -46,9 +46,9 @@ std::vector<std::string> layers_with_files(const FilmJob& job);
 /// Number of frames whose cameras and file names are looked at together before the first of them is rendered.
 inline constexpr size_t stretch_length = 1000;
 
-/// Renders and writes all frames, and adds to stats.totals and stats.resumed. It takes no memory that grows with their
-/// number. Throws Error: `failed` if a frame's flags make it unreliable (its file is not written), `file` if a file
-/// cannot be written, `interrupted` if progress.stop was set from outside (frames finished by then are complete).
+/// Renders and writes all frames, and adds to stats.totals and stats.resumed. Throws Error: `failed` if a frame's flags
+/// make it unreliable (its file is not written), `file` if a file cannot be written, `interrupted` if progress.stop was
+/// set from outside (frames finished by then are complete).
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats);
 
 /// Limits for frames being written while others render.

@@ -30,12 +30,12 @@ enum class Action { render, explain, measure, pixel, print_help, print_version, 
 struct RenderOptions : FilmOptions {
     std::optional<Precision> wanted_precision;  // none: auto, which the scene decides (precision_choice.h)
     Action action = Action::render;
-    std::string scene;     // "-": standard input
-    std::string layers;    // as given; empty: none
-    std::string output;    // as given; empty: default_output
-    std::string preview;   // as given; empty: none
-    FrameList frames;      // empty: none given
-    DeviceChoice devices;  // for the CUDA backend
+    std::string scene;        // "-": standard input
+    std::string layers;       // as given; empty: none
+    std::string output;       // as given; empty: default_output
+    std::string preview;      // as given; empty: none
+    std::vector<int> frames;  // empty: none given
+    DeviceChoice devices;     // for the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
     TileGrid tiles;           // over the crop or the full frame

@@ -88,7 +88,7 @@ Prepared prepare(SceneSource source, const RenderOptions& options, std::future<C
 /// The names of the images and previews, and their frames.
 struct Outputs {
     OutputName image, preview;
-    FrameList frames;
+    std::vector<int> frames;
     std::vector<std::string> layers;  // that have files of their own
 };
 
@@ -138,7 +138,8 @@ void check_names(const RenderOptions& options, const RunFiles& others, std::vect
 void prepare_files(const RenderOptions& options, const SceneDescription& scene, const RunFiles& others,
                    const std::vector<std::string>& read, const Outputs& outputs) {
     check_names(options, others, read, outputs);
-    const std::string turns = look_ahead(outputs, options, scene, others, outputs.frames.part(0, stretch_length));
+    const std::string turns =
+        look_ahead(outputs, options, scene, others, frames_from(outputs.frames, 0, stretch_length));
     if (!turns.empty()) print_warnings({turns}, options);
     if (options.stats.empty()) return;
     make_directory_of(options.stats);
@@ -260,8 +261,8 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
         outputs.layers = layers_with_files(job);
         if (!outputs.layers.empty()) {  // their names are known only now
             check_names(options, others, read, outputs);
-            require_different_files(others, outputs.image, outputs.preview, outputs.frames.part(0, stretch_length),
-                                    outputs.layers);
+            require_different_files(others, outputs.image, outputs.preview,
+                                    frames_from(outputs.frames, 0, stretch_length), outputs.layers);
         }
         if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
         job.look_ahead = [&](const std::vector<int>& frames) {

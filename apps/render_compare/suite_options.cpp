@@ -172,7 +172,7 @@ void require_other_files(const Suite& suite, const SuiteOptions& options, const 
         for (const SuiteCase& one : suite.cases) {
             const bool is_chosen = std::find(chosen.begin(), chosen.end(), &one) != chosen.end();
             if ((options.update && is_chosen) != updated || one.golden.empty()) continue;
-            for (const int frame : one.frames.part(0, one.frames.size())) {
+            for (const int frame : one.frames) {
                 const std::string path = one.golden_path(suite.folder, frame);
                 if (updated)
                     files.writes(path, "the golden image of " + one.name);

@@ -69,7 +69,7 @@ class CaseQueue {
 
     std::vector<SuiteResult> results_on(const SuiteCase& one, Backend backend) {
         std::vector<SuiteResult> results;
-        for (const int frame : one.frames.part(0, one.frames.size())) {
+        for (const int frame : one.frames) {
             SuiteResult result;
             result.of = &one;
             result.frame = frame;

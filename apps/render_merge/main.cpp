@@ -44,11 +44,10 @@ void merge(MergeOptions options) {
     if (!warning.empty() && !options.quiet) note(fmt::format("render-merge: warning: {}", warning));
     const int threads = tbb::this_task_arena::max_concurrency();
     set_exr_threads(threads, threads);
-    for (size_t i = 0; i < options.frames.size(); ++i) {
-        const std::vector<int> frame = options.frames.part(i, 1);
-        make_directories(options.output, frame);
-        if (!options.preview.text().empty()) make_directories(options.preview, frame);
-        merge_frame(options, frame.front());
+    for (const int frame : options.frames) {
+        make_directories(options.output, {frame});
+        if (!options.preview.text().empty()) make_directories(options.preview, {frame});
+        merge_frame(options, frame);
     }
 }
 
