@@ -82,11 +82,27 @@ void fail_choice(const char* option, const std::string& text, const std::vector<
         fmt::format("{} {}: must be {}; {}", option, text, fmt::join(names, " or "), suggestion(text, names, "names")));
 }
 
-void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
-                     const std::string& description) {
+CLI::Option* add_option(CLI::App& app, const std::string& names, const std::string& value,
+                        const std::string& description, const OptionReader& read) {
+    const std::string name = names.substr(names.rfind(',') + 1);
+    const auto read_text = [name, read](const std::string& text) {
+        if (text.empty()) fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", name));
+        read(name.c_str(), text);
+    };
+    // option_text: without what the option needs, which its description says.
+    return app.add_option_function<std::string>(names, read_text, description)->type_name(value)->option_text(value);
+}
+
+void add_valued_flag(CLI::App& app, const std::string& name, const std::string& alone, const std::string& description,
+                     const OptionReader& read) {
     // expected(0, 1) would take the scene's name that follows as the value; expected(0) would turn the lone flag into
     // "true".
-    app.add_option(name, text, description)->expected(0, 0)->default_str(alone)->take_last()->option_text(" ");
+    add_option(app, name, "", description, read)->expected(0, 0)->default_str(alone)->take_last()->option_text(" ");
+}
+
+std::string given_text(const CLI::App& app, const std::string& name) {
+    const CLI::Option* const option = app.get_option(name);
+    return option->count() > 0 ? option->results().back() : "";
 }
 
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
@@ -96,6 +112,9 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
         return false;
+    } catch (const Error&) {
+        if (app.get_help_ptr()->count() > 0) return false;
+        throw;
     } catch (const CLI::ParseError& error) {
         fail_usage(fmt::format("{}; --help shows the options", error.what()));
     }

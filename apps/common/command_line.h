@@ -14,7 +14,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace cistula {
 
@@ -54,13 +55,48 @@ T chosen(const char* option, const std::string& text, const std::vector<std::pai
     fail_choice(option, text, names);
 }
 
-/// Adds an option with an optional value: --NAME sets `text` to `alone`, --NAME=VALUE to VALUE. The next word is never
-/// taken as the value.
-void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
-                     const std::string& description);
+/// Reads the text of an option into a variable, which outlives it. Throws Error (usage) that begins "OPTION TEXT: ".
+using OptionReader = std::function<void(const char* option, const std::string& text)>;
+
+/// A reader of whole numbers, of finite numbers, of one of several names: see the functions above.
+template <class T>
+OptionReader read_whole(T& value, int low, int high) {
+    return
+        [=, &value](const char* option, const std::string& text) { value = integer_option(option, text, low, high); };
+}
+template <class T>
+OptionReader read_number(T& value, double low, double high, const char* what) {
+    return [=, &value](const char* option, const std::string& text) {
+        value = static_cast<T>(number_option(option, text, low, high, what));
+    };
+}
+template <class T>
+OptionReader read_choice(T& value, std::vector<std::pair<std::string_view, T>> choices) {
+    return [=, &value](const char* option, const std::string& text) { value = chosen<T>(option, text, choices); };
+}
+
+/// A reader of what `parse` makes of a text.
+template <class T, class Parse>
+OptionReader read_by(T& value, Parse parse) {
+    return [=, &value](const char*, const std::string& text) { value = parse(text); };
+}
+
+/// Adds an option with a value, which --help calls `value`, and messages the last of its `names`. Options are read in
+/// the order in which they are added, once the whole command line is known.
+CLI::Option* add_option(CLI::App& app, const std::string& names, const std::string& value,
+                        const std::string& description, const OptionReader& read);
+
+/// Adds an option with an optional value: --NAME reads `alone`, --NAME=VALUE reads VALUE. The next word is never taken
+/// as the value.
+void add_valued_flag(CLI::App& app, const std::string& name, const std::string& alone, const std::string& description,
+                     const OptionReader& read);
+
+/// The text of an option that was given, of a flag "true"; else nothing.
+std::string given_text(const CLI::App& app, const std::string& name);
 
 /// Parses the command line into the variables bound to the options of `app`; false if --help was given. Throws Error
-/// (usage) for unknown options and empty values; `extra_positional` makes the message for a superfluous word.
+/// (usage) as readers do, and for unknown options and empty values; `extra_positional` makes the message for a
+/// superfluous word.
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
                         const std::function<std::string(const std::string&)>& extra_positional);
 
