@@ -1,6 +1,7 @@
 // The frame loop of a film: frames are rendered one after the other, and each is written while the next ones render.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -11,11 +12,12 @@
 #include "apps/common/frame_writer.h"
 #include "apps/common/output_name.h"
 #include "apps/common/stats.h"
-#include "apps/common/user_signal.h"
 #include "scene/description/description.h"
 #include "scene/film/renderer.h"
 
 namespace cistula {
+
+class UserSignal;
 
 /// The parameters shared by all frames.
 struct FilmJob {
@@ -53,5 +55,13 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
 
 /// Limits for frames being written while others render.
 WriterLimits writer_limits(const FilmOptions& options, size_t frames);
+
+/// Renders a frame; again with larger tables of objects where a pixel shows more than they hold, which the settings
+/// then keep for the next frame. False if it was stopped; the film is then incomplete.
+bool render_frame(Renderer& renderer, const CameraFrame& camera, FrameSettings& settings, Film& film,
+                  RenderProgress& progress);
+
+/// The reason why a film of a scene with these flags (RenderFlag bits) is unreliable, for a message; empty for 0.
+std::string describe_flags(uint32_t flags, const SceneDescription& scene);
 
 }  // namespace cistula

@@ -10,7 +10,6 @@
 #include "apps/common/film_options.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/picture_size.h"
-#include "apps/common/tiles.h"
 #include "scene/film/film_picture.h"
 #include "scene/film/renderer.h"
 

@@ -10,7 +10,6 @@
 
 #include "apps/common/backends.h"
 #include "apps/common/command_line.h"
-#include "apps/common/describe_flags.h"
 #include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
@@ -19,9 +18,9 @@
 #include "apps/common/progress_record.h"
 #include "apps/common/render_options.h"
 #include "apps/common/run_files.h"
+#include "apps/common/snapshots.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
-#include "apps/common/user_signal.h"
 #include "apps/common/view_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "explain.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/tiles.h"
+#include "apps/common/picture_size.h"
 #include "plan.h"
 
 namespace cistula {

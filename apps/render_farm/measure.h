@@ -1,8 +1,8 @@
 // How long the tiles of a film take, estimated from small frames.
 #pragma once
 
+#include "apps/common/picture_size.h"
 #include "apps/common/step_progress.h"
-#include "apps/common/tiles.h"
 #include "plan.h"
 #include "scene/description/description.h"
 #include "scene/film/renderer.h"

@@ -7,7 +7,7 @@
 
 #include "apps/common/frame_list.h"
 #include "apps/common/output_name.h"
-#include "apps/common/tiles.h"
+#include "apps/common/picture_size.h"
 #include "scene/image/picture_view.h"
 
 namespace cistula {

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "apps/common/describe_flags.h"
+#include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/header_attributes.h"
 #include "apps/common/layer_list.h"

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "apps/common/tiles.h"
-#include "apps/render_merge/uncovered.h"
+#include "apps/common/picture_size.h"
+#include "apps/render_merge/merge.h"
 #include "scene/image/exr.h"
 #include "testing/support/render_program.h"
 
