@@ -7,7 +7,6 @@
 #include <exception>
 #include <memory>
 
-#include "apps/common/build_info.h"
 #include "apps/common/machine.h"
 #include "scene/base/error.h"
 

@@ -25,7 +25,7 @@ if(NOT _commit)
 endif()
 
 add_library(cistula_build_info STATIC
-    "${PROJECT_SOURCE_DIR}/apps/common/build_info.cpp" "${PROJECT_SOURCE_DIR}/apps/common/machine.cpp")
+    "${PROJECT_SOURCE_DIR}/apps/common/machine.cpp")
 target_include_directories(cistula_build_info PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(cistula_build_info PRIVATE
     CISTULA_BUILD_FLAGS="${_flags}" CISTULA_BUILD_COMMIT="${_commit}")

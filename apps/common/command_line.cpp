@@ -11,11 +11,10 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <exception>
+#include <new>
+#include <stdexcept>
 
-#include "scene/base/error.h"
 #include "scene/base/file_bytes.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/base/stages.h"
 #include "scene/base/suggest.h"
 
@@ -83,11 +82,27 @@ void fail_choice(const char* option, const std::string& text, const std::vector<
         fmt::format("{} {}: must be {}; {}", option, text, fmt::join(names, " or "), suggestion(text, names, "names")));
 }
 
-void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
-                     const std::string& description) {
+CLI::Option* add_option(CLI::App& app, const std::string& names, const std::string& value,
+                        const std::string& description, const OptionReader& read) {
+    const std::string name = names.substr(names.rfind(',') + 1);
+    const auto read_text = [name, read](const std::string& text) {
+        if (text.empty()) fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", name));
+        read(name.c_str(), text);
+    };
+    // option_text: without what the option needs, which its description says.
+    return app.add_option_function<std::string>(names, read_text, description)->type_name(value)->option_text(value);
+}
+
+void add_valued_flag(CLI::App& app, const std::string& name, const std::string& alone, const std::string& description,
+                     const OptionReader& read) {
     // expected(0, 1) would take the scene's name that follows as the value; expected(0) would turn the lone flag into
     // "true".
-    app.add_option(name, text, description)->expected(0, 0)->default_str(alone)->take_last()->option_text(" ");
+    add_option(app, name, "", description, read)->expected(0, 0)->default_str(alone)->take_last()->option_text(" ");
+}
+
+std::string given_text(const CLI::App& app, const std::string& name) {
+    const CLI::Option* const option = app.get_option(name);
+    return option->count() > 0 ? option->results().back() : "";
 }
 
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
@@ -97,6 +112,9 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
         return false;
+    } catch (const Error&) {
+        if (app.get_help_ptr()->count() > 0) return false;
+        throw;
     } catch (const CLI::ParseError& error) {
         fail_usage(fmt::format("{}; --help shows the options", error.what()));
     }
@@ -117,26 +135,32 @@ void note(const std::string& line) {
     std::fputs((message_line(line) + "\n").c_str(), stderr);
 }
 
-int run_program(const char* name, const char* memory_advice, const std::function<int()>& work) {
-    const auto fail = [name](const std::exception& error, ExitCode code) {
-        end_if_out_of_memory(error);
-        claim_end();
-        note(fmt::format("{}: {}", name, error.what()));
-        return static_cast<int>(code);
-    };
+Failure failure_of(const std::exception& error, const std::string& memory_advice) {
+    const std::string_view text = error.what();
+    const auto says = [&](const char* words) { return text.find(words) != std::string_view::npos; };
+    if (says("Resource temporarily unavailable"))  // of the system, by the standard library or TBB
+        return {"cannot start a thread, for want of memory or of processes (ulimit -u); " + memory_advice,
+                ExitCode::failed};
+    if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error) ||
+        says("Cannot allocate memory") ||
+        says("failed to map segment from shared object"))  // the loader's, of a module
+        return {"out of memory; " + memory_advice, ExitCode::failed};
+    const auto* ours = dynamic_cast<const Error*>(&error);
+    return {error.what(), ours ? ours->code() : ExitCode::failed};
+}
+
+int run_program(const char* name, const std::string& memory_advice, const std::function<int()>& work) {
     begin_stages();
-    set_out_of_memory_line(name, memory_advice);
-    reserve_stack();
     open_standard_streams();
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit then is a write error
     // So is a pipe that nobody reads. A handler, unlike SIG_IGN, leaves it to InterruptGuard to catch what others send.
     if (std::signal(SIGPIPE, SIG_IGN) == SIG_DFL) std::signal(SIGPIPE, [](int) {});
     try {
         return work();
-    } catch (const Error& error) {
-        return fail(error, error.code());
     } catch (const std::exception& error) {
-        return fail(error, ExitCode::failed);
+        const Failure failure = failure_of(error, memory_advice);
+        note(fmt::format("{}: {}", name, failure.text));
+        return static_cast<int>(failure.code);
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <charconv>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,9 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "scene/base/error.h"
+
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace cistula {
 
@@ -51,13 +55,48 @@ T chosen(const char* option, const std::string& text, const std::vector<std::pai
     fail_choice(option, text, names);
 }
 
-/// Adds an option with an optional value: --NAME sets `text` to `alone`, --NAME=VALUE to VALUE. The next word is never
-/// taken as the value.
-void add_valued_flag(CLI::App& app, const std::string& name, std::string& text, const std::string& alone,
-                     const std::string& description);
+/// Reads the text of an option into a variable, which outlives it. Throws Error (usage) that begins "OPTION TEXT: ".
+using OptionReader = std::function<void(const char* option, const std::string& text)>;
+
+/// A reader of whole numbers, of finite numbers, of one of several names: see the functions above.
+template <class T>
+OptionReader read_whole(T& value, int low, int high) {
+    return
+        [=, &value](const char* option, const std::string& text) { value = integer_option(option, text, low, high); };
+}
+template <class T>
+OptionReader read_number(T& value, double low, double high, const char* what) {
+    return [=, &value](const char* option, const std::string& text) {
+        value = static_cast<T>(number_option(option, text, low, high, what));
+    };
+}
+template <class T>
+OptionReader read_choice(T& value, std::vector<std::pair<std::string_view, T>> choices) {
+    return [=, &value](const char* option, const std::string& text) { value = chosen<T>(option, text, choices); };
+}
+
+/// A reader of what `parse` makes of a text.
+template <class T, class Parse>
+OptionReader read_by(T& value, Parse parse) {
+    return [=, &value](const char*, const std::string& text) { value = parse(text); };
+}
+
+/// Adds an option with a value, which --help calls `value`, and messages the last of its `names`. Options are read in
+/// the order in which they are added, once the whole command line is known.
+CLI::Option* add_option(CLI::App& app, const std::string& names, const std::string& value,
+                        const std::string& description, const OptionReader& read);
+
+/// Adds an option with an optional value: --NAME reads `alone`, --NAME=VALUE reads VALUE. The next word is never taken
+/// as the value.
+void add_valued_flag(CLI::App& app, const std::string& name, const std::string& alone, const std::string& description,
+                     const OptionReader& read);
+
+/// The text of an option that was given, of a flag "true"; else nothing.
+std::string given_text(const CLI::App& app, const std::string& name);
 
 /// Parses the command line into the variables bound to the options of `app`; false if --help was given. Throws Error
-/// (usage) for unknown options and empty values; `extra_positional` makes the message for a superfluous word.
+/// (usage) as readers do, and for unknown options and empty values; `extra_positional` makes the message for a
+/// superfluous word.
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
                         const std::function<std::string(const std::string&)>& extra_positional);
 
@@ -67,9 +106,19 @@ void print(const std::string& text);
 /// Writes a line to standard error. A failure changes nothing: what is said there never decides about files.
 void note(const std::string& line);
 
+/// What is told of an error that ends a program.
+struct Failure {
+    std::string text;  // without the program's name
+    ExitCode code;
+};
+
+/// An exception as it is told: where memory ran out or a thread could not be started, that, and `memory_advice`.
+Failure failure_of(const std::exception& error, const std::string& memory_advice);
+
 /// Runs a program's work and returns the exit code; exceptions become a line on standard error that begins with `name`.
-/// `memory_advice`: advice on using less memory, for when it runs out. Standard streams that are closed are opened on
-/// /dev/null first, so that no file takes their numbers; writing to a closed pipe is an error of that write alone.
-int run_program(const char* name, const char* memory_advice, const std::function<int()>& work);
+/// `memory_advice`: advice on using less memory, for when it runs out; `work` may change it. Standard streams that are
+/// closed are opened on /dev/null first, so that no file takes their numbers; writing to a closed pipe is an error of
+/// that write alone.
+int run_program(const char* name, const std::string& memory_advice, const std::function<int()>& work);
 
 }  // namespace cistula

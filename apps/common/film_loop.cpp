@@ -2,6 +2,7 @@
 #include "apps/common/command_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -10,17 +11,20 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <vector>
 
-#include "apps/common/describe_flags.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/progress_record.h"
-#include "apps/common/render_frame.h"
 #include "apps/common/snapshots.h"
 #include "apps/common/timing.h"
+#include "cistula/geometry/ray.h"
+#include "cistula/model/pixel_record.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
+#include "scene/base/shown_text.h"
 #include "scene/base/stages.h"
+#include "scene/compile/overlaps.h"
 #include "scene/image/exr/exr.h"
 
 namespace cistula {
@@ -96,7 +100,7 @@ constexpr size_t most_looked_at = 4;
 /// The frames of a job that are still to be rendered, found as they are asked for.
 class FramesToRender {
   public:
-    FramesToRender(const FilmJob& job, const std::atomic<bool>& stop, FrameList& resumed, FilmProgress& report)
+    FramesToRender(const FilmJob& job, const std::atomic<bool>& stop, std::vector<int>& resumed, FilmProgress& report)
         : job_(job), stop_(stop), resumed_(resumed), report_(report) {}
 
     /// The next one, if it is among the `most` frames that follow.
@@ -122,13 +126,13 @@ class FramesToRender {
   private:
     void look_ahead() {
         if (!job_.look_ahead) return;
-        const std::string warning = job_.look_ahead(job_.frames.part(index_ - 1, stretch_length + 1));
+        const std::string warning = job_.look_ahead(frames_from(job_.frames, index_ - 1, stretch_length + 1));
         if (!warning.empty() && !job_.options.quiet) report_.say("render: warning: " + warning);
     }
 
     const FilmJob& job_;
     const std::atomic<bool>& stop_;
-    FrameList& resumed_;
+    std::vector<int>& resumed_;
     FilmProgress& report_;
     size_t index_ = 0;
 };
@@ -275,6 +279,52 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
     report.record({"end", -1, "", -1, fmt::format("{} of {} frames written", done, job.frames.size())});
     if (done == job.frames.size()) return;  // an interruption after the last frame has no effect
     fail_interrupted(job, done, rendered);
+}
+
+namespace {
+
+/// Whether a pixel shows more objects than its table holds; the tables of this film and the next are then larger. One
+/// entry for each sample is always enough.
+bool needs_larger_tables(const Film& film, LayerRequest& layers) {
+    if ((film.flags & flag_objects_overflow) == 0 || layers.object_entries >= film.samples) return false;
+    layers.object_entries = std::min(4 * layers.object_entries, film.samples);
+    return true;
+}
+
+}  // namespace
+
+bool render_frame(Renderer& renderer, const CameraFrame& camera, FrameSettings& settings, Film& film,
+                  RenderProgress& progress) {
+    bool whole = renderer.render(camera, settings, film, progress);
+    while (whole && needs_larger_tables(film, settings.layers)) {
+        progress.pixels_done = 0;
+        progress.rays = 0;
+        whole = renderer.render(camera, settings, film, progress);
+    }
+    return whole;
+}
+
+namespace {
+
+/// A sentence's part on solids that are more than a ray can list, with their names where they are found.
+std::string too_many_solids(const SceneDescription& scene) {
+    const auto compiled = compile_scene<double>(scene);
+    std::vector<std::string> names;
+    for (const uint32_t solid : find_nested(*compiled)) names.push_back(one_line(compiled->solid_names[solid]));
+    return fmt::format("a ray was inside more than {} solids at once, which is all it can list{}; take some away",
+                       InteriorList::capacity, names.empty() ? "" : fmt::format(": {}", fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::string describe_flags(uint32_t flags, const SceneDescription& scene) {
+    std::vector<std::string> parts;
+    if (flags & flag_not_finite) parts.push_back("a radiance was infinite or not a number");
+    if (flags & flag_media_overflow) parts.push_back(too_many_solids(scene));
+    if (flags & flag_stack_overflow) parts.push_back("a ray's tree had more branches waiting than there is room for");
+    if (flags & flag_too_many_crossings) parts.push_back("a straight ray crossed more faces than the limit");
+    if (flags & flag_objects_overflow) parts.push_back("a pixel showed more objects than its table holds");
+    return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 }  // namespace cistula

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <iterator>
 #include <optional>
 
 #include "apps/common/command_line.h"
@@ -62,58 +61,15 @@ Range parse_range(std::string_view text, std::string_view item) {
 
 }  // namespace
 
-FrameList::FrameList(std::initializer_list<int> frames) {
-    for (const int frame : frames) push_back(frame);
-}
-
-FrameList::FrameList(const std::vector<int>& frames) {
-    for (const int frame : frames) push_back(frame);
-}
-
-void FrameList::push_back(int frame) {
-    Run* const last = runs_.empty() ? nullptr : &runs_.back();
-    if (last && last->count == 1 && frame > last->first) last->step = frame - last->first;
-    if (last && last->step > 0 && frame == last->first + static_cast<int64_t>(last->count) * last->step)
-        ++last->count;
-    else
-        runs_.push_back({size_, frame, 0, 1});
-    ++size_;
-}
-
-int FrameList::operator[](size_t index) const {
-    const auto is_later = [](size_t i, const Run& run) { return i < run.start; };
-    const Run& run = *std::prev(std::upper_bound(runs_.begin(), runs_.end(), index, is_later));
-    return run.first + static_cast<int>(index - run.start) * run.step;
-}
-
-bool FrameList::contains(int frame) const {
-    return std::any_of(runs_.begin(), runs_.end(), [frame](const Run& run) {
-        const int64_t steps = run.step == 0 ? 0 : (int64_t{frame} - run.first) / run.step;
-        return steps >= 0 && steps < static_cast<int64_t>(run.count) && run.first + steps * run.step == frame;
-    });
-}
-
-std::vector<int> FrameList::part(size_t begin, size_t count) const {
+std::vector<int> parse_frames(std::string_view text) {
     std::vector<int> frames;
-    for (size_t i = begin; i < size_ && frames.size() < count; ++i) frames.push_back((*this)[i]);
-    return frames;
-}
-
-FrameList first_frames(int count) {
-    FrameList frames;
-    frames.size_ = static_cast<size_t>(count);
-    frames.runs_.push_back({0, 0, count > 1 ? 1 : 0, frames.size_});
-    return frames;
-}
-
-FrameList parse_frames(std::string_view text) {
-    FrameList frames;
     std::vector<bool> seen(largest_frame + 1);
     size_t written = 0;
     for (const std::string_view part : parts_at_commas(text)) {
         const Range range = parse_range(text, part);
         for (int64_t frame = range.first; frame <= range.last; frame += range.step) {
-            if (++written > most_frames) fail(text, fmt::format("more than {} frames", most_frames));
+            if (++written > most_frames)
+                fail(text, fmt::format("more than {} frames; render them in several runs", most_frames));
             const auto index = static_cast<size_t>(frame);
             if (!seen[index]) frames.push_back(static_cast<int>(frame));
             seen[index] = true;
@@ -122,7 +78,7 @@ FrameList parse_frames(std::string_view text) {
     return frames;
 }
 
-std::string format_frames(const FrameList& frames, size_t begin) {
+std::string format_frames(const std::vector<int>& frames, size_t begin) {
     std::string text;
     for (size_t i = begin; i < frames.size();) {
         const int first = frames[i];
@@ -137,6 +93,11 @@ std::string format_frames(const FrameList& frames, size_t begin) {
         i = end;
     }
     return text;
+}
+
+std::vector<int> frames_from(const std::vector<int>& frames, size_t begin, size_t count) {
+    const auto first = frames.begin() + static_cast<std::ptrdiff_t>(std::min(begin, frames.size()));
+    return {first, first + std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(count), frames.end() - first)};
 }
 
 }  // namespace cistula

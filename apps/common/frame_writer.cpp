@@ -7,13 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <future>
+#include <iterator>
 
 #include "apps/common/output_name.h"
 #include "apps/common/timing.h"
 #include "scene/base/default_rounding.h"
 #include "scene/base/error.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/base/stages.h"
+#include "scene/film/film_picture.h"
 #include "scene/image/exr/exr.h"
 #include "scene/image/picture/picture_io.h"
 #include "scene/image/picture/raw_picture.h"
@@ -60,7 +61,7 @@ FrameWriter::~FrameWriter() {
     }
     const InStage stage(Stage::end);
     changed_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
+    threads_.clear();
     spares_.clear();
 }
 
@@ -140,8 +141,7 @@ void FrameWriter::work() {
         std::exception_ptr failure;
         try {
             write(task);
-        } catch (const std::exception& error) {
-            end_if_out_of_memory(error);
+        } catch (...) {
             failure = std::current_exception();
             stop_ = true;
         }
@@ -197,6 +197,30 @@ void FrameWriter::write(Task& task) {
     }
     stats.clamped = clamped;
     if (measure_) stats.hash = hash.get();
+}
+
+std::vector<FrameFile> frame_files(LayeredPicture picture, Split split, const OutputName& name, int frame) {
+    FrameFile main{name.for_frame(frame), {}};
+    std::vector<FrameFile> files;
+    if (split == Split::none) {
+        main.parts.push_back({"", std::move(picture)});
+    } else {
+        main.parts = split_by_layer(std::move(picture), split);
+        if (split == Split::parts)
+            for (PicturePart& part : main.parts) part.picture.attributes.erase("acesImageContainerFlag");
+        if (split == Split::files) {
+            for (auto part = std::next(main.parts.begin()); part != main.parts.end(); ++part) {
+                FrameFile& own = files.emplace_back(FrameFile{name.for_layer(frame, part->name), {}});
+                own.parts.push_back(std::move(*part));
+                name_colors_plainly(own.parts.front());
+                set_container_flag(own.parts.front().picture);
+            }
+            main.parts.resize(1);
+            set_container_flag(main.parts.front().picture);
+        }
+    }
+    files.push_back(std::move(main));
+    return files;
 }
 
 }  // namespace cistula

@@ -13,11 +13,12 @@
 #include <thread>
 #include <vector>
 
-#include "apps/common/frame_files.h"
 #include "apps/common/header_attributes.h"
+#include "apps/common/output_name.h"
 #include "apps/common/stats.h"
 #include "scene/film/film.h"
 #include "scene/film/film_picture.h"
+#include "scene/film/split_picture.h"
 #include "scene/image/view/picture_view.h"
 
 namespace cistula {
@@ -101,7 +102,15 @@ class FrameWriter {
     int in_work_ = 0;
     size_t idle_ = 0;  // threads without work, including those that have not yet woken up for a waiting frame
     bool closing_ = false;
-    std::vector<std::thread> threads_;
+    std::vector<std::jthread> threads_;
 };
+
+struct FrameFile {
+    std::string path;
+    std::vector<PicturePart> parts;
+};
+
+/// The files that a frame's channels go to, the main one last: when it is complete, so are the others.
+std::vector<FrameFile> frame_files(LayeredPicture picture, Split split, const OutputName& name, int frame);
 
 }  // namespace cistula

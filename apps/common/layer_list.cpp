@@ -13,8 +13,7 @@
 
 namespace cistula {
 
-OutputChannels parse_layers(std::string_view text) {
-    OutputChannels layers;
+OutputChannels parse_layers(std::string_view text, OutputChannels layers) {
     struct Layer {
         std::string_view name, group;
         bool* wanted;

@@ -35,4 +35,12 @@ std::string gpu_driver_version() {
     return "unknown";
 }
 
+const char* build_flags() {
+    return CISTULA_BUILD_FLAGS;
+}
+
+const char* build_commit() {
+    return CISTULA_BUILD_COMMIT;
+}
+
 }  // namespace cistula

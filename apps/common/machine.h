@@ -1,4 +1,4 @@
-// Names of the machine's parts, for records.
+// Names of the machine's parts, and facts about the build, for records.
 #pragma once
 
 #include <string>
@@ -16,5 +16,11 @@ std::string host_name();
 
 /// Version of NVIDIA's kernel driver, such as "580.159.04"; "unknown" if there is none.
 std::string gpu_driver_version();
+
+/// The compiler's flags of the build type and of the floating-point contract.
+const char* build_flags();
+
+/// `git describe --always --dirty` of the source tree when the build was configured; "unknown" outside a git tree.
+const char* build_commit();
 
 }  // namespace cistula

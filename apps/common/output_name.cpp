@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <numeric>
 #include <set>
 
 #include "scene/base/error.h"
@@ -112,7 +114,7 @@ std::string default_output(const SceneDescription& scene, size_t frames_given) {
     return name + (frames_given > 1 ? ".####.exr" : ".exr");
 }
 
-FrameList frames_to_render(const OutputName& output, const FrameList& given, int film_frames) {
+std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames) {
     if (!output.has_pattern() && given.size() > 1) {
         fs::path better = output.text();
         better.replace_extension(".####" + better.extension().string());
@@ -122,10 +124,12 @@ FrameList frames_to_render(const OutputName& output, const FrameList& given, int
                                 output.text(), given.size(), better.string()));
     }
     if (!given.empty()) return given;
-    return first_frames(output.has_pattern() ? std::max(film_frames, 1) : 1);
+    std::vector<int> film(static_cast<size_t>(output.has_pattern() ? std::max(film_frames, 1) : 1));
+    std::iota(film.begin(), film.end(), 0);
+    return film;
 }
 
-OutputName preview_name(const std::string& text, const FrameList& frames) {
+OutputName preview_name(const std::string& text, const std::vector<int>& frames) {
     if (text.empty()) return OutputName();
     OutputName name(text, "--preview");
     if (std::filesystem::path(text).extension() != ".png")
@@ -136,8 +140,8 @@ OutputName preview_name(const std::string& text, const FrameList& frames) {
     return name;
 }
 
-std::vector<int> frames_named_in(const std::vector<std::string>& paths, const FrameList& frames) {
-    std::set<int> named;
+std::vector<int> frames_named_in(const std::vector<std::string>& paths, const std::vector<int>& frames) {
+    std::set<int> numbers;
     for (const std::string& path : paths) {
         const auto is_digit = [&](size_t i) { return i < path.size() && path[i] >= '0' && path[i] <= '9'; };
         for (size_t begin = 0; begin < path.size(); ++begin) {
@@ -145,11 +149,14 @@ std::vector<int> frames_named_in(const std::vector<std::string>& paths, const Fr
             for (size_t i = begin; is_digit(i); ++i) {
                 number = number * 10 + (path[i] - '0');
                 if (number > largest_frame) break;
-                if (frames.contains(number)) named.insert(number);
+                numbers.insert(number);
             }
         }
     }
-    return {named.begin(), named.end()};
+    std::vector<int> named;
+    std::copy_if(frames.begin(), frames.end(), std::back_inserter(named),
+                 [&](int frame) { return numbers.contains(frame); });
+    return named;
 }
 
 std::string snapshot_of(const OutputName& image, int frame) {

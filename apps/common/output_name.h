@@ -51,14 +51,14 @@ std::string default_output(const SceneDescription& scene, size_t frames_given);
 
 /// The frames to render: those given; by default the whole film for a pattern, the first frame for a plain name. Throws
 /// Error (usage) if several frames are given for a plain name.
-FrameList frames_to_render(const OutputName& output, const FrameList& given, int film_frames);
+std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames);
 
 /// The name of previews of these frames; an empty text is none. Throws Error (usage).
-OutputName preview_name(const std::string& text, const FrameList& frames);
+OutputName preview_name(const std::string& text, const std::vector<int>& frames);
 
-/// The frames of a list whose numbers stand in one of these paths, in whole or as a part of a longer number: those for
-/// which a pattern may give that path. Each once, in order.
-std::vector<int> frames_named_in(const std::vector<std::string>& paths, const FrameList& frames);
+/// The frames of a list whose file could be one of these paths: those whose numbers stand in one, in whole or as a part
+/// of a longer number.
+std::vector<int> frames_named_in(const std::vector<std::string>& paths, const std::vector<int>& frames);
 
 /// Creates missing directories for these frames. Throws Error (file) if that fails or the first name is a directory, so
 /// that the error is found before rendering.

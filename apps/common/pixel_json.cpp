@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/common/describe_flags.h"
+#include "apps/common/film_loop.h"
 #include "apps/common/pixel_report.h"
 
 namespace cistula {

@@ -6,12 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "apps/common/command_line.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/layer_list.h"
-#include "apps/common/render_exclusions.h"
+#include "apps/common/view_options.h"
 #include "cistula/model/effects.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
@@ -31,216 +32,229 @@ const ColorSpace* parse_color_space(const std::string& text) {
 
 float parse_z_far(const std::string& text) {
     if (text == "inf") return std::numeric_limits<float>::infinity();
-    const auto value = whole_number<double>(text);
-    if (!value || !(static_cast<float>(*value) > 0) || !(*value <= double(std::numeric_limits<float>::max())))
-        fail_usage(fmt::format("--z-far {}: must be a number above 0 in single precision, or inf", one_line(text)));
-    return static_cast<float>(*value);
+    using Limits = std::numeric_limits<float>;
+    return static_cast<float>(number_option("--z-far", text, Limits::denorm_min(), Limits::max(),
+                                            "a number above 0 in single precision, or inf"));
 }
 
-float parse_dwa_level(const std::string& text) {
-    const auto value = whole_number<double>(text);
-    if (!value || !(*value >= 0 && *value <= 1000))
-        fail_usage(fmt::format("--dwa-level {}: must be a number from 0 to 1000", one_line(text)));
-    return static_cast<float>(*value);
+constexpr double above_zero = std::numeric_limits<double>::denorm_min();
+
+/// Throws Error (usage) that says which of two options must be left out, or which one is missing.
+void refuse_exclusions(const CLI::App& app, const RenderOptions& options) {
+    /// `option`, given as `text`, cannot be combined with `other`.
+    struct Exclusion {
+        const char* option;
+        std::string text;
+        const char* other;
+        bool other_given;
+        const char* why;
+    };
+    const auto given = [&](const char* option) { return app.count(option) > 0; };
+    const std::string pixel = given_text(app, "--pixel"), tile = given_text(app, "--tile"),
+                      target = given_text(app, "--target-error");
+    const std::string measure = options.action == Action::measure ? "measure" : "";
+    const std::string records = is_for_programs(options.progress) ? given_text(app, "--progress") : "";
+    const OutputChannels& channels = options.channels;
+    constexpr const char* no_image = "no image is written";
+    constexpr const char* from_the_corner = "the pixel counts from the top left of the full frame";
+    const Exclusion exclusions[] = {
+        {"--pixel", pixel, "-o", !options.output.empty(), no_image},
+        {"--pixel", pixel, "--preview", !options.preview.empty(), no_image},
+        {"--pixel", pixel, "--stats", !options.stats.empty(), "nothing is timed"},
+        {"--pixel", pixel, "--layers", !options.layers.empty(), no_image},
+        {"--pixel", pixel, "--bits", channels.half, no_image},
+        {"--pixel", pixel, "--strict", options.strict, no_image},
+        {"--pixel", pixel, "--background", channels.transparent, no_image},
+        {"--pixel", pixel, "--colorspace", channels.space != &color_spaces().front(), no_image},
+        {"--pixel", pixel, "--compression", channels.compression != Compression::zip, no_image},
+        {"--pixel", pixel, "--crop", options.crop.has_value(), from_the_corner},
+        {"--pixel", pixel, "--resume", options.resume, no_image},
+        {"--pixel", pixel, "--progress", options.progress != ProgressStyle::automatic, "one pixel takes no time"},
+        {"--pixel", pixel, "--explain", given("--explain"), "each prints a report of its own"},
+        {"--pixel", pixel, "--target-error", options.target_error.has_value(),
+         "it shows the samples of a grid; --supersample chooses one"},
+        {"--pixel", pixel, "--backend", options.backend != Backend::embree,
+         "the CPU follows the rays, and every backend gives the same bits"},
+        {"--tile", tile, "--preview", !options.preview.empty(),
+         "it is of whole frames; render-merge --preview makes it"},
+        {"--tile", tile, "--compression dwaa and dwab", is_dwa(channels.compression), why_no_dwa_of_tiles},
+        {"--tile", tile, "--explain", given("--explain"), "it tells of whole frames"},
+        {"--pixel", pixel, "--tile", options.tile.has_value(), from_the_corner},
+        {"--progress", records, "--explain", given("--explain"), "it tells of frames that are written"},
+        {"--lanes", given_text(app, "--lanes"), "--backend cuda", options.backend == Backend::cuda,
+         "a thread of a GPU traces one ray"},
+        {"--target-error", target, "--supersample", options.supersample.has_value(),
+         "pixels get as many samples as they need"},
+        {"--target-error", target, "--cutoff", options.cutoff.has_value(), "a quarter of the target is the cutoff"},
+        {"--explain", measure, "--target-error", options.target_error.has_value(),
+         "it times the samples of a grid; --supersample chooses one"},
+    };
+    for (const auto& [option, text, other, other_given, why] : exclusions)
+        if (!text.empty() && other_given)
+            fail_usage(fmt::format("{} {}: {} has no place here: {}; leave it out", option, text, other, why));
+    const auto require = [](bool holds, const char* option, const std::string& text, const char* otherwise) {
+        if (!text.empty() && !holds) fail_usage(fmt::format("{} {}: {}", option, text, otherwise));
+    };
+    const bool has_layers = !options.layers.empty();
+    const std::string split = options.split == Split::none ? "" : given_text(app, "--split");
+    require(has_layers, "--split", split, "is for --layers LIST");
+    require(has_layers, "--z-far", given_text(app, "--z-far"), "is for --layers Z");
+    require(is_dwa(channels.compression), "--dwa-level", given_text(app, "--dwa-level"),
+            "is for --compression dwaa and dwab");
+    if (options.quiet && options.verbose) fail_usage("-q and -v exclude each other; give one");
 }
 
 }  // namespace
 
-void declare_render_options(CLI::App& app, OptionTexts& texts) {
-    app.add_option("SCENE", texts.scene, "scene file: JSON or the seed's text; - reads standard input")->type_name("");
-    app.add_option("-o,--output", texts.output,
-                   "image: .exr, or .out/.data for the seed's raw frames; #### or %04d is the frame number")
-        ->type_name("FILE");
-    app.add_option("-f,--frames", texts.frames, "frames to render, e.g. 0-299x5,7")->type_name("LIST");
-    app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU)")->type_name("NAME");
-    app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
-        ->type_name("LIST");
-    app.add_flag("--list-devices", texts.list_devices, "print the GPUs, or why there is none, and exit");
-    app.add_option("--res", texts.resolution, "full frame in pixels")->type_name("WxH");
-    app.add_option("--crop", texts.crop, "render these pixels only; the file's data window")->type_name("WxH+X+Y");
-    app.add_option("--tiles", texts.tiles, "with --tile: the grid of tiles that the frame, or the crop, is cut into")
-        ->type_name("CxR");
-    app.add_option("--tile", texts.tile, "render this tile alone, counted from 0; render-merge joins them")
-        ->type_name("N");
-    app.add_option("--supersample", texts.supersample, "k: a k x k grid of samples per pixel")->type_name("K");
-    app.add_option("--depth", texts.depth, "surfaces shaded along a path, 1 to 1024")->type_name("N");
-    app.add_option("--cutoff", texts.cutoff, "radiance that dropping faint branches may cost a pixel; 0: none")
-        ->type_name("E");
-    app.add_option("--target-error", texts.target_error,
-                   "radiance by which a pixel may be wrong: samples and branches as needed, whatever --supersample")
-        ->type_name("E");
-    app.add_option("--max-samples", texts.max_samples, "with --target-error: samples of a pixel, 5 to 256; 256")
-        ->type_name("N");
-    app.add_option("--effects", texts.effects,
-                   "auto: compiled are those the scene calls for; all: every one, to compare")
-        ->type_name("NAME");
-    app.add_option("--precision", texts.precision,
-                   "auto (float, or double where parts are too small for it), float or double")
-        ->type_name("NAME");
-    app.add_option("--threads", texts.threads, "threads; all by default")->type_name("N");
-    app.add_option("--lanes", texts.lanes,
-                   "rays that a CPU thread traces at once, at most; 1 to 16, all that it can by default")
-        ->type_name("N");
-    app.add_option("--max-texture-gb", texts.max_texture_gb,
-                   "memory for all textures, in GB of 10^9 bytes; a quarter of the machine's")
-        ->type_name("N");
-    app.add_option("--bits", texts.bits, "float (32 bits a channel) or half (16)")->type_name("NAME");
-    app.add_flag("--strict", texts.strict, "with --bits half: a value over 65504 is an error, and not clamped");
-    app.add_option("--layers", texts.layers,
-                   "more layers: path, light, data, cryptomatte, or single ones such as diffuse, Z, N")
-        ->type_name("LIST");
-    app.add_option("--aov", texts.layers, "as --layers")->group("");  // its name in earlier versions: not in --help
-    app.add_option("--split", texts.split,
-                   "layers go into: none, the beauty's part of the file; parts of their own; or files of their own")
-        ->type_name("NAME");
-    app.add_option("--z-far", texts.z_far, "with --layers Z: the depth of nothing, a number or inf; 1e10")
-        ->type_name("Z");
-    app.add_option("--background", texts.background, "opaque, or transparent: alpha is coverage, color premultiplied")
-        ->type_name("NAME");
-    app.add_option("--colorspace", texts.color_space,
-                   "lin_rec709_scene, lin_ap1_scene (ACEScg), lin_ap0_scene (ACES2065-1), lin_rec2020_scene, "
-                   "lin_p3d65_scene or lin_adobergb_scene")
-        ->type_name("NAME");
-    app.add_option("--compression", texts.compression, "none, rle, zips, zip, piz, or with losses dwaa, dwab")
-        ->type_name("NAME");
-    app.add_option("--dwa-level", texts.dwa_level, "with dwaa and dwab: 0 to 1000, more is smaller; 45")
-        ->type_name("L");
-    add_preview_options(app, texts.preview, texts.view);
-    app.add_option("--stats", texts.stats, "times, rays, memory and the effects mask as JSON")->type_name("FILE");
+void declare_render_options(CLI::App& app, RenderOptions& options) {
+    OutputChannels& channels = options.channels;
+    channels.space = &color_spaces().front();
+    const auto add = [&](const char* names, const char* value, const char* description, const OptionReader& read) {
+        return add_option(app, names, value, description, read);
+    };
+    const auto add_text = [&](const char* names, const char* value, const char* description, std::string& text) {
+        return app.add_option(names, text, description)->type_name(value);
+    };
+    const auto add_action = [&](const char* name, const char* description, Action action) {
+        app.add_flag_callback(
+            name, [&options, action] { options.action = action; }, description);
+    };
+    add_text("SCENE", "", "scene file: JSON or the seed's text; - reads standard input", options.scene);
+    add_text("-o,--output", "FILE",
+             "image: .exr, or .out/.data for the seed's raw frames; #### or %04d is the frame number", options.output);
+    add("-f,--frames", "LIST", "frames to render, e.g. 0-299x5,7", read_by(options.frames, parse_frames));
+    add("--backend", "NAME", "embree (CPU) or cuda (GPU)", read_by(options.backend, parse_backend));
+    add("--device", "LIST", "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0",
+        [&](const char*, const std::string& text) { options.devices = parse_devices(text, options.backend); });
+    add_action("--list-devices", "print the GPUs, or why there is none, and exit", Action::list_devices);
+    add("--res", "WxH", "full frame in pixels", read_by(options.resolution, parse_size));
+    add("--crop", "WxH+X+Y", "render these pixels only; the file's data window", read_by(options.crop, parse_crop));
+    CLI::Option* const tiles =
+        add("--tiles", "CxR", "with --tile: the grid of tiles that the frame, or the crop, is cut into",
+            read_by(options.tiles, parse_tiles));
+    add("--tile", "N", "render this tile alone, counted from 0; render-merge joins them",
+        [&](const char* option, const std::string& text) {
+            options.tile =
+                integer_option(option, text, 0, app.count("--tiles") ? options.tiles.count() - 1 : most_tiles);
+        })
+        ->needs(tiles);
+    add("--supersample", "K", "k: a k x k grid of samples per pixel",
+        read_whole(options.supersample, 1, largest_supersample));
+    add("--depth", "N", "surfaces shaded along a path, 1 to 1024", read_whole(options.depth, 1, largest_depth));
+    add("--cutoff", "E", "radiance that dropping faint branches may cost a pixel; 0: none",
+        read_number(options.cutoff, 0, INFINITY, "a number, 0 or above, in the scene's units of radiance"));
+    CLI::Option* const target = add(
+        "--target-error", "E",
+        "radiance by which a pixel may be wrong: samples and branches as needed, whatever --supersample",
+        read_number(options.target_error, above_zero, INFINITY, "a number above 0, in the scene's units of radiance"));
+    add("--max-samples", "N", "with --target-error: samples of a pixel, 5 to 256; 256",
+        read_whole(options.max_samples, least_lattice_samples, lattice_samples))
+        ->needs(target);
+    add("--effects", "NAME", "auto: compiled are those the scene calls for; all: every one, to compare",
+        read_choice(options.all_effects, {{"auto", false}, {"all", true}}));
+    add("--precision", "NAME", "auto (float, or double where parts are too small for it), float or double",
+        read_choice(options.wanted_precision,
+                    {{"auto", std::nullopt}, {"float", Precision::single_}, {"double", Precision::double_}}));
+    add("--threads", "N", "threads; all by default", read_whole(options.threads, 1, 1024));
+    add("--lanes", "N", "rays that a CPU thread traces at once, at most; 1 to 16, all that it can by default",
+        read_whole(options.lanes, 1, 16));
+    add("--max-texture-gb", "N", "memory for all textures, in GB of 10^9 bytes; a quarter of the machine's",
+        [&](const char* option, const std::string& text) {
+            options.texture_bytes = static_cast<uint64_t>(
+                number_option(option, text, above_zero, 1e6, "a number above 0, to 1000000") * 1e9);
+        });
+    add("--bits", "NAME", "float (32 bits a channel) or half (16)",
+        read_choice(channels.half, {{"float", false}, {"half", true}}));
+    app.add_flag("--strict", options.strict, "with --bits half: a value over 65504 is an error, and not clamped");
+    const OptionReader read_layers = [&](const char*, const std::string& text) {
+        options.layers = text;
+        channels = parse_layers(text, channels);
+    };
+    add("--layers", "LIST", "more layers: path, light, data, cryptomatte, or single ones such as diffuse, Z, N",
+        read_layers);
+    add("--aov", "LIST", "as --layers", read_layers)->group("");  // its name in earlier versions: not in --help
+    add("--split", "NAME",
+        "layers go into: none, the beauty's part of the file; parts of their own; or files of their own",
+        read_choice(options.split, {{"none", Split::none}, {"parts", Split::parts}, {"files", Split::files}}));
+    add("--z-far", "Z", "with --layers Z: the depth of nothing, a number or inf; 1e10",
+        read_by(channels.z_far, parse_z_far));
+    add("--background", "NAME", "opaque, or transparent: alpha is coverage, color premultiplied",
+        read_choice(channels.transparent, {{"opaque", false}, {"transparent", true}}));
+    add("--colorspace", "NAME",
+        "lin_rec709_scene, lin_ap1_scene (ACEScg), lin_ap0_scene (ACES2065-1), lin_rec2020_scene, lin_p3d65_scene or "
+        "lin_adobergb_scene",
+        read_by(channels.space, parse_color_space));
+    add("--compression", "NAME", "none, rle, zips, zip, piz, or with losses dwaa, dwab",
+        read_choice(channels.compression, {{"none", Compression::none},
+                                           {"rle", Compression::rle},
+                                           {"zips", Compression::zips},
+                                           {"zip", Compression::zip},
+                                           {"piz", Compression::piz},
+                                           {"dwaa", Compression::dwaa},
+                                           {"dwab", Compression::dwab}}));
+    add("--dwa-level", "L", "with dwaa and dwab: 0 to 1000, more is smaller; 45",
+        read_number(channels.dwa_level, 0, 1000, "a number from 0 to 1000"));
+    add_preview_options(app, options.preview, options.view);
+    add_text("--stats", "FILE", "times, rays, memory and the effects mask as JSON", options.stats);
     add_valued_flag(
-        app, "--explain", texts.explain, "needs",
-        "print the effects the scene calls for and why; renders nothing. --explain=measure: and what each costs");
-    app.add_option("--pixel", texts.pixel, "print how this pixel comes about, ray by ray; renders nothing")
-        ->type_name("X,Y");
-    app.add_option("--json", texts.json, "with --pixel: the same as JSON; - is standard output")->type_name("FILE");
-    app.add_flag("--resume", texts.resume, "skip frames whose file is complete and of the same scene and settings");
-    app.add_option("--progress", texts.progress,
-                   "auto, plain or none; or, for programs, on standard output: json, or openjd (Open Job Description)")
-        ->type_name("STYLE");
-    app.add_flag("-q,--quiet", texts.quiet, "errors only");
-    app.add_flag("-v,--verbose", texts.verbose, "also times, hashes and effects");
-    app.add_flag("--print-template", texts.print_template, "print the seed's text input and exit");
-    app.add_flag("--version", texts.version, "print the version and exit");
+        app, "--explain", "needs",
+        "print the effects the scene calls for and why; renders nothing. --explain=measure: and what each costs",
+        read_choice(options.action, {{"needs", Action::explain}, {"measure", Action::measure}}));
+    CLI::Option* const pixel = add("--pixel", "X,Y", "print how this pixel comes about, ray by ray; renders nothing",
+                                   [&](const char*, const std::string& text) {
+                                       options.pixel = parse_pixel(text);
+                                       options.action = Action::pixel;
+                                   });
+    add_text("--json", "FILE", "with --pixel: the same as JSON; - is standard output", options.json)
+        ->needs(pixel)
+        ->option_text("FILE");
+    app.add_flag("--resume", options.resume, "skip frames whose file is complete and of the same scene and settings");
+    add("--progress", "STYLE",
+        "auto, plain or none; or, for programs, on standard output: json, or openjd (Open Job Description)",
+        read_choice(options.progress, {{"auto", ProgressStyle::automatic},
+                                       {"plain", ProgressStyle::plain},
+                                       {"none", ProgressStyle::none},
+                                       {"json", ProgressStyle::json},
+                                       {"openjd", ProgressStyle::openjd}}));
+    app.add_flag("-q,--quiet", options.quiet, "errors only");
+    app.add_flag("-v,--verbose", options.verbose, "also times, hashes and effects");
+    add_action("--print-template", "print the seed's text input and exit", Action::print_template);
+    add_action("--version", "print the version and exit", Action::print_version);
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
-RenderOptions checked_options(const OptionTexts& texts) {
-    RenderOptions options;
-    if (texts.version) options.action = Action::print_version;
-    if (texts.print_template) options.action = Action::print_template;
-    if (texts.list_devices) options.action = Action::list_devices;
-    if (options.action != Action::render) return options;
-    if (!texts.explain.empty())
-        options.action =
-            chosen<Action>("--explain", texts.explain, {{"needs", Action::explain}, {"measure", Action::measure}});
-
-    options.scene = texts.scene;
-    options.layers = texts.layers;
-    options.output = texts.output;
-    options.preview = texts.preview;
-    options.view = parse_view(texts.view);
-    options.stats = texts.stats;
-    options.resume = texts.resume;
-    options.strict = texts.strict;
-    options.quiet = texts.quiet;
-    options.verbose = texts.verbose;
-    options.json = texts.json;
-    options.backend = parse_backend(texts.backend);
-    options.devices = parse_devices(texts.device, options.backend);
-    options.wanted_precision = chosen<std::optional<Precision>>(
-        "--precision", texts.precision,
-        {{"auto", std::nullopt}, {"float", Precision::single_}, {"double", Precision::double_}});
+void check_render_options(const CLI::App& app, RenderOptions& options) {
     options.precision = options.wanted_precision.value_or(Precision::single_);
-    options.all_effects = chosen<bool>("--effects", texts.effects, {{"auto", false}, {"all", true}});
-    options.progress = chosen<ProgressStyle>("--progress", texts.progress,
-                                             {{"auto", ProgressStyle::automatic},
-                                              {"plain", ProgressStyle::plain},
-                                              {"none", ProgressStyle::none},
-                                              {"json", ProgressStyle::json},
-                                              {"openjd", ProgressStyle::openjd}});
-    if (!texts.frames.empty()) options.frames = parse_frames(texts.frames);
-    if (!texts.resolution.empty()) options.resolution = parse_size(texts.resolution);
-    if (!texts.crop.empty()) options.crop = parse_crop(texts.crop);
-    if (!texts.tiles.empty()) options.tiles = parse_tiles(texts.tiles);
-    if (!texts.tile.empty() && !texts.tiles.empty())
-        options.tile = integer_option("--tile", texts.tile, 0, options.tiles.count() - 1);
-    if (!texts.pixel.empty()) {
-        options.pixel = parse_pixel(texts.pixel);
-        options.action = Action::pixel;
-    }
-    if (!texts.layers.empty()) options.channels = parse_layers(texts.layers);
-    options.channels.half = chosen<bool>("--bits", texts.bits, {{"float", false}, {"half", true}});
-    options.channels.transparent =
-        chosen<bool>("--background", texts.background, {{"opaque", false}, {"transparent", true}});
-    options.channels.space = parse_color_space(texts.color_space);
-    options.channels.compression = chosen<Compression>("--compression", texts.compression,
-                                                       {{"none", Compression::none},
-                                                        {"rle", Compression::rle},
-                                                        {"zips", Compression::zips},
-                                                        {"zip", Compression::zip},
-                                                        {"piz", Compression::piz},
-                                                        {"dwaa", Compression::dwaa},
-                                                        {"dwab", Compression::dwab}});
-    options.split = chosen<Split>("--split", texts.split,
-                                  {{"none", Split::none}, {"parts", Split::parts}, {"files", Split::files}});
-    if (!texts.z_far.empty()) options.channels.z_far = parse_z_far(texts.z_far);
-    if (!texts.dwa_level.empty()) options.channels.dwa_level = parse_dwa_level(texts.dwa_level);
-    if (!texts.supersample.empty())
-        options.supersample = integer_option("--supersample", texts.supersample, 1, largest_supersample);
-    if (!texts.depth.empty()) options.depth = integer_option("--depth", texts.depth, 1, largest_depth);
-    if (!texts.lanes.empty()) options.lanes = integer_option("--lanes", texts.lanes, 1, 16);
-    if (!texts.threads.empty()) options.threads = integer_option("--threads", texts.threads, 1, 1024);
-    if (!texts.cutoff.empty()) {
-        options.cutoff = whole_number<double>(texts.cutoff);
-        if (!options.cutoff || !std::isfinite(*options.cutoff) || *options.cutoff < 0)
-            fail_usage(fmt::format("--cutoff {}: must be a number, 0 or above, in the scene's units of radiance",
-                                   texts.cutoff));
-    }
-    if (!texts.target_error.empty()) {
-        options.target_error = whole_number<double>(texts.target_error);
-        if (!options.target_error || !std::isfinite(*options.target_error) || !(*options.target_error > 0))
-            fail_usage(fmt::format("--target-error {}: must be a number above 0, in the scene's units of radiance",
-                                   texts.target_error));
-    }
-    if (!texts.max_texture_gb.empty()) {
-        const std::optional<double> gigabytes = whole_number<double>(texts.max_texture_gb);
-        if (!gigabytes || !(*gigabytes > 0) || !(*gigabytes <= 1e6))
-            fail_usage(fmt::format("--max-texture-gb {}: must be a number above 0, to 1000000",
-                                   one_line(texts.max_texture_gb)));
-        options.texture_bytes = static_cast<uint64_t>(*gigabytes * 1e9);
-    }
-    if (!texts.max_samples.empty())
-        options.max_samples =
-            integer_option("--max-samples", texts.max_samples, least_lattice_samples, lattice_samples);
-    refuse_exclusions(texts);
+    refuse_exclusions(app, options);
     if (options.action == Action::pixel && options.frames.size() > 1)
         fail_usage(fmt::format("--frames names {} frames, and --pixel {} is of one; name that one",
-                               options.frames.size(), texts.pixel));
+                               options.frames.size(), given_text(app, "--pixel")));
     if (options.scene.empty())
         fail_usage("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
-    return options;
 }
 
 RenderOptions parse_options(int argc, const char* const* argv) {
     CLI::App app;
-    OptionTexts texts;
-    declare_render_options(app, texts);
+    RenderOptions options;
+    declare_render_options(app, options);
     const bool whole = parse_command_line(app, argc, argv, [&](const std::string& extra) {
-        return fmt::format("{}: one scene at a time, and {} is it already", extra, texts.scene);
+        return fmt::format("{}: one scene at a time, and {} is it already", extra, options.scene);
     });
-    if (!whole) {
-        RenderOptions options;
-        options.action = Action::print_help;
-        return options;
-    }
-    return checked_options(texts);
+    if (!whole) options.action = Action::print_help;
+    constexpr Action prints[] = {Action::print_help, Action::print_version, Action::print_template,
+                                 Action::list_devices};
+    if (std::find(std::begin(prints), std::end(prints), options.action) != std::end(prints)) return options;
+    check_render_options(app, options);
+    if (app.count("--tiles") > 0 && !options.tile)
+        fail_usage(fmt::format("--tiles {}: is for --tile N, the one of them to render", given_text(app, "--tiles")));
+    return options;
 }
 
 std::string help_text() {
     CLI::App app("Renders a scene to OpenEXR: the same bits on every machine and with any number of threads.",
                  "render");
-    OptionTexts texts;
-    declare_render_options(app, texts);
+    RenderOptions options;
+    declare_render_options(app, options);
     app.footer(R"(
 Examples:
   render scenes/platonic.json -o platonic.exr --preview platonic.png

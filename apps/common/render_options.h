@@ -10,8 +10,6 @@
 #include "apps/common/film_options.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/picture_size.h"
-#include "apps/common/render_option_texts.h"
-#include "apps/common/tiles.h"
 #include "scene/film/film_picture.h"
 #include "scene/film/renderer.h"
 
@@ -30,12 +28,12 @@ enum class Action { render, explain, measure, pixel, print_help, print_version, 
 struct RenderOptions : FilmOptions {
     std::optional<Precision> wanted_precision;  // none: auto, which the scene decides (precision_choice.h)
     Action action = Action::render;
-    std::string scene;     // "-": standard input
-    std::string layers;    // as given; empty: none
-    std::string output;    // as given; empty: default_output
-    std::string preview;   // as given; empty: none
-    FrameList frames;      // empty: none given
-    DeviceChoice devices;  // for the CUDA backend
+    std::string scene;        // "-": standard input
+    std::string layers;       // as given; empty: none
+    std::string output;       // as given; empty: default_output
+    std::string preview;      // as given; empty: none
+    std::vector<int> frames;  // empty: none given
+    DeviceChoice devices;     // for the CUDA backend
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
     TileGrid tiles;           // over the crop or the full frame
@@ -53,11 +51,17 @@ struct RenderOptions : FilmOptions {
 
 inline constexpr int largest_supersample = 64;  // k
 
-/// Adds render's options to a command line.
-void declare_render_options(CLI::App& app, OptionTexts& texts);
+/// Adds render's options to a command line; `options` must outlive it.
+void declare_render_options(CLI::App& app, RenderOptions& options);
 
-/// The parsed options. Throws Error (usage) as parse_options() does.
-RenderOptions checked_options(const OptionTexts& texts);
+/// Checks how the options that were given fit together, whatever --tiles. Throws Error (usage).
+void check_render_options(const CLI::App& app, RenderOptions& options);
+
+/// Whether a compression is one of those that lose something.
+constexpr bool is_dwa(Compression compression) {
+    return compression == Compression::dwaa || compression == Compression::dwab;
+}
+inline constexpr const char* why_no_dwa_of_tiles = "a tile would lose something else than the whole frame does";
 
 /// Parses the command line. Throws Error (usage); the message names the option, what is wrong and what would be right.
 RenderOptions parse_options(int argc, const char* const* argv);

@@ -9,7 +9,6 @@
 #include <ctime>
 #include <thread>
 
-#include "apps/common/build_info.h"
 #include "apps/common/machine.h"
 
 namespace cistula {

@@ -1,13 +1,18 @@
 #include "apps/common/snapshots.h"
 
 #include <fmt/format.h>
+#include <semaphore.h>
 
+#include "apps/common/command_line.h"
 #include "apps/common/progress_record.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/film/film_picture.h"
 #include "scene/film/split_picture.h"
 #include "scene/image/exr/exr.h"
 #include "scene/image/picture/raw_picture.h"
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
 
 namespace cistula {
 namespace {
@@ -62,8 +67,7 @@ void Snapshots::write() {
             return say(fmt::format("no snapshot: no pixel of frame {} is done", camera->frame));
         write(*camera, std::move(*part));
     } catch (const std::exception& error) {
-        end_if_out_of_memory(error);
-        say(fmt::format("no snapshot: {}", error.what()));
+        say(fmt::format("no snapshot: {}", failure_of(error, "it copies the frame").text));
     }
 }
 
@@ -84,6 +88,48 @@ void Snapshots::write(const CameraFrame& camera, PartialFilm part) {
     }
     say(fmt::format("snapshot of frame {} at {:.0f} %: {}", camera.frame, 100 * part.fraction, path));
     report_.record({"snapshot", camera.frame, path, part.fraction});
+}
+
+namespace {
+
+sem_t snapshot_asked_for;  // posted by the handler: sem_post is safe there
+std::atomic<bool> no_more_asked_for{false};
+struct sigaction action_before;
+
+void on_user_signal(int) {
+    const int kept = errno;
+    sem_post(&snapshot_asked_for);
+    errno = kept;
+}
+
+}  // namespace
+
+UserSignal::UserSignal() {
+    sem_init(&snapshot_asked_for, 0, 0);
+    no_more_asked_for = false;
+    struct sigaction action = {};
+    action.sa_handler = on_user_signal;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGUSR1, &action, &action_before);
+}
+
+UserSignal::~UserSignal() {
+    sigaction(SIGUSR1, &action_before, nullptr);
+    sem_destroy(&snapshot_asked_for);
+}
+
+bool UserSignal::wait() {
+    while (sem_wait(&snapshot_asked_for) != 0 && errno == EINTR) {
+    }
+    while (sem_trywait(&snapshot_asked_for) == 0) {
+    }
+    return !no_more_asked_for;
+}
+
+void UserSignal::close() {
+    no_more_asked_for = true;
+    sem_post(&snapshot_asked_for);
 }
 
 }  // namespace cistula

@@ -6,9 +6,23 @@
 
 #include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
-#include "apps/common/user_signal.h"
 
 namespace cistula {
+
+/// While an object of this class exists, SIGUSR1 is caught and counted. Only one object at a time.
+class UserSignal {
+  public:
+    UserSignal();
+    ~UserSignal();
+    UserSignal(const UserSignal&) = delete;
+    UserSignal& operator=(const UserSignal&) = delete;
+
+    /// Waits for a signal; several that came since the last call are one. False once close() was called.
+    bool wait();
+
+    /// Ends the wait of another thread, and all later ones.
+    void close();
+};
 
 /// The attribute of a snapshot's header: the share of its pixels that are done. Finished frames do not have it.
 inline constexpr const char* snapshot_attribute = "cistula:snapshot";

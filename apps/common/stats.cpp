@@ -164,7 +164,7 @@ void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
         {"scene_bytes", stats.scene_bytes},
         {"stages_ms", stages},
         {"peak_rss_bytes", peak_memory()},
-        {"frames_resumed", stats.resumed.part(0, stats.resumed.size())},
+        {"frames_resumed", stats.resumed},
     });
     if (settings_.adaptive()) {
         context["target_error"] = settings_.target_error;

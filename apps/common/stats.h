@@ -68,7 +68,7 @@ struct RunStats {
     size_t scene_bytes = 0;                      // geometry, trees and shading data
     int threads = 0, lanes = 1;
     FilmTotals totals;
-    FrameList resumed;  // frames that --resume skipped
+    std::vector<int> resumed;  // frames that --resume skipped
 };
 
 /// The totals of one of the error ledgers over the pixels of a film: what a film's totals of it are in the scene's

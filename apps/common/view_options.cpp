@@ -13,31 +13,35 @@ const std::vector<std::string> own_views = {"srgb", "filmic"};
 
 }  // namespace
 
-void add_preview_options(CLI::App& app, std::string& preview, ViewTexts& texts) {
-    app.add_option("--preview", preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
-    app.add_option("--exposure", texts.exposure, "with --preview: stops by which it is brighter; 0")->type_name("EV");
-    app.add_option("--view", texts.view,
-                   "with --preview: srgb cuts off above white, filmic tells bright colors apart, or a view of "
-                   "$OCIO; srgb")
-        ->type_name("NAME");
-    app.add_option("--bloom", texts.bloom, "with --preview: how much light above white glows around; 0")
-        ->type_name("AMOUNT");
+OptionReader read_exposure(PictureView& view) {
+    return read_number(view.exposure, -64, 64, "a number of stops from -64 to 64; each doubles the light");
 }
 
-PictureView parse_view(const ViewTexts& texts) {
-    PictureView view;
-    if (!texts.exposure.empty())
-        view.exposure = number_option("--exposure", texts.exposure, -64, 64,
-                                      "a number of stops from -64 to 64; each doubles the light");
-    if (texts.view == "filmic") {
-        view.curve = ViewCurve::filmic;
-    } else if (texts.view != "srgb") {
-        view.name = texts.view;
-    }
-    if (!texts.bloom.empty())
-        view.bloom = number_option("--bloom", texts.bloom, 0, 100,
-                                   "a number from 0 to 100; 1 adds the light above white once, spread around it");
-    return view;
+OptionReader read_view(PictureView& view) {
+    return [&view](const char*, const std::string& text) {
+        if (text == "filmic")
+            view.curve = ViewCurve::filmic;
+        else if (text != "srgb")
+            view.name = text;
+    };
+}
+
+OptionReader read_bloom(PictureView& view) {
+    return read_number(view.bloom, 0, 100,
+                       "a number from 0 to 100; 1 adds the light above white once, spread around it");
+}
+
+void add_preview_options(CLI::App& app, std::string& preview, PictureView& view) {
+    CLI::Option* const shown =
+        app.add_option("--preview", preview, "also a PNG, clamped, sRGB; may hold a pattern")->type_name("FILE");
+    const auto add = [&](const char* name, const char* value, const char* description, const OptionReader& read) {
+        add_option(app, name, value, description, read)->needs(shown);
+    };
+    add("--exposure", "EV", "with --preview: stops by which it is brighter; 0", read_exposure(view));
+    add("--view", "NAME",
+        "with --preview: srgb cuts off above white, filmic tells bright colors apart, or a view of $OCIO; srgb",
+        read_view(view));
+    add("--bloom", "AMOUNT", "with --preview: how much light above white glows around; 0", read_bloom(view));
 }
 
 std::string open_config_view(PictureView& view) {

@@ -3,24 +3,19 @@
 
 #include <string>
 
+#include "apps/common/command_line.h"
 #include "scene/image/view/picture_view.h"
-
-namespace CLI {
-class App;
-}
 
 namespace cistula {
 
-/// The options' texts; empty for those not given.
-struct ViewTexts {
-    std::string exposure, view, bloom;
-};
+/// Adds --preview and, as options that require it, those above. A view that is not one of our own is not looked for
+/// yet.
+void add_preview_options(CLI::App& app, std::string& preview, PictureView& view);
 
-/// Adds --preview and, as options of it, those above.
-void add_preview_options(CLI::App& app, std::string& preview, ViewTexts& texts);
-
-/// The parsed options; a view that is not one of our own is not looked for yet. Throws Error (usage).
-PictureView parse_view(const ViewTexts& texts);
+/// Readers of --exposure, --view and --bloom.
+OptionReader read_exposure(PictureView& view);
+OptionReader read_view(PictureView& view);
+OptionReader read_bloom(PictureView& view);
 
 /// Opens the view of a config that `view` names, if it does. Returns a warning, or nothing. Throws Error: usage for an
 /// unknown view, with those that exist; file where the config cannot be used.

@@ -10,7 +10,6 @@
 
 #include "apps/common/backends.h"
 #include "apps/common/command_line.h"
-#include "apps/common/describe_flags.h"
 #include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
@@ -19,15 +18,14 @@
 #include "apps/common/progress_record.h"
 #include "apps/common/render_options.h"
 #include "apps/common/run_files.h"
+#include "apps/common/snapshots.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
-#include "apps/common/user_signal.h"
 #include "apps/common/view_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "explain.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/base/stages.h"
 #include "scene/base/suggest.h"
 #include "scene/compile/compiled_scene.h"
@@ -89,7 +87,7 @@ Prepared prepare(SceneSource source, const RenderOptions& options, std::future<C
 /// The names of the images and previews, and their frames.
 struct Outputs {
     OutputName image, preview;
-    FrameList frames;
+    std::vector<int> frames;
     std::vector<std::string> layers;  // that have files of their own
 };
 
@@ -139,7 +137,8 @@ void check_names(const RenderOptions& options, const RunFiles& others, std::vect
 void prepare_files(const RenderOptions& options, const SceneDescription& scene, const RunFiles& others,
                    const std::vector<std::string>& read, const Outputs& outputs) {
     check_names(options, others, read, outputs);
-    const std::string turns = look_ahead(outputs, options, scene, others, outputs.frames.part(0, stretch_length));
+    const std::string turns =
+        look_ahead(outputs, options, scene, others, frames_from(outputs.frames, 0, stretch_length));
     if (!turns.empty()) print_warnings({turns}, options);
     if (options.stats.empty()) return;
     make_directory_of(options.stats);
@@ -177,22 +176,19 @@ void judge_target(const FilmTotals& totals, const FrameSettings& settings, const
     if (!options.quiet) note(fmt::format("render: {}", text));
 }
 
-/// Sets what is said when memory runs out.
-void advise_on_memory(const RenderOptions& options, const FrameSettings& settings) {
+/// What is advised when memory runs out.
+std::string advice_on_memory(const RenderOptions& options, const FrameSettings& settings) {
     const PixelRect& crop = settings.crop;
     const uint64_t pixels = static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height);
     const uint64_t mebibytes = pixels * settings.kept_parts().bytes() >> 20;
-    const bool is_small = mebibytes < 64;
-    set_out_of_memory_line(
-        "render", is_small ? fmt::format("the scene and {} threads take most of it; allow more (ulimit -v), or give "
-                                         "fewer --threads",
-                                         threads_of(options))
-                           : fmt::format("a frame of {}x{} takes {} MiB of it while it is rendered; a smaller --res or "
-                                         "--crop needs less",
-                                         crop.width, crop.height, mebibytes));
+    if (mebibytes < 64)
+        return fmt::format("the scene and {} threads take most of it; allow more (ulimit -v), or give fewer --threads",
+                           threads_of(options));
+    return fmt::format("a frame of {}x{} takes {} MiB of it while it is rendered; a smaller --res or --crop needs less",
+                       crop.width, crop.height, mebibytes);
 }
 
-void render_scene(RenderOptions options) {
+void render_scene(RenderOptions options, std::string& memory_advice) {
     const bool explain = options.action == Action::explain;
     std::optional<UserSignal> snapshot_signal;
     if (!explain) snapshot_signal.emplace();
@@ -213,7 +209,7 @@ void render_scene(RenderOptions options) {
     if (const std::string warning = open_config_view(options.view); !warning.empty())
         print_warnings({warning}, options);
     const FrameSettings settings = frame_settings(options, scene);
-    advise_on_memory(options, settings);
+    memory_advice = advice_on_memory(options, settings);
     Outputs outputs = plan_outputs(options, scene);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
@@ -264,8 +260,8 @@ void render_scene(RenderOptions options) {
         outputs.layers = layers_with_files(job);
         if (!outputs.layers.empty()) {  // their names are known only now
             check_names(options, others, read, outputs);
-            require_different_files(others, outputs.image, outputs.preview, outputs.frames.part(0, stretch_length),
-                                    outputs.layers);
+            require_different_files(others, outputs.image, outputs.preview,
+                                    frames_from(outputs.frames, 0, stretch_length), outputs.layers);
         }
         if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
         job.look_ahead = [&](const std::vector<int>& frames) {
@@ -360,7 +356,7 @@ void report_pixel(RenderOptions options) {
         report_pixel<float>(options, scene, std::move(source), settings, camera);
 }
 
-void run(const RenderOptions& options) {
+void run(const RenderOptions& options, std::string& memory_advice) {
     switch (options.action) {
         case Action::print_help:
             return print(help_text());
@@ -376,25 +372,19 @@ void run(const RenderOptions& options) {
             return measure_scene(options);
         case Action::explain:
         case Action::render:
-            return render_scene(options);
+            return render_scene(options, memory_advice);
     }
 }
 
 /// Runs, and tells programs that read the progress of an error that ends it.
-void run_and_record(const RenderOptions& options) {
-    const auto record = [&](const std::exception& error, ExitCode code) {
-        const std::string lines = failure_record(options.progress, error.what(), code);
-        if (lines.empty()) return;
-        std::fputs((lines + "\n").c_str(), stdout);
-        std::fflush(stdout);
-    };
+void run_and_record(const RenderOptions& options, std::string& memory_advice) {
     try {
-        run(options);
-    } catch (const Error& error) {
-        record(error, error.code());
-        throw;
+        run(options, memory_advice);
     } catch (const std::exception& error) {
-        record(error, ExitCode::failed);
+        const Failure failure = failure_of(error, memory_advice);
+        const std::string lines = failure_record(options.progress, failure.text, failure.code);
+        if (!lines.empty()) std::fputs((lines + "\n").c_str(), stdout);
+        std::fflush(stdout);
         throw;
     }
 }
@@ -404,8 +394,9 @@ void run_and_record(const RenderOptions& options) {
 
 int main(int argc, char** argv) {
     using namespace cistula;
-    return run_program("render", "a smaller --res or --crop needs less", [&] {
-        run_and_record(parse_options(argc, argv));
+    std::string memory_advice = "a smaller --res or --crop needs less";
+    return run_program("render", memory_advice, [&] {
+        run_and_record(parse_options(argc, argv), memory_advice);
         return static_cast<int>(ExitCode::done);
     });
 }

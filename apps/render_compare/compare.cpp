@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "apps/common/command_line.h"
-#include "apps/common/part_name.h"
+#include "apps/common/header_attributes.h"
+#include "channel_statistics.h"
 #include "header_differences.h"
 #include "picture_pairs.h"
 #include "scene/base/suggest.h"
+#include "scene/image/picture/picture.h"
 #include "ssim.h"
-#include "stored_layers.h"
 
 namespace cistula {
 namespace {
@@ -209,6 +212,67 @@ bool passes(const Comparison& comparison, const Thresholds& thresholds) {
     return static_cast<double>(comparison.over_fail) * 100 <=
                thresholds.failpercent * static_cast<double>(comparison.pixels) &&
            comparison.over_hardfail == 0;
+}
+
+namespace {
+
+std::string type_of(const Attributes::mapped_type& value) {
+    constexpr const char* types[] = {"string", "int", "double", "floats", "rational"};
+    static_assert(std::size(types) == std::variant_size_v<Attributes::mapped_type>);
+    return types[value.index()];
+}
+
+}  // namespace
+
+StoredFile stored_layers(const LayeredPicture& picture) {
+    StoredPicture stored;
+    stored.data = {picture.x, picture.y, picture.width, picture.height};
+    stored.display = {0, 0, picture.display_width, picture.display_height};
+    for (const LayeredPicture::Channel& channel : picture.channels)
+        stored.channels.push_back(
+            {channel.name, channel.half ? StoredType::half : StoredType::float_, 1, 1, channel.values});
+    for (const auto& [name, value] : picture.attributes) {
+        const std::string text = attribute_text(value);
+        stored.attributes[name] = {type_of(value), text, text};
+    }
+    return {"openexr", {std::move(stored)}};
+}
+
+namespace {
+
+PicturePart difference_part(const PicturePair& pair, const Selection& selection) {
+    PicturePart part;
+    part.name = pair.part;
+    const Region region = region_of(*pair.a, *pair.b, selection, pair.subject());
+    LayeredPicture& picture = part.picture;
+    picture.width = region.window.width;
+    picture.height = region.window.height;
+    picture.x = region.window.x - pair.a->display.x;
+    picture.y = region.window.y - pair.a->display.y;
+    picture.display_width = pair.a->display.width;
+    picture.display_height = pair.a->display.height;
+    if (region.window.pixels() == 0) return part;
+    for (const StoredChannel& channel : pair.a->channels) {
+        if (!is_selected(selection.layers, channel.name, name_in_part(pair.part, channel.name))) continue;
+        const StoredChannel* other = pair.b->channel(channel.name);
+        if (!other) continue;
+        picture.channels.push_back(
+            {channel.name, false, differences_of({channel, pair.a->data}, {*other, pair.b->data}, region)});
+    }
+    return part;
+}
+
+}  // namespace
+
+std::vector<PicturePart> difference_parts(const StoredFile& a, const StoredFile& b, const Selection& selection) {
+    std::vector<PicturePart> parts;
+    const PicturePairs pairs = pair_pictures(a, b);
+    for (const PicturePair& pair : pairs.pairs) {
+        if (!pair.a->is_whole()) continue;
+        PicturePart part = difference_part(pair, selection);
+        if (!part.picture.channels.empty()) parts.push_back(std::move(part));
+    }
+    return parts;
 }
 
 }  // namespace cistula

@@ -5,7 +5,6 @@
 
 #include "apps/common/command_line.h"
 #include "compare.h"
-#include "difference_picture.h"
 #include "flip.h"
 #include "options.h"
 #include "report.h"
@@ -14,7 +13,7 @@
 #include "scene/base/shown_text.h"
 #include "scene/image/exr/exr.h"
 #include "scene/image/reader/picture_reader.h"
-#include "suite_program.h"
+#include "suite_run.h"
 #include "sums.h"
 
 namespace cistula {

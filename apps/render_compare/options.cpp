@@ -14,47 +14,6 @@
 namespace cistula {
 namespace {
 
-/// The options' texts as CLI11 stores them.
-struct Texts {
-    std::string a, b, fail, failpercent, hardfail, layers, crop, mask, metrics, diff, json, sums;
-    bool intersection = false, quiet = false, version = false;
-};
-
-void declare(CLI::App& app, Texts& texts) {
-    app.add_option("A", texts.a, "an image; differences are relative to it")->type_name("");
-    app.add_option("B", texts.b, "another")->type_name("");
-    app.add_option("--fail", texts.fail, "a pixel fails where a channel differs by more than E")->type_name("E");
-    app.add_option("--failpercent", texts.failpercent, "with --fail: P % of the pixels may fail; 0")->type_name("P");
-    app.add_option("--hardfail", texts.hardfail, "no pixel may differ by more than E")->type_name("E");
-    app.add_option("--layers", texts.layers,
-                   "only channels and layers of these names, with * and ?; e.g. R,G,B,diffuse.*")
-        ->type_name("LIST");
-    app.add_flag("--intersection", texts.intersection, "only pixels that both data windows have");
-    app.add_option("--crop", texts.crop, "only these pixels; X and Y in the file's pixel space")->type_name("X,Y,W,H");
-    app.add_option("--mask", texts.mask, "only pixels where this image is above 0")->type_name("FILE");
-    app.add_option("--metrics", texts.metrics, "also ssim, or flip (by NVIDIA's program), or both")->type_name("LIST");
-    app.add_option("--diff", texts.diff, "write the absolute differences as an image")->type_name("FILE.exr");
-    app.add_option("--json", texts.json, "write the result as JSON")->type_name("FILE");
-    app.add_option("--sums", texts.sums, "whether an image's layers by path and by light add up to its R G B")
-        ->type_name("FILE.exr");
-    app.add_flag("-q,--quiet", texts.quiet, "errors only; the exit code tells");
-    app.add_flag("--version", texts.version, "print the version and exit");
-    app.set_help_flag("-h,--help", "print this and exit");
-}
-
-void refuse(bool given, const char* option, const char* why) {
-    if (given) fail_usage(fmt::format("{}: {}", option, why));
-}
-
-/// Refuses what chooses among the pixels and channels of two images, or measures their difference.
-void refuse_selection(const Texts& texts, const char* why) {
-    refuse(!texts.layers.empty(), "--layers", why);
-    refuse(texts.intersection, "--intersection", why);
-    refuse(!texts.crop.empty(), "--crop", why);
-    refuse(!texts.mask.empty(), "--mask", why);
-    refuse(!texts.metrics.empty(), "--metrics", why);
-}
-
 /// X,Y,W,H, in which X and Y may be negative, or what --crop of render takes.
 PixelRect parse_window(const std::string& text) {
     const std::vector<std::string_view> parts = parts_at_commas(text);
@@ -67,40 +26,57 @@ PixelRect parse_window(const std::string& text) {
     return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
-void check_selection(const Texts& texts, CompareOptions& options) {
-    Selection& selection = options.selection;
-    if (!texts.layers.empty())
-        for (const std::string_view pattern : parts_at_commas(texts.layers)) {
-            if (pattern.empty())
-                fail_usage(fmt::format(
-                    "--layers {}: has an empty name; names have commas between, as in R,G,B,diffuse.*", texts.layers));
-            selection.layers.emplace_back(pattern);
-        }
-    selection.intersection = texts.intersection;
-    if (!texts.crop.empty()) selection.crop = parse_window(texts.crop);
-    options.mask = texts.mask;
-    if (texts.metrics.empty()) return;
-    for (const std::string_view metric : parts_at_commas(texts.metrics))
-        *chosen<bool*>("--metrics", std::string(metric), {{"ssim", &selection.ssim}, {"flip", &options.flip}}) = true;
+std::vector<std::string> parse_patterns(const std::string& text) {
+    std::vector<std::string> patterns;
+    for (const std::string_view pattern : parts_at_commas(text)) {
+        if (pattern.empty())
+            fail_usage(
+                fmt::format("--layers {}: has an empty name; names have commas between, as in R,G,B,diffuse.*", text));
+        patterns.emplace_back(pattern);
+    }
+    return patterns;
 }
 
-void check_images(const Texts& texts, CompareOptions& options) {
-    if (texts.a.empty() || texts.b.empty())
-        fail_usage(fmt::format("{}; render-compare A.exr B.exr; --help tells more",
-                               texts.a.empty() ? "no images are given" : "only one image is given"));
-    if (texts.fail.empty())
-        refuse(!texts.failpercent.empty(), "--failpercent", "needs to know when a pixel fails; add --fail E");
+/// Adds the options; `sums`: the image given to --sums.
+void declare(CLI::App& app, CompareOptions& options, std::string& sums) {
     constexpr const char* amount = "a number, 0 or above, in the units of the channels";
-    if (!texts.fail.empty()) options.thresholds.fail = number_option("--fail", texts.fail, 0, INFINITY, amount);
-    if (!texts.hardfail.empty())
-        options.thresholds.hardfail = number_option("--hardfail", texts.hardfail, 0, INFINITY, amount);
-    if (!texts.failpercent.empty())
-        options.thresholds.failpercent =
-            number_option("--failpercent", texts.failpercent, 0, 100, "a number from 0 to 100, as in 0.5");
-    check_selection(texts, options);
-    options.a = texts.a;
-    options.b = texts.b;
-    options.diff = texts.diff;
+    Thresholds& thresholds = options.thresholds;
+    Selection& selection = options.selection;
+    app.add_option("A", options.a, "an image; differences are relative to it")->type_name("");
+    app.add_option("B", options.b, "another")->type_name("");
+    CLI::Option* const fail = add_option(app, "--fail", "E", "a pixel fails where a channel differs by more than E",
+                                         read_number(thresholds.fail, 0, INFINITY, amount));
+    add_option(app, "--failpercent", "P", "with --fail: P % of the pixels may fail; 0",
+               read_number(thresholds.failpercent, 0, 100, "a number from 0 to 100, as in 0.5"))
+        ->needs(fail);
+    add_option(app, "--hardfail", "E", "no pixel may differ by more than E",
+               read_number(thresholds.hardfail, 0, INFINITY, amount));
+    add_option(app, "--layers", "LIST", "only channels and layers of these names, with * and ?; e.g. R,G,B,diffuse.*",
+               read_by(selection.layers, parse_patterns));
+    app.add_flag("--intersection", selection.intersection, "only pixels that both data windows have");
+    add_option(app, "--crop", "X,Y,W,H", "only these pixels; X and Y in the file's pixel space",
+               read_by(selection.crop, parse_window));
+    app.add_option("--mask", options.mask, "only pixels where this image is above 0")->type_name("FILE");
+    add_option(app, "--metrics", "LIST", "also ssim, or flip (by NVIDIA's program), or both",
+               [&](const char* option, const std::string& text) {
+                   for (const std::string_view metric : parts_at_commas(text))
+                       *chosen<bool*>(option, std::string(metric),
+                                      {{"ssim", &selection.ssim}, {"flip", &options.flip}}) = true;
+               });
+    app.add_option("--diff", options.diff, "write the absolute differences as an image")->type_name("FILE.exr");
+    app.add_option("--json", options.json, "write the result as JSON")->type_name("FILE");
+    app.add_option("--sums", sums, "whether an image's layers by path and by light add up to its R G B")
+        ->type_name("FILE.exr");
+    app.add_flag("-q,--quiet", options.quiet, "errors only; the exit code tells");
+    app.add_flag_callback(
+        "--version", [&] { options.action = CompareAction::print_version; }, "print the version and exit");
+    app.set_help_flag("-h,--help", "print this and exit");
+}
+
+void check_images(const CompareOptions& options) {
+    if (options.a.empty() || options.b.empty())
+        fail_usage(fmt::format("{}; render-compare A.exr B.exr; --help tells more",
+                               options.a.empty() ? "no images are given" : "only one image is given"));
     RunFiles files;
     files.reads(options.a, "the first image");
     files.reads(options.b, "the second image");
@@ -111,40 +87,34 @@ void check_images(const Texts& texts, CompareOptions& options) {
         fail_usage(fmt::format("--diff {}: differences are written as an EXR; name it *.exr", options.diff));
 }
 
-void check_sums(const Texts& texts, CompareOptions& options) {
-    constexpr const char* one = "--sums looks at one image by itself; leave it out";
-    refuse(!texts.a.empty(), texts.a.c_str(), one);
-    refuse(!texts.fail.empty(), "--fail", one);
-    refuse(!texts.failpercent.empty(), "--failpercent", one);
-    refuse(!texts.hardfail.empty(), "--hardfail", one);
-    refuse_selection(texts, one);
-    refuse(!texts.diff.empty(), "--diff", one);
-    refuse(!texts.json.empty(), "--json", one);
-    options.action = CompareAction::sums;
-    options.a = texts.sums;
+/// Refuses what chooses among the pixels and channels of two images, or tells of their difference.
+void check_sums(const CLI::App& app, const CompareOptions& options) {
+    constexpr const char* why = "--sums looks at one image by itself; leave it out";
+    if (!options.a.empty()) fail_usage(fmt::format("{}: {}", options.a, why));
+    for (const char* option : {"--fail", "--failpercent", "--hardfail", "--layers", "--intersection", "--crop",
+                               "--mask", "--metrics", "--diff", "--json"})
+        if (app.count(option) > 0) fail_usage(fmt::format("{}: {}", option, why));
 }
 
 }  // namespace
 
 CompareOptions parse_compare_options(int argc, const char* const* argv) {
     CLI::App app;
-    Texts texts;
-    declare(app, texts);
     CompareOptions options;
+    std::string sums;
+    declare(app, options, sums);
     const bool whole = parse_command_line(app, argc, argv, [](const std::string& extra) {
         return fmt::format("{}: one image too many; two are compared at a time", extra);
     });
-    if (!whole || texts.version) {
-        options.action = whole ? CompareAction::print_version : CompareAction::print_help;
+    if (!whole) options.action = CompareAction::print_help;
+    if (options.action != CompareAction::compare) return options;
+    if (sums.empty()) {
+        check_images(options);
         return options;
     }
-    options.quiet = texts.quiet;
-    options.json = texts.json;
-    if (!texts.sums.empty()) {
-        check_sums(texts, options);
-    } else {
-        check_images(texts, options);
-    }
+    check_sums(app, options);
+    options.action = CompareAction::sums;
+    options.a = sums;
     return options;
 }
 
@@ -154,8 +124,9 @@ std::string compare_help_text() {
         "they "
         "must be equal in every bit, header included.",
         "render-compare");
-    Texts texts;
-    declare(app, texts);
+    CompareOptions options;
+    std::string sums;
+    declare(app, options, sums);
     app.footer(R"(
 Examples:
   render-compare a.exr b.exr

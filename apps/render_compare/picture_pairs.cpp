@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "apps/common/part_name.h"
-
 namespace cistula {
 namespace {
 

@@ -16,7 +16,7 @@ namespace cistula {
 /// What pictures of a case are rendered with: the options of `render` that change a picture.
 struct SuiteSettings {
     std::string scene;  // as given
-    FrameList frames{0};
+    std::vector<int> frames{0};
     std::optional<PictureSize> resolution;
     std::optional<PixelRect> crop;
     std::optional<int> supersample, depth;

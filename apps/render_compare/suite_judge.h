@@ -28,7 +28,7 @@ struct SuiteResult {
     std::string golden;  // file, or empty
     std::string hash, expected_hash, film_hash, expected_film_hash;
     std::optional<Comparison> comparison;  // with a golden image
-    std::string page;                      // its part of the HTML page (suite_page.h)
+    std::string page;                      // its part of the HTML page (suite_report.h)
 
     bool failed() const { return outcome != Outcome::holds && outcome != Outcome::skipped; }
 };

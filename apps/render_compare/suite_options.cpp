@@ -18,36 +18,34 @@
 namespace cistula {
 namespace {
 
-struct SuiteTexts {
-    std::string folder, backend, device, jobs, junit, json, html;
-    std::vector<std::string> cases, filters;
-    bool update = false, list = false, fail_fast = false, quiet = false;
-};
-
-void declare(CLI::App& app, SuiteTexts& texts) {
-    app.add_option("DIR", texts.folder, "the folder of a suite.json")->type_name("");
-    app.add_option("CASE", texts.cases, "these cases only")->type_name("");
-    app.add_option("--filter", texts.filters,
+void declare(CLI::App& app, SuiteOptions& options) {
+    app.add_option("DIR", options.folder, "the folder of a suite.json")->type_name("");
+    app.add_option("CASE", options.cases, "these cases only")->type_name("");
+    app.add_option("--filter", options.filters,
                    "cases with a name or a tag that this is, or that a pattern with * and ? fits; may be given several "
                    "times")
         ->type_name("PATTERN")
         ->expected(1)
         ->take_all();
-    app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU); those that each case names")
-        ->type_name("NAME");
-    app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
-        ->type_name("LIST");
-    app.add_flag("--update", texts.update,
+    add_option(app, "--backend", "NAME", "embree (CPU) or cuda (GPU); those that each case names",
+               read_by(options.backend, parse_backend));
+    add_option(app, "--device", "LIST", "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0",
+               [&](const char*, const std::string& text) {
+                   options.devices = parse_devices(text, options.backend.value_or(Backend::embree));
+               });
+    app.add_flag("--update", options.update,
                  "write golden images and hashes anew where they differ, and say what changed");
-    app.add_option("--jobs", texts.jobs, "cases that are rendered at once; 1")->type_name("N");
-    app.add_flag("--fail-fast", texts.fail_fast, "begin no further case after one that failed");
-    app.add_option("--junit", texts.junit, "write the results as JUnit XML")->type_name("FILE");
-    app.add_option("--json", texts.json, "write the results as JSON")->type_name("FILE");
-    app.add_option("--html", texts.html,
-                   "write the results, with what differs, as a page that needs nothing else: DIR/index.html")
-        ->type_name("DIR");
-    app.add_flag("--list", texts.list, "print the cases, each with a tab and its tags, and exit");
-    app.add_flag("-q,--quiet", texts.quiet, "errors only; the exit code tells");
+    add_option(app, "--jobs", "N", "cases that are rendered at once; 1", read_whole(options.jobs, 1, 1024));
+    app.add_flag("--fail-fast", options.fail_fast, "begin no further case after one that failed");
+    app.add_option("--junit", options.junit, "write the results as JUnit XML")->type_name("FILE");
+    app.add_option("--json", options.json, "write the results as JSON")->type_name("FILE");
+    add_option(app, "--html", "DIR",
+               "write the results, with what differs, as a page that needs nothing else: DIR/index.html",
+               [&](const char*, const std::string& text) {
+                   options.html = (std::filesystem::path(text) / "index.html").string();
+               });
+    app.add_flag("--list", options.list, "print the cases, each with a tab and its tags, and exit");
+    app.add_flag("-q,--quiet", options.quiet, "errors only; the exit code tells");
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
@@ -89,35 +87,20 @@ void add_scene(const std::string& path, bool with_files, RunFiles& files) {
 
 SuiteOptions parse_suite_options(int argc, const char* const* argv) {
     CLI::App app;
-    SuiteTexts texts;
-    declare(app, texts);
     SuiteOptions options;
-    if (!parse_command_line(app, argc, argv, [](const std::string& extra) { return extra + ": no such word"; })) {
-        options.help = true;
-        return options;
-    }
-    if (texts.folder.empty()) fail_usage("no suite is given: render-compare suite DIR, the folder of a suite.json");
-    options.folder = texts.folder;
-    options.cases = texts.cases;
-    options.filters = texts.filters;
-    if (!texts.backend.empty()) options.backend = parse_backend(texts.backend);
-    options.devices = parse_devices(texts.device, options.backend.value_or(Backend::embree));
-    if (!texts.jobs.empty()) options.jobs = integer_option("--jobs", texts.jobs, 1, 1024);
-    options.update = texts.update;
-    options.list = texts.list;
-    options.fail_fast = texts.fail_fast;
-    options.quiet = texts.quiet;
-    options.junit = texts.junit;
-    options.json = texts.json;
-    if (!texts.html.empty()) options.html = (std::filesystem::path(texts.html) / "index.html").string();
+    declare(app, options);
+    options.help =
+        !parse_command_line(app, argc, argv, [](const std::string& extra) { return extra + ": no such word"; });
+    if (!options.help && options.folder.empty())
+        fail_usage("no suite is given: render-compare suite DIR, the folder of a suite.json");
     return options;
 }
 
 std::string suite_help_text() {
     CLI::App app("Renders the cases of a suite of golden images, DIR/suite.json, and compares.",
                  "render-compare suite");
-    SuiteTexts texts;
-    declare(app, texts);
+    SuiteOptions options;
+    declare(app, options);
     app.footer(R"(
 Examples:
   render-compare suite golden                              every case, on the backends that it names
@@ -172,7 +155,7 @@ void require_other_files(const Suite& suite, const SuiteOptions& options, const 
         for (const SuiteCase& one : suite.cases) {
             const bool is_chosen = std::find(chosen.begin(), chosen.end(), &one) != chosen.end();
             if ((options.update && is_chosen) != updated || one.golden.empty()) continue;
-            for (const int frame : one.frames.part(0, one.frames.size())) {
+            for (const int frame : one.frames) {
                 const std::string path = one.golden_path(suite.folder, frame);
                 if (updated)
                     files.writes(path, "the golden image of " + one.name);

@@ -1,4 +1,4 @@
-#include "suite_page.h"
+#include "suite_report.h"
 
 #include <fmt/format.h>
 

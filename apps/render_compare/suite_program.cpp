@@ -1,4 +1,4 @@
-#include "suite_program.h"
+#include "suite_run.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include "apps/common/command_line.h"
 #include "apps/common/output_name.h"
 #include "scene/base/atomic_file.h"
-#include "suite_page.h"
 #include "suite_report.h"
 #include "suite_update.h"
 

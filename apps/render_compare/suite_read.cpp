@@ -43,7 +43,7 @@ std::vector<int> whole_numbers(const JsonValue& value, std::initializer_list<Key
     return numbers;
 }
 
-FrameList frames_in(const JsonValue& value) {
+std::vector<int> frames_in(const JsonValue& value) {
     if (value.json().is_string()) return parsed_at(value, [](const std::string& text) { return parse_frames(text); });
     if (!value.json().is_number())
         value.fail_expected("a frame's number, or a list as --frames takes it: \"0-299x30\"");

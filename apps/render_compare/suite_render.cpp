@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "apps/common/describe_flags.h"
+#include "apps/common/film_loop.h"
 #include "apps/common/frame_writer.h"
 #include "apps/common/header_attributes.h"
 #include "apps/common/layer_list.h"
-#include "apps/common/render_frame.h"
 #include "apps/common/target.h"
 #include "apps/common/timing.h"
 #include "cistula/transport/ray_tree.h"

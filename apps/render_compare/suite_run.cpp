@@ -10,7 +10,6 @@
 
 #include "apps/common/interrupt.h"
 #include "scene/base/error.h"
-#include "scene/base/out_of_memory.h"
 #include "scene/image/exr/exr.h"
 
 namespace cistula {
@@ -30,8 +29,7 @@ class CaseQueue {
         try {
             for (size_t i = next_++; i < chosen_.size() && !progress_.stop && !failed_; i = next_++)
                 finish(i, results_of(*chosen_[i]));
-        } catch (const std::exception& error) {
-            end_if_out_of_memory(error);
+        } catch (...) {
             const std::lock_guard lock(mutex_);
             if (!failure_) failure_ = std::current_exception();
             progress_.stop = true;
@@ -71,7 +69,7 @@ class CaseQueue {
 
     std::vector<SuiteResult> results_on(const SuiteCase& one, Backend backend) {
         std::vector<SuiteResult> results;
-        for (const int frame : one.frames.part(0, one.frames.size())) {
+        for (const int frame : one.frames) {
             SuiteResult result;
             result.of = &one;
             result.frame = frame;
@@ -183,11 +181,11 @@ std::vector<SuiteResult> run_cases(const Suite& suite, const std::vector<const S
     CaseQueue queue(suite, chosen, backends, options, work);
     InterruptGuard guard;
     guard.watch(queue.stop());
-    std::vector<std::thread> threads;
+    std::vector<std::jthread> threads;
     const size_t jobs = std::min(static_cast<size_t>(options.jobs), chosen.size());
     while (threads.size() + 1 < jobs) threads.emplace_back([&] { queue.take_cases(); });
     queue.take_cases();
-    for (std::thread& thread : threads) thread.join();
+    threads.clear();
     std::vector<SuiteResult> results = queue.results();
     if (queue.stop()) throw Error(ExitCode::interrupted, "interrupted; no results are written");
     return results;

@@ -35,4 +35,7 @@ std::vector<SuiteResult> run_cases(const Suite& suite, const std::vector<const S
                                    const std::vector<SuiteBackend>& backends, const SuiteOptions& options,
                                    const SuiteWork& work);
 
+/// Does what the words after `suite` say; returns the exit code. Throws Error.
+int run_suite(int argc, const char* const* argv);
+
 }  // namespace cistula

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/tiles.h"
+#include "apps/common/picture_size.h"
 #include "plan.h"
 
 namespace cistula {
@@ -18,7 +18,7 @@ struct FarmJob {
     std::string scene, output;
     std::vector<std::string> passed, merged;  // arguments for render and render-merge
     std::optional<TileGrid> tiles;
-    FrameList frames;
+    std::vector<int> frames;
     std::vector<FarmTask> tasks;
 };
 

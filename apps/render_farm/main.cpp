@@ -48,7 +48,7 @@ std::string folder_of_programs() {
     return fs::read_symlink("/proc/self/exe", error).parent_path().string();
 }
 
-void check_output(const RenderOptions& options, const OutputName& output, const FrameList& frames) {
+void check_output(const RenderOptions& options, const OutputName& output, const std::vector<int>& frames) {
     if (file_kind(output.text()) == FileKind::raw)
         throw Error(ExitCode::usage,
                     fmt::format("-o {}: tasks go on from what is complete, and raw frames do not say what they show; "
@@ -58,7 +58,8 @@ void check_output(const RenderOptions& options, const OutputName& output, const 
 }
 
 /// The names of the film's images, as sha256sum reads them from xargs -0: a zero byte after each.
-std::string names_of_files(const OutputName& output, const FrameList& frames, const std::vector<std::string>& layers) {
+std::string names_of_files(const OutputName& output, const std::vector<int>& frames,
+                           const std::vector<std::string>& layers) {
     std::string text;
     const auto add = [&](const std::string& path) { text += path + '\0'; };
     for (size_t i = 0; i < frames.size(); ++i) {
@@ -74,7 +75,7 @@ void write_job(const FarmOptions& farm) {
     const FrameSettings settings = frame_settings(options, scene);
     const OutputName output(options.output.empty() ? default_output(scene, options.frames.size()) : options.output,
                             "-o");
-    const FrameList frames = frames_to_render(output, options.frames, scene.film.frames);
+    const std::vector<int> frames = frames_to_render(output, options.frames, scene.film.frames);
     check_output(options, output, frames);
     const TileGrid grid = farm.tiles.value_or(TileGrid());
     (void)tile_rect(settings.crop, grid, 0);

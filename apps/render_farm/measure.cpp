@@ -58,7 +58,7 @@ std::vector<double> rays_of_tiles(const Film& small, const FrameSettings& settin
 }
 
 MeasuredFrames measure_tiles(Renderer& renderer, const SceneDescription& scene, const FrameSettings& settings,
-                             const FrameList& frames, const TileGrid& grid, StepProgress& progress) {
+                             const std::vector<int>& frames, const TileGrid& grid, StepProgress& progress) {
     const FrameSettings small = small_settings(settings);
     const std::vector<size_t> indices = frames_to_measure(frames.size(), most_measured);
     progress.begin("measuring", static_cast<double>(indices.size()));

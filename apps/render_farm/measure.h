@@ -1,8 +1,8 @@
 // How long the tiles of a film take, estimated from small frames.
 #pragma once
 
+#include "apps/common/picture_size.h"
 #include "apps/common/step_progress.h"
-#include "apps/common/tiles.h"
 #include "plan.h"
 #include "scene/description/description.h"
 #include "scene/film/renderer.h"
@@ -13,7 +13,7 @@ namespace cistula {
 /// of the film, and counts the rays of each tile; a ray takes as long as one of these did on average. Throws Error
 /// (interrupted).
 MeasuredFrames measure_tiles(Renderer& renderer, const SceneDescription& scene, const FrameSettings& settings,
-                             const FrameList& frames, const TileGrid& grid, StepProgress& progress);
+                             const std::vector<int>& frames, const TileGrid& grid, StepProgress& progress);
 
 /// The settings of a small frame, of the same part of the picture.
 FrameSettings small_settings(const FrameSettings& settings);

@@ -52,8 +52,8 @@ std::vector<size_t> frames_to_measure(size_t frames, size_t most) {
     return indices;
 }
 
-std::vector<FarmTask> plan_tasks(const FrameList& frames, size_t tiles, const MeasuredFrames& measured, double seconds,
-                                 size_t most) {
+std::vector<FarmTask> plan_tasks(const std::vector<int>& frames, size_t tiles, const MeasuredFrames& measured,
+                                 double seconds, size_t most) {
     if (tiles > most)
         throw Error(ExitCode::usage, fmt::format("--most-tasks {}: there are {} tiles, each of which is a task at "
                                                  "least; give fewer --tiles or more tasks",
@@ -67,7 +67,7 @@ std::vector<FarmTask> plan_tasks(const FrameList& frames, size_t tiles, const Me
                      [](const Portion& a, const Portion& b) { return a.begin < b.begin; });
     std::vector<FarmTask> tasks;
     for (const Portion& portion : portions)
-        tasks.push_back({FrameList(frames.part(portion.begin, portion.end - portion.begin)),
+        tasks.push_back({frames_from(frames, portion.begin, portion.end - portion.begin),
                          static_cast<int>(portion.tile), portion.seconds});
     return tasks;
 }

@@ -9,7 +9,7 @@ namespace cistula {
 
 /// Frames of one tile that a machine renders one after the other.
 struct FarmTask {
-    FrameList frames;
+    std::vector<int> frames;
     int tile = 0;
     double seconds = 0;  // estimated
 
@@ -30,7 +30,7 @@ std::vector<size_t> frames_to_measure(size_t frames, size_t most);
 
 /// The tasks, in the order of their first frames: of each tile as many frames in a row as take `seconds`, one at least.
 /// Longer ones if there would be more than `most`. Throws Error (usage) if there are more tiles than that.
-std::vector<FarmTask> plan_tasks(const FrameList& frames, size_t tiles, const MeasuredFrames& measured, double seconds,
-                                 size_t most);
+std::vector<FarmTask> plan_tasks(const std::vector<int>& frames, size_t tiles, const MeasuredFrames& measured,
+                                 double seconds, size_t most);
 
 }  // namespace cistula

@@ -5,15 +5,104 @@
 #include "apps/common/command_line.h"
 #include "apps/common/run_files.h"
 #include "apps/common/view_options.h"
-#include "frame_tiles.h"
 #include "merge.h"
 #include "options.h"
-#include "preview.h"
 #include "scene/base/error.h"
+#include "scene/image/color/color_space.h"
 #include "scene/image/exr/exr.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/picture/picture_io.h"
+#include "scene/image/picture/picture.h"
+#include "scene/image/view/picture_view.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace cistula {
 namespace {
+
+namespace fs = std::filesystem;
+
+/// A file to be made, and the tiles that it is made of.
+struct FileToMerge {
+    std::string path;
+    std::vector<std::string> tiles;
+};
+
+/// The layers that have files beside the main one of this name.
+std::vector<std::string> layers_beside(const OutputName& name, int frame) {
+    const std::string mark(1, '\1');
+    const fs::path example = name.for_layer(frame, mark);
+    const std::string file = example.filename().string();
+    const std::string before = file.substr(0, file.find(mark)), after = file.substr(file.find(mark) + 1);
+    const std::string snapshot = fs::path(snapshot_of(name, frame)).filename().string();
+    std::vector<std::string> layers;
+    std::error_code error;
+    const fs::path folder = example.parent_path();
+    for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, error)) {
+        const std::string own = entry.path().filename().string();
+        if (own.size() > before.size() + after.size() && own.starts_with(before) && own.ends_with(after) &&
+            own != snapshot)
+            layers.push_back(own.substr(before.size(), own.size() - before.size() - after.size()));
+    }
+    std::sort(layers.begin(), layers.end());
+    return layers;
+}
+
+void require_tiles(const FileToMerge& file, const TileGrid& grid, int frame) {
+    std::error_code error;
+    size_t missing = 0, first = 0;
+    for (size_t i = 0; i < file.tiles.size(); ++i)
+        if (!fs::exists(file.tiles[i], error) && missing++ == 0) first = i;
+    if (missing == 0) return;
+    throw Error(ExitCode::file,
+                fmt::format("{}: {} of its {} tiles {} missing: {}{}; render --tiles {}x{} --tile {} -f {} makes it",
+                            file.path, missing, file.tiles.size(), missing == 1 ? "is" : "are", file.tiles[first],
+                            missing == 1 ? "" : " and others", grid.columns, grid.rows, first, frame));
+}
+
+/// The files of a frame: those of layers that have their own (--split files), found beside the first tile, then the
+/// main one. Throws Error (file) for tiles that are missing, with the option of render that makes the first of them.
+std::vector<FileToMerge> files_to_merge(const MergeOptions& options, int frame) {
+    FileToMerge main{options.output.for_frame(frame), options.files};
+    if (!options.grid) return {main};
+    std::vector<OutputName> names;
+    for (int i = 0; i < options.grid->count(); ++i) names.push_back(options.output.named(tile_name(*options.grid, i)));
+    for (const OutputName& name : names) main.tiles.push_back(name.for_frame(frame));
+    std::vector<FileToMerge> files;
+    for (const std::string& layer : layers_beside(names.front(), frame)) {
+        FileToMerge& file = files.emplace_back(FileToMerge{options.output.for_layer(frame, layer), {}});
+        for (const OutputName& name : names) file.tiles.push_back(name.for_layer(frame, layer));
+    }
+    files.push_back(std::move(main));
+    for (const FileToMerge& file : files) require_tiles(file, *options.grid, frame);
+    return files;
+}
+
+const std::vector<float>& channel(const LayeredPicture& frame, const char* name, const std::string& path) {
+    if (const LayeredPicture::Channel* found = channel_of(frame, name)) return found->values;
+    throw Error(ExitCode::usage, fmt::format("--preview {}: the tiles have no channel {}", path, name));
+}
+
+/// Writes the R, G and B of a frame as the PNG that render's --preview is: the very one where they are floats. Throws
+/// Error: usage where a preview cannot be made of them, since the background was left out or they are of another color
+/// space; file where it cannot be written.
+void write_merged_preview(const std::string& path, const LayeredPicture& frame, const PictureView& view) {
+    const auto refuse = [&](const char* what) {
+        throw Error(ExitCode::usage, fmt::format("--preview {}: {}; render-view shows the merged file", path, what));
+    };
+    if (frame.attributes.count("cistula:background") != 0) refuse("the tiles' background was left out");
+    const auto* id = attribute_of<std::string>(frame, "colorInteropID");
+    if (id != nullptr && *id != color_spaces().front().id) refuse("the tiles are of another color space");
+    const std::vector<float>&r = channel(frame, "R", path), &g = channel(frame, "G", path),
+          &b = channel(frame, "B", path);
+    ColorPicture picture{static_cast<uint32_t>(frame.width), static_cast<uint32_t>(frame.height), {}};
+    picture.texels.reserve(r.size());
+    for (size_t i = 0; i < r.size(); ++i) picture.texels.emplace_back(r[i], g[i], b[i]);
+    write_preview(path, viewed(std::move(picture), view, static_cast<uint32_t>(frame.display_height)));
+}
 
 /// Checks the names of a frame's files against each other.
 void require_different_files(const std::vector<FileToMerge>& files, const std::string& preview) {
@@ -44,11 +133,10 @@ void merge(MergeOptions options) {
     if (!warning.empty() && !options.quiet) note(fmt::format("render-merge: warning: {}", warning));
     const int threads = tbb::this_task_arena::max_concurrency();
     set_exr_threads(threads, threads);
-    for (size_t i = 0; i < options.frames.size(); ++i) {
-        const std::vector<int> frame = options.frames.part(i, 1);
-        make_directories(options.output, frame);
-        if (!options.preview.text().empty()) make_directories(options.preview, frame);
-        merge_frame(options, frame.front());
+    for (const int frame : options.frames) {
+        make_directories(options.output, {frame});
+        if (!options.preview.text().empty()) make_directories(options.preview, {frame});
+        merge_frame(options, frame);
     }
 }
 

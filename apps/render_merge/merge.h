@@ -5,10 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "scene/base/pixel_rect.h"
 #include "scene/film/film.h"
 #include "scene/image/picture/picture.h"
 
 namespace cistula {
+
+/// Rectangles apart from each other that hold what of the window no rectangle covers.
+std::vector<PixelRect> uncovered(const PixelRect& window, const std::vector<PixelRect>& rects);
 
 /// Puts the parts of files together, one file after the other. All must be of one render: their headers equal but for
 /// the data window and what a target error measured, their windows apart.

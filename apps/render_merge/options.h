@@ -7,7 +7,7 @@
 
 #include "apps/common/frame_list.h"
 #include "apps/common/output_name.h"
-#include "apps/common/tiles.h"
+#include "apps/common/picture_size.h"
 #include "scene/image/view/picture_view.h"
 
 namespace cistula {
@@ -19,7 +19,7 @@ struct MergeOptions {
     std::vector<std::string> files;  // the tiles; empty: those of the grid, by the names that render gives them
     std::optional<TileGrid> grid;
     OutputName output;
-    FrameList frames;  // one without a number of its own where the output has no pattern
+    std::vector<int> frames;  // one without a number of its own where the output has no pattern
     std::optional<PixelRect> window;
     OutputName preview;  // empty text: none
     PictureView view;    // of the preview

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-#include "apps/common/describe_flags.h"
+#include "apps/common/film_loop.h"
 #include "apps/common/timing.h"
 #include "scene/base/error.h"
 

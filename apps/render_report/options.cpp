@@ -39,8 +39,9 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_option("--limit", texts.limit, "leave out settings whose frames take longer than S seconds; 2")
         ->type_name("S");
     app.add_flag("--quick", texts.quick, "fewer settings and runs: to try it out");
-    add_valued_flag(app, "--scaling", texts.scaling, "also",
-                    "also time against triangles, lights, depth, pixels and GPUs; --scaling=only: nothing else");
+    add_valued_flag(app, "--scaling", "also",
+                    "also time against triangles, lights, depth, pixels and GPUs; --scaling=only: nothing else",
+                    [&texts](const char*, const std::string& text) { texts.scaling = text; });
     app.add_option("--verify", texts.verify, "show the hard cases' verdicts from render-verify's --json")
         ->type_name("FILE");
     app.add_option("--seed-baseline", texts.seed_baseline,

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "apps/common/build_info.h"
 #include "apps/common/header_attributes.h"
+#include "apps/common/machine.h"
 #include "apps/common/timing.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"

@@ -12,32 +12,39 @@
 namespace cistula::verify {
 namespace {
 
-struct Texts {
-    std::string backend, precision, lanes, json, html;
-    std::vector<std::string> cases;
-    bool quick = false, list = false, version = false;
-};
-
-void declare(CLI::App& app, Texts& texts) {
-    app.add_option("--backend", texts.backend,
-                   "embree (the CPU: embree, lanes, bvh, brute), cuda (a GPU) or all; embree")
-        ->type_name("NAME");
-    app.add_option("--precision", texts.precision, "float, double or both; both")->type_name("NAME");
+/// Adds the options; `cases`: the names given to --case.
+void declare(CLI::App& app, VerifyOptions& options, std::vector<std::string>& cases) {
+    RunSettings& settings = options.settings;
+    using Kinds = std::vector<IntersectorKind>;
+    const Kinds host{IntersectorKind::embree, IntersectorKind::lanes, IntersectorKind::bvh, IntersectorKind::brute};
+    Kinds all = host;
+    all.push_back(IntersectorKind::cuda);
+    settings.intersectors = host;
+    settings.precisions = {Precision::single_, Precision::double_};
+    add_option(app, "--backend", "NAME", "embree (the CPU: embree, lanes, bvh, brute), cuda (a GPU) or all; embree",
+               read_choice(settings.intersectors, {{"embree", host}, {"cuda", {IntersectorKind::cuda}}, {"all", all}}));
+    add_option(app, "--precision", "NAME", "float, double or both; both",
+               read_choice(
+                   settings.precisions,
+                   {{"float", {Precision::single_}}, {"double", {Precision::double_}}, {"both", settings.precisions}}));
     app.add_option(
-           "--case", texts.cases,
+           "--case", cases,
            "only this case, those whose names begin so, or those that a pattern with * and ? fits; may be given "
            "several times")
         ->type_name("NAME")
         ->expected(1)
         ->take_all();
-    app.add_option("--lanes", texts.lanes,
-                   "the most rays that `lanes` traces at once, 1 to 16; all that the processor can")
-        ->type_name("N");
-    app.add_flag("--quick", texts.quick, "every case with fewer rays and smaller images");
-    app.add_flag("--list", texts.list, "print the cases and exit");
-    app.add_option("--json", texts.json, "write the result as JSON")->type_name("FILE");
-    app.add_option("--html", texts.html, "write the result as a page that needs nothing else")->type_name("FILE");
-    app.add_flag("--version", texts.version, "print the version and exit");
+    add_option(app, "--lanes", "N", "the most rays that `lanes` traces at once, 1 to 16; all that the processor can",
+               read_whole(settings.lanes, 1, 16));
+    app.add_flag("--quick", settings.quick, "every case with fewer rays and smaller images");
+    const auto add_action = [&](const char* name, const char* description, VerifyAction action) {
+        app.add_flag_callback(
+            name, [&options, action] { options.action = action; }, description);
+    };
+    add_action("--list", "print the cases and exit", VerifyAction::list);
+    app.add_option("--json", options.json, "write the result as JSON")->type_name("FILE");
+    app.add_option("--html", options.html, "write the result as a page that needs nothing else")->type_name("FILE");
+    add_action("--version", "print the version and exit", VerifyAction::print_version);
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
@@ -74,45 +81,27 @@ std::vector<const CaseEntry*> chosen_cases(const std::vector<std::string>& wante
 
 VerifyOptions parse_verify_options(int argc, const char* const* argv, const std::vector<CaseEntry>& cases) {
     CLI::App app;
-    Texts texts;
-    declare(app, texts);
     VerifyOptions options;
+    std::vector<std::string> wanted;
+    declare(app, options, wanted);
     const bool whole = parse_command_line(app, argc, argv, [](const std::string& extra) {
         return fmt::format("{}: unexpected; a case is chosen by --case", extra);
     });
-    if (!whole || texts.version) {
-        options.action = whole ? VerifyAction::print_version : VerifyAction::print_help;
-        return options;
-    }
-    using Kinds = std::vector<IntersectorKind>;
-    const Kinds host{IntersectorKind::embree, IntersectorKind::lanes, IntersectorKind::bvh, IntersectorKind::brute};
-    const Kinds device{IntersectorKind::cuda};
-    Kinds both = host;
-    both.push_back(IntersectorKind::cuda);
-    options.settings.intersectors = chosen<Kinds>("--backend", texts.backend.empty() ? "embree" : texts.backend,
-                                                  {{"embree", host}, {"cuda", device}, {"all", both}});
+    if (!whole) options.action = VerifyAction::print_help;
+    if (!whole || options.action == VerifyAction::print_version) return options;
     options.cuda = options.settings.intersectors.back() == IntersectorKind::cuda;
-    options.settings.precisions =
-        chosen<std::vector<Precision>>("--precision", texts.precision.empty() ? "both" : texts.precision,
-                                       {{"float", {Precision::single_}},
-                                        {"double", {Precision::double_}},
-                                        {"both", {Precision::single_, Precision::double_}}});
-    options.settings.quick = texts.quick;
-    if (!texts.lanes.empty()) options.settings.lanes = integer_option("--lanes", texts.lanes, 1, 16);
-    options.cases = chosen_cases(texts.cases, cases);
-    options.json = texts.json;
-    options.html = texts.html;
+    options.cases = chosen_cases(wanted, cases);
     RunFiles files;
     files.writes(options.json, "--json");
     files.writes(options.html, "--html");
-    if (texts.list) options.action = VerifyAction::list;
     return options;
 }
 
 std::string verify_help_text() {
     CLI::App app("Checks hard cases against closed forms, on every intersector of this machine.", "render-verify");
-    Texts texts;
-    declare(app, texts);
+    VerifyOptions options;
+    std::vector<std::string> cases;
+    declare(app, options, cases);
     app.footer(R"(
 Examples:
   render-verify --quick                           a few minutes on a laptop

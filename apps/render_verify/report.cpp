@@ -6,7 +6,6 @@
 #include <cmath>
 #include <thread>
 
-#include "apps/common/build_info.h"
 #include "apps/common/machine.h"
 #include "scene/base/suggest.h"
 

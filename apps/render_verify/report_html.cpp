@@ -3,7 +3,6 @@
 
 #include <map>
 
-#include "apps/common/build_info.h"
 #include "apps/common/machine.h"
 #include "apps/render_verify/report.h"
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 #include "apps/common/backends.h"
 #include "apps/render_verify/ready_part.h"
 #include "backend_embree/embree/embree_renderer.h"
-#include "scene/base/out_of_memory.h"
 #include "testing/reference_renderers.h"
 
 namespace cistula::verify {
@@ -82,14 +82,15 @@ class CaseRun {
     }
 
   private:
-    /// Runs `work`; an exception becomes the outcome's problem, or ends the program if memory ran out.
+    /// Runs `work`; an exception becomes the outcome's problem, unless memory ran out.
     template <class Work>
     void guarded(Outcome& outcome, const Work& work) {
         const auto start = Clock::now();
         try {
             if (outcome.problem.empty()) work();
+        } catch (const std::bad_alloc&) {
+            throw;
         } catch (const std::exception& error) {
-            end_if_out_of_memory(error);
             outcome.problem = error.what();
         }
         outcome.seconds += std::chrono::duration<double>(Clock::now() - start).count();
@@ -112,8 +113,9 @@ class CaseRun {
                 problem = ready.missing_warning();
                 if (problem.empty()) run_part(plan.parts[number], number, ready);
             }
+        } catch (const std::bad_alloc&) {
+            throw;
         } catch (const std::exception& error) {
-            end_if_out_of_memory(error);
             problem = error.what();
         }
         for (Outcome& outcome : outcomes_) {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <set>
 
-#include "apps/common/part_name.h"
 #include "scene/base/lower_case.h"
+#include "scene/image/picture/stored_picture.h"
 
 namespace cistula {
 namespace {

@@ -20,11 +20,10 @@ constexpr int most_columns = 1000;
 struct Texts {
     std::string file, output, columns;
     std::vector<std::string> layers;
-    ViewTexts view;
     bool all = false, list = false, quiet = false, version = false;
 };
 
-void declare(CLI::App& app, Texts& texts) {
+void declare(CLI::App& app, Texts& texts, PictureView& view) {
     app.add_option("FILE.exr", texts.file, "the image")->type_name("");
     app.add_option("-o,--output", texts.output, "the PNG; FILE.view.png in the working directory")->type_name("FILE");
     app.add_option("--layer", texts.layers,
@@ -36,14 +35,11 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_flag("--all", texts.all, "all layers");
     app.add_flag("--list", texts.list, "print the layers and how each is shown, and exit");
     app.add_option("--columns", texts.columns, "of several layers: so many in a row; 4")->type_name("N");
-    app.add_option("--exposure", texts.view.exposure, "stops by which colors and scalars are brighter; 0")
-        ->type_name("EV");
-    app.add_option("--view", texts.view.view,
-                   "of colors: srgb cuts off above white, filmic tells bright colors apart, or a view of "
-                   "$OCIO; srgb")
-        ->type_name("NAME");
-    app.add_option("--bloom", texts.view.bloom, "of colors: how much light above white glows around; 0")
-        ->type_name("AMOUNT");
+    add_option(app, "--exposure", "EV", "stops by which colors and scalars are brighter; 0", read_exposure(view));
+    add_option(app, "--view", "NAME",
+               "of colors: srgb cuts off above white, filmic tells bright colors apart, or a view of $OCIO; srgb",
+               read_view(view));
+    add_option(app, "--bloom", "AMOUNT", "of colors: how much light above white glows around; 0", read_bloom(view));
     app.add_flag("-q,--quiet", texts.quiet, "errors only");
     app.add_flag("--version", texts.version, "print the version and exit");
     app.set_help_flag("-h,--help", "print this and exit");
@@ -59,8 +55,8 @@ std::string default_view_name(const std::string& file) {
 ViewOptions parse_view_options(int argc, const char* const* argv) {
     CLI::App app;
     Texts texts;
-    declare(app, texts);
     ViewOptions options;
+    declare(app, texts, options.view);
     const bool whole = parse_command_line(app, argc, argv, [&](const std::string& extra) {
         return fmt::format("{}: one image at a time, and {} is it already", extra, texts.file);
     });
@@ -70,8 +66,7 @@ ViewOptions parse_view_options(int argc, const char* const* argv) {
     }
     if (texts.file.empty()) fail_usage("no image is given: render-view FILE.exr; --help tells more");
     options.file = texts.file;
-    options.view = parse_view(texts.view);
-    options.exposed = !texts.view.exposure.empty();
+    options.exposed = app.count("--exposure") > 0;
     options.layers = texts.layers;
     options.all = texts.all;
     options.quiet = texts.quiet;
@@ -98,7 +93,8 @@ std::string view_help_text() {
     CLI::App app("Shows layers of an EXR image as a PNG: colors, ids, mattes, depth, normals, any channel.",
                  "render-view");
     Texts texts;
-    declare(app, texts);
+    PictureView view;
+    declare(app, texts, view);
     app.footer(R"(
 Examples:
   render-view film.exr --list

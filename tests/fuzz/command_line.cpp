@@ -51,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             const OutputName name(
                 options.output.empty() ? default_output(scene, options.frames.size()) : options.output, "-o");
             file_kind(name.text());
-            const FrameList frames = frames_to_render(name, options.frames, 300);
+            const std::vector<int> frames = frames_to_render(name, options.frames, 300);
             fuzz::require(!frames.empty());
             if (frames.size() > 1) fuzz::require(name.for_frame(frames[0]) != name.for_frame(frames[1]));
             fuzz::require(parse_frames(format_frames(frames)) == frames);

@@ -111,25 +111,6 @@ TEST(AtomicFile, NamesMayBeAsLongAsTheFileSystemAllows) {
                  scratch.file(too_long) + ": cannot write: File name too long; give a shorter name");
 }
 
-TEST(AtomicFile, AnEndWithoutDestructorsLeavesNoTemporary) {
-    const ScratchDirectory scratch;
-    put_bytes(scratch.file("a"), "old");
-    const auto write_and_end = [&] {
-        write_file_atomically(scratch.file("whole"), "whole");
-        const AtomicFile one(scratch.file("a"));
-        AtomicFile two(scratch.file("b")), done(scratch.file("c"));
-        done.commit();
-        two.write("half");
-        AtomicFile::abandon_all();
-        _exit(3);
-    };
-    EXPECT_EXIT(write_and_end(), testing::ExitedWithCode(3), "");
-    Names left = scratch.names();
-    std::sort(left.begin(), left.end());
-    EXPECT_EQ(left, (Names{"a", "c", "whole"}));
-    EXPECT_EQ(bytes_of(scratch.file("a")), "old");
-}
-
 TEST(AtomicFile, OtherNamesOfAFileKeepTheOldContents) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("a.txt"), other = scratch.file("b.txt");

@@ -7,7 +7,6 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <mutex>
 #include <string>
 
 namespace cistula {
@@ -55,11 +54,6 @@ bool lock(int temporary) {
     struct stat status;
     return fstat(temporary, &status) == 0 && status.st_nlink > 0;
 }
-
-/// The objects that have a temporary. Nothing is allocated with the lock held: abandon_all() takes it when memory ran
-/// out, on the thread that wanted some.
-std::mutex list_lock;
-AtomicFile* list = nullptr;
 
 bool is_same(const struct stat& a, const struct stat& b) {
     return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
@@ -135,23 +129,15 @@ void AtomicFile::create_temporary() {
     if (permissions_ >= 0) (void)!fchmod(descriptor_, static_cast<mode_t>(permissions_));
 }
 
-/// Creates the temporary and puts the object on the list. Returns the error's number, or 0.
+/// Creates the temporary. Returns the error's number, or 0.
 int AtomicFile::open_temporary() {
-    const std::lock_guard guard(list_lock);
     descriptor_ =
         openat(directory_.number, temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) return errno;
-    next_ = list;
-    list = this;
-    return 0;
+    return descriptor_ < 0 ? errno : 0;
 }
 
-/// Takes the object off the list, and closes its temporary if that is open.
+/// Closes the temporary if it is open.
 void AtomicFile::close_temporary(bool remove) noexcept {
-    const std::lock_guard guard(list_lock);
-    AtomicFile** at = &list;
-    while (*at && *at != this) at = &(*at)->next_;
-    if (*at) *at = next_;
     if (remove) unlinkat(directory_.number, temporary_.c_str(), 0);
     if (descriptor_ >= 0) close(descriptor_);
     descriptor_ = -1;
@@ -168,12 +154,6 @@ void AtomicFile::remove_stale(const std::string& path) {
     remove_all_unlocked(file.directory_.number, file.prefix());
 }
 
-void AtomicFile::abandon_all() noexcept {
-    list_lock.lock();
-    for (const AtomicFile* file = list; file; file = file->next_)
-        unlinkat(file->directory_.number, file->temporary_.c_str(), 0);
-}
-
 void AtomicFile::write(std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
@@ -186,15 +166,9 @@ void AtomicFile::write(std::string_view bytes) {
 void AtomicFile::commit() {
     // EINVAL: the file system has nothing to flush.
     if (fsync(descriptor_) != 0 && errno != EINVAL) throw file_error(path_, "write", errno);
-    int failure = 0;
-    {
-        const std::lock_guard guard(list_lock);
-        if (renameat(directory_.number, temporary_.c_str(), directory_.number, name_.c_str()) != 0)
-            failure = errno;
-        else
-            temporary_.clear();
-    }
-    if (failure != 0) throw file_error(path_, "write", failure);
+    if (renameat(directory_.number, temporary_.c_str(), directory_.number, name_.c_str()) != 0)
+        throw file_error(path_, "write", errno);
+    temporary_.clear();
     const int closed = close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throw file_error(path_, "write", errno);

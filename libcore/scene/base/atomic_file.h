@@ -38,10 +38,6 @@ class AtomicFile {
     /// Removes the temporaries of a target that processes that died left behind. Throws as the constructor does.
     static void remove_stale(const std::string& path);
 
-    /// Removes the temporaries of all objects of the process, for an end without destructors. After that no file is
-    /// created or committed: whoever tries waits for the end. Allocates nothing.
-    static void abandon_all() noexcept;
-
   private:
     /// A descriptor that is closed with its object.
     struct Descriptor {
@@ -62,7 +58,6 @@ class AtomicFile {
     Descriptor directory_;
     std::string temporary_;  // empty once committed
     int descriptor_ = -1;
-    AtomicFile* next_ = nullptr;  // of those with a temporary
 };
 
 /// Replaces the file by these bytes, or leaves it unchanged and throws Error(ExitCode::file).

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "apps/common/describe_flags.h"
+#include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/header_attributes.h"
 #include "apps/common/layer_list.h"
@@ -212,8 +212,7 @@ TEST(RenderOptions, TargetErrors) {
     for (const char* samples : {"0", "4", "257", "-5", "x", "8.0"})
         expect_refused({"s", "--target-error", "1", "--max-samples", samples},
                        std::string("--max-samples ") + samples + ": must be a whole number from 5 to 256");
-    expect_refused({"s", "--max-samples", "64"},
-                   "--max-samples 64: is for --target-error E; a grid's are --supersample's");
+    expect_refused({"s", "--max-samples", "64"}, "--max-samples requires --target-error; --help shows the options");
     expect_refused({"s", "--target-error", "0.1", "--supersample", "2"},
                    "--target-error 0.1: --supersample has no place here: pixels get as many samples as they need; "
                    "leave it out");

@@ -132,12 +132,12 @@ TEST(OutputName, DirectoriesAreMade) {
 }
 
 TEST(OutputName, FramesThatAPathMayBeOf) {
-    const FrameList frames = parse_frames("0-999999x5,7");
+    const std::vector<int> frames = parse_frames("0-999999x5,7");
     EXPECT_EQ(frames_named_in({"d/f.000125.exr"}, frames), (std::vector<int>{0, 5, 25, 125}));
     EXPECT_EQ(frames_named_in({"f17.exr"}, frames), (std::vector<int>{7}));
     EXPECT_EQ(frames_named_in({"f17.exr", "a", "0/17"}, frames), (std::vector<int>{0, 7}));
     EXPECT_EQ(frames_named_in({"a.exr"}, frames), std::vector<int>());
-    EXPECT_EQ(frames_named_in({"99999999999999999999"}, first_frames(5)), std::vector<int>());
+    EXPECT_EQ(frames_named_in({"99999999999999999999"}, {0, 1, 2, 3, 4}), std::vector<int>());
 }
 
 }  // namespace

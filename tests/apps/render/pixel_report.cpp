@@ -364,7 +364,7 @@ TEST_F(PixelReports, RefuseInOneLine) {
         expect_refused(arguments, ExitCode::usage, "--pixel 1,2: " + more[0] + " has no place here");
     }
     expect_refused({"s.json", "--pixel", "1,2", "-f", "0-2"}, ExitCode::usage, "--frames names 3 frames");
-    expect_refused({"s.json", "--json", "a.json"}, ExitCode::usage, "--json a.json: is for --pixel X,Y");
+    expect_refused({"s.json", "--json", "a.json"}, ExitCode::usage, "--json requires --pixel");
     expect_refused({"s.json", "--pixel", "1,2", "--json", "s.json"}, ExitCode::usage,
                    "would be both the scene and --json");
     expect_refused({"s.json", "--pixel", "1,2", "--json", "s.json/a.json"}, ExitCode::file,

@@ -199,7 +199,7 @@ TEST_F(RenderCompare, RefusesInOneLine) {
         expect_refused({"a.exr", "a.exr", "--hardfail", text}, ExitCode::usage, "must be a number, 0 or above");
     }
     expect_refused({"a.exr", "a.exr", "--fail", "0", "--failpercent", "101"}, ExitCode::usage, "from 0 to 100");
-    expect_refused({"a.exr", "a.exr", "--failpercent", "1"}, ExitCode::usage, "add --fail E");
+    expect_refused({"a.exr", "a.exr", "--failpercent", "1"}, ExitCode::usage, "--failpercent requires --fail");
     expect_refused({"a.exr", "a.exr", "--diff", "d.png"}, ExitCode::usage, "name it *.exr");
     expect_refused({"a.exr", "a.exr", "--diff", "./a.exr"}, ExitCode::usage, "the first image and --diff");
     expect_refused({"b.exr", "a.exr", "--json", file("a.exr")}, ExitCode::usage, "the second image and --json");

@@ -58,7 +58,7 @@ TEST_F(SuiteFile, HasTheOptionsOfRender) {
            "thresholds": {"fail": 0.25, "failpercent": 2, "hardfail": 1}, "backends": ["cuda", "embree"],
            "tags": ["smoke", "glass/2"])");
     EXPECT_EQ(one.name, "a");
-    EXPECT_EQ(one.frames, (FrameList{4, 6, 8}));
+    EXPECT_EQ(one.frames, (std::vector<int>{4, 6, 8}));
     EXPECT_EQ(one.golden_path("d", 6), "d/g/a.0006.exr");
     EXPECT_EQ(one.scene_path("d"), "d/s.json");
     EXPECT_EQ(one.resolution->width, 64);
@@ -84,7 +84,7 @@ TEST_F(SuiteFile, HasTheOptionsOfRender) {
 
 TEST_F(SuiteFile, LeavesTheRestToTheScene) {
     const SuiteCase one = read_case(R"("golden": "a.exr")");
-    EXPECT_EQ(one.frames, FrameList{0});
+    EXPECT_EQ(one.frames, std::vector<int>{0});
     EXPECT_FALSE(one.resolution || one.crop || one.supersample || one.depth || one.cutoff || one.target_error ||
                  one.precision || one.thresholds.any());
     EXPECT_EQ(one.backends, std::vector{Backend::embree});

@@ -14,16 +14,15 @@ namespace cistula {
 namespace {
 
 /// Every frame of every tile is in one task.
-void expect_whole(const std::vector<FarmTask>& tasks, const FrameList& frames, size_t tiles) {
+void expect_whole(const std::vector<FarmTask>& tasks, const std::vector<int>& frames, size_t tiles) {
     std::vector<std::vector<int>> found(tiles);
     for (const FarmTask& task : tasks)
-        for (const int frame : task.frames.part(0, task.frames.size()))
-            found[static_cast<size_t>(task.tile)].push_back(frame);
-    for (const std::vector<int>& of : found) EXPECT_EQ(of, frames.part(0, frames.size()));
+        for (const int frame : task.frames) found[static_cast<size_t>(task.tile)].push_back(frame);
+    for (const std::vector<int>& of : found) EXPECT_EQ(of, frames);
 }
 
 TEST(FarmPlan, TasksTakeAboutEquallyLong) {
-    const FrameList frames = parse_frames("0-99,200-299x9,7000");
+    const std::vector<int> frames = parse_frames("0-99,200-299x9,7000");
     const MeasuredFrames measured{{0, frames.size() - 1}, {{1, 10, 100}, {1, 30, 100}}};
     const std::vector<FarmTask> tasks = plan_tasks(frames, 3, measured, 50, 1000);
     expect_whole(tasks, frames, 3);

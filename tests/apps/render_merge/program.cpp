@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "apps/common/tiles.h"
-#include "apps/render_merge/uncovered.h"
+#include "apps/common/picture_size.h"
+#include "apps/render_merge/merge.h"
 #include "scene/image/exr/exr.h"
 #include "testing/support/render_program.h"
 
@@ -181,7 +181,7 @@ TEST_F(RenderMerge, RefusesInOneLine) {
     expect_no_merge({"t.exr", "-o", "a.#.exr"}, ExitCode::usage, "of one frame");
     expect_no_merge({"--tiles", "2x2", "-o", "a.#.exr"}, ExitCode::usage, "--frames LIST says which");
     expect_no_merge({"t.exr", "--tiles", "2x2", "-o", "a.exr"}, ExitCode::usage, "leave one out");
-    expect_no_merge({"t.exr", "-o", "a.exr", "--bloom", "1"}, ExitCode::usage, "is for --preview");
+    expect_no_merge({"t.exr", "-o", "a.exr", "--bloom", "1"}, ExitCode::usage, "--bloom requires --preview");
     expect_no_merge({"s.json", "-o", "s.json.exr"}, ExitCode::file, "s.json");
     render_tiles("t.exr", "1x1", 1, {});
     expect_no_merge({"t.tile0.exr", "-o", "t.tile0.exr"}, ExitCode::usage, "would be both a tile and the whole frame");
@@ -199,7 +199,7 @@ TEST_F(RenderMerge, RenderRefusesWhatATileCannotBe) {
     refused({"--pixel", "1,1"}, "--pixel 1,1:");
     refused({"--explain"}, "--explain has no place here");
     expect_refused({"s.json", "-o", "a.out", "--tiles", "2x2", "--tile", "1"}, ExitCode::usage, "--tile needs an .exr");
-    expect_refused({"s.json", "--tile", "1"}, ExitCode::usage, "needs --tiles CxR");
+    expect_refused({"s.json", "--tile", "1"}, ExitCode::usage, "--tile requires --tiles");
     expect_refused({"s.json", "--tiles", "2x2"}, ExitCode::usage, "is for --tile N");
     expect_refused({"s.json", "--tiles", "2x2", "--tile", "4"}, ExitCode::usage, "a whole number from 0 to 3");
     expect_refused({"s.json", "--tiles", "41x1", "--tile", "4"}, ExitCode::usage, "more than there are pixels, 40x24");
