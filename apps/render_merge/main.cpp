@@ -12,7 +12,6 @@
 #include "scene/image/exr/exr.h"
 #include "scene/image/picture/picture.h"
 #include "scene/image/picture/picture_io.h"
-#include "scene/image/picture/picture.h"
 #include "scene/image/view/picture_view.h"
 
 #include <algorithm>

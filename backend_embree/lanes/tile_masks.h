@@ -32,11 +32,12 @@ class MaskTile : public AnyTile {
 };
 
 /// The tile of a mask without a budget, or of layered_mask.
-template <class Real>
+template <class Real, int compiled = least_lane_mask>
 AnyTile* make_mask_tile(int mask, const LaneScene<ScalarOf<Real>>& scene, const FrameView& frame) {
     if (mask == layered_mask) return new MaskTile<Real, Effects<effect_masks[layered_mask]>>(scene, frame);
-    if (mask > least_lane_mask) return new MaskTile<Real, Effects<all_effects>>(scene, frame);
-    return new MaskTile<Real, Effects<effect_masks[least_lane_mask]>>(scene, frame);
+    if constexpr (compiled + 1 < effect_mask_count)
+        if (mask > compiled) return make_mask_tile<Real, compiled + 1>(mask, scene, frame);
+    return new MaskTile<Real, Effects<effect_masks[compiled]>>(scene, frame);
 }
 
 /// The functions of a number type of lanes.

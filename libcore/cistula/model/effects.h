@@ -81,7 +81,7 @@ inline constexpr int limited_mask = compiled_mask_count - 2;
 inline constexpr int effect_mask_count = limited_mask;
 static_assert(effect_masks[effect_mask_count - 1] == all_effects);
 /// The first of the masks that the CPU's tiles in lanes are compiled for: on a CPU lesser ones are hardly quicker.
-inline constexpr int least_lane_mask = effect_mask_count - 2;
+inline constexpr int least_lane_mask = effect_mask_count - 3;
 
 /// The index in effect_masks of the smallest mask that contains `required`.
 constexpr int least_mask(uint32_t required) {
