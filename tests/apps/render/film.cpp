@@ -104,7 +104,7 @@ TEST_F(RenderFilm, AFileThatCannotBeWrittenLeavesTheOldOneWhole) {
 
 TEST_F(RenderFilm, AnInterruptedFilmIsWholeAndGoesOn) {
     // Frames that take far longer to render than to write: frame 1 is under way when the file of frame 0 appears.
-    const Arguments film{"s.json", "-o", "a.##.exr", "--res", "320x200", "--supersample", "4", "--threads", "2"};
+    const Arguments film{"s.json", "-o", "a.##.exr", "--res", "320x200", "--supersample", "12", "--threads", "2"};
     put_bytes(file("a.01.exr"), "the old file");
     RunningProgram running(program_, film, file(""));
     ASSERT_TRUE(running.wait_until([&] { return exists("a.00.exr"); }, 300));
