@@ -143,7 +143,7 @@ Failure failure_of(const std::exception& error, const std::string& memory_advice
                 ExitCode::failed};
     if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error) ||
         says("Cannot allocate memory") ||
-        says("failed to map segment from shared object"))  // the loader's, of a module
+        text.ends_with("failed to map segment from shared object"))  // the loader's; another reason would follow
         return {"out of memory; " + memory_advice, ExitCode::failed};
     const auto* ours = dynamic_cast<const Error*>(&error);
     return {error.what(), ours ? ours->code() : ExitCode::failed};

@@ -193,7 +193,7 @@ std::optional<ReplyStart> ReaderReply::next() {
     for (ahead_ = next_head(); ahead_.kind != ReplyKind::samples; ahead_ = next_head()) {
         if (ahead_.kind == ReplyKind::colors)
             start.colors = colors_of(bytes_of(ahead_.bytes));
-        else if (ahead_.kind == ReplyKind::attribute)
+        else if (ahead_.kind == ReplyKind::attribute && !is_texture_)
             add_attribute(start.picture, ahead_.bytes);
         else
             fail_broken();
