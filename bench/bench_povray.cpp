@@ -13,6 +13,7 @@
 
 #include "povray_scene.h"
 #include "program.h"
+#include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
 #include "scene/image/exr/exr.h"
 #include "scene/readers/read_scene.h"
@@ -124,8 +125,9 @@ std::filesystem::path write_glass_scene(const std::filesystem::path& folder) {
 )",
             i % 12 - 6, i / 12 - 4, i % 12 - 5, i / 12 - 3, (i % 12 + i / 12) % 2 ? "light" : "dark");
     const std::filesystem::path path = folder / "glass_on_tiles.json";
-    std::ofstream file(path);
-    file << R"({"film": {"width": 640, "height": 480}, "depth": 24, "ambient": 0.2, "background": [0.4, 0.5, 0.6],
+    write_file_atomically(
+        path.string(),
+        R"({"film": {"width": 640, "height": 480}, "depth": 24, "ambient": 0.2, "background": [0.4, 0.5, 0.6],
 "camera": {"position": [0, -6, 4], "target": [0, 1, 1], "fov": 50},
 "materials": {
     "light": {"color": 0.8, "diffuse": 0.8}, "dark": {"color": [0.2, 0.2, 0.25], "diffuse": 0.8},
@@ -133,12 +135,11 @@ std::filesystem::path write_glass_scene(const std::filesystem::path& folder) {
     "crown": {"color": 1, "transmission": 1, "fresnel": true, "index": 1.5},
     "flint": {"color": 1, "transmission": 1, "fresnel": true, "index": 1.8}},
 "objects": [
-)" << objects
-         << R"({"solid": "cube", "center": [-2, 1, 1.3], "radius": 1.2, "rotate": [11, 23, 37], "material": "water"},
+)" + objects +
+            R"({"solid": "cube", "center": [-2, 1, 1.3], "radius": 1.2, "rotate": [11, 23, 37], "material": "water"},
 {"solid": "dodecahedron", "center": [0.2, 0.5, 1.4], "radius": 1.2, "rotate": [11, 23, 37], "material": "crown"},
 {"solid": "icosahedron", "center": [2.4, 1, 1.3], "radius": 1.2, "rotate": [11, 23, 37], "material": "flint"}],
-"lights": [{"position": [4, -5, 8], "color": 0.9}, {"position": [-6, -3, 7], "color": 0.4}]})";
-    if (!file.flush()) throw Error(ExitCode::file, path.string() + ": cannot be written");
+"lights": [{"position": [4, -5, 8], "color": 0.9}, {"position": [-6, -3, 7], "color": 0.4}]})");
     return path;
 }
 
@@ -150,9 +151,7 @@ std::filesystem::path write_mesh_scene(const std::filesystem::path& folder) {
     scene["textures"] = {{"marble", {{"checker", {0.8, 0.3}}, {"repeat", {4, 4}}}}};
     scene["objects"][0]["mesh"] = std::filesystem::absolute(scene_file("knot.ply")).string();
     const std::filesystem::path path = folder / "knot_between_mirrors.json";
-    std::ofstream file(path);
-    file << scene.dump(2);
-    if (!file.flush()) throw Error(ExitCode::file, path.string() + ": cannot be written");
+    write_file_atomically(path.string(), scene.dump(2));
     return path;
 }
 
@@ -163,9 +162,8 @@ void register_all(const std::vector<std::string>& arguments) {
     for (const Work& work : {Work(scene_file("benchmark.json"), 16, folder),
                              Work(write_glass_scene(folder), 24, folder), Work(write_mesh_scene(folder), 12, folder)}) {
         const SceneDescription scene = read_scene(work.scene.string());
-        std::ofstream file(work.povray_scene);
-        file << povray_scene(scene, camera_at(scene.camera, 0), width, height, work.depth);
-        if (!file.flush()) throw Error(ExitCode::file, work.povray_scene.string() + ": cannot be written");
+        write_file_atomically(work.povray_scene.string(),
+                              povray_scene(scene, camera_at(scene.camera, 0), width, height, work.depth));
         const auto add = [&](std::string name, void (*run)(benchmark::State&, const Work&, int), int threads) {
             name = work.scene.filename().string() + "/" + name;
             return benchmark::RegisterBenchmark(name.c_str(), run, work, threads)

@@ -240,6 +240,7 @@ RenderOptions parse_options(int argc, const char* const* argv) {
     const bool whole = parse_command_line(app, argc, argv, [&](const std::string& extra) {
         return fmt::format("{}: one scene at a time, and {} is it already", extra, options.scene);
     });
+    if (app.count("--list-devices") > 0) options.action = Action::list_devices;  // whatever report is asked for, too
     if (!whole) options.action = Action::print_help;
     constexpr Action prints[] = {Action::print_help, Action::print_version, Action::print_template,
                                  Action::list_devices};

@@ -121,6 +121,8 @@ TEST(RenderOptions, Actions) {
     EXPECT_EQ(parse({"--version"}).action, Action::print_version);
     EXPECT_EQ(parse({"--print-template"}).action, Action::print_template);
     EXPECT_EQ(parse({"--list-devices"}).action, Action::list_devices);
+    EXPECT_EQ(parse({"--list-devices", "--explain"}).action, Action::list_devices);
+    EXPECT_EQ(parse({"--list-devices", "--help"}).action, Action::print_help);
     EXPECT_EQ(parse({"s.json", "--explain"}).action, Action::explain);
     EXPECT_EQ(parse({"s.json", "--explain=measure"}).action, Action::measure);
     EXPECT_EQ(parse({"--explain", "s.json"}).action, Action::explain);
