@@ -59,11 +59,8 @@ class TemporaryFolder {
     std::string path_;
 };
 
-/// Waits for a process of our own; an interruption ends it, too, and throws Error (interrupted).
-int exit_status(pid_t child) {
-    std::atomic<bool> stop = false;
-    InterruptGuard guard;
-    guard.watch(stop);
+/// Waits for a process of our own. Once `stop` is set, the process is ended and Error (interrupted) is thrown.
+int exit_status(pid_t child, const std::atomic<bool>& stop) {
     int status = 0;
     while (waitpid(child, &status, WNOHANG) == 0) {  // a signal does not end a wait
         if (stop) kill(child, SIGKILL);
@@ -74,7 +71,7 @@ int exit_status(pid_t child) {
 }
 
 /// Runs flip of PATH and returns what it prints.
-std::string run_flip(std::vector<std::string> arguments, const std::string& output) {
+std::string run_flip(std::vector<std::string> arguments, const std::string& output, const std::atomic<bool>& stop) {
     arguments.insert(arguments.begin(), "flip");
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -88,15 +85,15 @@ std::string run_flip(std::vector<std::string> arguments, const std::string& outp
     const int failure = posix_spawnp(&child, "flip", &files, nullptr, pointers.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     if (failure != 0) throw FlipAbsent(not_installed);
-    const int status = exit_status(child);
+    const int status = exit_status(child, stop);
     const std::string said = read_file(output);
     if (!WIFEXITED(status) || WEXITSTATUS(status) == 127) throw FlipAbsent(not_installed);
     return said;
 }
 
 /// "v1.7". Other programs have the name, too: one of Debian converts line ends.
-std::string flip_version(const TemporaryFolder& folder) {
-    const std::string help = run_flip({"--help"}, folder.file("help"));
+std::string flip_version(const TemporaryFolder& folder, const std::atomic<bool>& stop) {
+    const std::string help = run_flip({"--help"}, folder.file("help"), stop);
     const std::string before = "FLIP v";
     const size_t start = help.find(before);
     if (start == help.npos || help.find("--reference") == help.npos) throw FlipAbsent(not_installed);
@@ -185,10 +182,13 @@ FlipResult measure(const StoredFile& a, const StoredFile& b, const Selection& se
         const bool codes = has_only(*first, StoredType::uint8) && has_only(*second, StoredType::uint8);
         if (!codes && (!has_only_floats(*first) || !has_only_floats(*second)))
             throw FlipAbsent("R, G and B must be half or float in both images, or 8 bits in both");
+        std::atomic<bool> stop = false;
+        InterruptGuard guard;  // from before there are files and processes until after them
+        guard.watch(stop);
         const TemporaryFolder folder;
         FlipResult result;
         result.kind = codes ? "LDR-FLIP" : "HDR-FLIP";
-        result.version = flip_version(folder);
+        result.version = flip_version(folder, stop);
         const auto write = codes ? write_codes : write_floats;
         const std::string end = codes ? ".png" : ".exr";
         write(folder.file("reference" + end), *pair.a, *first, window);
@@ -196,7 +196,7 @@ FlipResult measure(const StoredFile& a, const StoredFile& b, const Selection& se
         const std::string said =
             run_flip({"--reference", folder.file("reference" + end), "--test", folder.file("test" + end),
                       "--no-exposure-map", "--no-error-map", "--directory", folder.file("")},
-                     folder.file("output"));
+                     folder.file("output"), stop);
         result.mean = number_after(said, "Mean");
         result.median = number_after(said, "Weighted median");
         result.min = number_after(said, "Min");
