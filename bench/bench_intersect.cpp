@@ -9,9 +9,9 @@
 #include <cstring>
 
 #include "backend_embree/embree/embree_tree.h"
+#include "base/error.h"
 #include "program.h"
-#include "scene/base/error.h"
-#include "scene/frame/frame_view.h"
+#include "render/frame/frame_view.h"
 #include "testing/generated_mesh.h"
 
 namespace cistula::bench {

@@ -11,11 +11,11 @@
 #include <string_view>
 #include <thread>
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "image/exr/exr.h"
 #include "povray_scene.h"
 #include "program.h"
-#include "scene/base/atomic_file.h"
-#include "scene/base/error.h"
-#include "scene/image/exr/exr.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::bench {

@@ -2,8 +2,8 @@
 #include <tbb/global_control.h>
 
 #include "backend_embree/embree/embree_renderer.h"
+#include "base/error.h"
 #include "program.h"
-#include "scene/base/error.h"
 #include "scene/description/camera_path.h"
 #include "scene/readers/read_scene.h"
 

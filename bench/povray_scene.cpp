@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/platonic.h"

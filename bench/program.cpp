@@ -7,8 +7,8 @@
 #include <exception>
 #include <memory>
 
-#include "apps/common/machine.h"
-#include "scene/base/error.h"
+#include "base/error.h"
+#include "base/machine.h"
 
 namespace cistula::bench {
 

@@ -2,8 +2,8 @@
 // defaults, as such a program is: contraction to fused multiply-adds stays on, which Cistula's own kernels do without.
 #include <cuda_runtime.h>
 
+#include "base/error.h"
 #include "bench/seed_baseline_run.h"
-#include "scene/base/error.h"
 
 namespace cistula::seed {
 namespace {

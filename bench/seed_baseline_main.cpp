@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/common/command_line.h"
-#include "apps/common/run_context.h"
-#include "apps/common/timing.h"
+#include "base/atomic_file.h"
+#include "base/timing.h"
 #include "bench/seed_baseline_run.h"
 #include "bench/seed_baseline_scene.h"
-#include "scene/base/atomic_file.h"
 #include "scene/readers/read_scene.h"
+#include "sequence/run_context.h"
 
 namespace cistula::seed {
 namespace {

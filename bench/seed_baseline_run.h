@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/timing.h"
+#include "base/timing.h"
 #include "bench/seed_baseline.h"
 
 namespace cistula::seed {

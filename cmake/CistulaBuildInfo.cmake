@@ -1,4 +1,4 @@
-# cistula_build_info: compiler flags, commit and machine of a build, recorded by render --stats and the benchmarks.
+# Compiler flags and commit of a build, for libcore/base/machine.cpp: recorded by render --stats and the benchmarks.
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
 set(_flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_host}")
 string(REPLACE ";" " " _flags "${_flags}")
@@ -24,12 +24,8 @@ if(NOT _commit)
     set(_commit "unknown")
 endif()
 
-add_library(cistula_build_info STATIC
-    "${PROJECT_SOURCE_DIR}/apps/common/machine.cpp")
-target_include_directories(cistula_build_info PUBLIC "${PROJECT_SOURCE_DIR}")
-target_compile_definitions(cistula_build_info PRIVATE
-    CISTULA_BUILD_FLAGS="${_flags}" CISTULA_BUILD_COMMIT="${_commit}")
-target_link_libraries(cistula_build_info PRIVATE cistula_contract cistula_warnings)
+set_source_files_properties("${PROJECT_SOURCE_DIR}/libcore/base/machine.cpp" TARGET_DIRECTORY cistula_scene PROPERTIES
+    COMPILE_DEFINITIONS "CISTULA_BUILD_FLAGS=\"${_flags}\";CISTULA_BUILD_COMMIT=\"${_commit}\"")
 
 # cistula_record_cuda(TARGET FLAG...): defines the name of nvcc and the flags of kernels in a program, for its
 # records.

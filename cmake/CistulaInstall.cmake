@@ -1,5 +1,5 @@
 # make install: programs with manuals and completion, libraries, headers, scenes, documents, and a CMake package for
-# find_package(cistula) with the targets cistula::cistula | scene | embree | cuda, the programs' and cistula_add_golden_suite.
+# find_package(cistula) with the targets cistula::cistula | scene | embree | cuda | sequence | compare, the programs' and cistula_add_golden_suite.
 include(CMakePackageConfigHelpers)
 
 # Headers: the shading library, whole; of the scene library those that cistula.h lists, which are public, and those that they
@@ -7,12 +7,12 @@ include(CMakePackageConfigHelpers)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS libcore/cistula.h)
 file(STRINGS libcore/cistula.h _headers REGEX "^#include \"")
 list(TRANSFORM _headers REPLACE "^#include \"([^\"]+)\".*" "\\1")
-list(APPEND _headers cistula.h scene/base/pixel_rect.h scene/base/shown_text.h scene/compile/effect_reason.h scene/compile/hull.h scene/compile/mesh_edges.h scene/description/coordinate_rounding.h scene/description/mesh_source.h
-    scene/film/film_layers.h
-    scene/film/film_memory.h
-    scene/film/film_pixels.h
-    scene/film/finished_tiles.h
-    scene/image/color/color_space.h)
+list(APPEND _headers cistula.h base/pixel_rect.h base/shown_text.h scene/compile/effect_reason.h scene/compile/hull.h scene/compile/mesh_edges.h scene/description/coordinate_rounding.h scene/description/mesh_source.h
+    render/record/film_layers.h
+    render/record/film_memory.h
+    render/record/film_pixels.h
+    render/finished_tiles.h
+    image/color/color_space.h)
 foreach(_header IN LISTS _headers)
     cmake_path(GET _header PARENT_PATH _folder)
     install(FILES "libcore/${_header}" DESTINATION "${CISTULA_INSTALL_HEADERS}/${_folder}")
@@ -60,7 +60,7 @@ install(TARGETS cistula_contract cistula EXPORT cistulaCore)
 install(EXPORT cistulaCore NAMESPACE cistula:: DESTINATION "${CISTULA_INSTALL_CMAKE}")
 
 set(CISTULA_COMPONENTS cistula)
-foreach(_component scene embree cuda)  # cuda: whoever links it brings the language CUDA, and with that the static runtime
+foreach(_component scene embree cuda sequence compare)
     if(TARGET cistula_${_component})
         install(TARGETS cistula_${_component} EXPORT cistula_${_component}
             ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
@@ -77,7 +77,7 @@ endif()
 if(TARGET cistula_embree)
     install(FILES backend_embree/embree/embree_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_embree/embree")
 endif()
-if(TARGET cistula_cuda)
+if(TARGET cistula_cuda OR TARGET cistula_sequence)  # programs ask for GPUs in any build
     install(FILES backend_cuda/host/cuda_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_cuda/host")
 endif()
 

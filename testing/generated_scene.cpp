@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/frame_settings.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
-#include "scene/film/frame_settings.h"
 #include "testing/generated_parts.h"
 
 namespace cistula {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "render/renderer.h"
 #include "scene/description/description.h"
-#include "scene/film/renderer.h"
 
 namespace cistula {
 

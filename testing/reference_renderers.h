@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/film/renderer.h"
 
 namespace cistula {
 

@@ -19,14 +19,20 @@ core_folders=(
     lanes      # all that with many rays at once, on the host
 )
 scene_folders=(
-    base         # errors, files, hashes, boxes
     description  # a scene as people write it
-    image        # pictures and their files
     readers      # scene and mesh files to descriptions
     trees        # trees of boxes
-    film         # what a renderer fills, and its interface
     compile      # descriptions to the arrays that shading reads
-    frame        # what a camera sees of a compiled scene
+)
+# The rooms of libcore, bottom to top.
+rooms=(
+    cistula   # the shading library
+    base      # errors, files, hashes, texts, boxes
+    image     # pictures and their files
+    scene     # scenes from files to arrays
+    render    # what a renderer fills, what a frame shows, and the interface of backends
+    sequence  # films: frames one after the other, written, resumed, put together
+    compare   # pictures and suites of golden images
 )
 
 fail() {  # fail RULE < matches
@@ -45,28 +51,33 @@ code() {
 }
 includes() { code '^[ \t]*#[ \t]*include' "$@"; }
 
-# layers NAME FOLDER...: files of libcore/NAME lie in one of the folders and include none that comes later.
+# layers NAME FOLDER...: files of libcore/NAME lie in one of the folders and include none that comes later. NAME ends in a slash, or
+# is empty.
 layers() {
     local name=$1 folder file found=() later
     shift
-    for file in libcore/"$name"/*; do
-        [[ " $* " == *" ${file##*/} "* && -d $file ]] || echo "$file" | fail "libcore/$name has the folders $*, and nothing beside them"
+    for file in libcore/"$name"*; do
+        [[ " $* " == *" ${file##*/} "* && -d $file || $file == libcore/CMakeLists.txt || $file == libcore/cistula.h ]] ||
+            echo "$file" | fail "libcore/$name has the folders $*, and nothing beside them"
     done
     while [ $# -gt 0 ]; do
         folder=$1
         shift
-        found=(libcore/"$name/$folder"/**/*.{h,cpp})
+        found=(libcore/"$name$folder"/**/*.{h,cpp})
         later="$*"
-        [ -z "$later" ] || includes "${found[@]}" | { grep -E "\"$name/(${later// /|})/" || true; } |
-            fail "$name/$folder lies below ${later// /, }"
+        [ -z "$later" ] || includes "${found[@]}" | { grep -E "\"$name(${later// /|})/" || true; } |
+            fail "$name$folder lies below ${later// /, }"
         # A folder that is not listed, or none.
-        includes "${found[@]}" | { grep -E "\"$name/[a-z0-9_]+\.h\"" || true; } | fail "libcore/$name has no files beside its folders"
+        includes "${found[@]}" | { grep -E "\"$name[a-z0-9_]+\.h\"" || true; } | fail "libcore/$name has no files beside its folders"
     done
 }
 
 check() {
     cd "$1"
-    local core=(libcore/cistula/*/*) scene=(libcore/scene/**/*.{h,cpp}) embree=(backend_embree/**/*.{h,cpp})
+    local core=(libcore/cistula/*/*) below=(libcore/{base,image,scene,render}/**/*.{h,cpp}) above=(libcore/{sequence,compare}/**/*.{h,cpp})
+    # What decides values of pictures.
+    local pictures=(libcore/{base,image,scene,render/record,render/frame}/**/*.{h,cpp})
+    local embree=(backend_embree/**/*.{h,cpp})
     local cuda=(backend_cuda/**/*.{h,cuh,cpp,cu,cu.in}) apps=(apps/**/*.{h,cpp,cu,cpp.in,cu.in}) bench=(bench/**/*.{h,cpp,cu})
     local testing=(testing/**/*.{h,cpp,cu})
     local headers=({libcore,backend_embree,backend_cuda,apps,testing}/**/*.h)
@@ -75,21 +86,27 @@ check() {
         exit 2
     fi
 
-    layers cistula "${core_folders[@]}"
-    layers scene "${scene_folders[@]}"
+    layers "" "${rooms[@]}"
+    layers cistula/ "${core_folders[@]}"
+    layers scene/ "${scene_folders[@]}"
 
     # Standard headers have neither a slash nor, but for C's, a suffix. Registers of lanes need the processor's own.
     includes "${core[@]}" | { grep -vE '^libcore/cistula/lanes/register_[a-z0-9]+\.h:[0-9]+:#include <immintrin\.h>|#[ \t]*include[ \t]*("cistula/[a-z0-9_/]+\.h"|<glm/[a-z0-9_/]+\.hpp>|<[a-z_0-9]+>)' || true; } |
         fail 'libcore/cistula includes "cistula/...", the standard library and GLM, nothing else'
-    includes "${scene[@]}" | { grep -E 'backend_|apps/|testing/|["<]cuda' || true; } |
-        fail 'libcore/scene knows neither backends nor programs'
-    includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|testing/|["<]cuda' || true; } |
-        fail 'backend_embree knows neither backend_cuda nor programs'
+    includes "${below[@]}" | { grep -E 'backend_|apps/|testing/|["<]cuda' || true; } |
+        fail 'what backends stand on knows neither backends nor programs'
+    includes "${above[@]}" | { grep -E 'apps/|testing/|["<]cuda_' || true; } |
+        fail 'the library knows no programs'
+    code '(std::(cout|cerr|clog)|[^a-z_](printf|puts|fputs|perror|_exit|exit|signal|sigaction|set_new_handler) *[(])' "${below[@]}" "${above[@]}" |
+        { grep -vE '^libcore/image/reader/(reader_main|reader_answer|picture_oiio)\.cpp:|snprintf' || true; } |
+        fail 'the library prints nothing, ends no program and handles no signals'
+    includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|testing/|["<]cuda|"(sequence|compare)/' || true; } |
+        fail 'backend_embree knows neither backend_cuda nor what stands on both'
     includes "${cuda[@]}" | { grep -E 'backend_embree|apps/|bench/|testing/|embree[34]/' || true; } |
         fail 'backend_cuda knows neither backend_embree nor programs'
-    # Quoted are cistula, scene and itself.
-    includes "${cuda[@]}" | { grep -E '#[ \t]*include[ \t]*"' || true; } | { grep -vE '"(cistula|scene|backend_cuda)/[a-z0-9_/]+\.(h|cuh)"' || true; } |
-        fail 'backend_cuda includes "cistula/...", "scene/...", "backend_cuda/..." and installed libraries'
+    # Quoted are the rooms below it and itself.
+    includes "${cuda[@]}" | { grep -E '#[ \t]*include[ \t]*"' || true; } | { grep -vE '"(cistula|base|image|scene|render|backend_cuda)/[a-z0-9_/]+\.(h|cuh)"' || true; } |
+        fail 'backend_cuda includes what backends stand on, "backend_cuda/..." and installed libraries'
     includes "${apps[@]}" | { grep -E '"(bench|tests|testing/support)/' || true; } |
         fail 'programs know neither benchmarks nor tests'
     # Lines that include another program's folder.
@@ -109,7 +126,7 @@ check() {
     done
 
     local functions='(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|pow|exp|exp2|expm1|log|log2|log10|log1p|cbrt|hypot)'
-    code "(std|glm)::${functions}f?[ \t]*[(]" "${core[@]}" "${scene[@]}" |
+    code "(std|glm)::${functions}f?[ \t]*[(]" "${core[@]}" "${pictures[@]}" |
         fail 'libm differs between systems: use elementary.h and trigonometry.h of cistula/numerics'
     code 'glm::(refract|reflect|normalize|dot|cross|length|distance|mix|clamp|min|max|inversesqrt|mod|fract)[ \t]*[(]' "${core[@]}" |
         fail "of GLM only types and exact operations: products that round are spelled out in cistula/numerics/vec.h"
@@ -135,7 +152,7 @@ check() {
 }
 
 good_tree() {
-    mkdir -p "$1"/{libcore/cistula/{numerics,model,lights},libcore/scene/{base,image/exr,frame},backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
+    mkdir -p "$1"/{libcore/cistula/{numerics,model,lights},libcore/{base,image/exr,sequence,compare},libcore/render/{record,frame},libcore/scene/compile,backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
     printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$1/$portable"
     printf 'add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu)\ntarget_compile_options(gpu_check_fast PRIVATE --use_fast_math)\n' >"$1/bench/gpu/CMakeLists.txt"
     printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/numerics/portable.h"\n// not std::pow(x)\n' >"$1/libcore/cistula/model/good.h"
@@ -150,8 +167,8 @@ all_rules() {
     breaks libcore/cistula/model/a.h '#include "scene/description/description.h"'
     breaks libcore/cistula/model/a.h '#include <cuda_runtime.h>'
     breaks libcore/cistula/model/a.h '#include <immintrin.h>'
-    breaks libcore/scene/base/a.cpp '#include "backend_embree/embree/embree_renderer.h"'
-    breaks libcore/scene/base/a.h '#  include "apps/render/options.h"'
+    breaks libcore/base/a.cpp '#include "backend_embree/embree/embree_renderer.h"'
+    breaks libcore/base/a.h '#  include "apps/render/options.h"'
     breaks backend_embree/host/a.cpp '#include "backend_cuda/host/cuda_renderer.h"'
     breaks backend_embree/host/a.h '#include "apps/render/options.h"'
     breaks backend_cuda/kernels/a.cu '#include "backend_embree/embree/embree_renderer.h"'
@@ -162,12 +179,19 @@ all_rules() {
     breaks libcore/cistula/numerics/a.h '#  include "cistula/model/good.h"'
     breaks libcore/cistula/model/a.h '#include "cistula/portable.h"'
     breaks libcore/cistula/a.h '#include "cistula/numerics/portable.h"'
-    breaks libcore/scene/base/a.h '#include "scene/film/film.h"'
-    breaks libcore/scene/base/a.cpp '#include "scene/frame/frame_view.h"'
-    breaks libcore/scene/image/exr/a.cpp '#include "scene/film/film.h"'
-    breaks libcore/scene/image/exr/a.cpp '#include "backend_embree/embree/embree_renderer.h"'
-    breaks libcore/scene/frame/a.cpp '#include "scene/film.h"'
-    breaks libcore/scene/frame/a.cpp '#include "testing/generated_scene.h"'
+    breaks libcore/base/a.h '#include "render/record/film.h"'
+    breaks libcore/base/a.cpp '#include "render/frame/frame_view.h"'
+    breaks libcore/image/exr/a.cpp '#include "render/record/film.h"'
+    breaks libcore/image/exr/a.cpp '#include "backend_embree/embree/embree_renderer.h"'
+    breaks libcore/render/frame/a.cpp '#include "sequence/film_loop.h"'
+    breaks libcore/render/frame/a.cpp '#include "testing/generated_scene.h"'
+    breaks libcore/scene/compile/a.cpp '#include "render/renderer.h"'
+    breaks libcore/scene/compile/a.cpp '#include "scene/a.h"'
+    breaks libcore/sequence/a.cpp '#include "compare/suite/suite.h"'
+    breaks libcore/sequence/a.cpp '#include "apps/common/command_line.h"'
+    breaks libcore/compare/a.cpp 'void f() { std::fputs("", stderr); }'
+    breaks libcore/base/a.cpp 'void f() { std::signal(2, f); }'
+    breaks backend_embree/host/a.cpp '#include "sequence/film_loop.h"'
     breaks backend_embree/host/a.cpp '#include "testing/generated_scene.h"'
     breaks backend_cuda/kernels/a.h '#include "testing/draw/draw.h"'
     breaks apps/render/a.cpp '#include "bench/gpu/record.h"'
@@ -180,7 +204,7 @@ all_rules() {
     breaks libcore/cistula/model/a.h '#ifdef __CUDA_ARCH__'
     breaks apps/render/a.h '#ifdef __CUDACC__'
     breaks libcore/cistula/model/a.h 'inline float f(float x) { return std::sin(x); }'
-    breaks libcore/scene/base/a.cpp 'double f(double x) { return std::pow(x, 2.4); }'
+    breaks libcore/base/a.cpp 'double f(double x) { return std::pow(x, 2.4); }'
     breaks libcore/cistula/model/a.h 'auto f = glm::refract(d, n, eta);'
     breaks libcore/cistula/model/a.h 'float f(float x) { return std::max(x, 0.0f); }'
     breaks cmake/a.cmake 'add_compile_options(-ffast-math)'
@@ -190,7 +214,7 @@ all_rules() {
 install(TARGETS gpu_check_fast)"
     breaks backend_embree/host/a.cpp '__attribute__((optimize("fast-math"))) void f();'
     fresh
-    printf 'int x;\n' >"$tree/t/libcore/scene/base/a.h"
+    printf 'int x;\n' >"$tree/t/libcore/base/a.h"
     must_detect 'no #pragma once'
 }
 

@@ -6,17 +6,13 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <new>
-#include <stdexcept>
 
-#include "scene/base/file_bytes.h"
-#include "scene/base/stages.h"
-#include "scene/base/suggest.h"
+#include "base/file_bytes.h"
+#include "base/stages.h"
+#include "base/suggest.h"
 
 namespace cistula {
 namespace {
@@ -48,39 +44,6 @@ void open_standard_streams() {
 }
 
 }  // namespace
-
-void fail_usage(const std::string& message) {
-    throw Error(ExitCode::usage, message);
-}
-
-int integer_option(const char* option, const std::string& text, int low, int high) {
-    const std::optional<int> value = whole_number<int>(text);
-    if (!value || *value < low || *value > high)
-        fail_usage(fmt::format("{} {}: must be a whole number from {} to {}", option, text, low, high));
-    return *value;
-}
-
-double number_option(const char* option, const std::string& text, double low, double high, const char* what) {
-    const std::optional<double> value = whole_number<double>(text);
-    if (!value || !std::isfinite(*value) || *value < low || *value > high)
-        fail_usage(fmt::format("{} {}: must be {}", option, text, what));
-    return *value;
-}
-
-std::vector<std::string_view> parts_at_commas(std::string_view text) {
-    std::vector<std::string_view> parts;
-    for (size_t begin = 0; begin <= text.size();) {
-        const size_t comma = std::min(text.find(',', begin), text.size());
-        parts.push_back(text.substr(begin, comma - begin));
-        begin = comma + 1;
-    }
-    return parts;
-}
-
-void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names) {
-    fail_usage(
-        fmt::format("{} {}: must be {}; {}", option, text, fmt::join(names, " or "), suggestion(text, names, "names")));
-}
 
 CLI::Option* add_option(CLI::App& app, const std::string& names, const std::string& value,
                         const std::string& description, const OptionReader& read) {
@@ -133,20 +96,6 @@ void print(const std::string& text) {
 
 void note(const std::string& line) {
     std::fputs((message_line(line) + "\n").c_str(), stderr);
-}
-
-Failure failure_of(const std::exception& error, const std::string& memory_advice) {
-    const std::string_view text = error.what();
-    const auto says = [&](const char* words) { return text.find(words) != std::string_view::npos; };
-    if (says("Resource temporarily unavailable"))  // of the system, by the standard library or TBB
-        return {"cannot start a thread, for want of memory or of processes (ulimit -u); " + memory_advice,
-                ExitCode::failed};
-    if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error) ||
-        says("Cannot allocate memory") ||
-        text.ends_with("failed to map segment from shared object"))  // the loader's; another reason would follow
-        return {"out of memory; " + memory_advice, ExitCode::failed};
-    const auto* ours = dynamic_cast<const Error*>(&error);
-    return {error.what(), ours ? ours->code() : ExitCode::failed};
 }
 
 int run_program(const char* name, const std::string& memory_advice, const std::function<int()>& work) {

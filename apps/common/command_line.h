@@ -1,16 +1,14 @@
 // Command line handling shared by all programs: numbers, names, unknown options, the end of main.
 #pragma once
 
-#include <charconv>
-#include <exception>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "scene/base/error.h"
+#include "base/error.h"
+#include "base/option_text.h"
 
 namespace CLI {
 class App;
@@ -18,42 +16,6 @@ class Option;
 }  // namespace CLI
 
 namespace cistula {
-
-/// Throws Error (usage) with this message.
-[[noreturn]] void fail_usage(const std::string& message);
-
-/// The whole of `text` as a number of type T; nothing if it is not one.
-template <class T>
-std::optional<T> whole_number(std::string_view text) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
-/// The text of an option as an integer. Throws Error (usage): "OPTION TEXT: must be a whole number from LOW to HIGH".
-int integer_option(const char* option, const std::string& text, int low, int high);
-
-/// The text of an option as a finite number. Throws Error (usage): "OPTION TEXT: must be WHAT", of which `what` tells
-/// the limits.
-double number_option(const char* option, const std::string& text, double low, double high, const char* what);
-
-/// The parts of a list with commas between; a text without commas is one.
-std::vector<std::string_view> parts_at_commas(std::string_view text);
-
-/// Throws Error (usage) for an unknown choice: "OPTION TEXT: must be a or b; did you mean 'a'?".
-[[noreturn]] void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names);
-
-/// The choice named `text`. Throws Error (usage).
-template <class T>
-T chosen(const char* option, const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
-    std::vector<std::string_view> names;
-    for (const auto& [name, value] : choices) {
-        if (name == text) return value;
-        names.push_back(name);
-    }
-    fail_choice(option, text, names);
-}
 
 /// Reads the text of an option into a variable, which outlives it. Throws Error (usage) that begins "OPTION TEXT: ".
 using OptionReader = std::function<void(const char* option, const std::string& text)>;
@@ -105,15 +67,6 @@ void print(const std::string& text);
 
 /// Writes a line to standard error. A failure changes nothing: what is said there never decides about files.
 void note(const std::string& line);
-
-/// What is told of an error that ends a program.
-struct Failure {
-    std::string text;  // without the program's name
-    ExitCode code;
-};
-
-/// An exception as it is told: where memory ran out or a thread could not be started, that, and `memory_advice`.
-Failure failure_of(const std::exception& error, const std::string& memory_advice);
 
 /// Runs a program's work and returns the exit code; exceptions become a line on standard error that begins with `name`.
 /// `memory_advice`: advice on using less memory, for when it runs out; `work` may change it. Standard streams that are

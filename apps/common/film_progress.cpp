@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/common/progress_record.h"
+#include "sequence/stats.h"
 
 namespace cistula {
 namespace {
@@ -54,12 +55,20 @@ std::string progress_line(const ProgressState& state) {
                        std::floor(state.fraction * 100), format_rate(state.rays_per_second), left_text(state));
 }
 
-FilmProgress::FilmProgress(ProgressStyle style, const RenderProgress& progress)
-    : style_(style), progress_(progress), line_(style, [this](int columns) { return text(columns); }) {}
+// Records are printed however little the program says.
+FilmProgress::FilmProgress(ProgressStyle style, Talk talk, const RenderProgress& progress)
+    : style_(talk == Talk::errors && !is_for_programs(style) ? ProgressStyle::none : style),
+      talk_(talk),
+      progress_(progress),
+      line_(style_, [this](int columns) { return text(columns); }) {}
 
-void FilmProgress::begin(size_t count) {
-    line_.update([&] { count_ = count; });
+void FilmProgress::begin(size_t frames) {
+    line_.update([&] { count_ = frames; });
     record({"begin"});
+}
+
+void FilmProgress::kept(int frame, const std::string& file) {
+    record({"kept", frame, file});
 }
 
 void FilmProgress::begin_frame(int frame, size_t index, size_t count, uint64_t pixels) {
@@ -74,15 +83,36 @@ void FilmProgress::begin_frame(int frame, size_t index, size_t count, uint64_t p
     record({"frame", frame});
 }
 
-void FilmProgress::end_frame() {
+void FilmProgress::end_frame(const FrameStats& frame) {
     line_.milestone(progress_line(state()));
     line_.record(state_record(style_, state()));
     line_.update([&] { in_frame_ = false; });
+    if (talk_ == Talk::much)
+        say(fmt::format("render: frame {}: {:.3f} s, {} rays, {}", frame.frame, frame.render_seconds,
+                        frame.rays.total(),
+                        format_rate(static_cast<double>(frame.rays.total()) / frame.render_seconds)));
 }
 
-void FilmProgress::end() {
+void FilmProgress::written(const FrameStats& frame) {
+    record({"written", frame.frame, frame.file});
+}
+
+void FilmProgress::snapshot(int frame, const std::string& file, double fraction) {
+    record({"snapshot", frame, file, fraction});
+}
+
+void FilmProgress::warning(const std::string& line) {
+    remark("warning: " + line);
+}
+
+void FilmProgress::remark(const std::string& line) {
+    if (talk_ != Talk::errors) say("render: " + line);
+}
+
+void FilmProgress::end(size_t done, size_t frames) {
     line_.update([&] { in_frame_ = false; });
     line_.aside([] {});
+    record({"end", -1, "", -1, fmt::format("{} of {} frames written", done, frames)});
 }
 
 void FilmProgress::say(const std::string& line) {
@@ -90,11 +120,11 @@ void FilmProgress::say(const std::string& line) {
     record({"message", -1, "", -1, line});
 }
 
-void FilmProgress::record(const FilmEvent& event) {
+void FilmProgress::record(const FilmRecord& record) {
     if (!is_for_programs(style_)) return;
     ProgressState now;
     line_.update([&] { now = state(); });
-    if (const std::string lines = event_record(style_, event, now); !lines.empty()) line_.record(lines);
+    if (const std::string lines = event_record(style_, record, now); !lines.empty()) line_.record(lines);
 }
 
 ProgressState FilmProgress::state() const {

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "apps/common/status_line.h"
-#include "scene/film/renderer.h"
+#include "render/renderer.h"
+#include "sequence/film_events.h"
 
 namespace cistula {
 
@@ -29,37 +30,37 @@ std::string format_rate(double rays_per_second);
 std::string progress_bar(const ProgressState& state, int columns);
 std::string progress_line(const ProgressState& state);
 
-struct FilmEvent;
+struct FilmRecord;
+
+/// What a program says of a film besides its progress.
+enum class Talk { errors, some, much };
 
 /// Shows a film's progress from a RenderProgress: a bar on a terminal, a line now and then elsewhere, or records for
-/// programs. All members may be called on any thread.
-class FilmProgress {
+/// programs; and says what else happens to it. All members may be called on any thread.
+class FilmProgress : public FilmEvents {
   public:
-    FilmProgress(ProgressStyle style, const RenderProgress& progress);
+    FilmProgress(ProgressStyle style, Talk talk, const RenderProgress& progress);
 
-    /// Begins a film of so many frames, of which some may be complete.
-    void begin(size_t count);
-
-    /// Begins frame number `frame`, which is at `index` of the `count` frames to render.
-    void begin_frame(int frame, size_t index, size_t count, uint64_t pixels);
-    void end_frame();
-
-    /// Takes the bar away when no frame is left to render.
-    void end();
-
-    /// Prints a line on standard error and redraws the bar below it.
-    void say(const std::string& line);
-
-    /// Prints a record where the style is for programs.
-    void record(const FilmEvent& event);
+    void begin(size_t frames) override;
+    void kept(int frame, const std::string& file) override;
+    void begin_frame(int frame, size_t index, size_t count, uint64_t pixels) override;
+    void end_frame(const FrameStats& frame) override;
+    void written(const FrameStats& frame) override;
+    void snapshot(int frame, const std::string& file, double fraction) override;
+    void warning(const std::string& line) override;
+    void remark(const std::string& line) override;
+    void end(size_t done, size_t frames) override;
 
   private:
+    void say(const std::string& line);
+    void record(const FilmRecord& record);
     using Clock = std::chrono::steady_clock;
 
     ProgressState state() const;
     std::string text(int columns) const;
 
     const ProgressStyle style_;
+    const Talk talk_;
     const RenderProgress& progress_;
     const Clock::time_point start_ = Clock::now();
     bool in_frame_ = false;

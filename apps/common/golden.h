@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "render/record/film_picture.h"
+#include "render/renderer.h"
 #include "scene/description/camera_path.h"
 #include "scene/description/description.h"
-#include "scene/film/film_picture.h"
-#include "scene/film/renderer.h"
 
 namespace cistula::golden {
 

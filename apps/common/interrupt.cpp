@@ -1,10 +1,12 @@
 #include "apps/common/interrupt.h"
 
 #include <unistd.h>
+#include <cerrno>
 #include <csignal>
 #include <iterator>
 
-#include "scene/base/error.h"
+#include "base/error.h"
+#include "sequence/snapshots.h"
 
 namespace cistula {
 namespace {
@@ -54,6 +56,33 @@ InterruptGuard::~InterruptGuard() {
 
 void InterruptGuard::watch(std::atomic<bool>& stop) {
     watched = &stop;
+}
+
+namespace {
+
+std::atomic<SnapshotRequests*> asked{nullptr};
+struct sigaction user_action_before;
+
+void on_user_signal(int) {
+    const int kept = errno;
+    if (SnapshotRequests* const requests = asked) requests->ask();
+    errno = kept;
+}
+
+}  // namespace
+
+UserSignal::UserSignal(SnapshotRequests& requests) {
+    asked = &requests;
+    struct sigaction action = {};
+    action.sa_handler = on_user_signal;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGUSR1, &action, &user_action_before);
+}
+
+UserSignal::~UserSignal() {
+    sigaction(SIGUSR1, &user_action_before, nullptr);
+    asked = nullptr;
 }
 
 }  // namespace cistula

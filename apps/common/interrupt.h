@@ -20,4 +20,15 @@ class InterruptGuard {
     void watch(std::atomic<bool>& stop);
 };
 
+class SnapshotRequests;
+
+/// While an object of this class exists, SIGUSR1 asks for a snapshot. Only one object at a time.
+class UserSignal {
+  public:
+    explicit UserSignal(SnapshotRequests& requests);
+    ~UserSignal();
+    UserSignal(const UserSignal&) = delete;
+    UserSignal& operator=(const UserSignal&) = delete;
+};
+
 }  // namespace cistula

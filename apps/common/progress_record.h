@@ -5,13 +5,13 @@
 #include <string>
 
 #include "apps/common/film_progress.h"
-#include "scene/base/error.h"
+#include "base/error.h"
 
 namespace cistula {
 
 /// Something that happens to a film. `event`: "begin", "frame" (its first ray), "rendered", "written", "kept" (complete
 /// since an earlier run), "snapshot", "message" or "end".
-struct FilmEvent {
+struct FilmRecord {
     const char* event;
     int frame = -1;         // -1: none
     std::string file = {};  // empty: none
@@ -20,7 +20,7 @@ struct FilmEvent {
 };
 
 /// Records are one or more lines without the last line end, or empty where the style has none for this.
-std::string event_record(ProgressStyle style, const FilmEvent& event, const ProgressState& state);
+std::string event_record(ProgressStyle style, const FilmRecord& event, const ProgressState& state);
 
 /// The record of a frame under way.
 std::string state_record(ProgressStyle style, const ProgressState& state);

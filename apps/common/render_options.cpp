@@ -10,15 +10,15 @@
 #include <limits>
 
 #include "apps/common/command_line.h"
-#include "apps/common/frame_list.h"
-#include "apps/common/layer_list.h"
 #include "apps/common/view_options.h"
+#include "base/suggest.h"
 #include "cistula/model/effects.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
-#include "scene/base/suggest.h"
-#include "scene/film/frame_settings.h"
+#include "render/frame_settings.h"
+#include "render/layer_list.h"
 #include "scene/readers/read_scene.h"
+#include "sequence/frame_list.h"
 
 namespace cistula {
 namespace {

@@ -7,11 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/common/film_options.h"
-#include "apps/common/frame_list.h"
-#include "apps/common/picture_size.h"
-#include "scene/film/film_picture.h"
-#include "scene/film/renderer.h"
+#include "apps/common/status_line.h"
+#include "render/picture_size.h"
+#include "render/record/film_picture.h"
+#include "render/renderer.h"
+#include "sequence/film_options.h"
+#include "sequence/frame_list.h"
 
 namespace CLI {
 class App;
@@ -42,7 +43,9 @@ struct RenderOptions : FilmOptions {
     std::string json;         // for Action::pixel: a file, "-" or empty
     std::optional<int> supersample, depth;
     std::optional<double> cutoff, target_error;
-    std::optional<int> max_samples;         // for a target error
+    std::optional<int> max_samples;  // for a target error
+    bool quiet = false, verbose = false;
+    ProgressStyle progress = ProgressStyle::automatic;
     bool all_effects = false;               // --effects all
     int threads = 0;                        // 0: one per core
     int lanes = 0;                          // 0: as many as can be

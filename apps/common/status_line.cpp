@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "scene/base/shown_text.h"
+#include "base/shown_text.h"
 
 namespace cistula {
 namespace {

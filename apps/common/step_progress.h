@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/common/status_line.h"
-#include "scene/film/renderer.h"
+#include "render/renderer.h"
 
 namespace cistula {
 

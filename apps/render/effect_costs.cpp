@@ -2,8 +2,8 @@
 
 #include <bit>
 
-#include "apps/common/timing.h"
-#include "scene/base/error.h"
+#include "base/error.h"
+#include "base/timing.h"
 #include "scene/description/without_effect.h"
 
 namespace cistula {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "apps/common/step_progress.h"
+#include "render/renderer.h"
 #include "scene/compile/required_effects.h"
 #include "scene/description/description.h"
-#include "scene/film/renderer.h"
 
 namespace cistula {
 

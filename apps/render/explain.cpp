@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "scene/base/shown_text.h"
+#include "base/shown_text.h"
 #include "scene/compile/overlaps.h"
 
 namespace cistula {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/backends.h"
 #include "effect_costs.h"
 #include "scene/compile/required_effects.h"
+#include "sequence/backends.h"
 
 namespace cistula {
 

@@ -8,32 +8,32 @@
 #include <future>
 #include <optional>
 
-#include "apps/common/backends.h"
 #include "apps/common/command_line.h"
-#include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
-#include "apps/common/layer_list.h"
-#include "apps/common/pixel_report.h"
 #include "apps/common/progress_record.h"
 #include "apps/common/render_options.h"
-#include "apps/common/run_files.h"
-#include "apps/common/snapshots.h"
 #include "apps/common/step_progress.h"
-#include "apps/common/timing.h"
 #include "apps/common/view_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/stages.h"
+#include "base/suggest.h"
+#include "base/timing.h"
 #include "explain.h"
-#include "scene/base/atomic_file.h"
-#include "scene/base/error.h"
-#include "scene/base/stages.h"
-#include "scene/base/suggest.h"
+#include "render/layer_list.h"
+#include "render/pixel_report.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/precision_choice.h"
 #include "scene/compile/required_effects.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/camera_turns.h"
 #include "scene/readers/read_text_input.h"
+#include "sequence/backends.h"
+#include "sequence/film_loop.h"
+#include "sequence/run_files.h"
+#include "sequence/snapshots.h"
 
 namespace cistula {
 namespace {
@@ -49,6 +49,10 @@ void on_threads(const RenderOptions& options, const Work& work) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
     tbb::task_arena arena(threads);
     arena.execute(work);
+}
+
+Talk talk_of(const RenderOptions& options) {
+    return options.quiet ? Talk::errors : options.verbose ? Talk::much : Talk::some;
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
@@ -190,8 +194,9 @@ std::string advice_on_memory(const RenderOptions& options, const FrameSettings& 
 
 void render_scene(RenderOptions options, std::string& memory_advice) {
     const bool explain = options.action == Action::explain;
-    std::optional<UserSignal> snapshot_signal;
-    if (!explain) snapshot_signal.emplace();
+    SnapshotRequests snapshot_requests;
+    std::optional<UserSignal> user_signal;
+    if (!explain) user_signal.emplace(snapshot_requests);
     // Devices take longer to begin than most scenes to be read and compiled, which goes on meanwhile.
     std::future<ChosenDevices> devices;
     if (!explain)
@@ -253,9 +258,10 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
                              seconds(Stage::read), seconds(Stage::compile), seconds(Stage::tree), renderer.memory(),
                              stats.scene_hash));
         }
-        FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
+        FilmProgress report(options.progress, talk_of(options), progress);
+        FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames, report};
         job.layer_names = prepared.layer_names;
-        job.snapshot_signal = &*snapshot_signal;
+        job.snapshot_requests = &snapshot_requests;
         require_light_layers(options.channels, *job.layer_names);
         outputs.layers = layers_with_files(job);
         if (!outputs.layers.empty()) {  // their names are known only now

@@ -1,20 +1,22 @@
 // render-compare: compares two images, or scenes with their golden images.
 #include <algorithm>
+#include <atomic>
 #include <optional>
 #include <string_view>
 
 #include "apps/common/command_line.h"
-#include "compare.h"
-#include "flip.h"
+#include "apps/common/interrupt.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/shown_text.h"
+#include "compare/metrics/compare.h"
+#include "compare/metrics/flip.h"
+#include "compare/metrics/report.h"
+#include "compare/metrics/sums.h"
+#include "image/exr/exr.h"
+#include "image/reader/picture_reader.h"
 #include "options.h"
-#include "report.h"
-#include "scene/base/atomic_file.h"
-#include "scene/base/error.h"
-#include "scene/base/shown_text.h"
-#include "scene/image/exr/exr.h"
-#include "scene/image/reader/picture_reader.h"
-#include "suite_run.h"
-#include "sums.h"
+#include "suite_options.h"
 
 namespace cistula {
 namespace {
@@ -33,13 +35,19 @@ bool compare_images(CompareOptions options) {
     if (!options.mask.empty()) options.selection.mask = mask_of(reader.read(options.mask).pictures.front());
     const Comparison comparison = compare_files(a, b, options.thresholds, options.selection);
     std::optional<FlipResult> flip;
-    if (options.flip) flip = flip_of(a, b, options.selection);
+    if (options.flip) {
+        std::atomic<bool> stop = false;
+        InterruptGuard guard;  // before there are files and processes
+        guard.watch(stop);
+        flip = flip_of(a, b, options.selection, stop);
+    }
     std::string text = report_text(comparison, options.thresholds, flip ? &*flip : nullptr);
     if (!options.diff.empty()) text += write_differences(options, a, b);
     if (!options.json.empty())
-        write_file_atomically(options.json, report_json(comparison, options, flip ? &*flip : nullptr)
-                                                    .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                                                "\n");
+        write_file_atomically(options.json,
+                              report_json(comparison, options.thresholds, options.a, options.b, flip ? &*flip : nullptr)
+                                      .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                                  "\n");
     if (!options.quiet) print(text);
     return passes(comparison, options.thresholds);
 }

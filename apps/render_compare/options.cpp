@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
-#include "apps/common/picture_size.h"
-#include "apps/common/run_files.h"
-#include "scene/base/file_bytes.h"
+#include "base/file_bytes.h"
+#include "render/picture_size.h"
+#include "sequence/run_files.h"
 
 namespace cistula {
 namespace {

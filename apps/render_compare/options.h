@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "compare.h"
+#include "compare/metrics/compare.h"
 
 namespace cistula {
 

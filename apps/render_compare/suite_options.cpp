@@ -1,7 +1,6 @@
 #include "suite_options.h"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <CLI/CLI.hpp>
 
@@ -10,10 +9,9 @@
 #include <set>
 
 #include "apps/common/command_line.h"
-#include "apps/common/run_files.h"
-#include "scene/base/suggest.h"
 #include "scene/compile/scene_source.h"
 #include "scene/readers/read_scene.h"
+#include "sequence/run_files.h"
 
 namespace cistula {
 namespace {
@@ -47,30 +45,6 @@ void declare(CLI::App& app, SuiteOptions& options) {
     app.add_flag("--list", options.list, "print the cases, each with a tab and its tags, and exit");
     app.add_flag("-q,--quiet", options.quiet, "errors only; the exit code tells");
     app.set_help_flag("-h,--help", "print this and exit");
-}
-
-bool matches(const std::string& pattern, const std::string& text) {
-    return fnmatch(pattern.c_str(), text.c_str(), FNM_NOESCAPE) == 0;
-}
-
-bool chooses(const std::string& pattern, const SuiteCase& one) {
-    return matches(pattern, one.name) ||
-           std::any_of(one.tags.begin(), one.tags.end(), [&](const auto& tag) { return matches(pattern, tag); });
-}
-
-/// Throws unless some case has the name or, for a pattern, fits.
-void require_known(const Suite& suite, const std::string& text, const char* what, bool is_pattern) {
-    std::vector<std::string_view> known;
-    for (const SuiteCase& one : suite.cases) {
-        if (is_pattern ? chooses(text, one) : text == one.name) return;
-        known.push_back(one.name);
-    }
-    if (is_pattern)
-        for (const SuiteCase& one : suite.cases)
-            for (const std::string& tag : one.tags)
-                if (std::find(known.begin(), known.end(), tag) == known.end()) known.push_back(tag);
-    fail_usage(fmt::format("{}{}: {} has no such case; {}", what, text, suite.path,
-                           nearest_first(text, known, is_pattern ? "names and tags" : "cases")));
 }
 
 /// Adds a scene, and the files that it names if they are asked for. What is wrong with a scene is said by its cases.
@@ -110,33 +84,6 @@ Examples:
 
 Exit codes: 0 all cases hold, 1 some do not, 2 command line or suite.json, 3 file, 4 device, 130 interrupted.)");
     return app.help();
-}
-
-std::vector<Backend> backends_of(const SuiteCase& one, const SuiteOptions& options) {
-    if (!options.backend) return one.backends;
-    const bool has = std::find(one.backends.begin(), one.backends.end(), *options.backend) != one.backends.end();
-    return has ? std::vector{*options.backend} : std::vector<Backend>{};
-}
-
-std::vector<const SuiteCase*> chosen_cases(const Suite& suite, const SuiteOptions& options) {
-    for (const std::string& name : options.cases) require_known(suite, name, "", false);
-    for (const std::string& pattern : options.filters) require_known(suite, pattern, "--filter ", true);
-    std::vector<const SuiteCase*> chosen;
-    for (const SuiteCase& one : suite.cases) {
-        const auto& names = options.cases;
-        const auto& filters = options.filters;
-        if (!names.empty() && std::find(names.begin(), names.end(), one.name) == names.end()) continue;
-        if (!filters.empty() &&
-            std::none_of(filters.begin(), filters.end(), [&](const auto& pattern) { return chooses(pattern, one); }))
-            continue;
-        if (!backends_of(one, options).empty()) chosen.push_back(&one);
-    }
-    if (chosen.empty())
-        fail_usage(options.backend
-                       ? fmt::format("--backend {}: no case that is asked for names it among its \"backends\"",
-                                     backend_name(*options.backend))
-                       : std::string("no case has both a name that is given and one that --filter fits"));
-    return chosen;
 }
 
 void require_other_files(const Suite& suite, const SuiteOptions& options, const std::vector<const SuiteCase*>& chosen) {

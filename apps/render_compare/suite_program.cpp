@@ -1,14 +1,15 @@
-#include "suite_run.h"
+#include "apps/common/interrupt.h"
+#include "suite_options.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "apps/common/command_line.h"
-#include "apps/common/output_name.h"
-#include "scene/base/atomic_file.h"
-#include "suite_report.h"
-#include "suite_update.h"
+#include "base/atomic_file.h"
+#include "compare/suite/suite_report.h"
+#include "compare/suite/suite_update.h"
+#include "sequence/output_name.h"
 
 namespace cistula {
 namespace {
@@ -78,8 +79,11 @@ int run_suite(int argc, const char* const* argv) {
         if (options.update) update.finish(results);
     };
     std::vector<SuiteResult> results;
+    RenderProgress progress;
+    InterruptGuard guard;
+    guard.watch(progress.stop);
     try {
-        results = run_cases(suite, chosen, backends, options, work);
+        results = run_cases(suite, chosen, backends, options, work, progress);
     } catch (const Error&) {
         update.write();  // what was recorded by then
         throw;

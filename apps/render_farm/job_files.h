@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/picture_size.h"
 #include "plan.h"
+#include "render/picture_size.h"
 
 namespace cistula {
 

@@ -5,17 +5,17 @@
 #include <filesystem>
 
 #include "apps/common/command_line.h"
-#include "apps/common/film_loop.h"
 #include "apps/common/interrupt.h"
-#include "apps/common/layer_list.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "job_files.h"
 #include "measure.h"
 #include "options.h"
-#include "scene/base/atomic_file.h"
-#include "scene/base/error.h"
+#include "render/layer_list.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/precision_choice.h"
 #include "scene/compile/scene_source.h"
+#include "sequence/film_loop.h"
 
 namespace cistula {
 namespace {
@@ -96,7 +96,8 @@ void write_job(const FarmOptions& farm) {
     const MeasuredFrames measured = measure_tiles(*film.renderer, scene, settings, frames, grid, progress);
 
     const OutputName none;
-    FilmJob job{options, scene, "", settings, output, none, frames};
+    FilmEvents nothing;
+    FilmJob job{options, scene, "", settings, output, none, frames, nothing};
     job.layer_names = film.layer_names;
     FarmJob farm_job{job_name(options.scene),
                      fs::current_path().string(),

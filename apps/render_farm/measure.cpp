@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "apps/common/timing.h"
-#include "scene/base/error.h"
+#include "base/error.h"
+#include "base/timing.h"
 #include "scene/description/camera_path.h"
 
 namespace cistula {

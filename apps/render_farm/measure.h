@@ -1,11 +1,11 @@
 // How long the tiles of a film take, estimated from small frames.
 #pragma once
 
-#include "apps/common/picture_size.h"
 #include "apps/common/step_progress.h"
 #include "plan.h"
+#include "render/picture_size.h"
+#include "render/renderer.h"
 #include "scene/description/description.h"
-#include "scene/film/renderer.h"
 
 namespace cistula {
 

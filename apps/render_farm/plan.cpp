@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 
 namespace cistula {
 namespace {

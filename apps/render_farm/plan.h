@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apps/common/frame_list.h"
+#include "sequence/frame_list.h"
 
 namespace cistula {
 

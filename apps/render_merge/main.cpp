@@ -3,16 +3,16 @@
 #include <tbb/task_arena.h>
 
 #include "apps/common/command_line.h"
-#include "apps/common/run_files.h"
 #include "apps/common/view_options.h"
-#include "merge.h"
+#include "base/error.h"
+#include "image/color/color_space.h"
+#include "image/exr/exr.h"
+#include "image/picture/picture.h"
+#include "image/picture/picture_io.h"
+#include "image/view/picture_view.h"
 #include "options.h"
-#include "scene/base/error.h"
-#include "scene/image/color/color_space.h"
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/picture.h"
-#include "scene/image/picture/picture_io.h"
-#include "scene/image/view/picture_view.h"
+#include "sequence/merge.h"
+#include "sequence/run_files.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/common/command_line.h"
-#include "apps/common/picture_size.h"
 #include "apps/common/view_options.h"
-#include "scene/base/file_bytes.h"
+#include "base/file_bytes.h"
+#include "render/picture_size.h"
 
 namespace cistula {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/frame_list.h"
-#include "apps/common/output_name.h"
-#include "apps/common/picture_size.h"
-#include "scene/image/view/picture_view.h"
+#include "image/view/picture_view.h"
+#include "render/picture_size.h"
+#include "sequence/frame_list.h"
+#include "sequence/output_name.h"
 
 namespace cistula {
 

@@ -6,9 +6,9 @@
 #include <mutex>
 #include <thread>
 
-#include "apps/common/film_loop.h"
-#include "apps/common/timing.h"
-#include "scene/base/error.h"
+#include "base/error.h"
+#include "base/timing.h"
+#include "sequence/film_loop.h"
 
 namespace cistula::report {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "apps/common/step_progress.h"
+#include "render/record/film.h"
 #include "renderers.h"
 #include "scene/description/camera_path.h"
-#include "scene/film/film.h"
 
 namespace cistula::report {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/page_parts.h"
+#include "compare/page/page_parts.h"
 #include "record.h"
 
 namespace cistula::report {

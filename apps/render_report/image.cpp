@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/common/page_parts.h"
-#include "scene/image/picture/png.h"
+#include "compare/page/page_parts.h"
+#include "image/picture/png.h"
 
 namespace cistula::report {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "image/picture/picture.h"
 #include "record.h"
-#include "scene/image/picture/picture.h"
 
 namespace cistula::report {
 

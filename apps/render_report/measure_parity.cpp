@@ -2,8 +2,8 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "image.h"
 #include "measure.h"
-#include "scene/film/film_difference.h"
-#include "scene/film/film_picture.h"
+#include "render/record/film_difference.h"
+#include "render/record/film_picture.h"
 #include "small_frame.h"
 #include "testing/reference_renderers.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/error.h"
 #include "measure.h"
-#include "scene/base/error.h"
 #include "scene/description/platonic.h"
 #include "scene/readers/read_scene.h"
 #include "testing/generated_mesh.h"

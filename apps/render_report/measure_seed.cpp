@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/error.h"
+#include "base/file_bytes.h"
 #include "measure.h"
-#include "scene/base/error.h"
-#include "scene/base/file_bytes.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
 

@@ -6,11 +6,11 @@
 #include <numeric>
 #include <random>
 
-#include "apps/common/target.h"
+#include "base/error.h"
 #include "measure.h"
 #include "reference.h"
-#include "scene/base/error.h"
-#include "scene/film/film_picture.h"
+#include "render/record/film_picture.h"
+#include "render/target.h"
 #include "sweep_plan.h"
 
 namespace cistula::report {

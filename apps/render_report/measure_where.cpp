@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/common/header_attributes.h"
-#include "apps/common/timing.h"
+#include "base/error.h"
+#include "base/timing.h"
 #include "cistula/model/effects.h"
 #include "image.h"
+#include "image/exr/exr.h"
 #include "measure.h"
-#include "scene/base/error.h"
+#include "render/header_attributes.h"
+#include "render/record/film_picture.h"
 #include "scene/compile/required_effects.h"
-#include "scene/film/film_picture.h"
-#include "scene/image/exr/exr.h"
 #include "small_frame.h"
 
 namespace cistula::report {

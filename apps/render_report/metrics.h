@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "record_json.h"
-#include "scene/film/film.h"
+#include "render/record/film.h"
 
 namespace cistula::report {
 

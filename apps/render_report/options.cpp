@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
-#include "apps/common/picture_size.h"
 #include "reference.h"
+#include "render/picture_size.h"
 
 namespace cistula::report {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/backends.h"
+#include "sequence/backends.h"
 
 namespace cistula::report {
 

@@ -8,18 +8,18 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
-#include "apps/common/run_files.h"
 #include "apps/common/step_progress.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_bytes.h"
 #include "html.h"
 #include "html_page.h"
 #include "measure.h"
 #include "options.h"
-#include "scene/base/atomic_file.h"
-#include "scene/base/error.h"
-#include "scene/base/file_bytes.h"
 #include "scene/compile/scene_source.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
+#include "sequence/run_files.h"
 
 namespace cistula::report {
 namespace {

@@ -5,10 +5,10 @@
 #include <set>
 #include <string>
 
-#include "apps/common/run_context.h"
+#include "base/error.h"
 #include "html_page.h"
-#include "scene/base/error.h"
 #include "scene/readers/json_reader.h"
+#include "sequence/run_context.h"
 #include "target_table.h"
 
 namespace cistula {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/timing.h"
+#include "base/timing.h"
 #include "metrics.h"
 #include "setting.h"
 
@@ -28,7 +28,7 @@ struct Rays {
 /// The result of a setting with a target error.
 struct TargetOutcome {
     double over = 0;      // share of the pixels that differ from the reference by more than the target
-    uint64_t missed = 0;  // pixels reported as missed, see apps/common/target.h
+    uint64_t missed = 0;  // pixels reported as missed, see render/target.h
 };
 
 /// A measured setting of the sweep.

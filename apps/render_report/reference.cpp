@@ -6,14 +6,14 @@
 #include <cstring>
 #include <filesystem>
 
-#include "apps/common/header_attributes.h"
-#include "apps/common/machine.h"
-#include "apps/common/timing.h"
-#include "scene/base/atomic_file.h"
-#include "scene/base/error.h"
-#include "scene/base/file_bytes.h"
-#include "scene/base/fnv128.h"
-#include "scene/base/suggest.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_bytes.h"
+#include "base/fnv128.h"
+#include "base/machine.h"
+#include "base/suggest.h"
+#include "base/timing.h"
+#include "render/header_attributes.h"
 
 namespace cistula::report {
 namespace {

@@ -1,6 +1,6 @@
 #include "renderers.h"
 
-#include "apps/common/timing.h"
+#include "base/timing.h"
 #include "scene/compile/compiled_scene.h"
 
 namespace cistula::report {

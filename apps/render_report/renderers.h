@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "apps/common/backends.h"
 #include "record.h"
 #include "scene/description/description.h"
+#include "sequence/backends.h"
 
 namespace cistula::report {
 

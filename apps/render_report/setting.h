@@ -5,7 +5,7 @@
 #include <string>
 
 #include "record_json.h"
-#include "scene/film/renderer.h"
+#include "render/renderer.h"
 
 namespace cistula::report {
 

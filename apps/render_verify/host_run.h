@@ -9,7 +9,7 @@
 
 #include "apps/render_verify/case_table.h"
 #include "apps/render_verify/host_intersectors.h"
-#include "scene/base/default_rounding.h"
+#include "base/default_rounding.h"
 
 namespace cistula::verify {
 

@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/common/command_line.h"
-#include "apps/common/run_files.h"
-#include "scene/base/suggest.h"
+#include "base/suggest.h"
+#include "sequence/run_files.h"
 
 namespace cistula::verify {
 namespace {

@@ -2,12 +2,12 @@
 
 #include <chrono>
 
-#include "apps/common/backends.h"
 #include "apps/common/command_line.h"
 #include "apps/common/step_progress.h"
 #include "apps/render_verify/report.h"
-#include "scene/base/atomic_file.h"
-#include "scene/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "sequence/backends.h"
 
 namespace cistula::verify {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <thread>
 
-#include "apps/common/machine.h"
-#include "scene/base/suggest.h"
+#include "base/machine.h"
+#include "base/suggest.h"
 
 namespace cistula::verify {
 namespace {

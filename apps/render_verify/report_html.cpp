@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "apps/common/machine.h"
 #include "apps/render_verify/report.h"
+#include "base/machine.h"
 
 namespace cistula::verify {
 namespace {

@@ -8,9 +8,9 @@
 #include <new>
 #include <stdexcept>
 
-#include "apps/common/backends.h"
 #include "apps/render_verify/ready_part.h"
 #include "backend_embree/embree/embree_renderer.h"
+#include "sequence/backends.h"
 #include "testing/reference_renderers.h"
 
 namespace cistula::verify {

@@ -7,7 +7,7 @@
 
 #include "apps/common/step_progress.h"
 #include "apps/render_verify/case_table.h"
-#include "scene/film/renderer.h"
+#include "render/renderer.h"
 
 namespace cistula::verify {
 

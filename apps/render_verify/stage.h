@@ -3,11 +3,11 @@
 
 #include <functional>
 
+#include "render/record/film.h"
+#include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/smallest_part.h"
 #include "scene/description/description.h"
-#include "scene/film/film.h"
-#include "scene/film/renderer.h"
 
 namespace cistula::verify {
 

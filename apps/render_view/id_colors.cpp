@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "scene/image/color/srgb_codes.h"
+#include "image/color/srgb_codes.h"
 
 namespace cistula {
 

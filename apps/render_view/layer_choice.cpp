@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/common/command_line.h"
-#include "scene/base/suggest.h"
+#include "base/suggest.h"
 
 namespace cistula {
 namespace {

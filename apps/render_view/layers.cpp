@@ -7,8 +7,8 @@
 #include <optional>
 #include <set>
 
-#include "scene/base/lower_case.h"
-#include "scene/image/picture/stored_picture.h"
+#include "base/suggest.h"
+#include "image/picture/stored_picture.h"
 
 namespace cistula {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/image/exr/exr_file.h"
+#include "image/exr/exr_file.h"
 
 namespace cistula {
 

@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "apps/common/command_line.h"
-#include "apps/common/run_files.h"
 #include "apps/common/view_options.h"
-#include "scene/base/file_bytes.h"
+#include "base/file_bytes.h"
+#include "sequence/run_files.h"
 
 namespace cistula {
 namespace {

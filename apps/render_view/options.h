@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/image/view/picture_view.h"
+#include "image/view/picture_view.h"
 
 namespace cistula {
 

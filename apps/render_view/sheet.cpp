@@ -6,8 +6,8 @@
 #include <set>
 
 #include "apps/common/command_line.h"
-#include "scene/base/suggest.h"
-#include "scene/image/color/srgb_codes.h"
+#include "base/suggest.h"
+#include "image/color/srgb_codes.h"
 
 namespace cistula {
 namespace {

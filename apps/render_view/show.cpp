@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "id_colors.h"
-#include "scene/image/color/file_colors.h"
-#include "scene/image/color/srgb_codes.h"
-#include "scene/image/exr/exr_file.h"
+#include "image/color/file_colors.h"
+#include "image/color/srgb_codes.h"
+#include "image/exr/exr_file.h"
 
 namespace cistula {
 namespace {

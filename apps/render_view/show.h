@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "image/view/picture_view.h"
 #include "layers.h"
-#include "scene/image/view/picture_view.h"
 
 namespace cistula {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "backend_cuda/kernels/block_pixels.h"
-#include "scene/frame/frame_hints.h"
+#include "render/frame/frame_hints.h"
 
 namespace cistula {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 
 namespace cistula {
 

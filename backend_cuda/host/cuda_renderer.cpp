@@ -8,10 +8,10 @@
 #include <deque>
 
 #include "backend_cuda/host/device_worker.h"
-#include "scene/base/default_rounding.h"
-#include "scene/base/stages.h"
-#include "scene/film/film_difference.h"
-#include "scene/frame/frame_view.h"
+#include "base/default_rounding.h"
+#include "base/stages.h"
+#include "render/frame/frame_view.h"
+#include "render/record/film_difference.h"
 
 namespace cistula {
 namespace {

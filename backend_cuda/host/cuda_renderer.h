@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/film/renderer.h"
 
 namespace cistula {
 

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <thread>
 
-#include "scene/base/stages.h"
-#include "scene/frame/frame_view.h"
+#include "base/stages.h"
+#include "render/frame/frame_view.h"
 
 namespace cistula {
 namespace {

@@ -8,7 +8,7 @@
 #include "backend_cuda/host/readback.h"
 #include "backend_cuda/host/scene_upload.h"
 #include "backend_cuda/host/stop_flag.h"
-#include "scene/film/film.h"
+#include "render/record/film.h"
 
 namespace cistula {
 

@@ -6,7 +6,7 @@
 
 #include "backend_cuda/host/block_list.h"
 #include "backend_cuda/kernels/frame_job.h"
-#include "scene/frame/frame_hints.h"
+#include "render/frame/frame_hints.h"
 
 namespace cistula {
 

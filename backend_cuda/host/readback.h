@@ -5,7 +5,7 @@
 
 #include "backend_cuda/host/block_list.h"
 #include "backend_cuda/host/cuda_resources.h"
-#include "scene/film/film.h"
+#include "render/record/film.h"
 
 namespace cistula {
 

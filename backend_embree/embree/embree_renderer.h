@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/film/renderer.h"
 
 namespace cistula {
 

@@ -10,12 +10,12 @@
 #include <mutex>
 
 #include "backend_embree/lanes/pixels_by_sample.h"
+#include "base/default_rounding.h"
 #include "cistula/lanes/lane_scene.h"
 #include "cistula/traversal/bvh.h"
-#include "scene/base/default_rounding.h"
+#include "render/frame/frame_hints.h"
+#include "render/frame/frame_view.h"
 #include "scene/compile/lane_scene.h"
-#include "scene/frame/frame_hints.h"
-#include "scene/frame/frame_view.h"
 
 namespace cistula {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "backend_embree/pixel_tree/branch_trace.h"
-#include "scene/frame/frame_view.h"
+#include "render/frame/frame_view.h"
 
 namespace cistula {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cistula/transport/pixel.h"
-#include "scene/film/pixel_tree.h"
+#include "render/pixel_tree.h"
 
 namespace cistula {
 

@@ -5,7 +5,7 @@
 #include "backend_embree/embree/embree_tree.h"
 #include "backend_embree/host/frame_loop.h"
 #include "backend_embree/pixel_tree/pixel_recorder.h"
-#include "scene/film/film_difference.h"
+#include "render/record/film_difference.h"
 
 namespace cistula {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <memory>
 
+#include "render/pixel_tree.h"
+#include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/film/pixel_tree.h"
-#include "scene/film/renderer.h"
 
 namespace cistula {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "backend_cuda/host/cuda_renderer.h"
+#include "render/record/film_difference.h"
 #include "scene/description/camera_path.h"
-#include "scene/film/film_difference.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::bench {

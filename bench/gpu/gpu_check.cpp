@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "backend_cuda/host/cuda_renderer.h"
+#include "base/error.h"
 #include "bench/gpu/frame_times.h"
-#include "scene/base/error.h"
 #include "testing/parity/function_parity.h"
 #include "testing/parity/image_parity.h"
 #include "testing/parity/record.h"

@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "backend_cuda/host/cuda_renderer.h"
+#include "base/error.h"
 #include "bench/gpu/frame_times.h"
-#include "scene/base/error.h"
 
 int main(int argc, char** argv) {
     using namespace cistula;

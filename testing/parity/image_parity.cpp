@@ -8,7 +8,7 @@
 #include "backend_cuda/host/cuda_renderer.h"
 #include "backend_embree/embree/embree_renderer.h"
 #include "cistula/model/effects.h"
-#include "scene/film/film_difference.h"
+#include "render/record/film_difference.h"
 #include "scene/readers/read_scene.h"
 #include "testing/generated_scene.h"
 #include "testing/support/golden_suite.h"

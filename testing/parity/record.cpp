@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "apps/common/run_context.h"
 #include "backend_cuda/host/cuda_renderer.h"
-#include "scene/base/atomic_file.h"
+#include "base/atomic_file.h"
+#include "sequence/run_context.h"
 
 namespace cistula::bench {
 

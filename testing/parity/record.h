@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/common/timing.h"
+#include "base/timing.h"
 
 namespace cistula::bench {
 

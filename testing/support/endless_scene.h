@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene/film/renderer.h"
+#include "render/renderer.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 
 #define EXPECT_ERROR(statement, expected_code, expected_message)                 \
     do {                                                                         \

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/film/film.h"
-#include "scene/film/film_picture.h"
+#include "render/record/film.h"
+#include "render/record/film_picture.h"
 
 namespace cistula::test {
 

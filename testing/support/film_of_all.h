@@ -2,9 +2,9 @@
 #pragma once
 
 #include "backend_embree/embree/embree_renderer.h"
+#include "render/record/film_difference.h"
+#include "render/record/film_picture.h"
 #include "scene/description/camera_path.h"
-#include "scene/film/film_difference.h"
-#include "scene/film/film_picture.h"
 #include "testing/reference_renderers.h"
 #include "testing/support/scene.h"
 

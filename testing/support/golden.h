@@ -12,8 +12,8 @@
 
 #include "apps/common/golden.h"
 #include "backend_embree/embree/embree_renderer.h"
-#include "scene/film/film_difference.h"
-#include "scene/film/film_picture.h"
+#include "render/record/film_difference.h"
+#include "render/record/film_picture.h"
 #include "scene/readers/read_scene.h"
 #include "testing/reference_renderers.h"
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/common/backends.h"
-#include "scene/base/error.h"
+#include "base/error.h"
+#include "sequence/backends.h"
 
 namespace cistula::test {
 

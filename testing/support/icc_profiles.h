@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/image/color/color_encoding.h"
+#include "image/color/color_encoding.h"
 #include "testing/support/byte_order.h"
 
 namespace cistula::test {

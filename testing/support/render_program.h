@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/run_program.h"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 #include "scene/description/description.h"
 #include "testing/generated_mesh.h"
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "scene/film/renderer.h"
+#include "render/renderer.h"
 
 namespace cistula::test {
 

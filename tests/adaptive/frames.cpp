@@ -5,9 +5,9 @@
 #include <set>
 
 #include "cistula/adaptive/adaptive_pixel.h"
+#include "render/frame/frame_view.h"
+#include "render/record/film_difference.h"
 #include "scene/description/without_effect.h"
-#include "scene/film/film_difference.h"
-#include "scene/frame/frame_view.h"
 #include "testing/generated_scene.h"
 #include "testing/reference_renderers.h"
 #include "testing/support/golden.h"

@@ -7,9 +7,9 @@
 
 #include "cistula/model/constant_scene.h"
 #include "cistula/traversal/bvh.h"
+#include "render/frame/frame_view.h"
 #include "scene/compile/constant_scene.h"
 #include "scene/description/without_effect.h"
-#include "scene/frame/frame_view.h"
 #include "testing/generated_scene.h"
 #include "testing/support/contact_search.h"
 #include "testing/support/golden.h"

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "backend_embree/embree/embree_renderer.h"
+#include "render/record/film_difference.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/film/film_difference.h"
 #include "testing/reference_renderers.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/stopping.h"

@@ -9,8 +9,8 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include "base/error.h"
 #include "cistula/numerics/transmittance.h"
-#include "scene/base/error.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {

@@ -4,8 +4,8 @@
 
 #include <functional>
 
+#include "render/frame/frame_view.h"
 #include "scene/description/camera_path.h"
-#include "scene/frame/frame_view.h"
 #include "testing/support/ideal_contact.h"
 
 namespace cistula {

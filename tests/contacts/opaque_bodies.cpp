@@ -6,7 +6,7 @@
 #include <set>
 
 #include "cistula/transport/next_surface.h"
-#include "scene/frame/frame_view.h"
+#include "render/frame/frame_view.h"
 #include "testing/support/film_of_all.h"
 #include "testing/support/ideal_contact.h"
 

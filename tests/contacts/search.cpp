@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/film/film_picture.h"
+#include "render/record/film_picture.h"
 #include "testing/support/contact_search.h"
 #include "testing/support/film_of_all.h"
 

@@ -5,8 +5,8 @@
 
 #include "cistula/adaptive/adaptive_pixel.h"
 #include "cistula/traversal/bvh.h"
-#include "scene/frame/frame_hints.h"
-#include "scene/frame/frame_view.h"
+#include "render/frame/frame_hints.h"
+#include "render/frame/frame_view.h"
 #include "testing/generated_scene.h"
 #include "testing/support/camera.h"
 #include "testing/support/golden.h"

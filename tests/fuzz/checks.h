@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "scene/base/error.h"
-#include "scene/base/shown_text.h"
+#include "base/error.h"
+#include "base/shown_text.h"
 
 namespace cistula::fuzz {
 

@@ -4,7 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/common/output_name.h"
 #include "apps/common/render_options.h"
 #include "apps/render_compare/options.h"
 #include "apps/render_compare/suite_options.h"
@@ -13,6 +12,7 @@
 #include "apps/render_report/options.h"
 #include "apps/render_view/options.h"
 #include "checks.h"
+#include "sequence/output_name.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;

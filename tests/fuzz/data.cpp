@@ -1,6 +1,6 @@
 // Raw pictures, .data.
 #include "checks.h"
-#include "scene/image/picture/raw_picture.h"
+#include "image/picture/raw_picture.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;

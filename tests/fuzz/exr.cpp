@@ -1,7 +1,7 @@
 // OpenEXR files, as they are read for --resume, as textures, and for comparisons.
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "checks.h"
-#include "scene/image/exr/exr_file.h"
+#include "image/exr/exr_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;

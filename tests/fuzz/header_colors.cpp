@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "checks.h"
-#include "scene/image/color/stated_colors.h"
+#include "image/color/stated_colors.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;

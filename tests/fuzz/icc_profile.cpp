@@ -1,5 +1,5 @@
 // ICC profiles of pictures.
-#include "scene/image/color/stated_colors.h"
+#include "image/color/stated_colors.h"
 
 #include <stdexcept>
 

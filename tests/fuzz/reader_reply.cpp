@@ -1,6 +1,6 @@
 // What the program that reads pictures says, to texels and to a file as it stands: a picture may have made it say
 // anything.
-#include "scene/image/reader/reader_reply.h"
+#include "image/reader/reader_reply.h"
 
 #include <cmath>
 #include <cstdint>
@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
+#include "image/color/clamped_texels.h"
+#include "image/reader/texture_limits.h"
 #include "mesh_checks.h"
-#include "scene/image/color/clamped_texels.h"
-#include "scene/image/reader/texture_limits.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "image/reader/picture_reader.h"
 #include "mesh_checks.h"
-#include "scene/image/reader/picture_reader.h"
 #include "testing/support/scratch_directory.h"
 
 namespace {

@@ -3,7 +3,7 @@
 // intersector that it picks, tests of ctest do that are named after the cases of golden/suite.json.
 #include <gtest/gtest.h>
 
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 #include "testing/support/golden_suite.h"

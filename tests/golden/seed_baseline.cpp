@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/image/color/srgb_codes.h"
-#include "scene/image/picture/raw_picture.h"
+#include "image/color/srgb_codes.h"
+#include "image/picture/raw_picture.h"
 #include "testing/support/golden.h"
 #include "testing/support/scratch_directory.h"
 #include "testing/support/shipped_scenes.h"

@@ -1,5 +1,5 @@
 // Files are whole or untouched, whatever goes wrong while they are written, and errors say what to do.
-#include "scene/base/atomic_file.h"
+#include "base/atomic_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

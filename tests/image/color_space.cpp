@@ -1,5 +1,5 @@
 // Matrices between color spaces, against those that standards print.
-#include "scene/image/color/color_space.h"
+#include "image/color/color_space.h"
 #include "testing/support/special_values.h"
 
 #include <gtest/gtest.h>

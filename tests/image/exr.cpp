@@ -1,5 +1,5 @@
 // OpenEXR files come back bit for bit, equal pictures are equal files, and damaged files are errors, never crashes.
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>

@@ -1,11 +1,11 @@
 // Parts of EXR files and their channels, read as they are wanted.
-#include "scene/image/exr/exr_file.h"
+#include "image/exr/exr_file.h"
 
 #include <OpenEXR/ImfOutputFile.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/exr_parts.h"
 #include "testing/support/scratch_directory.h"

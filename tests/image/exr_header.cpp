@@ -1,13 +1,13 @@
 // Headers of EXR files that claim more than the file has, or that the library reads as something else than they say,
 // are refused before the library takes memory for them.
-#include "scene/image/exr/exr_checks.h"
+#include "image/exr/exr_checks.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <string>
 
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 

@@ -10,8 +10,8 @@
 
 #include <array>
 
-#include "scene/image/exr/exr.h"
-#include "scene/image/exr/exr_file.h"
+#include "image/exr/exr.h"
+#include "image/exr/exr_file.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/exr_parts.h"
 #include "testing/support/scratch_directory.h"

@@ -11,8 +11,8 @@
 
 #include <random>
 
-#include "scene/image/color/file_colors.h"
-#include "scene/image/exr/exr.h"
+#include "image/color/file_colors.h"
+#include "image/exr/exr.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 

@@ -1,5 +1,5 @@
 // What a file's attributes and a texture's key make of its numbers.
-#include "scene/image/color/file_colors.h"
+#include "image/color/file_colors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Two films compared integer by integer: every field of a pixel and of a frame counts.
-#include "scene/film/film_difference.h"
+#include "render/record/film_difference.h"
 
 #include <gtest/gtest.h>
 

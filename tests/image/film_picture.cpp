@@ -1,5 +1,5 @@
 // The integers of a film as channels: exact values, a ledger that stays a bound, a hash that sees every field.
-#include "scene/film/film_picture.h"
+#include "render/record/film_picture.h"
 
 #include <Imath/half.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include <string_view>
 
 #include "cistula/numerics/fixed_sum.h"
-#include "scene/film/film_difference.h"
+#include "render/record/film_difference.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {

@@ -1,5 +1,5 @@
 // ICC profiles: the encodings that they mean, and names of what is none of them.
-#include "scene/image/color/stated_colors.h"
+#include "image/color/stated_colors.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <set>
 
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/picture_hash.h"
+#include "image/exr/exr.h"
+#include "image/picture/picture_hash.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {

@@ -1,12 +1,12 @@
 // Pictures as they are shown: exposure, the curve that keeps bright colors apart, bloom.
-#include "scene/image/view/picture_view.h"
+#include "image/view/picture_view.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstring>
 
-#include "scene/image/color/srgb_codes.h"
+#include "image/color/srgb_codes.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {

@@ -1,8 +1,8 @@
 // What is in the PNGs: the very codes, as libpng reads them.
 #include <gtest/gtest.h>
 
-#include "scene/image/color/srgb_codes.h"
-#include "scene/image/picture/png.h"
+#include "image/color/srgb_codes.h"
+#include "image/picture/png.h"
 #include "testing/support/png_pixels.h"
 #include "testing/support/special_values.h"
 #include "testing/support/srgb_codes.h"

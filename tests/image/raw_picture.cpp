@@ -1,12 +1,12 @@
 // The raw pictures of the course work, byte by byte, and every way in which such a file can be wrong.
-#include "scene/image/picture/raw_picture.h"
+#include "image/picture/raw_picture.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "cistula/numerics/elementary.h"
-#include "scene/image/color/srgb_codes.h"
+#include "image/color/srgb_codes.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 #include "testing/support/special_values.h"

@@ -1,5 +1,5 @@
 // What the program that reads pictures says is checked: a picture may have made it say anything.
-#include "scene/image/reader/reader_reply.h"
+#include "image/reader/reader_reply.h"
 
 #include <gtest/gtest.h>
 

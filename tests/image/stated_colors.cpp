@@ -1,5 +1,5 @@
 // What the headers of PNG and Radiance pictures say of their colors.
-#include "scene/image/color/stated_colors.h"
+#include "image/color/stated_colors.h"
 
 #include <gtest/gtest.h>
 

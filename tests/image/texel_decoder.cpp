@@ -1,5 +1,5 @@
 // Numbers of files become linear Rec. 709, by their curve and their space.
-#include "scene/image/color/texel_decoder.h"
+#include "image/color/texel_decoder.h"
 
 #include <gtest/gtest.h>
 

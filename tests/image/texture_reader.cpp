@@ -1,5 +1,5 @@
 // Textures are read within limits, in a child process; whatever becomes of that, this process has an error of one line.
-#include "scene/image/reader/picture_reader.h"
+#include "image/reader/picture_reader.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -11,8 +11,8 @@
 #include <new>
 #include <thread>
 
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/raw_picture.h"
+#include "image/exr/exr.h"
+#include "image/picture/raw_picture.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 #include "testing/support/special_values.h"

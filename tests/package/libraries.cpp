@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "backend_embree/embree/embree_renderer.h"
+#include "image/picture/picture_io.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/description/camera_path.h"
-#include "scene/image/picture/picture_io.h"
 
 int main(int argc, char** argv) try {
     cistula::SceneDescription description;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/base/shown_text.h"
+#include "base/shown_text.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/mesh_file.h"
 #include "scene/readers/mesh_text.h"

@@ -1,12 +1,12 @@
 // Names and messages as they are shown: one line, whole characters, nothing that acts on a terminal.
-#include "scene/base/shown_text.h"
+#include "base/shown_text.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <random>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 
 namespace cistula {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "scene/base/suggest.h"
+#include "base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/read_scene.h"
 #include "scene/readers/read_text_input.h"

@@ -6,7 +6,7 @@
 #include <initializer_list>
 
 #include "apps/render_verify/contact/site.h"
-#include "scene/film/film_picture.h"
+#include "render/record/film_picture.h"
 
 namespace cistula::verify::contact {
 

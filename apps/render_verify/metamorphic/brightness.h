@@ -6,8 +6,8 @@
 
 #include "apps/render_verify/metamorphic/films.h"
 #include "apps/render_verify/metamorphic/samples.h"
+#include "base/error.h"
 #include "cistula/numerics/fixed_sum.h"
-#include "scene/base/error.h"
 #include "scene/compile/compiled_scene.h"
 
 namespace cistula::verify::metamorphic {

@@ -10,11 +10,11 @@
 #include <random>
 #include <utility>
 
-#include "apps/common/backends.h"
 #include "apps/render_verify/metamorphic/films.h"
 #include "backend_embree/embree/embree_renderer.h"
+#include "render/record/film_difference.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/film/film_difference.h"
+#include "sequence/backends.h"
 #include "testing/reference_renderers.h"
 
 namespace cistula::verify::metamorphic {

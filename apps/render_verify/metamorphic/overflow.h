@@ -3,7 +3,7 @@
 
 #include "apps/render_verify/metamorphic/films.h"
 #include "apps/render_verify/metamorphic/one_hash.h"
-#include "scene/base/error.h"
+#include "base/error.h"
 
 namespace cistula::verify::metamorphic {
 

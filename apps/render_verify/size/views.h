@@ -6,7 +6,7 @@
 #include "apps/render_verify/case.h"
 #include "apps/render_verify/scenes.h"
 #include "apps/render_verify/stage.h"
-#include "scene/film/film_picture.h"
+#include "render/record/film_picture.h"
 
 namespace cistula::verify::size {
 

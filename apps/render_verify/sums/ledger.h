@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/render_verify/given/writing.h"
-#include "scene/film/film_colors.h"
+#include "render/record/film_colors.h"
 
 namespace cistula::verify::sums {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cistula/numerics/transmittance.h"
-#include "scene/image/reader/picture_reader.h"
+#include "image/reader/picture_reader.h"
 
 namespace cistula {
 namespace {

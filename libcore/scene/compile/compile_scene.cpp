@@ -13,11 +13,10 @@
 #include <malloc.h>
 #endif
 
+#include "base/default_rounding.h"
+#include "base/error.h"
 #include "cistula/geometry/ray.h"
 #include "cistula/lights/light_tree.h"
-#include "scene/base/default_rounding.h"
-#include "scene/base/error.h"
-#include "scene/base/rounded_up.h"
 #include "scene/compile/clusters.h"
 #include "scene/compile/compile_lights.h"
 #include "scene/compile/compile_materials.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "cistula/numerics/vec.h"
-#include "scene/base/rounded_up.h"
 #include "scene/description/rotation.h"
 
 namespace cistula {

@@ -1,14 +1,23 @@
 // Convex solids as planes in the frame, in double. Private to libcore/scene.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
+#include "base/box.h"
 #include "cistula/model/scene_view.h"
-#include "scene/base/box.h"
+#include "cistula/numerics/real.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 
 namespace cistula {
+
+/// The least number of type Real that is not below x.
+template <class Real>
+Real rounded_up(double x) {
+    const auto r = static_cast<Real>(x);
+    return r < x ? std::nextafter(r, RealTraits<Real>::infinity) : r;
+}
 
 /// A pair of parallel planes: low <= normal.x <= high. A single plane has low = -infinity.
 struct PlanePair {

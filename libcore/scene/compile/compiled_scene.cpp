@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/base/default_rounding.h"
+#include "base/default_rounding.h"
 #include "scene/compile/arrays.h"
 #include "scene/trees/tree_build.h"
 

@@ -8,9 +8,9 @@
 #include "cistula/model/scene_view.h"
 #include "scene/compile/effect_reason.h"
 #include "scene/compile/hull.h"
+#include "scene/compile/scene_names.h"
 #include "scene/description/coordinate_rounding.h"
 #include "scene/description/description.h"
-#include "scene/film/film_layers.h"
 
 namespace cistula {
 
@@ -55,7 +55,7 @@ struct CompiledScene {
 };
 
 /// Reads the meshes and textures that the description names and compiles. Textures other than .data are read by a child
-/// process, the program cistula-read-picture, which must be found (scene/image/reader/reader_process.h). Throws Error
+/// process, the program cistula-read-picture, which must be found (image/reader/reader_process.h). Throws Error
 /// with the place.
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description);

@@ -1,6 +1,6 @@
 #include "scene/compile/constant_scene.h"
 
-#include "scene/base/default_rounding.h"
+#include "base/default_rounding.h"
 #include "scene/compile/scene_copies.h"
 #include "scene/compile/shadow_plan.h"
 

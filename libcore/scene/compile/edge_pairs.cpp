@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "cistula/numerics/vec.h"
-#include "scene/base/union_find.h"
+#include "scene/compile/union_find.h"
 
 namespace cistula {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "scene/base/box.h"
+#include "base/box.h"
 #include "scene/compile/compile_solids.h"
 #include "scene/compile/scene_source.h"
 #include "scene/trees/tree_build.h"

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "base/default_rounding.h"
 #include "cistula/shading/contact.h"
 #include "cistula/transport/pixel.h"
 #include "cistula/traversal/bvh.h"
-#include "scene/base/default_rounding.h"
 #include "scene/compile/arrays.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/constant_scene.h"

@@ -1,7 +1,7 @@
 // How thin a mesh is and how small its triangles are. Private to libcore/scene.
 #pragma once
 
-#include "scene/base/box.h"
+#include "base/box.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/mesh_source.h"
 

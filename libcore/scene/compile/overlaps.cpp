@@ -4,9 +4,9 @@
 #include <set>
 #include <utility>
 
+#include "base/box.h"
+#include "base/default_rounding.h"
 #include "cistula/traversal/bvh.h"
-#include "scene/base/box.h"
-#include "scene/base/default_rounding.h"
 #include "scene/compile/arrays.h"
 
 namespace cistula {

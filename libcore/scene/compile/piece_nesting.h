@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scene/base/box.h"
+#include "base/box.h"
 #include "scene/description/mesh_source.h"
 
 namespace cistula {

@@ -4,8 +4,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "scene/base/union_find.h"
 #include "scene/compile/flat_faces.h"
+#include "scene/compile/union_find.h"
 
 namespace cistula {
 

@@ -8,7 +8,6 @@
 #include "scene/compile/effect_reason.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/description.h"
-#include "scene/film/renderer.h"
 
 namespace cistula {
 

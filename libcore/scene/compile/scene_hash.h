@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "scene/base/fnv128.h"
+#include "base/fnv128.h"
 #include "scene/compile/scene_source.h"
 
 namespace cistula {

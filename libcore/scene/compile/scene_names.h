@@ -20,6 +20,14 @@ struct SceneNames {
     std::vector<Named> visible_lights;  // as CompiledScene::visible_lights
 };
 
+/// The names of what layers tell apart, by the numbers of the compiled scene.
+struct LayerNames {
+    std::vector<std::string> objects, materials;  // of solids and of materials
+    std::vector<uint32_t> object_materials;       // the material of each solid
+    std::vector<std::string> visible_lights;      // the group of each
+    std::vector<std::string> light_groups;        // each once
+};
+
 /// The names of a scene's parts. Opens its meshes and throws Error as compile_scene does.
 SceneNames name_scene(const SceneDescription& description);
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "base/box.h"
 #include "cistula/numerics/vec.h"
-#include "scene/base/box.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"

@@ -4,8 +4,8 @@
 #include <map>
 #include <unordered_map>
 
+#include "base/default_rounding.h"
 #include "cistula/numerics/vec.h"
-#include "scene/base/default_rounding.h"
 #include "scene/compile/mesh_solids.h"
 #include "scene/compile/placed_bodies.h"
 #include "scene/description/platonic.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 #include "scene/compile/mesh_edges.h"
 #include "scene/description/description.h"
 #include "scene/description/mesh_source.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "scene/compile/scene_source.h"
-#include "scene/film/renderer.h"
+#include "scene/description/description.h"
 
 namespace cistula {
 

@@ -2,9 +2,9 @@
 
 #include <optional>
 
+#include "base/error.h"
+#include "base/suggest.h"
 #include "cistula/numerics/trigonometry.h"
-#include "scene/base/error.h"
-#include "scene/base/suggest.h"
 
 namespace cistula {
 namespace {

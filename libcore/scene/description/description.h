@@ -15,6 +15,9 @@
 
 namespace cistula {
 
+/// The numbers that rays are traced with.
+enum class Precision { single_, double_ };
+
 struct MaterialDescription {
     std::string name;
     glm::dvec3 color{0.8};

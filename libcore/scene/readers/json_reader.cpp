@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/error.h"
-#include "scene/base/suggest.h"
+#include "base/error.h"
+#include "base/suggest.h"
 
 namespace cistula {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/error.h"
-#include "scene/base/shown_text.h"
+#include "base/error.h"
+#include "base/shown_text.h"
 #include "scene/readers/json_reader.h"
 
 namespace cistula {

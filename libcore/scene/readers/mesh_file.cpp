@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/file_bytes.h"
 #include "cistula/numerics/vec.h"
-#include "scene/base/file_bytes.h"
 #include "scene/description/rotation.h"
 #include "scene/readers/doubled_polygons.h"
 #include "scene/readers/mesh_text.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "scene/base/blanks.h"
-#include "scene/base/shown_text.h"
+#include "base/shown_text.h"
+#include "scene/readers/text_tokens.h"
 
 namespace cistula {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "base/decimal.h"
+#include "base/error.h"
+#include "base/suggest.h"
 #include "cistula/numerics/vec.h"
-#include "scene/base/decimal.h"
-#include "scene/base/error.h"
-#include "scene/base/suggest.h"
 #include "scene/readers/mesh_text.h"
 #include "scene/readers/scene_keys.h"
 

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/decimal.h"
-#include "scene/base/error.h"
-#include "scene/base/suggest.h"
+#include "base/decimal.h"
+#include "base/error.h"
+#include "base/suggest.h"
 #include "scene/readers/mesh_text.h"
 #include "scene/readers/mtl_file.h"
 

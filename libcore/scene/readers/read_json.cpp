@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/suggest.h"
+#include "base/suggest.h"
+#include "image/color/color_encoding.h"
 #include "scene/description/light_group.h"
-#include "scene/image/color/color_encoding.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/scene_keys.h"
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/suggest.h"
+#include "base/suggest.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/quad.h"
 #include "scene/readers/read_json.h"

@@ -9,13 +9,13 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/blanks.h"
-#include "scene/base/decimal.h"
-#include "scene/base/default_rounding.h"
-#include "scene/base/error.h"
+#include "base/decimal.h"
+#include "base/default_rounding.h"
+#include "base/error.h"
 #include "scene/readers/read_json.h"
 #include "scene/readers/read_text_input.h"
 #include "scene/readers/scene_kind.h"
+#include "scene/readers/text_tokens.h"
 
 namespace cistula {
 namespace {

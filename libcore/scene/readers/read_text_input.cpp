@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/decimal.h"
-#include "scene/base/shown_text.h"
+#include "base/decimal.h"
+#include "base/shown_text.h"
 #include "scene/readers/quad.h"
 #include "scene/readers/read_json.h"
 #include "scene/readers/scene_keys.h"

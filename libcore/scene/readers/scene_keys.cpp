@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/image/color/color_encoding.h"
+#include "image/color/color_encoding.h"
 
 namespace cistula {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/blanks.h"
-#include "scene/base/decimal.h"
-#include "scene/base/shown_text.h"
+#include "base/decimal.h"
+#include "base/shown_text.h"
+#include "scene/readers/text_tokens.h"
 
 namespace cistula {
 namespace {

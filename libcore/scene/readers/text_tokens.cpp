@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "scene/base/decimal.h"
-#include "scene/base/error.h"
-#include "scene/base/shown_text.h"
+#include "base/decimal.h"
+#include "base/error.h"
+#include "base/shown_text.h"
 
 namespace cistula {
 namespace {

@@ -9,6 +9,9 @@
 
 namespace cistula {
 
+/// Characters that ASCII counts as white space.
+inline constexpr std::string_view blanks = " \t\r\n\v\f";
+
 class TextTokens {
   public:
     /// `text` must outlive this object.

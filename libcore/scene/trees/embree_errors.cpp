@@ -3,7 +3,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 
 namespace cistula {
 namespace {

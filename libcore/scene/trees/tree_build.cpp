@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "scene/base/error.h"
+#include "base/error.h"
 #include "scene/trees/embree_errors.h"
 
 namespace cistula {

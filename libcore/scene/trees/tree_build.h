@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "base/box.h"
 #include "cistula/model/scene_view.h"
-#include "scene/base/box.h"
 #include "scene/trees/embree_handles.h"
 
 namespace cistula {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <map>
 
-#include "scene/image/color/color_space.h"
-#include "scene/image/exr/exr.h"
+#include "image/color/color_space.h"
+#include "image/exr/exr.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

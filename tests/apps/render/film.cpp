@@ -1,7 +1,7 @@
 // Films of the built `render` that are resumed, interrupted, or cannot be written.
 #include <chrono>
 
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

@@ -1,5 +1,5 @@
 // A film's loop over a renderer that costs nothing: what it is told, what is said, what is left when it ends early.
-#include "apps/common/film_loop.h"
+#include "sequence/film_loop.h"
 
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
@@ -9,7 +9,8 @@
 
 #include <filesystem>
 
-#include "scene/image/exr/exr.h"
+#include "apps/common/film_progress.h"
+#include "image/exr/exr.h"
 #include "scene/readers/read_scene.h"
 #include "testing/support/render_program.h"
 
@@ -50,7 +51,6 @@ class FakeRenderer : public Renderer {
 class FilmLoop : public RenderProgram {
   protected:
     FilmLoop() : scene_(read_scene(file("s.json"))) {
-        options_.progress = ProgressStyle::none;
         settings_.full_width = settings_.crop.width = 40;
         settings_.full_height = settings_.crop.height = 24;
     }
@@ -59,13 +59,14 @@ class FilmLoop : public RenderProgram {
     std::string film(const std::vector<int>& frames, Backend backend) {
         options_.backend = backend;
         const OutputName output(file("f.##.exr"), "-o"), none;
-        FilmJob job{options_, scene_, "hash", settings_, output, none, frames};
+        RenderProgress progress;
+        FilmProgress report(ProgressStyle::none, talk_, progress);
+        FilmJob job{options_, scene_, "hash", settings_, output, none, frames, report};
         job.written = [this](const FrameStats& frame) { written_.push_back(frame); };
         job.look_ahead = [this](const std::vector<int>& stretch) {
             stretches_.push_back(stretch);
             return warning_;
         };
-        RenderProgress progress;
         stats_ = RunStats();
         written_.clear();
         testing::internal::CaptureStderr();
@@ -90,6 +91,7 @@ class FilmLoop : public RenderProgram {
 
     const SceneDescription scene_;
     FilmOptions options_;
+    Talk talk_ = Talk::some;
     FrameSettings settings_;
     FakeRenderer renderer_;
     RunStats stats_;
@@ -116,7 +118,7 @@ TEST_F(FilmLoop, AnnouncesTheNextFramesBeforeItAsksForOne) {
 
 TEST_F(FilmLoop, SaysEachNoteOnceAndNothingWhereQuiet) {
     EXPECT_EQ(film({0, 1, 2}, Backend::cuda), "render: memory is short\n");
-    options_.quiet = true;
+    talk_ = Talk::errors;
     EXPECT_EQ(film({0, 1, 2}, Backend::cuda), "");
 }
 
@@ -167,7 +169,7 @@ TEST_F(FilmLoop, WarningsOfWhatIsAheadAreSaidOnce) {
     warning_ = "the camera turns";
     EXPECT_EQ(film(parse_frames("0-99999x99"), Backend::embree),
               "render: memory is short\nrender: warning: the camera turns\n");
-    options_.quiet = true;
+    talk_ = Talk::errors;
     EXPECT_EQ(film(parse_frames("0-99999x99"), Backend::embree), "");
 }
 

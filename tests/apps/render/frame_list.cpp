@@ -1,4 +1,4 @@
-#include "apps/common/frame_list.h"
+#include "sequence/frame_list.h"
 
 #include <gtest/gtest.h>
 

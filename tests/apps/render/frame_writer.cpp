@@ -1,5 +1,5 @@
 // Several frames on their way to files at once: bounded, in order where it shows, ended by the first failure.
-#include "apps/common/frame_writer.h"
+#include "sequence/frame_writer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <thread>
 
+#include "base/error.h"
 #include "cistula/numerics/fixed_sum.h"
-#include "scene/base/error.h"
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 

@@ -1,12 +1,12 @@
 // Attributes of the header as other programs read them.
-#include "scene/film/frame_header.h"
+#include "render/record/frame_header.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "render/record/film_picture.h"
 #include "scene/description/camera_path.h"
-#include "scene/film/film_picture.h"
 
 namespace cistula {
 namespace {

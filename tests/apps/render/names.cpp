@@ -8,9 +8,9 @@
 #include <string>
 #include <tuple>
 
-#include "scene/base/shown_text.h"
-#include "scene/film/murmur3.h"
-#include "scene/image/exr/exr.h"
+#include "base/shown_text.h"
+#include "image/exr/exr.h"
+#include "render/record/murmur3.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

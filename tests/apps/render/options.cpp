@@ -14,16 +14,16 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "apps/common/film_loop.h"
 #include "apps/common/film_progress.h"
-#include "apps/common/header_attributes.h"
-#include "apps/common/layer_list.h"
-#include "apps/common/stats.h"
 #include "apps/common/step_progress.h"
 #include "apps/render/explain.h"
 #include "cistula/transport/ray_tree.h"
-#include "scene/film/film_difference.h"
-#include "scene/film/frame_settings.h"
+#include "render/frame_settings.h"
+#include "render/header_attributes.h"
+#include "render/layer_list.h"
+#include "render/record/film_difference.h"
+#include "sequence/film_loop.h"
+#include "sequence/stats.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scene.h"
 #include "testing/support/scratch_directory.h"

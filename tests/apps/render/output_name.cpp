@@ -1,4 +1,4 @@
-#include "apps/common/output_name.h"
+#include "sequence/output_name.h"
 
 #include <gtest/gtest.h>
 

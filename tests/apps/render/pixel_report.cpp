@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/pixel_report.h"
 #include "apps/common/render_options.h"
 #include "backend_embree/pixel_tree/embree_pixel_tree.h"
+#include "image/exr/exr.h"
+#include "render/pixel_report.h"
 #include "scene/compile/scene_names.h"
-#include "scene/image/exr/exr.h"
 #include "testing/support/golden.h"
 #include "testing/support/render_program.h"
 

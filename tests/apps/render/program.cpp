@@ -9,13 +9,13 @@
 #include <set>
 #include <string_view>
 
-#include "apps/common/backends.h"
-#include "apps/common/target.h"
-#include "scene/base/stages.h"
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/png.h"
-#include "scene/image/picture/raw_picture.h"
-#include "scene/image/view/picture_view.h"
+#include "base/stages.h"
+#include "image/exr/exr.h"
+#include "image/picture/png.h"
+#include "image/picture/raw_picture.h"
+#include "image/view/picture_view.h"
+#include "render/target.h"
+#include "sequence/backends.h"
 #include "testing/support/gpu.h"
 #include "testing/support/render_program.h"
 

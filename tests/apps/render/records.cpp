@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/common/progress_record.h"
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

@@ -1,10 +1,10 @@
 // Files that are read and written: which names are one file, by whatever path, and what is refused.
-#include "apps/common/run_files.h"
+#include "sequence/run_files.h"
 
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/render_program.h"
 

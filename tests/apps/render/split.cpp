@@ -1,9 +1,9 @@
 // --split: the layers of a frame in parts or files of their own hold what one part holds.
-#include "scene/film/split_picture.h"
+#include "render/record/split_picture.h"
 
 #include <map>
 
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/render_program.h"
 

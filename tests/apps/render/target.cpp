@@ -1,7 +1,7 @@
 // What is said of a frame with a target error: counts, and the rate that they allow.
 #include <gtest/gtest.h>
 
-#include "apps/common/target.h"
+#include "render/target.h"
 
 using namespace cistula;
 

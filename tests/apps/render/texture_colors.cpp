@@ -1,9 +1,9 @@
 // Color spaces of textures: those of files, and the key that overrides them.
 #include <map>
 
-#include "scene/image/color/color_encoding.h"
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/raw_picture.h"
+#include "image/color/color_encoding.h"
+#include "image/exr/exr.h"
+#include "image/picture/raw_picture.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

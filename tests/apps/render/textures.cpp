@@ -1,8 +1,8 @@
 // Textures of `render`: their limit, their warnings, and the one line that is said of a bad one.
 #include <sys/stat.h>
 
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/raw_picture.h"
+#include "image/exr/exr.h"
+#include "image/picture/raw_picture.h"
 #include "testing/support/render_program.h"
 #include "testing/support/special_values.h"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/base/error.h"
-#include "scene/image/exr/exr.h"
+#include "base/error.h"
+#include "image/exr/exr.h"
 #include "testing/support/run_program.h"
 
 namespace cistula {

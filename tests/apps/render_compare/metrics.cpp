@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "apps/render_compare/fixture.h"
-#include "scene/image/color/srgb_codes.h"
+#include "image/color/srgb_codes.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {

@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "apps/render_compare/fixture.h"
-#include "scene/base/error.h"
-#include "scene/image/exr/exr.h"
+#include "base/error.h"
+#include "image/exr/exr.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {

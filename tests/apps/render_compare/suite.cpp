@@ -7,10 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/common/backends.h"
-#include "scene/base/error.h"
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/picture_hash.h"
+#include "base/error.h"
+#include "image/exr/exr.h"
+#include "image/picture/picture_hash.h"
+#include "sequence/backends.h"
 #include "testing/support/gpu.h"
 #include "testing/support/run_program.h"
 

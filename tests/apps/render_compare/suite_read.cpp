@@ -5,11 +5,11 @@
 #include <regex>
 #include <stdexcept>
 
-#include "apps/render_compare/json_edit.h"
-#include "apps/render_compare/suite.h"
-#include "apps/render_compare/suite_keys.h"
-#include "scene/base/error.h"
-#include "scene/image/color/color_space.h"
+#include "base/error.h"
+#include "compare/suite/json_edit.h"
+#include "compare/suite/suite.h"
+#include "compare/suite/suite_keys.h"
+#include "image/color/color_space.h"
 #include "scene/readers/json_reader.h"
 #include "testing/support/schema_keys.h"
 #include "testing/support/scratch_directory.h"

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "scene/base/error.h"
-#include "scene/film/film_picture.h"
-#include "scene/image/exr/exr.h"
+#include "base/error.h"
+#include "image/exr/exr.h"
+#include "render/record/film_picture.h"
 #include "testing/support/run_program.h"
 
 namespace cistula {

@@ -8,7 +8,7 @@
 #include "apps/render_farm/job_files.h"
 #include "apps/render_farm/measure.h"
 #include "apps/render_farm/options.h"
-#include "scene/base/error.h"
+#include "base/error.h"
 
 namespace cistula {
 namespace {

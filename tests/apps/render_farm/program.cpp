@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "apps/common/picture_size.h"
-#include "apps/render_merge/merge.h"
-#include "scene/image/exr/exr.h"
+#include "image/exr/exr.h"
+#include "render/picture_size.h"
+#include "sequence/merge.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

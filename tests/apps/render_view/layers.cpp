@@ -7,7 +7,7 @@
 
 #include "apps/render_view/id_colors.h"
 #include "apps/render_view/layer_choice.h"
-#include "scene/image/color/srgb_codes.h"
+#include "image/color/srgb_codes.h"
 #include "testing/support/expect_error.h"
 
 namespace cistula {

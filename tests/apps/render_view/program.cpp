@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "apps/render_view/options.h"
-#include "scene/base/error.h"
-#include "scene/image/exr/exr.h"
+#include "base/error.h"
+#include "image/exr/exr.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/exr_parts.h"
 #include "testing/support/png_pixels.h"

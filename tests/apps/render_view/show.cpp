@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "apps/render_view/id_colors.h"
-#include "scene/image/color/color_space.h"
-#include "scene/image/color/srgb_codes.h"
+#include "image/color/color_space.h"
+#include "image/color/srgb_codes.h"
 #include "testing/support/special_values.h"
 
 namespace cistula {

@@ -1,6 +1,6 @@
 // Views of OpenColorIO configs: found by name, fed with what the config calls linear Rec. 709, shown as the display's
 // codes.
-#include "scene/image/view/config_view.h"
+#include "image/view/config_view.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "scene/image/color/srgb_codes.h"
+#include "image/color/srgb_codes.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 

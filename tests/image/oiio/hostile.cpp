@@ -5,9 +5,9 @@
 
 #include <chrono>
 
+#include "base/error.h"
 #include "bombs.h"
-#include "scene/base/error.h"
-#include "scene/image/reader/picture_reader.h"
+#include "image/reader/picture_reader.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "scene/base/error.h"
-#include "scene/image/reader/picture_reader.h"
+#include "base/error.h"
+#include "image/reader/picture_reader.h"
 #include "testing/support/byte_order.h"
 #include "testing/support/scratch_directory.h"
 

@@ -1,13 +1,13 @@
 // Textures of every kind become the same linear values; previews are exact 8-bit sRGB.
-#include "scene/image/picture/picture_io.h"
+#include "image/picture/picture_io.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/raw_picture.h"
+#include "image/exr/exr.h"
+#include "image/picture/raw_picture.h"
 #include "testing/support/byte_order.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/icc_profiles.h"

@@ -1,5 +1,5 @@
 // Files as they stand, through OpenImageIO: every type keeps its values, files that are cut off are errors.
-#include "scene/image/reader/picture_reader.h"
+#include "image/reader/picture_reader.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

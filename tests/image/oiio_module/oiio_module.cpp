@@ -4,8 +4,8 @@
 
 #include <sstream>
 
-#include "scene/image/picture/picture_io.h"
-#include "scene/image/reader/oiio_module.h"
+#include "image/picture/picture_io.h"
+#include "image/reader/oiio_module.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/render_program.h"
 #include "testing/support/srgb_codes.h"

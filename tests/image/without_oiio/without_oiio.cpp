@@ -2,10 +2,10 @@
 // program that reads pictures is that of such a build here, whichever this one is.
 #include <gtest/gtest.h>
 
-#include "scene/image/exr/exr.h"
-#include "scene/image/picture/picture_io.h"
-#include "scene/image/picture/raw_picture.h"
-#include "scene/image/reader/picture_reader.h"
+#include "image/exr/exr.h"
+#include "image/picture/picture_io.h"
+#include "image/picture/raw_picture.h"
+#include "image/reader/picture_reader.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 

@@ -1,0 +1,61 @@
+// Reading values from texts: numbers, choices, lists. What is wrong is an Error (usage) that names the option.
+#pragma once
+
+#include <charconv>
+#include <exception>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+
+namespace cistula {
+
+/// Throws Error (usage) with this message.
+[[noreturn]] void fail_usage(const std::string& message);
+
+/// The whole of `text` as a number of type T; nothing if it is not one.
+template <class T>
+std::optional<T> whole_number(std::string_view text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+/// The text of an option as an integer. Throws Error (usage): "OPTION TEXT: must be a whole number from LOW to HIGH".
+int integer_option(const char* option, const std::string& text, int low, int high);
+
+/// The text of an option as a finite number. Throws Error (usage): "OPTION TEXT: must be WHAT", of which `what` tells
+/// the limits.
+double number_option(const char* option, const std::string& text, double low, double high, const char* what);
+
+/// The parts of a list with commas between; a text without commas is one.
+std::vector<std::string_view> parts_at_commas(std::string_view text);
+
+/// Throws Error (usage) for an unknown choice: "OPTION TEXT: must be a or b; did you mean 'a'?".
+[[noreturn]] void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names);
+
+/// The choice named `text`. Throws Error (usage).
+template <class T>
+T chosen(const char* option, const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, value] : choices) {
+        if (name == text) return value;
+        names.push_back(name);
+    }
+    fail_choice(option, text, names);
+}
+
+/// What is told of an error that ends a program.
+struct Failure {
+    std::string text;  // without the program's name
+    ExitCode code;
+};
+
+/// An exception as it is told: where memory ran out or a thread could not be started, that, and `memory_advice`.
+Failure failure_of(const std::exception& error, const std::string& memory_advice);
+
+}  // namespace cistula

@@ -1,0 +1,59 @@
+// Differences between two channels.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/metrics/selection.h"
+#include "image/picture/stored_picture.h"
+
+namespace cistula {
+
+/// |a - b|; 0 for two NaNs and for two equal infinities, infinity if only one is finite or the infinities have
+/// different signs.
+double difference(double a, double b);
+
+/// What the differences of a channel are counted in.
+enum class DifferenceUnit {
+    value,     // of numbers, as they stand
+    integer,   // of whole numbers of one type, exactly
+    fraction,  // codes are fractions of their largest, since the other channel has another type
+};
+
+/// Differences in a channel that both files have.
+struct ChannelStatistics {
+    std::string name;
+    StoredType first_type = StoredType::float_, second_type = StoredType::float_;
+    size_t values = 0;     // compared
+    size_t differing = 0;  // with different bits
+    size_t infinite = 0;   // infinite differences; included in max, excluded from mean, rmse, psnr and relative_mse
+    double max = 0, mean = 0, rmse = 0;
+    double psnr = INFINITY;      // dB; the peak is the largest code, or finite magnitude in either channel, at least 1
+    double relative_mse = 0;     // mean of (a - b)^2 / (a^2 + 0.01), codes as fractions
+    std::optional<double> ssim;  // where it was asked for, and is defined
+    int x = 0, y = 0;            // largest difference, or first value with different bits; in pixel space
+    double a = 0, b = 0;         // the two values there
+    uint64_t a_bits = 0, b_bits = 0;
+
+    DifferenceUnit unit() const;
+};
+
+/// A channel of a picture.
+struct PlacedChannel {
+    const StoredChannel& channel;
+    const PixelRect& data;
+};
+
+/// Statistics over a region, which lies in both data windows. `worst_of_pixels`, row-major over the region's window,
+/// becomes at least the difference of each pixel.
+ChannelStatistics statistics_of(const PlacedChannel& a, const PlacedChannel& b, const Region& region,
+                                std::vector<double>& worst_of_pixels);
+
+/// The differences of all pixels of the region's window; 0 where they do not count.
+std::vector<float> differences_of(const PlacedChannel& a, const PlacedChannel& b, const Region& region);
+
+}  // namespace cistula

@@ -1,0 +1,34 @@
+// Which picture of one file is compared with which of the other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/picture/stored_picture.h"
+
+namespace cistula {
+
+/// A part at one of its levels, in both files.
+struct PicturePair {
+    const StoredPicture* a = nullptr;
+    const StoredPicture* b = nullptr;
+    std::string part;  // its name, or its number in a file of several parts without names; "": the only part
+
+    /// "", "part depth: " or "part depth, level 1,1: ", for lines of a report.
+    std::string subject() const;
+
+    /// A channel's name among those of all parts and levels: "Z", "depth.Z", "depth.Z (level 1,1)".
+    std::string shown(const std::string& channel) const;
+};
+
+struct PicturePairs {
+    std::vector<PicturePair> pairs;     // in the order of the first file
+    std::vector<std::string> unpaired;  // lines: "part depth: only in the first"
+    bool is_other_order = false;        // of parts that have partners
+};
+
+/// Parts are matched by their names where all parts of both files have one, else by their order, as the only parts of
+/// two files are.
+PicturePairs pair_pictures(const StoredFile& a, const StoredFile& b);
+
+}  // namespace cistula

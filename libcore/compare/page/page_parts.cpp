@@ -1,0 +1,74 @@
+#include "compare/page/page_parts.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "base/shown_text.h"
+
+namespace cistula {
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : one_line(text)) {
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += c;
+    }
+    return out;
+}
+
+Table::Table(std::vector<std::string> heads, std::string caption)
+    : heads_(std::move(heads)), caption_(std::move(caption)) {}
+
+void Table::row(const std::vector<std::string>& cells, const std::string& css) {
+    body_ += css.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", css);
+    for (size_t i = 0; i < cells.size(); ++i) {
+        const bool number = heads_.at(i)[0] == '>';
+        const char* tag = i == 0 ? "th scope=\"row\"" : "td";
+        body_ += fmt::format("<{}{}>{}</{}>", tag, number ? " class=\"n\"" : "", cells[i], i == 0 ? "th" : "td");
+    }
+    body_ += "</tr>\n";
+}
+
+std::string Table::html() const {
+    std::string text = "<div class=\"scroll\" tabindex=\"0\"><table>";
+    if (!caption_.empty()) text += "<caption><span>" + caption_ + "</span></caption>";
+    text += "<thead><tr>";
+    for (const std::string& head : heads_) {
+        const bool number = head[0] == '>';
+        text += fmt::format("<th scope=\"col\"{}>{}</th>", number ? " class=\"n\"" : "", head.substr(number ? 1 : 0));
+    }
+    return text + "</tr></thead><tbody>\n" + body_ + "</tbody></table></div>\n";
+}
+
+std::string figure(const std::string& content, const std::string& caption, const std::string& css) {
+    return fmt::format("<figure{}>{}<figcaption>{}</figcaption></figure>\n",
+                       css.empty() ? "" : " class=\"" + css + "\"", content, caption);
+}
+
+std::string command_html(const std::string& command) {
+    return "<pre class=\"command\" tabindex=\"0\"><code>" + escaped(command) + "</code></pre>\n";
+}
+
+std::string base64(const std::string& bytes) {
+    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t group = 0;
+        for (size_t k = 0; k < 3; ++k)
+            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+}  // namespace cistula

@@ -1,0 +1,62 @@
+// Suites of golden images: suite.json as it is read (docs/regression.md).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/metrics/compare.h"
+#include "render/picture_size.h"
+#include "render/record/film_picture.h"
+#include "sequence/backends.h"
+#include "sequence/frame_list.h"
+
+namespace cistula {
+
+/// What pictures of a case are rendered with: the options of `render` that change a picture.
+struct SuiteSettings {
+    std::string scene;  // as given
+    std::vector<int> frames{0};
+    std::optional<PictureSize> resolution;
+    std::optional<PixelRect> crop;
+    std::optional<int> supersample, depth;
+    std::optional<double> cutoff, target_error;
+    std::optional<int> max_samples;
+    std::optional<Precision> precision;  // none: auto
+    std::string layers;                  // as given
+    OutputChannels channels;
+    Thresholds thresholds;
+    std::vector<Backend> backends = {Backend::embree};
+    std::vector<std::string> tags;
+};
+
+struct SuiteCase : SuiteSettings {
+    std::string name;
+    std::string place;                     // in suite.json: "/cases/3"
+    std::string golden;                    // as given: an EXR, with a pattern for several frames; or empty
+    std::vector<std::string> hashes;       // of the frames' pictures (picture_hash); or empty
+    std::vector<std::string> film_hashes;  // of the frames' films (film_hash); or empty
+    std::string recorded_version;          // of Cistula, when the hashes were recorded; or empty
+    std::optional<Precision> recorded_precision;
+
+    std::string scene_path(const std::string& folder) const;
+    /// The golden file of a frame; empty if there is none.
+    std::string golden_path(const std::string& folder, int frame) const;
+};
+
+struct Suite {
+    std::string folder;  // as given
+    std::string path;    // of suite.json
+    std::string name;    // of the folder
+    std::string text;    // of suite.json
+    std::vector<SuiteCase> cases;
+};
+
+/// The name of a precision: "float", "double".
+const char* precision_name(Precision precision);
+
+/// Reads FOLDER/suite.json. Throws Error: `file` if it cannot be read, `usage` with the JSON pointer, or line and
+/// column, if its contents are wrong. Scenes and golden images are not opened.
+Suite read_suite(const std::string& folder);
+
+}  // namespace cistula

@@ -1,0 +1,73 @@
+#include "render/layer_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "base/option_text.h"
+#include "base/suggest.h"
+#include "scene/description/light_group.h"
+
+namespace cistula {
+
+OutputChannels parse_layers(std::string_view text, OutputChannels layers) {
+    struct Layer {
+        std::string_view name, group;
+        bool* wanted;
+    };
+    std::vector<Layer> known = {{"P", "data", &layers.position},
+                                {"uv", "data", &layers.uv},
+                                {"albedo", "data", &layers.albedo},
+                                {"N", "data", &layers.normal},
+                                {"Z", "data", &layers.z},
+                                {"depth_ray", "data", &layers.depth_ray},
+                                {"coverage", "data", &layers.coverage},
+                                {"id", "data", &layers.id},
+                                {"material_id", "data", &layers.material_id},
+                                {"samples", "data", &layers.samples},
+                                {"cost", "data", &layers.cost},
+                                {"error", "data", &layers.error},
+                                {"light", "light", &layers.light},
+                                {"CryptoObject", "cryptomatte", &layers.object_mattes},
+                                {"CryptoMaterial", "cryptomatte", &layers.material_mattes},
+                                {"CryptoLight", "cryptomatte", &layers.light_mattes}};
+    for (int layer = 0; layer < path_layer_count; ++layer)
+        known.push_back({path_layer_names[layer], "path", &layers.path[layer]});
+    std::vector<std::string_view> names = {"path", "data", "cryptomatte"};
+    for (const Layer& layer : known) names.push_back(layer.name);
+    std::vector<std::string> lights;
+    for (const std::string_view name : common_light_layer_names)
+        lights.push_back(std::string(light_layer_prefix).append(name));
+    lights.push_back(std::string(light_layer_prefix).append("GROUP"));  // of the scene, which is not read yet
+    names.insert(names.end(), lights.begin(), lights.end());
+    bool all_lights = false;
+    for (const std::string_view name : parts_at_commas(text)) {
+        bool found = false;
+        if (name.starts_with(light_layer_prefix)) {
+            layers.light = found = true;
+            layers.light_layers.emplace_back(name.substr(light_layer_prefix.size()));
+        }
+        all_lights |= name == "light";
+        for (const Layer& layer : known)
+            if (layer.name == name || layer.group == name) *layer.wanted = found = true;
+        if (!found)
+            fail_usage(fmt::format("--layers {}: there is no layer '{}'; {}", text, name,
+                                   nearest_first(name, names, "layers")));
+    }
+    if (all_lights) layers.light_layers.clear();
+    return layers;
+}
+
+void require_light_layers(const OutputChannels& channels, const LayerNames& names) {
+    std::vector<std::string_view> known(std::begin(common_light_layer_names), std::end(common_light_layer_names));
+    known.insert(known.end(), names.light_groups.begin(), names.light_groups.end());
+    for (const std::string& layer : channels.light_layers)
+        if (std::find(known.begin(), known.end(), layer) == known.end())
+            fail_usage(fmt::format("--layers {}{}: the scene has no such group of lights; {}", light_layer_prefix,
+                                   layer, nearest_first(layer, known, "groups")));
+}
+
+}  // namespace cistula

@@ -1,0 +1,49 @@
+// The layers of a film: what is asked for, what a backend fills, and the names that files give.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cistula/model/layers.h"
+#include "render/record/film_memory.h"
+#include "scene/compile/scene_names.h"
+
+namespace cistula {
+
+/// The groups of layers that a frame is rendered with.
+struct LayerRequest {
+    bool path = false, light = false;  // divisions of the radiance (PathLayer, LightLayer)
+    bool first_hit = false;
+    bool objects = false;     // how many samples of a pixel meet which object first
+    int object_entries = 16;  // in a pixel's table of objects; a film with flag_objects_overflow needs more
+
+    bool any() const { return path || light || first_hit || objects; }
+    bool operator==(const LayerRequest&) const = default;
+};
+
+/// The layers that a backend fills.
+struct FilmLayers {
+    LayerPlan plan;
+    std::vector<int64_t, FilmAllocator<int64_t>> words;  // plan.words for each pixel
+    double center[3] = {0, 0, 0}, unit_length = 1;  // a FirstHit's position in scene units: center + position * that
+    std::shared_ptr<const LayerNames> names;
+
+    /// The words of a pixel.
+    int64_t* of(size_t pixel) { return words.data() + pixel * static_cast<size_t>(plan.words); }
+    const int64_t* of(size_t pixel) const { return words.data() + pixel * static_cast<size_t>(plan.words); }
+
+    /// Sets the words of pixels to 0, as they are before anything is added.
+    void clear(size_t first, size_t count) { std::fill_n(of(first), count * static_cast<size_t>(plan.words), 0); }
+};
+
+/// The plan for the layers of a scene with so many light groups.
+LayerPlan layer_plan(const LayerRequest& request, size_t light_groups);
+
+/// Sets up layers of so many pixels, in the scene's frame, with uninitialized words.
+void begin_layers(FilmLayers& layers, const LayerRequest& request, size_t pixels,
+                  std::shared_ptr<const LayerNames> names);
+
+}  // namespace cistula

@@ -1,0 +1,73 @@
+// Conversion of a film's integer sums to the channels of a file.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "image/color/color_space.h"
+#include "image/picture/picture.h"
+#include "render/record/film.h"
+
+namespace cistula {
+
+/// The optional channels of a file, besides R, G, B and A, and how values are given.
+struct OutputChannels {
+    bool half =
+        false;  // R G B A, coverage, error.* and N.* in half precision; id, samples, cost and Z are always float
+    bool error = false, id = false, samples = false, cost = false, z = false, normal = false, coverage = false;
+    bool position = false, uv = false, albedo = false, depth_ray = false, material_id = false;
+    bool path[path_layer_count] = {};            // by PathLayer
+    bool light = false;                          // light layers: all, or these alone
+    std::vector<std::string> light_layers = {};  // by their names without "Combined_"
+    bool object_mattes = false, material_mattes = false, light_mattes = false;
+    bool transparent = false;           // samples that meet nothing add nothing to R, G, B and A
+    float z_far = 1e10f;                // Z where there is nothing
+    const ColorSpace* space = nullptr;  // of R, G, B and error.*; null: that of scenes, lin_rec709_scene
+    Compression compression = Compression::zip;
+    float dwa_level = 45;
+};
+
+/// The names of path layers, in the order of PathLayer.
+inline constexpr const char* path_layer_names[path_layer_count] = {"emission", "background", "ambient",     "diffuse",
+                                                                   "specular", "reflection", "transmission"};
+
+/// The layers, and the parts of pixels, that a film needs for these channels.
+LayerRequest layers_for(const OutputChannels& channels);
+KeptParts parts_for(const OutputChannels& channels);
+
+/// The attribute that says how many light layers the scene has.
+inline constexpr const char* light_layer_count = "cistula:lightLayers";
+
+/// The largest finite number in half precision.
+inline constexpr float largest_half = 65504;
+
+/// All channels of a file. R G B: mean radiance. A: 1, or, if the background is transparent, as coverage: the share of
+/// samples that hit anything; radiance is premultiplied then. error.R error.G error.B: bound
+/// on the error from pruned and cut branches and from whole units of the sums, rounded up so that it stays a bound in
+/// the file's precision. id: 1 + solid, or 1 + solids + visible light; 0 for none. samples: per pixel. cost: rays. Z:
+/// distance along the view axis, z_far for none. N.X N.Y N.Z: unit normal in world axes, 0 for none. Values of half
+/// channels that are over largest_half become that, and are added to `clamped`; such an error.* is no bound. The data
+/// window is the film's rectangle. Attributes: chromaticities and colorInteropID of the color space;
+/// cistula:background, cistula:zFar and, with dwaa and dwab, cistula:dwaLevel, where they are not the defaults; with
+/// light layers their number in the scene, cistula:lightLayers, of which the file may have some;
+/// acesImageContainerFlag (set_container_flag).
+LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint64_t* clamped = nullptr);
+
+/// All channels of a file as to_layers gives them, but that values are made as they are written, and counted in
+/// `clamped` each time. `film` and `clamped` must outlive them.
+LayeredPicture channels_of(const Film& film, const OutputChannels& channels, std::atomic<uint64_t>* clamped = nullptr);
+
+/// States that a file of this picture alone is a container of SMPTE ST 2065-4: R, G, B and A alone, in half, of
+/// ACES2065-1, not compressed. Takes the statement away from any other.
+void set_container_flag(LayeredPicture& picture);
+
+/// The mean radiance in the film's rectangle.
+ColorPicture to_color(const Film& film);
+
+/// 128-bit FNV-1a of the image as 32 hexadecimal digits: over the radiance, hits and samples of every pixel, lowest
+/// byte first, in pixel order. Nothing else enters, so films with equal hashes hold the same picture.
+std::string film_hash(const Film& film);
+
+}  // namespace cistula

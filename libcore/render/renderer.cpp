@@ -1,0 +1,61 @@
+#include "render/renderer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/shown_text.h"
+#include "cistula/geometry/ray.h"
+#include "cistula/model/pixel_record.h"
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/overlaps.h"
+
+namespace cistula {
+namespace {
+
+/// Whether a pixel shows more objects than its table holds; the tables of this film and the next are then larger. One
+/// entry for each sample is always enough.
+bool needs_larger_tables(const Film& film, LayerRequest& layers) {
+    if ((film.flags & flag_objects_overflow) == 0 || layers.object_entries >= film.samples) return false;
+    layers.object_entries = std::min(4 * layers.object_entries, film.samples);
+    return true;
+}
+
+}  // namespace
+
+bool render_frame(Renderer& renderer, const CameraFrame& camera, FrameSettings& settings, Film& film,
+                  RenderProgress& progress) {
+    bool whole = renderer.render(camera, settings, film, progress);
+    while (whole && needs_larger_tables(film, settings.layers)) {
+        progress.pixels_done = 0;
+        progress.rays = 0;
+        whole = renderer.render(camera, settings, film, progress);
+    }
+    return whole;
+}
+
+namespace {
+
+/// A sentence's part on solids that are more than a ray can list, with their names where they are found.
+std::string too_many_solids(const SceneDescription& scene) {
+    const auto compiled = compile_scene<double>(scene);
+    std::vector<std::string> names;
+    for (const uint32_t solid : find_nested(*compiled)) names.push_back(one_line(compiled->solid_names[solid]));
+    return fmt::format("a ray was inside more than {} solids at once, which is all it can list{}; take some away",
+                       InteriorList::capacity, names.empty() ? "" : fmt::format(": {}", fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::string describe_flags(uint32_t flags, const SceneDescription& scene) {
+    std::vector<std::string> parts;
+    if (flags & flag_not_finite) parts.push_back("a radiance was infinite or not a number");
+    if (flags & flag_media_overflow) parts.push_back(too_many_solids(scene));
+    if (flags & flag_stack_overflow) parts.push_back("a ray's tree had more branches waiting than there is room for");
+    if (flags & flag_too_many_crossings) parts.push_back("a straight ray crossed more faces than the limit");
+    if (flags & flag_objects_overflow) parts.push_back("a pixel showed more objects than its table holds");
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+}  // namespace cistula

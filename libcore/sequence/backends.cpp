@@ -1,0 +1,162 @@
+#include "sequence/backends.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "backend_embree/embree/embree_renderer.h"
+#include "base/error.h"
+#include "base/option_text.h"
+#include "base/suggest.h"
+
+namespace cistula {
+namespace {
+
+std::string describe(const CudaDevice& device) {
+    return fmt::format("{}: {}, capability {}.{}, {:.1f} GiB, {} multiprocessors", device.index, device.name,
+                       device.major, device.minor, static_cast<double>(device.memory) / (1 << 30),
+                       device.multiprocessors);
+}
+
+[[noreturn]] void fail_device(const std::string& message) {
+    throw Error(ExitCode::device, message);
+}
+
+#if !CISTULA_HAS_CUDA
+[[noreturn]] void fail_without_cuda() {
+    fail_device("--backend cuda: this build has no CUDA backend; --backend embree renders on the CPU");
+}
+#endif
+
+}  // namespace
+
+Backend parse_backend(const std::string& text) {
+    return chosen<Backend>("--backend", text, {{"embree", Backend::embree}, {"cuda", Backend::cuda}});
+}
+
+const char* backend_name(Backend backend) {
+    return backend == Backend::cuda ? "cuda" : "embree";
+}
+
+DeviceChoice parse_devices(const std::string& text, Backend backend) {
+    if (text.empty()) return {};
+    if (backend != Backend::cuda)
+        fail_usage(fmt::format("--device {}: chooses GPUs, and --backend is {}; add --backend cuda or leave it out",
+                               text, backend_name(backend)));
+    if (text == "all") return {true, {}};
+    DeviceChoice choice{false, {}};
+    for (const std::string_view part : parts_at_commas(text)) {
+        const auto index = whole_number<int>(part);
+        if (!index || *index < 0)
+            fail_usage(
+                fmt::format("--device {}: must be numbers of GPUs, as in 0 or 0,2, or all; render "
+                            "--list-devices shows them",
+                            text));
+        if (std::find(choice.indices.begin(), choice.indices.end(), *index) != choice.indices.end())
+            fail_usage(fmt::format("--device {}: names GPU {} twice; once is enough", text, *index));
+        choice.indices.push_back(*index);
+    }
+    return choice;
+}
+
+std::vector<CudaDevice> pick_devices(const DeviceChoice& choice, const std::vector<CudaDevice>& present) {
+    std::vector<CudaDevice> picked;
+    if (choice.all) {
+        for (const CudaDevice& device : present)
+            if (device.obstacle.empty()) picked.push_back(device);
+        if (!picked.empty()) return picked;
+        if (present.empty()) fail_device("--device all: this machine has no GPU");
+        fail_device(fmt::format("--device all: no GPU can be used; {}: {}: {}", present[0].index, present[0].name,
+                                present[0].obstacle));
+    }
+    for (const int index : choice.indices) {
+        const auto device = std::find_if(present.begin(), present.end(),
+                                         [index](const CudaDevice& candidate) { return candidate.index == index; });
+        if (device == present.end()) {
+            std::vector<int> indices;
+            for (const CudaDevice& candidate : present) indices.push_back(candidate.index);
+            fail_device(fmt::format("--device {}: there is no such GPU; this machine has {}", index,
+                                    indices.empty() ? "none" : fmt::format("{}", fmt::join(indices, ", "))));
+        }
+        if (!device->obstacle.empty())
+            fail_device(fmt::format("--device {}: {} cannot be used: {}", index, device->name, device->obstacle));
+        picked.push_back(*device);
+    }
+    return picked;
+}
+
+std::string list_devices_text(const std::vector<CudaDevice>& devices) {
+    if (devices.empty()) return "no GPU\n";
+    std::string text;
+    for (const CudaDevice& device : devices)
+        text += describe(device) +
+                (device.obstacle.empty() ? "" : fmt::format("; cannot be used: {}", one_line(device.obstacle))) + "\n";
+    return text;
+}
+
+#if CISTULA_HAS_CUDA
+
+bool has_cuda_backend() {
+    return true;
+}
+
+ChosenDevices choose_devices(Backend backend, const DeviceChoice& choice) {
+    ChosenDevices chosen;
+    chosen.options.devices.clear();
+    if (backend != Backend::cuda) return chosen;
+    for (const CudaDevice& device : pick_devices(choice, list_cuda_devices())) {
+        chosen.options.devices.push_back(device.index);
+        chosen.names.push_back(device.name);
+    }
+    begin_cuda_devices(chosen.options.devices);
+    chosen.driver = cuda_driver_version();
+    return chosen;
+}
+
+std::string list_devices_text() {
+    try {
+        return list_devices_text(list_cuda_devices());
+    } catch (const Error& error) {
+        return one_line(error.what()) + "\n";
+    }
+}
+
+template <class Real>
+std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
+                                        const CudaOptions& options) {
+    if (backend == Backend::cuda) return make_cuda_renderer<Real>(std::move(scene), options);
+    return make_embree_renderer<Real>(std::move(scene));
+}
+
+#else
+
+bool has_cuda_backend() {
+    return false;
+}
+
+ChosenDevices choose_devices(Backend backend, const DeviceChoice&) {
+    if (backend == Backend::cuda) fail_without_cuda();
+    ChosenDevices chosen;
+    chosen.options.devices.clear();
+    return chosen;
+}
+
+std::string list_devices_text() {
+    return "no GPU: this build has no CUDA backend\n";
+}
+
+template <class Real>
+std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
+                                        const CudaOptions&) {
+    if (backend == Backend::cuda) fail_without_cuda();
+    return make_embree_renderer<Real>(std::move(scene));
+}
+
+#endif
+
+template std::unique_ptr<Renderer> make_renderer<float>(Backend, std::shared_ptr<const CompiledScene<float>>,
+                                                        const CudaOptions&);
+template std::unique_ptr<Renderer> make_renderer<double>(Backend, std::shared_ptr<const CompiledScene<double>>,
+                                                         const CudaOptions&);
+
+}  // namespace cistula

@@ -1,0 +1,37 @@
+// What happens to a film while it renders, as it is told to whoever asked for it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace cistula {
+
+struct FrameStats;
+
+/// Receives what happens to a film, on any thread, one call at a time for each member. The library prints nothing
+/// itself. What these throw ends the film.
+class FilmEvents {
+  public:
+    virtual ~FilmEvents() = default;
+
+    /// A film of so many frames, of which some may be complete.
+    virtual void begin(size_t /*frames*/) {}
+    /// A frame that is complete since an earlier run.
+    virtual void kept(int /*frame*/, const std::string& /*file*/) {}
+    /// A frame's first ray. It is at `index` of the `count` frames to render.
+    virtual void begin_frame(int /*frame*/, size_t /*index*/, size_t /*count*/, uint64_t /*pixels*/) {}
+    /// A frame's last ray. Its stats lack what depends on its files.
+    virtual void end_frame(const FrameStats&) {}
+    /// A frame whose files are whole.
+    virtual void written(const FrameStats&) {}
+    /// A file with the part of a frame that is done, `fraction` of its pixels.
+    virtual void snapshot(int /*frame*/, const std::string& /*file*/, double /*fraction*/) {}
+    /// A line on something that may be wrong with the pictures, or that may interest.
+    virtual void warning(const std::string& /*line*/) {}
+    virtual void remark(const std::string& /*line*/) {}
+    /// All that could be rendered is written, `done` of the film's frames.
+    virtual void end(size_t /*done*/, size_t /*frames*/) {}
+};
+
+}  // namespace cistula

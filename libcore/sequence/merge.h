@@ -1,0 +1,45 @@
+// Tiles of a frame put together to the file of the whole frame.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/pixel_rect.h"
+#include "image/picture/picture.h"
+#include "render/record/film.h"
+
+namespace cistula {
+
+/// Rectangles apart from each other that hold what of the window no rectangle covers.
+std::vector<PixelRect> uncovered(const PixelRect& window, const std::vector<PixelRect>& rects);
+
+/// Puts the parts of files together, one file after the other. All must be of one render: their headers equal but for
+/// the data window and what a target error measured, their windows apart.
+class Merge {
+  public:
+    /// The pixels to be covered; nothing: the full frame.
+    explicit Merge(std::optional<PixelRect> window) : window_(window) {}
+
+    /// Adds a tile. Throws Error: `failed` if it is none of these tiles or overlaps one, `file` if it cannot be read.
+    void add(const std::string& path);
+
+    /// The whole frame's parts. Throws Error (failed) for pixels that no tile covers.
+    std::vector<PicturePart> whole() &&;
+
+  private:
+    void begin(const std::string& path, const std::vector<PicturePart>& tile);
+    void check(const std::string& path, const std::vector<PicturePart>& tile) const;
+    void check_window(const std::string& path, const PixelRect& rect) const;
+
+    struct Placed {
+        std::string path;
+        PixelRect rect;
+    };
+
+    std::optional<PixelRect> window_;
+    std::vector<PicturePart> parts_;
+    std::vector<Placed> placed_;
+};
+
+}  // namespace cistula
