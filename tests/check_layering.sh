@@ -23,6 +23,7 @@ scene_folders=(
     description  # a scene as people write it
     image        # pictures and their files
     readers      # scene and mesh files to descriptions
+    assets       # the meshes and textures that descriptions name, read once
     trees        # trees of boxes
     film         # what a renderer fills, and its interface
     compile      # descriptions to the arrays that shading reads
