@@ -21,6 +21,7 @@ core_folders=(
 scene_folders=(
     description  # a scene as people write it
     readers      # scene and mesh files to descriptions
+    assets       # the meshes and textures that descriptions name, read once
     trees        # trees of boxes
     compile      # descriptions to the arrays that shading reads
 )

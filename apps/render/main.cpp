@@ -325,10 +325,10 @@ void measure_scene(RenderOptions options) {
 template <class Real>
 void report_pixel(const RenderOptions& options, const SceneDescription& scene, SceneSource source,
                   const FrameSettings& settings, const CameraFrame& camera) {
+    const SceneNames names = name_scene(source);
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
     print_warnings(compiled->warnings, options);
     const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, options.pixel.x, options.pixel.y);
-    const SceneNames names = name_scene(scene);
     const PixelReport report{options.pixel.x, options.pixel.y, options.precision, scene, names, settings, camera, tree,
                              compiled->hash};
     if (options.json != "-") print(pixel_text(report, options.verbose));

@@ -23,11 +23,10 @@ inline SceneDescription scene_with(const std::string& keys) {
 }
 
 /// The parts of a mesh that no warning is due for.
-inline std::vector<MeshPart> read_whole_mesh(const MeshObject& object, const std::string& place) {
-    std::vector<std::string> warnings;
-    std::vector<MeshPart> parts = read_mesh(object, place, warnings);
-    EXPECT_EQ(warnings, std::vector<std::string>());
-    return parts;
+inline std::vector<MeshPart> read_whole_mesh(const MeshObject& object) {
+    const MeshData data = read_mesh(object.file);
+    EXPECT_EQ(data.warnings, std::vector<std::string>());
+    return placed_parts(data, object);
 }
 
 }  // namespace cistula::test

@@ -146,7 +146,7 @@ TYPED_TEST(SeenLights, HaveAnIdADepthAndANormal) {
 TYPED_TEST(SeenLights, AreNumberedAfterTheSolidsAsTheirNames) {
     const SceneDescription scene = lit();
     const auto compiled = compile_scene<TypeParam>(scene);
-    const SceneNames names = name_scene(scene);
+    const SceneNames names = name_scene(gather_scene(scene));
     ASSERT_EQ(names.visible_lights.size(), compiled->visible_lights.size());
     ASSERT_EQ(compiled->visible_lights.size(), 5u + 2 * 12);
     EXPECT_EQ(names.visible_lights[1].name, "light 2");  // light 1 is not seen

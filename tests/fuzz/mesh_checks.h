@@ -22,7 +22,7 @@ inline void check_meshes(std::vector<PolygonMesh> meshes) {
         }
         require(end == mesh.corners.size());
     }
-    for (const MeshPart& part : parts_of(std::move(meshes), {})) {
+    for (const MeshPart& part : placed_parts(mesh_data(std::move(meshes)), {})) {
         for (const auto& t : part.mesh.triangles)
             for (const uint32_t corner : t) require(corner < part.mesh.vertices.size());
         find_pieces(part.mesh);

@@ -1,12 +1,11 @@
 // Polygons of a mesh file that are there several times are read once, before they are cut into triangles.
-#include "scene/readers/doubled_polygons.h"
-
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/mesh_file.h"
+#include "scene/readers/polygon.h"
 #include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
@@ -19,7 +18,12 @@ using test::read_whole_mesh;
 using Polygons = std::vector<std::vector<uint32_t>>;
 
 std::vector<bool> doubled(const std::vector<glm::dvec3>& vertices, const Polygons& polygons) {
-    return doubled_polygons(vertices, {polygons.begin(), polygons.end()});
+    PolygonMesh mesh;
+    for (const std::vector<uint32_t>& polygon : polygons) {
+        mesh.corners.insert(mesh.corners.end(), polygon.begin(), polygon.end());
+        mesh.ends.push_back(mesh.corners.size());
+    }
+    return doubled_polygons(vertices, mesh);
 }
 
 const std::vector<glm::dvec3> corners = {{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {0, 2, 0}, {2, -0.0, 0}};
@@ -71,12 +75,12 @@ TEST(DoubledPolygons, ATwoSidedBoxIsABoxAgain) {
     object.file = scratch.file("box.obj");
     samples::add_object(scene, object);
     put_bytes(object.file, box_obj(false, false));
-    const auto once = read_whole_mesh(object, "/objects/0");
+    const auto once = read_whole_mesh(object);
     EXPECT_EQ(once[0].mesh.doubled_polygons, 0u);
     for (const bool front : {false, true})
         for (const bool back : {false, true}) {
             put_bytes(object.file, box_obj(front, back));
-            const auto parts = read_whole_mesh(object, "/objects/0");
+            const auto parts = read_whole_mesh(object);
             const uint32_t copies = 6u * front + 6u * back;
             ASSERT_EQ(parts.size(), 1u);
             EXPECT_EQ(parts[0].mesh.doubled_polygons, copies);
@@ -103,7 +107,7 @@ TEST(DoubledPolygons, PartsThatOneMaterialJoinsAddTheirs) {
     object.file = scratch.file("box.obj");
     put_bytes(object.file, obj);
     samples::add_object(scene, object);
-    ASSERT_EQ(read_whole_mesh(object, "/objects/0").size(), 2u);
+    ASSERT_EQ(read_whole_mesh(object).size(), 2u);
     const auto compiled = compile_scene<float>(scene);
     ASSERT_EQ(compiled->solids.size(), 1u);
     EXPECT_NE(compiled->solids[0].kind, SolidKind::sheet);

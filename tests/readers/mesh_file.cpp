@@ -51,7 +51,7 @@ TEST(MeshFile, PlyTrianglesArePlaced) {
     object.scale = 2;
     object.rotation = {0, 0, 90};
     object.center = {10, 20, 30};
-    const auto parts = read_whole_mesh(object, "/objects/0");
+    const auto parts = read_whole_mesh(object);
     ASSERT_EQ(parts.size(), 1u);
     EXPECT_FALSE(parts[0].material);
     EXPECT_EQ(parts[0].mesh.vertices.size(), 4u);
@@ -74,7 +74,7 @@ TEST(MeshFile, BinaryPlyToo) {
     bytes.push_back(3);
     bytes.append(reinterpret_cast<const char*>(indices), sizeof(indices));
     put_bytes(scratch.file("t.ply"), bytes);
-    const auto parts = read_whole_mesh(mesh_of(scratch.file("t.ply")), "here");
+    const auto parts = read_whole_mesh(mesh_of(scratch.file("t.ply")));
     ASSERT_EQ(parts.size(), 1u);
     ASSERT_EQ(parts[0].mesh.triangles.size(), 1u);
     EXPECT_EQ(parts[0].mesh.vertices[parts[0].mesh.triangles[0][1]], dvec3(1.5, 0, 0));
@@ -100,7 +100,7 @@ TEST(MeshFile, VerticesThatAreNearStayApart) {
     put_bytes(scratch.file("t.ply"), ply);
     put_bytes(scratch.file("t.obj"), obj);
     for (const char* name : {"t.ply", "t.obj"}) {
-        const auto parts = read_whole_mesh(mesh_of(scratch.file(name)), "/objects/0");
+        const auto parts = read_whole_mesh(mesh_of(scratch.file(name)));
         ASSERT_EQ(parts.size(), 1u);
         const MeshPieces pieces = find_pieces(parts[0].mesh);
         EXPECT_TRUE(pieces.closed) << name;
@@ -112,7 +112,7 @@ TEST(MeshFile, ObjGroupsBringTheirMaterials) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("cube.obj"), cube_obj);
     put_bytes(scratch.file("cube.mtl"), cube_mtl);
-    const auto parts = read_whole_mesh(mesh_of(scratch.file("cube.obj")), "here");
+    const auto parts = read_whole_mesh(mesh_of(scratch.file("cube.obj")));
     ASSERT_EQ(parts.size(), 2u);
     for (const auto& part : parts) EXPECT_EQ(part.mesh.triangles.size(), 6u);
     const auto& red = parts[0].material->name == "red" ? *parts[0].material : *parts[1].material;
@@ -138,8 +138,8 @@ TEST(MeshFile, ObjGroupsBringTheirMaterials) {
 TEST(MeshFile, WhatIsNoMeshIsToldByItsStart) {
     const ScratchDirectory scratch;
     const auto refused = [&](const std::string& name, const std::string& text) {
-        expect_error([&] { read_whole_mesh(mesh_of(scratch.file(name)), "here"); }, ExitCode::file,
-                     "here: mesh " + scratch.file(text));
+        expect_error([&] { read_whole_mesh(mesh_of(scratch.file(name))); }, ExitCode::file,
+                     "mesh " + scratch.file(text));
     };
     for (const char* name : {"zeros.obj", "zeros.ply", "zeros.mtl"}) {
         put_bytes(scratch.file(name), "");
@@ -156,7 +156,7 @@ TEST(MeshFile, TrIsTransmission) {
     const ScratchDirectory scratch;
     put_bytes(scratch.file("cube.obj"), cube_obj);
     put_bytes(scratch.file("cube.mtl"), "newmtl red\nTr 0.25\nillum 1\nKs 1 1 1\nnewmtl glass\nKd 1 1 1\nillum 0\n");
-    for (const auto& part : read_whole_mesh(mesh_of(scratch.file("cube.obj")), "here")) {
+    for (const auto& part : read_whole_mesh(mesh_of(scratch.file("cube.obj")))) {
         const bool red = part.material->name == "red";
         EXPECT_EQ(part.material->transmission, red ? 0.25 : 0);
         EXPECT_EQ(part.material->specular, 0);

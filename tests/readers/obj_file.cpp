@@ -8,6 +8,7 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/mesh_file.h"
 #include "scene/readers/mesh_text.h"
+#include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 
@@ -17,6 +18,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 using samples::expect_error;
+using test::read_whole_mesh;
 
 const std::string square = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\n";
 
@@ -106,12 +108,10 @@ TEST(ObjFile, EncodingsLineEndsIndentationAndContinuation) {
         put_bytes(scratch.file("t.obj"), bytes);
         MeshObject object;
         object.file = scratch.file("t.obj");
-        std::vector<std::string> warnings;
-        const auto parts = read_mesh(object, "here", warnings);
+        const auto parts = read_whole_mesh(object);
         ASSERT_EQ(parts.size(), 1u);
         EXPECT_EQ(parts[0].name, "\xf0\x9f\x94\xba\xc3\xa9");
         EXPECT_EQ(parts[0].mesh.triangles.size(), 2u);
-        EXPECT_TRUE(warnings.empty());
     }
 }
 
@@ -292,9 +292,7 @@ TEST(ObjFile, CharactersThatEndWithABackslashJoinNoLinesAndAreInNamesOfFiles) {
               "mtllib " + table + ".mtl\n" + square + "usemtl " + table + "\nf 1 2 3\nusemtl \x83\\\nf 1 2 4\n");
     MeshObject object;
     object.file = scratch.file("a.obj");
-    std::vector<std::string> warnings;
-    const auto parts = read_mesh(object, "here", warnings);
-    EXPECT_EQ(warnings, std::vector<std::string>());
+    const auto parts = read_whole_mesh(object);
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(parts[0].material->name, "%95\\");
     EXPECT_EQ(parts[0].material->color, dvec3(1, 0, 0));

@@ -33,10 +33,11 @@ struct Followed {
 template <class Real>
 Followed follow(const SuiteCase& one, const SceneDescription& scene, const FrameSettings& settings, Precision precision,
                 int frame, const SuitePixel& pixel) {
-    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
+    SceneSource source = gather_scene(scene);
+    const SceneNames names = name_scene(source);
+    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
     const CameraFrame camera = camera_at(scene.camera, frame);
     const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, pixel.x, pixel.y);
-    const SceneNames names = name_scene(scene);
     Followed followed;
     followed.text =
         pixel_text({pixel.x, pixel.y, precision, scene, names, settings, camera, tree, compiled->hash}, false);

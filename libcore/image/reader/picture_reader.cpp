@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/file_bytes.h"
+#include "image/color/texel_decoder.h"
 #include "image/exr/exr.h"
 #include "image/exr/exr_file.h"
 #include "image/picture/raw_picture.h"
@@ -20,6 +21,13 @@ constexpr uint64_t most_bytes = UINT32_MAX * texel_bytes;
 TextureLimits within_reach(TextureLimits limits) {
     if (limits.bytes > most_bytes) limits.bytes = most_bytes;
     return limits;
+}
+
+/// Clamps what is no radiance, or throws where that is not wanted. `from` opens the message.
+void clamp_or_refuse(ColorPicture& picture, ClampedTexels* clamped, ExitCode code, const std::string& from) {
+    const ClampedTexels found = clamp_texels(picture);
+    if (!clamped && found.count() > 0) throw Error(code, from + found.refusal());
+    if (clamped) *clamped = found;
 }
 
 /// Whether a file is an EXR, by extension or by content. Throws Error where there is nothing in it.
@@ -87,9 +95,37 @@ ColorPicture TextureReader::read(const std::string& path, ClampedTexels* clamped
         ask(path, exr ? ReadKind::exr_texture : ReadKind::texture,
             [&](ReaderReply& reply) { picture = receive_texture(reply, encoding); });
     }
-    const ClampedTexels found = clamp_texels(picture);
-    if (!clamped && found.count() > 0) throw Error(ExitCode::file, path + ": " + found.refusal());
-    if (clamped) *clamped = found;
+    clamp_or_refuse(picture, clamped, ExitCode::file, path + ": ");
+    return picture;
+}
+
+ColorPicture TextureReader::decode(const TexelArray& array, ClampedTexels* clamped, std::string_view encoding) {
+    const auto refuse = [](const std::string& text) { throw Error(ExitCode::usage, "the texels: " + text); };
+    const std::string problem = texture_size_problem(array.width, array.height, left_, limits_.bytes);
+    if (!problem.empty()) refuse(problem);
+    const size_t texels = size_t{array.width} * array.height;
+    ColorPicture picture{array.width, array.height, {}};
+    const auto meaning = [&](bool is_floating) {
+        try {
+            return file_encoding(encoding, {}, is_floating);
+        } catch (const std::runtime_error& unknown) {
+            throw Error(ExitCode::usage, std::string("the texels: ") + unknown.what());
+        }
+    };
+    std::visit(
+        [&]<class Value>(const std::vector<Value>& values) {
+            if (array.channels == 0 || values.size() % array.channels != 0 || values.size() / array.channels != texels)
+                refuse("there are " + std::to_string(values.size()) + " numbers for " + std::to_string(array.width) +
+                       "x" + std::to_string(array.height) + " texels of " + std::to_string(array.channels) +
+                       " channels; give one for each channel of each");
+            const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+            picture.texels.reserve(texels);
+            TexelDecoder(meaning(std::is_same_v<Value, float>), sizeof(Value))
+                .append(bytes, array.channels, picture.texels);
+        },
+        array.values);
+    left_ -= texel_bytes * texels;
+    clamp_or_refuse(picture, clamped, ExitCode::usage, "the texels: ");
     return picture;
 }
 

@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "image/color/clamped_texels.h"
 #include "image/picture/picture.h"
@@ -41,6 +43,14 @@ class GuardedReader {
     std::unique_ptr<class ReaderProcess> process_;
 };
 
+/// A texture's numbers, as a program has them that has no file: texels row by row from the top left, each of so many
+/// channels. The first three are red, green and blue; the first is gray where there are fewer. The largest integer is
+/// white.
+struct TexelArray {
+    uint32_t width = 0, height = 0, channels = 3;
+    std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> values;
+};
+
 /// Reads textures. Raw pictures, .data and .out, need no child.
 class TextureReader : public GuardedReader {
   public:
@@ -52,6 +62,9 @@ class TextureReader : public GuardedReader {
     /// Values that are then negative, infinite or not a number are clamped and counted in `clamped`; without that they
     /// are an error. Throws Error(ExitCode::file) with the path, and std::bad_alloc.
     ColorPicture read(const std::string& path, ClampedTexels* clamped, std::string_view encoding = {});
+
+    /// The same of an array. Throws Error(ExitCode::usage).
+    ColorPicture decode(const TexelArray& array, ClampedTexels* clamped, std::string_view encoding = {});
 };
 
 /// Reads picture files as they stand. OpenEXR, by extension or by content, is read by every build, in this process;

@@ -1,9 +1,9 @@
 #include "scene/compile/compile_materials.h"
 
 #include <cmath>
+#include <unordered_map>
 
 #include "cistula/numerics/transmittance.h"
-#include "image/reader/picture_reader.h"
 
 namespace cistula {
 namespace {
@@ -31,30 +31,7 @@ Transparency transparency_of(const Material<Real>& m, const MaterialDescription&
     return clear ? Transparency::clear : Transparency::partial;
 }
 
-ColorPicture checker_picture(const TextureDescription& texture) {
-    ColorPicture picture;
-    picture.width = picture.height = 2;
-    const glm::vec3 a(texture.checker[0]), b(texture.checker[1]);
-    picture.texels = {a, b, b, a};
-    return picture;
-}
-
-/// The picture of a texture's file; warns of texels that were clamped.
-ColorPicture read_file_texture(TextureReader& reader, const TextureDescription& texture, const SceneDescription& scene,
-                               const std::string& place, std::vector<std::string>& warnings) {
-    ClampedTexels clamped;
-    ColorPicture picture;
-    try {
-        picture = reader.read(texture.file, texture.strict ? nullptr : &clamped, texture.colorspace);
-    } catch (const Error& error) {
-        throw Error(error.code(), scene_error(scene, place, error.what()).what());
-    }
-    if (clamped.count() > 0)
-        warnings.push_back(scene_error(scene, place, texture.file + ": " + clamped.warning()).what());
-    return picture;
-}
-
-/// Adds a texture, but for its place among all texels; the picture's texels are known to be radiances.
+/// Adds a texture, but for its place among all texels.
 void append_texture(TextureSet& set, const TextureDescription& description, const ColorPicture& picture) {
     dvec3 largest{0};
     for (const glm::vec3& texel : picture.texels)
@@ -63,28 +40,28 @@ void append_texture(TextureSet& set, const TextureDescription& description, cons
     texture.width = picture.width;
     texture.height = picture.height;
     texture.filter =
-        description.bilinear && !description.file.empty() ? TextureFilter::bilinear : TextureFilter::nearest;
+        description.bilinear && !description.is_checker() ? TextureFilter::bilinear : TextureFilter::nearest;
     texture.repeat[0] = description.repeat.x;
     texture.repeat[1] = description.repeat.y;
     set.textures.push_back(texture);
     set.largest.push_back(largest);
 }
 
-/// Joins the texels of all pictures, in their order, and frees each one that is copied.
-void join_texels(std::vector<ColorPicture>& pictures, TextureSet& set) {
+/// Joins the texels of all pictures, in their order, each picture once, and gives those up that no one else holds.
+void join_texels(std::vector<std::shared_ptr<const ColorPicture>>& pictures, TextureSet& set) {
+    std::unordered_map<const ColorPicture*, uint32_t> first;
     size_t count = 0;
     for (size_t i = 0; i < pictures.size(); ++i) {
-        set.textures[i].first_texel = static_cast<uint32_t>(count);
-        count += pictures[i].texels.size();
-    }
-    if (pictures.size() == 1) {
-        set.texels = std::move(pictures[0].texels);
-        return;
+        const auto [known, is_new] = first.try_emplace(pictures[i].get(), static_cast<uint32_t>(count));
+        set.textures[i].first_texel = known->second;
+        if (is_new) count += pictures[i]->texels.size();
     }
     set.texels.reserve(count);
-    for (ColorPicture& picture : pictures) {
-        set.texels.insert(set.texels.end(), picture.texels.begin(), picture.texels.end());
-        picture = {};
+    for (size_t i = 0; i < pictures.size(); ++i) {
+        const std::vector<glm::vec3>& texels = pictures[i]->texels;
+        if (set.textures[i].first_texel == set.texels.size())
+            set.texels.insert(set.texels.end(), texels.begin(), texels.end());
+        pictures[i].reset();
     }
 }
 
@@ -95,31 +72,16 @@ double local_share(const MaterialDescription& material) {
     return share > 1e-12 ? share : 0;
 }
 
-TextureSet read_textures(const SceneSource& source) {
-    const SceneDescription& scene = *source.description;
+TextureSet join_textures(SceneSource& source) {
     TextureSet set;
-    set.number.assign(scene.textures.size(), -1);
-    TextureLimits limits;
-    limits.bytes = scene.texture_bytes.value_or(limits.bytes);
-    TextureReader reader(limits);
-    std::vector<ColorPicture> pictures;
+    set.number.assign(source.pictures.size(), -1);
+    std::vector<std::shared_ptr<const ColorPicture>> pictures;
     for (const SourceSolid& solid : source.solids) {
         const int number = source.materials[solid.material].texture;
         if (number < 0 || set.number[static_cast<size_t>(number)] >= 0) continue;
-        const TextureDescription& texture = scene.textures[static_cast<size_t>(number)];
-        const std::string place = texture.place.empty() ? "/textures/" + std::to_string(number) : texture.place;
-        if (!is_finite(texture.repeat.x) || !is_finite(texture.repeat.y))
-            throw scene_error(scene, place, "the repeat must be finite");
-        if (texture.file.empty()) {
-            for (const dvec3& color : texture.checker)
-                if (!is_finite(glm::vec3(color)) || color.x < 0 || color.y < 0 || color.z < 0)
-                    throw scene_error(scene, place, "a color is negative or not finite");
-            pictures.push_back(checker_picture(texture));
-        } else {
-            pictures.push_back(read_file_texture(reader, texture, scene, place, set.warnings));
-        }
+        pictures.push_back(std::move(source.pictures[static_cast<size_t>(number)]));
         set.number[static_cast<size_t>(number)] = static_cast<int>(set.textures.size());
-        append_texture(set, texture, pictures.back());
+        append_texture(set, source.description->textures[static_cast<size_t>(number)], *pictures.back());
     }
     join_texels(pictures, set);
     return set;

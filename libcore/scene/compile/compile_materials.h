@@ -1,7 +1,6 @@
 // Conversion of materials and textures for the shading code. Private to libcore/scene.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "cistula/model/scene_view.h"
@@ -17,10 +16,9 @@ struct TextureSet {
     std::vector<Vec3<float>> texels;
     std::vector<glm::dvec3> largest;  // largest texel of each texture, per channel
     std::vector<int> number;          // by index in the description; -1: no object uses it
-    std::vector<std::string> warnings;
 };
-/// Reads the textures that objects use, one after another, so that no more than their limit is in memory. Throws Error.
-TextureSet read_textures(const SceneSource& source);
+/// Joins the pictures of the textures that objects use, and takes them from the source.
+TextureSet join_textures(SceneSource& source);
 
 /// A material for the shading code. `ambient` is scaled like all radiances; `texture` is an index in the compiled
 /// scene; `size` is that of the largest solid of the material, in the scene's frame.

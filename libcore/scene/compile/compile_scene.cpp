@@ -336,8 +336,7 @@ class Compiler {
     }
 
     void compile_shading() {
-        TextureSet textures = read_textures(source_);
-        scene_.warnings.insert(scene_.warnings.end(), textures.warnings.begin(), textures.warnings.end());
+        TextureSet textures = join_textures(source_);
         for (const ConvexSolid& convex : bodies_.convex)
             places_.distances[convex.solid] =
                 light_distances(lights_, convex, light_faces_, normalization_.extent, 2 * incident_reach());
@@ -371,7 +370,9 @@ class Compiler {
             hash_.add(t.repeat[0]);
             hash_.add(t.repeat[1]);
         }
-        hash_.add_bytes(textures.texels.data(), textures.texels.size() * sizeof(textures.texels[0]));
+        for (const Texture& t : textures.textures)
+            hash_.add_bytes(textures.texels.data() + t.first_texel,
+                            size_t{t.width} * t.height * sizeof(textures.texels[0]));
         hash_.add(description_.ambient);
         hash_.add(description_.background);
         hash_.add(scale_.bound);

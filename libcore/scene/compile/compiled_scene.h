@@ -54,9 +54,7 @@ struct CompiledScene {
     size_t memory() const;  // bytes of all arrays
 };
 
-/// Reads the meshes and textures that the description names and compiles. Textures other than .data are read by a child
-/// process, the program cistula-read-picture, which must be found (image/reader/reader_process.h). Throws Error
-/// with the place.
+/// Loads a description's assets and compiles it. Throws Error with the place.
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description);
 

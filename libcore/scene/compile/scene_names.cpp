@@ -1,6 +1,5 @@
 #include "scene/compile/scene_names.h"
 
-#include "scene/compile/scene_source.h"
 #include "scene/description/platonic.h"
 
 namespace cistula {
@@ -18,8 +17,8 @@ void add_light(SceneNames& names, const std::string& name, const std::string& pl
 
 }  // namespace
 
-SceneNames name_scene(const SceneDescription& description) {
-    const SceneSource source = gather_scene(description);
+SceneNames name_scene(const SceneSource& source) {
+    const SceneDescription& description = *source.description;
     SceneNames names;
     for (const SourceSolid& solid : source.solids) names.solids.push_back({solid.name, solid.place});
     for (const MaterialDescription& material : source.materials) names.materials.push_back({material.name, ""});

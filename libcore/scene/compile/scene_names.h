@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/description/description.h"
+#include "scene/compile/scene_source.h"
 
 namespace cistula {
 
@@ -28,7 +28,7 @@ struct LayerNames {
     std::vector<std::string> light_groups;        // each once
 };
 
-/// The names of a scene's parts. Opens its meshes and throws Error as compile_scene does.
-SceneNames name_scene(const SceneDescription& description);
+/// The names of a scene's parts.
+SceneNames name_scene(const SceneSource& source);
 
 }  // namespace cistula

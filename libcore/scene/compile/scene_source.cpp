@@ -64,22 +64,6 @@ void check_platonic(const SceneDescription& scene, const SolidObject& solid, con
     if (lights.count > 0) check_light(scene, lights.color, lights.glow, lights.radius, lights.falloff, place);
 }
 
-void check_triangles(const SceneDescription& scene, const TrianglesObject& object, const std::string& place) {
-    if (object.triangles.empty()) throw scene_error(scene, place, "there are no triangles; give at least one");
-    for (const auto& corners : object.triangles)
-        for (const uint32_t corner : corners)
-            if (corner >= object.vertices.size())
-                throw scene_error(scene, place,
-                                  "a triangle names vertex " + std::to_string(corner) + ", but there are only " +
-                                      std::to_string(object.vertices.size()) + " (numbered from 0)");
-    if (!object.uvs.empty() && object.uvs.size() != object.vertices.size())
-        throw scene_error(scene, place,
-                          "there are " + std::to_string(object.uvs.size()) + " uvs for " +
-                              std::to_string(object.vertices.size()) + " vertices; give one a vertex, or none");
-    for (const glm::dvec2& uv : object.uvs)
-        if (!is_finite(uv.x) || !is_finite(uv.y)) throw scene_error(scene, place, "a uv is not finite");
-}
-
 /// `name`, or one after a place in the file, "object3", if that is empty.
 std::string given_name(const std::string& name, const std::string& place) {
     return name.empty() ? "object" + place.substr(place.find_last_of('/') + 1) : name;
@@ -96,12 +80,15 @@ void make_name_own(MaterialDescription& material, const ObjectDescription& objec
         material.name = given_name(object.name, object.place) + "/" + material.name;
 }
 
-void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshObject& mesh, MaterialNames& names) {
+void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshObject& mesh, const MeshData& data,
+              MaterialNames& names) {
     const SceneDescription& scene = *source.description;
     if (!is_finite(mesh.center) || !is_finite(mesh.rotation) || !is_finite(mesh.scale) || mesh.scale == 0)
         throw scene_error(scene, object.place, "the center and rotation must be finite, the scale finite and not 0");
-    std::vector<MeshGroup> groups = join_groups(
-        read_mesh(mesh, scene.source + ": " + object.place, source.warnings, &source.files), object.material >= 0);
+    for (const std::string& warning : data.warnings)
+        source.warnings.push_back(scene_error(scene, object.place, warning).what());
+    std::vector<MeshGroup> groups = join_groups(placed_parts(data, mesh), object.material >= 0);
+    if (groups.empty()) throw scene_error(scene, object.place, "there are no triangles; give at least one");
     for (auto& [part, pieces] : groups) {
         SourceSolid solid;
         solid.name = groups.size() == 1 ? object.name : given_name(object.name, object.place) + "/" + part.name;
@@ -117,7 +104,8 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
             make_name_own(source.materials.back(), object, mesh.file, names);
         } else {
             throw scene_error(scene, object.place,
-                              "the mesh brings no material of its own (" + mesh.file + "); name one with \"material\"");
+                              "the mesh brings no material of its own" +
+                                  (mesh.data ? "" : " (" + mesh.file + ")") + "; name one with \"material\"");
         }
         add_mesh_solids(source, std::move(solid), std::move(pieces));
     }
@@ -139,24 +127,18 @@ void require_different_names(const SceneSource& source) {
 
 }  // namespace
 
-Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text) {
-    std::string message = description.source.empty() ? "scene" : description.source;
-    if (!place.empty()) message += ": " + place;
-    return {ExitCode::usage, message + ": " + text};
-}
-
 std::string name_of(const SourceSolid& solid) {
     return given_name(solid.name, solid.place);
 }
 
 namespace {
 
-SceneSource gathered_scene(const SceneDescription& description) {
+SceneSource gathered_scene(const SceneDescription& description, SceneAssets assets) {
     SceneSource source;
     source.description = &description;
     source.materials = description.materials;
-    for (const TextureDescription& texture : description.textures)
-        if (!texture.file.empty()) source.files.push_back(texture.file);
+    source.files = std::move(assets.files);
+    source.pictures = std::move(assets.pictures);
     for (size_t i = 0; i < description.materials.size(); ++i)
         check_material(description, description.materials[i], "/materials/" + std::to_string(i));
     if (!finite_and_not_negative(description.ambient) || !finite_and_not_negative(description.background))
@@ -173,7 +155,9 @@ SceneSource gathered_scene(const SceneDescription& description) {
         if (object.material >= static_cast<int>(description.materials.size()))
             throw scene_error(description, object.place, "names a material that does not exist");
         if (const auto* mesh = std::get_if<MeshObject>(&object.shape)) {
-            add_mesh(source, object, *mesh, material_names);
+            std::shared_ptr<const MeshData>& data = assets.meshes[static_cast<size_t>(&object - description.objects.data())];
+            add_mesh(source, object, *mesh, *data, material_names);
+            data.reset();
             continue;
         }
         if (object.material < 0)
@@ -192,7 +176,6 @@ SceneSource gathered_scene(const SceneDescription& description) {
                                       std::to_string(most_lights) + " lights; lower its count");
         } else {
             const auto& triangles = std::get<TrianglesObject>(object.shape);
-            check_triangles(description, triangles, object.place);
             solid.mesh.vertices = triangles.vertices;
             solid.mesh.triangles = triangles.triangles;
             solid.mesh.uvs = triangles.uvs;
@@ -204,6 +187,7 @@ SceneSource gathered_scene(const SceneDescription& description) {
         }
         source.solids.push_back(std::move(solid));
     }
+    source.warnings.insert(source.warnings.end(), assets.warnings.begin(), assets.warnings.end());
     require_different_names(source);
     for (const SourceSolid& solid : source.solids) {
         const MaterialDescription& material = source.materials[solid.material];
@@ -223,8 +207,8 @@ SceneSource gathered_scene(const SceneDescription& description) {
 
 }  // namespace
 
-SceneSource gather_scene(const SceneDescription& description) {
-    return in_default_rounding([&] { return gathered_scene(description); });
+SceneSource gather_scene(const SceneDescription& description, SceneAssets assets) {
+    return in_default_rounding([&] { return gathered_scene(description, std::move(assets)); });
 }
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// The input of a compilation: a description with its meshes read and its materials numbered.
+// The input of a compilation: a description with its meshes placed and its materials numbered.
 #pragma once
 
 #include <memory>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "scene/assets/assets.h"
 #include "scene/compile/mesh_edges.h"
 #include "scene/description/description.h"
 #include "scene/description/mesh_source.h"
@@ -35,23 +36,23 @@ struct SceneSource {
     const SceneDescription* description = nullptr;
     std::vector<MaterialDescription> materials;  // those of the description, then those from mesh files
     std::vector<SourceSolid> solids;             // in file order
-    std::vector<std::string> warnings;           // of mesh files
-    std::vector<std::string> files;  // that the description and its meshes name; maps of meshes may be missing
+    std::vector<std::shared_ptr<const ColorPicture>> pictures;  // as SceneAssets has them
+    std::vector<std::string> warnings;                          // of meshes and textures
+    std::vector<std::string> files;                             // as SceneAssets has them
     std::shared_ptr<const PlacedBodies> bodies;  // the solids in the scene's frame (placed_bodies.h)
 };
 
-/// Checks every number that affects the compiled scene, and reads the meshes. Throws Error with the place.
-SceneSource gather_scene(const SceneDescription& description);
+/// Checks every number that affects the compiled scene, and places the meshes. The assets are the description's, which
+/// must outlive the result. Throws Error with the place.
+SceneSource gather_scene(const SceneDescription& description, SceneAssets assets);
+inline SceneSource gather_scene(const SceneDescription& description) {
+    return gather_scene(description, load_assets(description));
+}
 
 template <class Real>
 struct CompiledScene;
 
-/// Compiles a description whose meshes have been read; the description must outlive the call. Throws Error with the
-/// place.
+/// Compiles a description whose assets are at hand. Throws Error with the place.
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(SceneSource source);
-
-/// An error with its place: "scene.json: /objects/2: TEXT".
-Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text);
-
 }  // namespace cistula

@@ -1,10 +1,10 @@
-// A scene as its author writes it, after parsing: names are resolved to indices; files are not opened yet, except
-// meshes and textures where their fields say so. Lengths in scene units, angles in degrees unless said otherwise,
-// colours linear RGB.
+// A scene as its author writes it, after parsing: names are resolved to indices; files are not opened yet
+// (assets/assets.h). Lengths in scene units, angles in degrees unless said otherwise, colours linear RGB.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -32,15 +32,22 @@ struct MaterialDescription {
     bool fresnel = false;
 };
 
+struct MeshData;    // readers/polygon_mesh.h
+struct TexelArray;  // image/reader/picture_reader.h
+
+/// A file, an array instead, or a checkerboard where there is neither.
 struct TextureDescription {
     std::string name;
-    std::string file;  // absolute or relative to the working directory; empty: a checkerboard
+    std::string file;                          // absolute or relative to the working directory
+    std::shared_ptr<const TexelArray> texels;  // of a program that has no file
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
     bool bilinear = true;    // ignored by a checkerboard, which is always nearest
     glm::dvec2 repeat{1};    // factor on uv; a checkerboard's period is 1 in uv: two cells
     std::string colorspace;  // one of color_encoding_names (image/color/color_encoding.h); empty: what the file says
-    bool strict = false;     // texels of the file that are negative or not finite are an error, and not clamped
+    bool strict = false;     // texels that are negative or not finite are an error, and not clamped
     std::string place;       // "/textures/tiles", "line 3"
+
+    bool is_checker() const { return file.empty() && !texels; }
 };
 
 enum class PlatonicSolid { tetrahedron, cube, octahedron, dodecahedron, icosahedron };
@@ -74,8 +81,10 @@ struct TrianglesObject {
     bool keep_triangles = false;
 };
 
+/// A mesh that may have polygons, groups and materials of its own, and is placed.
 struct MeshObject {
-    std::string file;      // PLY or OBJ
+    std::string file;                      // PLY or OBJ
+    std::shared_ptr<const MeshData> data;  // instead of the file, of a program that has none
     glm::dvec3 center{0};  // translation, applied last
     double scale = 1;
     glm::dvec3 rotation{0};

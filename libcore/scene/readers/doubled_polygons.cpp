@@ -1,8 +1,7 @@
-#include "scene/readers/doubled_polygons.h"
-
 #include <algorithm>
 
 #include "scene/description/weld.h"
+#include "scene/readers/polygon.h"
 
 namespace cistula {
 namespace {
@@ -35,29 +34,30 @@ std::vector<uint32_t> least_rotation(std::vector<uint32_t> corners) {
 
 }  // namespace
 
-std::vector<bool> doubled_polygons(std::span<const glm::dvec3> vertices,
-                                   const std::vector<std::span<const uint32_t>>& polygons) {
-    std::vector<bool> doubled(polygons.size(), false);
-    if (std::all_of(polygons.begin(), polygons.end(), [](const auto& p) { return p.size() < 4; })) return doubled;
+std::vector<bool> doubled_polygons(std::span<const glm::dvec3> vertices, const PolygonMesh& mesh) {
+    std::vector<bool> doubled(mesh.size(), false);
+    uint32_t i = 0;
+    while (i < mesh.size() && mesh.polygon(i).size() < 4) ++i;
+    if (i == mesh.size()) return doubled;
     const std::vector<uint32_t> welded = weld(vertices);
-    std::vector<uint32_t> compared, corners;     // numbers of polygons; corners of all of these, one after another
-    std::vector<size_t> first(polygons.size());  // of each polygon's corners
-    for (uint32_t i = 0; i < polygons.size(); ++i) {
+    std::vector<uint32_t> compared, corners;  // numbers of polygons; corners of all of these, one after another
+    std::vector<size_t> first(mesh.size());   // of each polygon's corners
+    for (; i < mesh.size(); ++i) {
         std::vector<uint32_t> at;
-        for (const uint32_t corner : polygons[i]) at.push_back(welded[corner]);
+        for (const uint32_t corner : mesh.polygon(i)) at.push_back(welded[corner]);
         if (at.size() < 4 || std::find(at.begin(), at.end(), no_vertex) != at.end()) continue;
         at = least_rotation(std::move(at));
         compared.push_back(i);
         first[i] = corners.size();
         corners.insert(corners.end(), at.begin(), at.end());
     }
-    const auto corners_of = [&](uint32_t i) { return std::span(corners).subspan(first[i], polygons[i].size()); };
+    const auto corners_of = [&](uint32_t n) { return std::span(corners).subspan(first[n], mesh.polygon(n).size()); };
     const auto compare = [&](uint32_t a, uint32_t b) {
         const auto p = corners_of(a), q = corners_of(b);
         return std::lexicographical_compare_three_way(p.begin(), p.end(), q.begin(), q.end());
     };
     std::stable_sort(compared.begin(), compared.end(), [&](uint32_t a, uint32_t b) { return compare(a, b) < 0; });
-    for (size_t i = 1; i < compared.size(); ++i) doubled[compared[i]] = compare(compared[i - 1], compared[i]) == 0;
+    for (size_t n = 1; n < compared.size(); ++n) doubled[compared[n]] = compare(compared[n - 1], compared[n]) == 0;
     return doubled;
 }
 

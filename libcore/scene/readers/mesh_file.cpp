@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "base/file_bytes.h"
 #include "cistula/numerics/vec.h"
 #include "scene/description/rotation.h"
-#include "scene/readers/doubled_polygons.h"
 #include "scene/readers/mesh_text.h"
 #include "scene/readers/obj_file.h"
 #include "scene/readers/ply_file.h"
@@ -33,7 +33,7 @@ std::string ply_bytes(const std::string& path, const std::string& label) {
 }
 
 /// What lies beside an OBJ, and how it is named in messages. Adds the files that it names to `files`.
-ObjSurroundings surroundings_of(const std::string& file, const std::string& place, std::vector<std::string>* files) {
+ObjSurroundings surroundings_of(const std::string& file, std::vector<std::string>& files) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     const auto path_of = [folder](std::string name) {
         std::error_code error;
@@ -42,12 +42,12 @@ ObjSurroundings surroundings_of(const std::string& file, const std::string& plac
         return (folder / name).string();
     };
     ObjSurroundings around;
-    around.has = [path_of, files](const std::string& name) {
-        if (files) files->push_back(path_of(name));
+    around.has = [path_of, &files](const std::string& name) {
+        files.push_back(path_of(name));
         std::error_code error;
         return std::filesystem::is_regular_file(path_of(name), error);
     };
-    around.label = [path_of, place](const std::string& name) { return place + ": mesh " + path_of(name); };
+    around.label = [path_of](const std::string& name) { return "mesh " + path_of(name); };
     around.bytes = [path_of, label = around.label](const std::string& name) {
         return text_bytes(path_of(name), label(name));
     };
@@ -80,29 +80,25 @@ CoordinateRounding placed_rounding(std::span<const dvec3> vertices, const MeshOb
     return rounding;
 }
 
-MeshPart part_of(PolygonMesh&& from, const MeshObject& object) {
+MeshPart part_of(const PolygonMesh& from, const MeshObject& object) {
     MeshPart part;
-    part.name = std::move(from.name);
-    part.material = std::move(from.material);
+    part.name = from.name;
+    part.material = from.material;
     MeshSource& mesh = part.mesh;
+    mesh.rounding = placed_rounding(from.vertices, object);
     const Rotation rotation(object.rotation);
-    mesh.owned_vertices = std::move(from.vertices);
-    mesh.rounding = placed_rounding(mesh.owned_vertices, object);
-    for (dvec3& p : mesh.owned_vertices) p = object.center + rotation(object.scale * p);
-    std::vector<std::span<const uint32_t>> polygons;
-    polygons.reserve(from.ends.size());
-    for (size_t i = 0; i < from.ends.size(); ++i) polygons.push_back(from.polygon(i));
-    const std::vector<bool> doubled = doubled_polygons(mesh.owned_vertices, polygons);
-    mesh.owned_triangles.reserve(polygons.size());
-    for (size_t i = 0; i < polygons.size(); ++i) {
+    mesh.owned_vertices.reserve(from.vertices.size());
+    for (const dvec3& p : from.vertices)
+        mesh.owned_vertices.push_back(object.center + rotation(object.scale * p));
+    const std::vector<bool> doubled = doubled_polygons(mesh.owned_vertices, from);
+    mesh.owned_triangles.reserve(from.size());
+    for (size_t i = 0; i < from.size(); ++i) {
         if (doubled[i])
             ++mesh.doubled_polygons;
         else
-            append_polygon(mesh.owned_vertices, polygons[i], mesh.owned_triangles);
+            append_polygon(mesh.owned_vertices, from.polygon(i), mesh.owned_triangles);
     }
-    // Files have v = 0 at the bottom of the picture, Cistula at the top.
-    mesh.owned_uvs = std::move(from.uvs);
-    for (glm::dvec2& uv : mesh.owned_uvs) uv.y = 1.0 - uv.y;
+    mesh.owned_uvs = from.uvs;
     mesh.view_owned();
     return part;
 }
@@ -118,44 +114,61 @@ void part_corners(PolygonMesh& mesh) {
         corner = static_cast<uint32_t>(vertices.size() - 1);
     }
     mesh.vertices = std::move(vertices);
-    mesh.uvs = std::move(mesh.corner_uvs);
+    mesh.uvs = std::exchange(mesh.corner_uvs, {});
+}
+
+bool has_faces(const PolygonMesh& group) {
+    for (size_t i = 0; i < group.size(); ++i)
+        if (group.polygon(i).size() > 2) return true;
+    return false;
 }
 
 }  // namespace
 
-std::vector<MeshPart> parts_of(std::vector<PolygonMesh> meshes, const MeshObject& object) {
+MeshData mesh_data(std::vector<PolygonMesh> groups) {
+    MeshData data;
+    data.groups = std::move(groups);
+    for (PolygonMesh& group : data.groups) {
+        part_corners(group);
+        for (glm::dvec2& uv : group.uvs) uv.y = 1.0 - uv.y;
+    }
+    return data;
+}
+
+MeshData read_mesh(const std::string& file) {
+    const std::string kind = lower_extension(file);
+    const std::string label = "mesh " + file;
+    if (kind != ".ply" && kind != ".obj") throw Error(ExitCode::file, label + ": must be a .ply or an .obj file");
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+        throw Error(ExitCode::file, label + ": cannot be read: there is no such file; check the path");
+
+    std::vector<PolygonMesh> groups;
+    std::vector<std::string> warnings, files = {file};
+    {
+        const bool is_obj = kind == ".obj";
+        const std::string bytes = utf8_of(is_obj ? text_bytes(file, label) : ply_bytes(file, label));
+        if (is_obj)
+            groups = read_obj(bytes, label, surroundings_of(file, files), warnings);
+        else
+            groups.push_back(read_ply(bytes, label, warnings));
+    }
+    if (std::none_of(groups.begin(), groups.end(), has_faces))
+        throw Error(ExitCode::file, label + ": has no faces; give a file with polygons");
+    MeshData data = mesh_data(std::move(groups));
+    data.warnings = std::move(warnings);
+    data.files = std::move(files);
+    return data;
+}
+
+std::vector<MeshPart> placed_parts(const MeshData& data, const MeshObject& object) {
     std::vector<MeshPart> parts;
-    for (PolygonMesh& mesh : meshes) {
-        part_corners(mesh);
-        MeshPart part = part_of(std::move(mesh), object);
+    for (const PolygonMesh& group : data.groups) {
+        MeshPart part = part_of(group, object);
         if (part.mesh.triangles.empty()) continue;
         if (part.name.empty()) part.name = std::to_string(parts.size());
         parts.push_back(std::move(part));
     }
-    return parts;
-}
-
-std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place, std::vector<std::string>& warnings,
-                                std::vector<std::string>* files) {
-    if (files) files->push_back(object.file);
-    const std::string kind = lower_extension(object.file);
-    const std::string label = place + ": mesh " + object.file;
-    if (kind != ".ply" && kind != ".obj") throw Error(ExitCode::file, label + ": must be a .ply or an .obj file");
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(object.file, error))
-        throw Error(ExitCode::file, label + ": cannot be read: there is no such file; check the path");
-
-    std::vector<PolygonMesh> meshes;
-    {
-        const bool is_obj = kind == ".obj";
-        const std::string bytes = utf8_of(is_obj ? text_bytes(object.file, label) : ply_bytes(object.file, label));
-        if (is_obj)
-            meshes = read_obj(bytes, label, surroundings_of(object.file, place, files), warnings);
-        else
-            meshes.push_back(read_ply(bytes, label, warnings));
-    }
-    std::vector<MeshPart> parts = parts_of(std::move(meshes), object);
-    if (parts.empty()) throw Error(ExitCode::file, label + ": has no faces; give a file with polygons");
     return parts;
 }
 

@@ -11,20 +11,21 @@
 
 namespace cistula {
 
-/// The triangles of a file that share one material; with uvs where the file has them.
+/// The triangles of a mesh that share one material; with uvs where the mesh has them.
 struct MeshPart {
     std::string name;
     MeshSource mesh;
     std::optional<MaterialDescription> material;  // OBJ with a material library
 };
 
-/// The triangles of what a file says, in file order, rotated, scaled and translated; v counts from the top. Polygons
-/// that are there twice and parts without triangles are left out.
-std::vector<MeshPart> parts_of(std::vector<PolygonMesh> meshes, const MeshObject& object);
+/// What was read of a mesh file, whose v counts from the bottom of the picture, as a mesh.
+MeshData mesh_data(std::vector<PolygonMesh> groups);
 
-/// Reads a mesh file; its parts in file order, at least one. `place` opens the messages; adds warnings, and to `files`
-/// the mesh and the files that it names, material libraries and their maps. Throws Error(ExitCode::file).
-std::vector<MeshPart> read_mesh(const MeshObject& object, const std::string& place, std::vector<std::string>& warnings,
-                                std::vector<std::string>* files = nullptr);
+/// Reads a mesh file: groups in file order, with a polygon at least. Throws Error(ExitCode::file) that names it.
+MeshData read_mesh(const std::string& file);
+
+/// The triangles of a mesh, in file order, rotated, scaled and translated. Polygons that are there twice and groups
+/// without triangles are left out.
+std::vector<MeshPart> placed_parts(const MeshData& data, const MeshObject& object);
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-// Triangulation of polygons in space.
+// Polygons in space: their triangulation, and which are there more than once.
 #pragma once
 
 #include <array>
@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <glm/vec3.hpp>
+
+#include "scene/readers/polygon_mesh.h"
 
 namespace cistula {
 
@@ -20,5 +22,10 @@ inline constexpr size_t most_corners_in_order = 64;
 /// there is no ear (the polygon crosses itself), the next corner is clipped all the same.
 void append_polygon(std::span<const glm::dvec3> vertices, std::span<const uint32_t> corners,
                     std::vector<std::array<uint32_t, 3>>& triangles);
+
+/// For each polygon of a mesh whose vertices are placed, whether an earlier one has the same corners in the same cyclic
+/// order or in its reverse; corners at equal positions are the same. Polygons with fewer than four corners, or one that
+/// is not finite, never count: find_pieces compares triangles.
+std::vector<bool> doubled_polygons(std::span<const glm::dvec3> vertices, const PolygonMesh& mesh);
 
 }  // namespace cistula

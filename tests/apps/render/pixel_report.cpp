@@ -197,7 +197,7 @@ TEST(SceneNames, NameWhatIsCompiled) {
         SCOPED_TRACE(file);
         const SceneDescription scene = read_scene(file);
         const auto compiled = compile_scene<double>(scene);
-        const SceneNames names = name_scene(scene);
+        const SceneNames names = name_scene(gather_scene(scene));
         ASSERT_EQ(names.solids.size(), compiled->solids.size());
         for (size_t i = 0; i < names.solids.size(); ++i) EXPECT_EQ(names.solids[i].name, compiled->solid_names[i]);
         EXPECT_EQ(names.materials.size(), compiled->materials.size());

@@ -1,0 +1,161 @@
+#include "scene/assets/assets.h"
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <tuple>
+
+#include "cistula/numerics/vec.h"
+#include "image/reader/picture_reader.h"
+#include "scene/readers/mesh_file.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+/// What `read` returns; its errors get the place.
+template <class Read>
+auto at_place(const SceneDescription& scene, const std::string& place, const Read& read) {
+    try {
+        return read();
+    } catch (const Error& error) {
+        throw scene_error(scene, place, error.what(), error.code());
+    }
+}
+
+/// Throws unless a list of triangles, three corners each, is one.
+void check_triangles(size_t vertices, std::span<const uint32_t> corners, std::span<const glm::dvec2> uvs) {
+    const auto refuse = [](const std::string& text) { throw Error(ExitCode::usage, text); };
+    if (corners.empty()) refuse("there are no triangles; give at least one");
+    for (const uint32_t corner : corners)
+        if (corner >= vertices)
+            refuse("a triangle names vertex " + std::to_string(corner) + ", but there are only " +
+                   std::to_string(vertices) + " (numbered from 0)");
+    if (!uvs.empty() && uvs.size() != vertices)
+        refuse("there are " + std::to_string(uvs.size()) + " uvs for " + std::to_string(vertices) +
+               " vertices; give one a vertex, or none");
+    for (const glm::dvec2& uv : uvs)
+        if (!is_finite(uv.x) || !is_finite(uv.y)) refuse("a uv is not finite");
+}
+
+void check_mesh(const MeshData& mesh) {
+    const auto refuse = [](const std::string& text) { throw Error(ExitCode::usage, "the mesh " + text); };
+    if (mesh.groups.empty()) refuse("has no groups; give at least one");
+    for (const PolygonMesh& group : mesh.groups) {
+        if (!group.corner_uvs.empty()) refuse("has uvs by corners; give one a vertex, or none");
+        size_t end = 0;
+        for (const size_t next : group.ends) {
+            if (next < end || next > group.corners.size()) refuse("has polygons that end before they begin");
+            end = next;
+        }
+        if (group.ends.empty() ? group.corners.size() % 3 != 0 : end != group.corners.size())
+            refuse("has corners beyond its last polygon");
+        if (!group.corners.empty()) check_triangles(group.vertices.size(), group.corners, group.uvs);
+    }
+}
+
+ColorPicture checker_picture(const TextureDescription& texture) {
+    for (const dvec3& color : texture.checker)
+        if (!is_finite(glm::vec3(color)) || color.x < 0 || color.y < 0 || color.z < 0)
+            throw Error(ExitCode::usage, "a color is negative or not finite");
+    const glm::vec3 a(texture.checker[0]), b(texture.checker[1]);
+    return {2, 2, {a, b, b, a}};
+}
+
+class AssetLoader {
+  public:
+    explicit AssetLoader(const SceneDescription& scene) : scene_(scene), reader_(limits_of(scene)) {}
+
+    SceneAssets load() {
+        for (const TextureDescription& texture : scene_.textures)
+            if (!texture.file.empty()) assets_.files.push_back(texture.file);
+        for (const ObjectDescription& object : scene_.objects)
+            assets_.meshes.push_back(at_place(scene_, object.place, [&] { return mesh_of(object); }));
+        assets_.pictures.resize(scene_.textures.size());
+        for (const ObjectDescription& object : scene_.objects) load_texture_of(object);
+        return std::move(assets_);
+    }
+
+  private:
+    static TextureLimits limits_of(const SceneDescription& scene) {
+        TextureLimits limits;
+        limits.bytes = scene.texture_bytes.value_or(limits.bytes);
+        return limits;
+    }
+
+    std::shared_ptr<const MeshData> mesh_of(const ObjectDescription& object) {
+        if (const auto* list = std::get_if<TrianglesObject>(&object.shape)) {
+            std::span<const uint32_t> corners;
+            if (!list->triangles.empty()) corners = {list->triangles.front().data(), 3 * list->triangles.size()};
+            check_triangles(list->vertices.size(), corners, list->uvs);
+        }
+        const auto* mesh = std::get_if<MeshObject>(&object.shape);
+        if (!mesh) return nullptr;
+        std::shared_ptr<const MeshData> data = mesh->data;
+        if (data) {
+            check_mesh(*data);
+            return data;
+        }
+        std::shared_ptr<const MeshData>& read = meshes_[std::filesystem::path(mesh->file).lexically_normal()];
+        if (!read) {
+            read = std::make_shared<const MeshData>(read_mesh(mesh->file));
+            check_mesh(*read);
+            assets_.files.insert(assets_.files.end(), read->files.begin(), read->files.end());
+        }
+        return read;
+    }
+
+    /// Reads the texture of the object's material, if it is the first to use that.
+    void load_texture_of(const ObjectDescription& object) {
+        if (object.material < 0 || object.material >= static_cast<int>(scene_.materials.size())) return;
+        const int number = scene_.materials[static_cast<size_t>(object.material)].texture;
+        if (number < 0 || number >= static_cast<int>(scene_.textures.size())) return;
+        const auto index = static_cast<size_t>(number);
+        const TextureDescription& texture = scene_.textures[index];
+        if (assets_.pictures[index]) return;
+        const std::string place = texture.place.empty() ? "/textures/" + std::to_string(number) : texture.place;
+        assets_.pictures[index] = at_place(scene_, place, [&] { return picture_of(texture, place); });
+    }
+
+    std::shared_ptr<const ColorPicture> picture_of(const TextureDescription& texture, const std::string& place) {
+        if (!is_finite(texture.repeat.x) || !is_finite(texture.repeat.y))
+            throw Error(ExitCode::usage, "the repeat must be finite");
+        if (texture.is_checker()) return std::make_shared<const ColorPicture>(checker_picture(texture));
+        std::shared_ptr<const ColorPicture>& read = pictures_[{texture.file, texture.texels.get(), texture.colorspace,
+                                                               texture.strict}];
+        if (read) return read;
+        ClampedTexels found;
+        ClampedTexels* clamped = texture.strict ? nullptr : &found;
+        read = std::make_shared<const ColorPicture>(texture.texels
+                                                        ? reader_.decode(*texture.texels, clamped, texture.colorspace)
+                                                        : reader_.read(texture.file, clamped, texture.colorspace));
+        if (found.count() > 0) {
+            const std::string name = texture.texels ? "" : texture.file + ": ";
+            assets_.warnings.push_back(scene_error(scene_, place, name + found.warning()).what());
+        }
+        return read;
+    }
+
+    const SceneDescription& scene_;
+    TextureReader reader_;
+    SceneAssets assets_;
+    std::map<std::string, std::shared_ptr<const MeshData>> meshes_;  // by file
+    std::map<std::tuple<std::string, const TexelArray*, std::string, bool>, std::shared_ptr<const ColorPicture>>
+        pictures_;
+};
+
+}  // namespace
+
+SceneAssets load_assets(const SceneDescription& scene) {
+    return AssetLoader(scene).load();
+}
+
+Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text,
+                  ExitCode code) {
+    std::string message = description.source.empty() ? "scene" : description.source;
+    if (!place.empty()) message += ": " + place;
+    return {code, message + ": " + text};
+}
+
+}  // namespace cistula
