@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/common/film_loop.h"
 #include "apps/common/pixel_report.h"
 
 namespace cistula {
@@ -37,9 +36,8 @@ class PixelJson {
         const Film& film = report_.tree.film;
         Json samples = Json::array();
         for (const SampleTree& sample : report_.tree.samples) samples.push_back(sample_entry(sample));
-        const std::string flags = describe_flags(film.flags, report_.scene);
         Json json = {
-            {"scene", report_.scene.source},
+            {"scene", report_.scene},
             {"scene_hash", report_.scene_hash},
             {"cistula_version", CISTULA_VERSION},
             {"frame", report_.camera.frame},
@@ -54,7 +52,7 @@ class PixelJson {
             {"samples", std::move(samples)},
             {"totals", totals()},
         };
-        if (!flags.empty()) json["cannot_be_trusted"] = flags;
+        if (!report_.flaws.empty()) json["cannot_be_trusted"] = report_.flaws;
         return json;
     }
 

@@ -22,7 +22,7 @@
 #include "apps/common/step_progress.h"
 #include "apps/common/timing.h"
 #include "apps/common/view_options.h"
-#include "backend_embree/pixel_tree/embree_pixel_tree.h"
+#include "backend_embree/embree/embree_renderer.h"
 #include "explain.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
@@ -321,19 +321,19 @@ void report_pixel(const RenderOptions& options, const SceneDescription& scene, S
                   const FrameSettings& settings, const CameraFrame& camera) {
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
     print_warnings(compiled->warnings, options);
-    const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, options.pixel.x, options.pixel.y);
-    const SceneNames names = name_scene(scene);
-    const PixelReport report{options.pixel.x, options.pixel.y, options.precision, scene, names, settings, camera, tree,
-                             compiled->hash};
+    PixelTree tree =
+        make_embree_renderer<Real>(compiled)->pixel_tree(camera, settings, options.pixel.x, options.pixel.y);
+    const std::string flaws = describe_flags(tree.film.flags, scene);
+    const PixelReport report{options.pixel.x, options.pixel.y, options.precision, scene.source,   name_scene(scene),
+                             settings,        camera,          std::move(tree),   compiled->hash, flaws};
     if (options.json != "-") print(pixel_text(report, options.verbose));
     if (options.json == "-")
         print(pixel_json(report));
     else if (!options.json.empty())
         write_file_atomically(options.json, pixel_json(report));
-    if (tree.film.flags != 0)
-        throw Error(ExitCode::failed,
-                    fmt::format("{}: pixel {},{} cannot be trusted: {}", scene.source, options.pixel.x, options.pixel.y,
-                                describe_flags(tree.film.flags, scene)));
+    if (!flaws.empty())
+        throw Error(ExitCode::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", scene.source,
+                                                  options.pixel.x, options.pixel.y, flaws));
 }
 
 void report_pixel(RenderOptions options) {

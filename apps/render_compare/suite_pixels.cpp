@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "apps/common/pixel_report.h"
-#include "backend_embree/pixel_tree/embree_pixel_tree.h"
+#include "backend_embree/embree/embree_renderer.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/scene_names.h"
 #include "scene/image/picture/picture.h"
@@ -35,17 +35,17 @@ Followed follow(const SuiteCase& one, const SceneDescription& scene, const Frame
                 int frame, const SuitePixel& pixel) {
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
     const CameraFrame camera = camera_at(scene.camera, frame);
-    const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, pixel.x, pixel.y);
-    const SceneNames names = name_scene(scene);
+    PixelTree tree = make_embree_renderer<Real>(compiled)->pixel_tree(camera, settings, pixel.x, pixel.y);
     Followed followed;
-    followed.text =
-        pixel_text({pixel.x, pixel.y, precision, scene, names, settings, camera, tree, compiled->hash}, false);
     OutputChannels channels;  // R G B A alone, as the case has them
     channels.half = one.channels.half;
     channels.transparent = one.channels.transparent;
     channels.space = one.channels.space;
     followed.picture = to_layers(tree.film, channels);
     round_to_stored(followed.picture);
+    followed.text = pixel_text({pixel.x, pixel.y, precision, scene.source, name_scene(scene), settings, camera,
+                                std::move(tree), compiled->hash, ""},
+                               false);
     return followed;
 }
 
