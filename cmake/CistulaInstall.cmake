@@ -2,21 +2,31 @@
 # find_package(cistula) with the targets cistula::cistula | scene | embree | cuda | sequence | compare, the programs' and cistula_add_golden_suite.
 include(CMakePackageConfigHelpers)
 
-# Headers: the shading library, whole; of the scene library those that cistula.h lists, which are public, and those that they
-# include, which are internal. tests/package compiles each alone, as another project sees it.
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS libcore/cistula.h)
-file(STRINGS libcore/cistula.h _headers REGEX "^#include \"")
-list(TRANSFORM _headers REPLACE "^#include \"([^\"]+)\".*" "\\1")
-list(APPEND _headers cistula.h base/pixel_rect.h base/shown_text.h scene/compile/effect_reason.h scene/compile/hull.h scene/compile/mesh_edges.h scene/description/coordinate_rounding.h scene/description/mesh_source.h
-    render/record/film_layers.h
-    render/record/film_memory.h
-    render/record/film_pixels.h
-    render/finished_tiles.h
-    image/color/color_space.h)
-foreach(_header IN LISTS _headers)
-    cmake_path(GET _header PARENT_PATH _folder)
-    install(FILES "libcore/${_header}" DESTINATION "${CISTULA_INSTALL_HEADERS}/${_folder}")
-endforeach()
+# Headers: the shading library, whole; of the others those that cistula.h lists, which are public, and what they include, which is
+# internal. tests/package compiles each alone, as another project sees it.
+function(cistula_add_header header)
+    if(header IN_LIST _headers OR header MATCHES "^cistula/")
+        return()
+    endif()
+    set(file "${PROJECT_SOURCE_DIR}/libcore/${header}")
+    if(NOT EXISTS "${file}")
+        set(file "${PROJECT_SOURCE_DIR}/${header}")  # of a backend
+    endif()
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+    list(APPEND _headers "${header}")
+    cmake_path(GET header PARENT_PATH folder)
+    install(FILES "${file}" DESTINATION "${CISTULA_INSTALL_HEADERS}/${folder}")
+    file(STRINGS "${file}" includes REGEX "^#include \"")
+    foreach(line IN LISTS includes)
+        string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" included "${line}")
+        cistula_add_header("${included}")
+    endforeach()
+    set(_headers "${_headers}" PARENT_SCOPE)
+endfunction()
+set(_headers "")
+cistula_add_header(cistula.h)
+cistula_add_header(backend_embree/embree/embree_renderer.h)
+cistula_add_header(backend_cuda/host/cuda_renderer.h)
 install(DIRECTORY libcore/cistula DESTINATION "${CISTULA_INSTALL_HEADERS}" FILES_MATCHING PATTERN "*.h")
 
 # Scenes beside the schema that they name. Documents lie as in the source tree, so that their links hold.
@@ -74,13 +84,6 @@ if(TARGET render-compare)
     install(FILES cmake/CistulaGoldenSuite.cmake cmake/CistulaSuiteTests.cmake DESTINATION "${CISTULA_INSTALL_CMAKE}")
     list(APPEND CISTULA_COMPONENTS programs)
 endif()
-if(TARGET cistula_embree)
-    install(FILES backend_embree/embree/embree_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_embree/embree")
-endif()
-if(TARGET cistula_cuda OR TARGET cistula_sequence)  # programs ask for GPUs in any build
-    install(FILES backend_cuda/host/cuda_renderer.h DESTINATION "${CISTULA_INSTALL_HEADERS}/backend_cuda/host")
-endif()
-
 set(CISTULA_READ_PICTURE "cistula-read-picture${CMAKE_EXECUTABLE_SUFFIX}")
 set(CISTULA_OIIO_MODULE "")
 if(TARGET cistula_oiio)

@@ -1,21 +1,33 @@
-// The public headers of cistula::scene: from a scene file to a compiled scene, from a film to files. A backend renders
-// in between: backend_embree/embree/embree_renderer.h, backend_cuda/host/cuda_renderer.h. docs/library.md has an
-// example. What else these include is internal: it is installed, and may change with any version.
+// The public headers of the libraries; docs/library.md has examples. What else these include is internal: it is
+// installed, and may change with any version.
 #pragma once
 
-#include "base/error.h"                      // what every function throws
-#include "image/exr/exr.h"                   // write_exr
-#include "image/picture/picture.h"           // ColorPicture, LayeredPicture
-#include "image/picture/picture_io.h"        // write_preview, read_texture
-#include "render/frame_settings.h"           // frame_settings
-#include "render/record/film.h"              // Film
-#include "render/record/film_picture.h"      // to_layers, to_color
-#include "render/record/frame_header.h"      // header_attributes
-#include "render/renderer.h"                 // FrameSettings, Renderer
-#include "scene/compile/compiled_scene.h"    // compile_scene
-#include "scene/compile/precision_choice.h"  // choose_precision: float or double
-#include "scene/compile/scene_source.h"      // gather_scene
-#include "scene/compile/smallest_part.h"     // smallest_part
-#include "scene/description/camera_path.h"   // camera_at
-#include "scene/description/description.h"   // SceneDescription
-#include "scene/readers/read_scene.h"        // read_scene
+// cistula::scene: scenes from files to arrays, pictures and their files
+#include "base/error.h"                     // what every function throws
+#include "image/exr/exr.h"                  // write_exr, read_exr
+#include "image/picture/picture.h"          // ColorPicture, LayeredPicture
+#include "image/picture/picture_io.h"       // write_preview, read_texture
+#include "image/picture/stored_picture.h"   // StoredFile: pictures as they are compared
+#include "render/frame_settings.h"          // frame_settings
+#include "render/pixel_report.h"            // pixel_text, pixel_json
+#include "render/record/film.h"             // Film
+#include "render/record/film_picture.h"     // to_layers, to_color
+#include "render/record/frame_header.h"     // header_attributes
+#include "render/renderer.h"                // FrameSettings, Renderer
+#include "render/scene.h"                   // Scene
+#include "scene/description/camera_path.h"  // camera_at
+#include "scene/description/description.h"  // SceneDescription
+#include "scene/readers/read_scene.h"       // read_scene
+
+// cistula::embree, cistula::cuda: renderers
+#include "backend_cuda/host/cuda_renderer.h"        // make_cuda_renderer
+#include "backend_embree/embree/embree_renderer.h"  // make_embree_renderer
+
+// cistula::sequence: films
+#include "sequence/backends.h"   // make_renderer
+#include "sequence/film_loop.h"  // render_film
+#include "sequence/merge.h"      // tiles put together
+
+// cistula::compare: pictures and suites
+#include "compare/metrics/compare.h"  // compare_files
+#include "compare/suite/suite_run.h"  // run_cases

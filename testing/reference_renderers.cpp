@@ -1,7 +1,9 @@
 #include "testing/reference_renderers.h"
 
 #include "backend_embree/host/frame_loop.h"
+#include "backend_embree/host/ray_queries.h"
 #include "cistula/traversal/bvh.h"
+#include "render/frame/ray_questions.h"
 
 namespace cistula {
 namespace {
@@ -19,6 +21,18 @@ class HostRenderer : public Renderer {
         FrameTask task(*scene_, intersector, camera, settings, film, progress);
         effects_ = task.effects();
         return task.run();
+    }
+    RayHits intersect(std::span<const glm::dvec3> origins, std::span<const glm::dvec3> directions) override {
+        const Intersector intersector{view_};
+        return ray_hits<Real>(*scene_, origins, directions, [&](auto questions, auto answers) {
+            SingleQueries<Real, Intersector>{intersector}.rays(questions, answers);
+        });
+    }
+    std::vector<glm::dvec3> transmittance(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to) override {
+        const Intersector intersector{view_};
+        return segment_shares<Real>(*scene_, from, to, [&](auto questions, auto shares) {
+            SingleQueries<Real, Intersector>{intersector}.segments(questions, shares);
+        });
     }
     uint32_t effects() const override { return effects_; }
     std::string intersector() const override { return name_; }

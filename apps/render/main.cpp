@@ -15,7 +15,7 @@
 #include "apps/common/render_options.h"
 #include "apps/common/step_progress.h"
 #include "apps/common/view_options.h"
-#include "backend_embree/pixel_tree/embree_pixel_tree.h"
+#include "backend_embree/embree/embree_renderer.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/stages.h"
@@ -68,24 +68,24 @@ void choose_precision(RenderOptions& options, const SceneSource& source) {
     if (!choice.note.empty() && !options.quiet) note(fmt::format("render: {}", choice.note));
 }
 
-/// A scene that is ready to be rendered.
-struct Prepared {
-    std::unique_ptr<Renderer> renderer;
-    std::shared_ptr<const LayerNames> layer_names;
-};
+/// Says what the compilation of a scene found, and keeps its precision.
+void tell_of(const Scene& scene, RenderOptions& options) {
+    options.precision = scene.precision();
+    print_warnings(scene.warnings(), options);
+    if (!scene.precision_note().empty() && !options.quiet) note(fmt::format("render: {}", scene.precision_note()));
+}
 
-template <class Real>
-Prepared prepare(SceneSource source, const RenderOptions& options, std::future<ChosenDevices> choice, RunStats& stats) {
-    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
-    stats.scene_hash = compiled->hash;
-    stats.required_effects = compiled->effects;
-    print_warnings(compiled->warnings, options);
+/// A renderer on the devices that are being made ready.
+std::unique_ptr<Renderer> renderer_of(const Scene& scene, const RenderOptions& options,
+                                      std::future<ChosenDevices> choice, RunStats& stats) {
+    stats.scene_hash = scene.hash();
+    stats.required_effects = scene.effects();
     enter_stage(Stage::device);
     const ChosenDevices devices = choice.get();
     stats.devices = devices.names;
     stats.driver = devices.driver;
     enter_stage(Stage::tree);
-    return {make_renderer<Real>(options.backend, compiled, devices.options), compiled->layer_names};
+    return make_renderer(options.backend, scene, devices.options);
 }
 
 /// The names of the images and previews, and their frames.
@@ -232,12 +232,13 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
         const std::vector<std::string> read = source.files;
         prepare_files(options, scene, others, read, outputs);
         enter_stage(Stage::compile);
-        choose_precision(options, source);
-        Prepared prepared = options.precision == Precision::double_
-                                ? prepare<double>(std::move(source), options, std::move(devices), stats)
-                                : prepare<float>(std::move(source), options, std::move(devices), stats);
+        std::optional<Scene> compiled(std::in_place, std::move(source), options.wanted_precision);
+        tell_of(*compiled, options);
+        std::unique_ptr<Renderer> made = renderer_of(*compiled, options, std::move(devices), stats);
+        Renderer& renderer = *made;
+        const std::shared_ptr<const LayerNames> layer_names = compiled->layer_names();
+        compiled.reset();  // the renderer keeps what it needs
         enter_stage(Stage::other);
-        Renderer& renderer = *prepared.renderer;
         guard.watch(progress.stop);
         std::optional<StatsFile> file;
         if (!options.stats.empty()) file.emplace(options.stats, settings, !stats.devices.empty());
@@ -247,7 +248,7 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
             stats.effects = renderer.effects();
             stats.scene_bytes = renderer.memory();
             enter_stage(Stage::end);  // of what the renderer has, too, so that the time for that is among the stages
-            prepared.renderer.reset();
+            made.reset();
             enter_stage(Stage::other);
             if (file) file->finish(stats, options);
         };
@@ -260,7 +261,7 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
         }
         FilmProgress report(options.progress, talk_of(options), progress);
         FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames, report};
-        job.layer_names = prepared.layer_names;
+        job.layer_names = layer_names;
         job.snapshot_requests = &snapshot_requests;
         require_light_layers(options.channels, *job.layer_names);
         outputs.layers = layers_with_files(job);
@@ -294,13 +295,6 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
     });
 }
 
-template <class Real>
-std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const RenderOptions& options,
-                                      const CudaOptions& cuda) {
-    return make_renderer<Real>(options.backend, std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene)),
-                               cuda);
-}
-
 void measure_scene(RenderOptions options) {
     const ChosenDevices devices = choose_devices(options.backend, options.devices);
     const SceneDescription scene = read_scene(options);
@@ -313,8 +307,7 @@ void measure_scene(RenderOptions options) {
         choose_precision(options, source);
         const Explanation explanation = explain_scene(std::move(source), options.precision);
         const auto make = [&](const SceneDescription& of) {
-            return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
-                                                           : renderer_of<float>(of, options, devices.options);
+            return make_renderer(options.backend, Scene(of, options.precision), devices.options);
         };
         const int frame = options.frames.empty() ? 0 : options.frames.front();
         const EffectCosts costs = measure_effects(scene, explanation.effects, frame, settings, make, progress);
@@ -322,24 +315,22 @@ void measure_scene(RenderOptions options) {
     });
 }
 
-template <class Real>
-void report_pixel(const RenderOptions& options, const SceneDescription& scene, SceneSource source,
+void report_pixel(RenderOptions options, const SceneDescription& description, SceneSource source,
                   const FrameSettings& settings, const CameraFrame& camera) {
-    const SceneNames names = name_scene(source);
-    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
-    print_warnings(compiled->warnings, options);
-    const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, options.pixel.x, options.pixel.y);
-    const PixelReport report{options.pixel.x, options.pixel.y, options.precision, scene, names, settings, camera, tree,
-                             compiled->hash};
+    const Scene scene(std::move(source), options.wanted_precision);
+    tell_of(scene, options);
+    PixelTree tree = make_embree_renderer(scene)->pixel_tree(camera, settings, options.pixel.x, options.pixel.y);
+    const std::string flaws = describe_flags(tree.film.flags, description);
+    const PixelReport report{options.pixel.x, options.pixel.y, scene.precision(), description.source, scene.names(),
+                             settings,        camera,          std::move(tree),   scene.hash(),       flaws};
     if (options.json != "-") print(pixel_text(report, options.verbose));
     if (options.json == "-")
         print(pixel_json(report));
     else if (!options.json.empty())
         write_file_atomically(options.json, pixel_json(report));
-    if (tree.film.flags != 0)
-        throw Error(ExitCode::failed,
-                    fmt::format("{}: pixel {},{} cannot be trusted: {}", scene.source, options.pixel.x, options.pixel.y,
-                                describe_flags(tree.film.flags, scene)));
+    if (!flaws.empty())
+        throw Error(ExitCode::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
+                                                  options.pixel.x, options.pixel.y, flaws));
 }
 
 void report_pixel(RenderOptions options) {
@@ -355,11 +346,7 @@ void report_pixel(RenderOptions options) {
         files.writes(options.json, "--json");
         make_directory_of(options.json);
     }
-    choose_precision(options, source);
-    if (options.precision == Precision::double_)
-        report_pixel<double>(options, scene, std::move(source), settings, camera);
-    else
-        report_pixel<float>(options, scene, std::move(source), settings, camera);
+    report_pixel(options, scene, std::move(source), settings, camera);
 }
 
 void run(const RenderOptions& options, std::string& memory_advice) {

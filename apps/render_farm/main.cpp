@@ -6,6 +6,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
+#include "backend_embree/embree/embree_renderer.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "job_files.h"
@@ -21,18 +22,6 @@ namespace cistula {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The scene as tasks render it: a renderer for small frames, and what names depend on.
-struct PreparedFilm {
-    std::unique_ptr<Renderer> renderer;
-    std::shared_ptr<const LayerNames> layer_names;
-};
-
-template <class Real>
-PreparedFilm prepare_film(SceneSource source) {
-    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
-    return {make_renderer<Real>(Backend::embree, compiled, {}), compiled->layer_names};
-}
 
 /// The name of a job: letters, digits and a few signs of the scene's name.
 std::string job_name(const std::string& scene) {
@@ -88,17 +77,16 @@ void write_job(const FarmOptions& farm) {
             ? std::optional<tbb::global_control>(std::in_place, tbb::global_control::max_allowed_parallelism,
                                                  static_cast<size_t>(options.threads))
             : std::nullopt;
-    SceneSource source = gather_scene(scene);
-    options.precision = choose_precision(options.wanted_precision, smallest_part(source)).precision;
-    const PreparedFilm film = options.precision == Precision::double_ ? prepare_film<double>(std::move(source))
-                                                                      : prepare_film<float>(std::move(source));
-    require_light_layers(options.channels, *film.layer_names);
-    const MeasuredFrames measured = measure_tiles(*film.renderer, scene, settings, frames, grid, progress);
+    const Scene compiled(scene, options.wanted_precision);
+    options.precision = compiled.precision();
+    require_light_layers(options.channels, *compiled.layer_names());
+    const std::unique_ptr<Renderer> renderer = make_embree_renderer(compiled);
+    const MeasuredFrames measured = measure_tiles(*renderer, scene, settings, frames, grid, progress);
 
     const OutputName none;
     FilmEvents nothing;
     FilmJob job{options, scene, "", settings, output, none, frames, nothing};
-    job.layer_names = film.layer_names;
+    job.layer_names = compiled.layer_names();
     FarmJob farm_job{job_name(options.scene),
                      fs::current_path().string(),
                      folder_of_programs(),

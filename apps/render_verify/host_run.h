@@ -29,7 +29,7 @@ Tally tally_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& se
         all = tbb::parallel_reduce(
             tbb::blocked_range<uint64_t>(0, count, 64), Tally(),
             [&](const auto& range, Tally tally) {
-                use_default_rounding();
+                const DefaultRounding rounding;
                 for (uint64_t i = range.begin(); i != range.end(); ++i) {
                     tally.place = place + i;
                     functor(setup, intersector, i, tally);
@@ -50,7 +50,7 @@ void words_on_host(HostPath path, const std::byte* bytes, const Setup<Real>& set
     const Case functor = functor_of<Case>(bytes);
     with_intersector<Real>(path, setup.scene, needs, [&](const CalledIntersector<Real>& intersector) {
         tbb::parallel_for(tbb::blocked_range<uint64_t>(0, count, 64), [&](const auto& range) {
-            use_default_rounding();
+            const DefaultRounding rounding;
             for (uint64_t i = range.begin(); i != range.end(); ++i)
                 out[i] = functor.fingerprint(setup, intersector, first + i);
         });

@@ -140,7 +140,7 @@ class CudaRenderer : public Renderer {
     /// of frames, a frame of one part is a single device's: to share it would take as much time of the host for each.
     FramePlan planned(const CameraFrame& camera, const FrameSettings& settings, bool others_follow) const {
         const InStage stage(Stage::plan);
-        use_default_rounding();
+        const DefaultRounding rounding;
         FramePlan plan;
         plan.camera = camera;
         plan.settings = settings;

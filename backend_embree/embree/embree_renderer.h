@@ -5,7 +5,7 @@
 #include <string>
 
 #include "render/renderer.h"
-#include "scene/compile/compiled_scene.h"
+#include "render/scene.h"
 
 namespace cistula {
 
@@ -15,10 +15,12 @@ struct EmbreeOptions {
     bool always_tree = false;   // trace one ray after the other, through Embree's tree; for tests
 };
 
-/// The CPU renderer. It uses the threads of the TBB arena or global_control that the caller set up. Throws Error
-/// (device) if Embree fails.
+/// The CPU renderer, and what it tells of rays and pixels. It uses the threads of the TBB arena or global_control that
+/// the caller set up. Throws Error (device) if Embree fails.
 template <class Real>
 std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
                                                const EmbreeOptions& options = {});
+
+std::unique_ptr<Renderer> make_embree_renderer(const Scene& scene, const EmbreeOptions& options = {});
 
 }  // namespace cistula

@@ -27,9 +27,4 @@ class EmbreeTree {
     ScenePointer scene_;
 };
 
-/// A renderer that traces one ray after the other through an existing tree of the scene.
-template <class Real>
-std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<const CompiledScene<Real>> scene,
-                                               std::shared_ptr<const EmbreeTree<Real>> tree);
-
 }  // namespace cistula

@@ -93,7 +93,7 @@ class FrameTask {
           film_(film),
           progress_(progress),
           lane_scene_(in_lanes),
-          frame_((use_default_rounding(), frame_view(compiled, camera, settings))),
+          frame_(frame_view(compiled, camera, settings)),
           hints_(frame_hints(compiled, frame_, settings)) {
         prepare_film(film, settings, compiled, camera);
         if (!(in_lanes != nullptr ? find_camera_solids(*in_lanes, frame_)
@@ -235,7 +235,7 @@ class FrameTask {
         std::mutex totals;
         const ShownTiles shown(progress_.tiles, film_, tile);
         tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
-            use_default_rounding();
+            const DefaultRounding rounding;
             Tile own(tile);
             for (int64_t t = range.begin(); t != range.end(); ++t) {
                 const int x = int(t % columns) * tile, y = int(t / columns) * tile;
@@ -273,6 +273,7 @@ class FrameTask {
             });
     }
 
+    const DefaultRounding rounding_;  // first: what follows is computed in it
     const Scene& scene_;
     const Intersector& intersector_;
     const FrameSettings& settings_;

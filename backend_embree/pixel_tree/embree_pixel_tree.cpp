@@ -2,9 +2,8 @@
 
 #include <stdexcept>
 
-#include "backend_embree/embree/embree_tree.h"
-#include "backend_embree/host/frame_loop.h"
 #include "backend_embree/pixel_tree/pixel_recorder.h"
+#include "base/default_rounding.h"
 #include "render/record/film_difference.h"
 
 namespace cistula {
@@ -46,20 +45,17 @@ bool adds_up(const PixelTree& tree) {
 }  // namespace
 
 template <class Real>
-PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<Real>> scene, const CameraFrame& camera,
-                            const FrameSettings& settings, int x, int y) {
-    use_default_rounding();
-    const SceneView<Real> view = scene->view();
-    const auto tree = std::make_shared<const EmbreeTree<Real>>(view, EmbreeOptions());
+PixelTree embree_pixel_tree(const CompiledScene<Real>& scene, const EmbreeIntersector<Real>& intersector,
+                            Renderer& renderer, const CameraFrame& camera, const FrameSettings& settings, int x,
+                            int y) {
+    const DefaultRounding rounding;
     uint32_t flags = 0;
-    PixelTree pixel =
-        record_pixel(*scene, view, EmbreeIntersector<Real>{view, tree->scene()}, camera, settings, x, y, flags);
-
+    PixelTree pixel = record_pixel(scene, intersector.scene, intersector, camera, settings, x, y, flags);
     FrameSettings alone = settings;
     alone.crop = {x, y, 1, 1};
     alone.parts = {};
     RenderProgress progress;
-    make_embree_renderer<Real>(scene, tree)->render(camera, alone, pixel.film, progress);
+    renderer.render(camera, alone, pixel.film, progress);
     if (!same_pixel(pixel) || flags != pixel.film.flags)
         throw std::logic_error("internal error: the ray tree is not what the renderer gives for this pixel");
     if (flags == 0 && !adds_up(pixel))
@@ -67,9 +63,9 @@ PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<Real>> scene, co
     return pixel;
 }
 
-template PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<float>>, const CameraFrame&,
-                                     const FrameSettings&, int, int);
-template PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<double>>, const CameraFrame&,
-                                     const FrameSettings&, int, int);
+template PixelTree embree_pixel_tree(const CompiledScene<float>&, const EmbreeIntersector<float>&, Renderer&,
+                                     const CameraFrame&, const FrameSettings&, int, int);
+template PixelTree embree_pixel_tree(const CompiledScene<double>&, const EmbreeIntersector<double>&, Renderer&,
+                                     const CameraFrame&, const FrameSettings&, int, int);
 
 }  // namespace cistula

@@ -3,16 +3,16 @@
 
 #include <memory>
 
+#include "backend_embree/embree/embree_intersector.h"
 #include "render/pixel_tree.h"
 #include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
 
 namespace cistula {
 
-/// The ray trees of pixel (x, y) of the frame; settings.crop is ignored. Throws std::logic_error if the trees do not
-/// give the renderer's result for that pixel bit for bit, and Error as a render does.
+/// Renderer::pixel_tree() of `renderer`, which renders the same scene on the CPU.
 template <class Real>
-PixelTree embree_pixel_tree(std::shared_ptr<const CompiledScene<Real>> scene, const CameraFrame& camera,
-                            const FrameSettings& settings, int x, int y);
+PixelTree embree_pixel_tree(const CompiledScene<Real>& scene, const EmbreeIntersector<Real>& intersector,
+                            Renderer& renderer, const CameraFrame& camera, const FrameSettings& settings, int x, int y);
 
 }  // namespace cistula

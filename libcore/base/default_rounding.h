@@ -8,10 +8,18 @@
 
 namespace cistula {
 
-/// Sets this thread to round to nearest, without flushing to zero: other libraries may have left it otherwise.
-inline void use_default_rounding() {
-    _mm_setcsr(0x1f80);
-}
+/// Makes this thread round to nearest, without flushing to zero, while it exists: other libraries may have left it
+/// otherwise. Then the thread has its former mode again.
+class DefaultRounding {
+  public:
+    DefaultRounding() : before_(_mm_getcsr()) { _mm_setcsr(0x1f80); }
+    ~DefaultRounding() { _mm_setcsr(before_); }
+    DefaultRounding(const DefaultRounding&) = delete;
+    DefaultRounding& operator=(const DefaultRounding&) = delete;
+
+  private:
+    unsigned before_;
+};
 
 /// Calls `function`. It, and all that it gives to TBB's other threads, rounds to nearest without flushing to zero;
 /// afterwards this thread has its former mode again.

@@ -36,9 +36,8 @@ class PixelJson {
         const Film& film = report_.tree.film;
         Json samples = Json::array();
         for (const SampleTree& sample : report_.tree.samples) samples.push_back(sample_entry(sample));
-        const std::string flags = describe_flags(film.flags, report_.scene);
         Json json = {
-            {"scene", report_.scene.source},
+            {"scene", report_.scene},
             {"scene_hash", report_.scene_hash},
             {"cistula_version", CISTULA_VERSION},
             {"frame", report_.camera.frame},
@@ -53,7 +52,7 @@ class PixelJson {
             {"samples", std::move(samples)},
             {"totals", totals()},
         };
-        if (!flags.empty()) json["cannot_be_trusted"] = flags;
+        if (!report_.flaws.empty()) json["cannot_be_trusted"] = report_.flaws;
         return json;
     }
 

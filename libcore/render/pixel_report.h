@@ -13,17 +13,18 @@ namespace cistula {
 struct PixelReport {
     int x, y;  // from the top left of the full frame
     Precision precision;
-    const SceneDescription& scene;
-    const SceneNames& names;
-    const FrameSettings& settings;
-    const CameraFrame& camera;
-    const PixelTree& tree;
+    std::string scene;  // SceneDescription::source
+    SceneNames names;
+    FrameSettings settings;
+    CameraFrame camera;
+    PixelTree tree;
     std::string scene_hash;
+    std::string flaws;  // why the pixel cannot be trusted; empty: it can
 };
 
 /// The report as text: the middle sample's tree, a line for each other sample, the totals. Verbose: all trees, nothing
 /// folded.
-std::string pixel_text(const PixelReport& report, bool verbose);
+std::string pixel_text(PixelReport report, bool verbose);
 
 /// The whole report as JSON; docs/programs.md documents the keys.
 std::string pixel_json(const PixelReport& report);

@@ -33,13 +33,6 @@ double largest(const glm::dvec3& c) {
     return std::max({c.x, c.y, c.z});
 }
 
-/// Names of a scene as one line each.
-SceneNames shown_names(SceneNames names) {
-    for (auto* list : {&names.solids, &names.materials, &names.lights, &names.visible_lights})
-        for (SceneNames::Named& named : *list) named.name = one_line(named.name);
-    return names;
-}
-
 std::string called(const SceneNames::Named& named) {
     return named.place.empty() ? named.name : fmt::format("{} ({})", named.name, named.place);
 }
@@ -340,17 +333,17 @@ void write_totals(const PixelReport& report, std::string& text) {
 
 }  // namespace
 
-std::string pixel_text(const PixelReport& raw, bool verbose) {
-    const SceneNames names = shown_names(raw.names);
-    const PixelReport report{raw.x,        raw.y,      raw.precision, raw.scene,     names,
-                             raw.settings, raw.camera, raw.tree,      raw.scene_hash};
+std::string pixel_text(PixelReport report, bool verbose) {
+    for (auto* list :
+         {&report.names.solids, &report.names.materials, &report.names.lights, &report.names.visible_lights})
+        for (SceneNames::Named& named : *list) named.name = one_line(named.name);
     const FrameSettings& settings = report.settings;
     const int k = settings.supersample;
-    std::string text = fmt::format("{}, frame {}: pixel {},{} of {}x{}; depth {}, cutoff {}, {}, {}\n\n",
-                                   one_line(report.scene.source), report.camera.frame, report.x, report.y,
-                                   settings.full_width, settings.full_height, settings.depth, settings.cutoff,
-                                   report.precision == Precision::double_ ? "double" : "float",
-                                   k == 1 ? std::string("one sample") : fmt::format("{} samples", k * k));
+    std::string text =
+        fmt::format("{}, frame {}: pixel {},{} of {}x{}; depth {}, cutoff {}, {}, {}\n\n", one_line(report.scene),
+                    report.camera.frame, report.x, report.y, settings.full_width, settings.full_height, settings.depth,
+                    settings.cutoff, report.precision == Precision::double_ ? "double" : "float",
+                    k == 1 ? std::string("one sample") : fmt::format("{} samples", k * k));
     const size_t middle = middle_sample(k);
     bool folded = false;
     for (size_t i = 0; i < report.tree.samples.size(); ++i) {

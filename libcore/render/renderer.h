@@ -4,10 +4,12 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "render/finished_tiles.h"
+#include "render/pixel_tree.h"
 #include "render/record/film.h"
 #include "scene/description/camera_path.h"
 #include "scene/description/description.h"
@@ -60,7 +62,19 @@ struct RenderTimes {
     double transfer = 0;  // from the end of that until the film is complete
 };
 
-/// Renders frames of one scene in one precision. Not thread-safe: one render at a time.
+/// The first crossings of rays, entry i that of ray i, in scene coordinates. Those of rays that meet nothing: infinity,
+/// -1, zeros.
+struct RayHits {
+    std::vector<double> distance;           // from the ray's origin
+    std::vector<int32_t> object, material;  // by the numbers of `names`
+    std::vector<int32_t> face;              // face of a convex solid, or number of the triangle in its object
+    std::vector<CrossingKind> crossing;     // enter: the ray comes from outside; leave: from inside
+    std::vector<glm::dvec3> point, normal;  // geometric, unit, toward the origin
+    std::vector<glm::dvec2> uv;             // texture coordinates, where the material has a texture
+    std::shared_ptr<const LayerNames> names;
+};
+
+/// Renders frames of one scene in one precision, and answers questions about it. Not thread-safe: one call at a time.
 class Renderer {
   public:
     virtual ~Renderer() = default;
@@ -68,6 +82,20 @@ class Renderer {
     /// Fills `film`. Returns false if it was stopped; the film is then incomplete. Throws Error.
     virtual bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                         RenderProgress& progress) = 0;
+
+    /// What rays meet first, in any order of the rays the same bits. Visible lights are not met. Directions have any
+    /// length. Where a ray starts on a face, rounding decides whether it meets that. Throws Error (usage) with the
+    /// number of the first ray that is none: not finite, or without a direction.
+    virtual RayHits intersect(std::span<const glm::dvec3> origins, std::span<const glm::dvec3> directions);
+
+    /// The share of light, per channel, that passes from one point to another as a shadow ray's does: straight, through
+    /// what is transparent. A light on faces, as the end of a segment, is not shaded by them. Throws as intersect()
+    /// does.
+    virtual std::vector<glm::dvec3> transmittance(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to);
+
+    /// The ray trees of pixel (x, y) of the frame; settings.crop is ignored. Throws std::logic_error if the trees do
+    /// not give the renderer's result for that pixel bit for bit, and Error as a render does.
+    virtual PixelTree pixel_tree(const CameraFrame& camera, const FrameSettings& settings, int x, int y);
 
     /// Announces a frame that is to be rendered after the next one and those announced before it, so that a device can
     /// start it early. A wrong announcement costs time and nothing else.

@@ -159,4 +159,8 @@ template std::unique_ptr<Renderer> make_renderer<float>(Backend, std::shared_ptr
 template std::unique_ptr<Renderer> make_renderer<double>(Backend, std::shared_ptr<const CompiledScene<double>>,
                                                          const CudaOptions&);
 
+std::unique_ptr<Renderer> make_renderer(Backend backend, const Scene& scene, const CudaOptions& options) {
+    return scene.visit([&](const auto& compiled) { return make_renderer(backend, compiled, options); });
+}
+
 }  // namespace cistula

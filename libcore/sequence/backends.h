@@ -8,6 +8,7 @@
 
 #include "backend_cuda/host/cuda_renderer.h"
 #include "render/renderer.h"
+#include "render/scene.h"
 #include "scene/compile/compiled_scene.h"
 
 namespace cistula {
@@ -49,6 +50,8 @@ std::string list_devices_text(const std::vector<CudaDevice>& devices);
 template <class Real>
 std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
                                         const CudaOptions& options);
+
+std::unique_ptr<Renderer> make_renderer(Backend backend, const Scene& scene, const CudaOptions& options);
 
 /// Whether this build has the CUDA backend, independent of GPUs in this machine.
 bool has_cuda_backend();

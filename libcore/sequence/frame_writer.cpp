@@ -31,7 +31,7 @@ uint64_t clamped_values(const LayeredPicture& picture, std::atomic<uint64_t>& cl
     constexpr size_t block = 1024;
     const size_t pixels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
     tbb::parallel_for(size_t{0}, (pixels + block - 1) / block, [&](size_t number) {
-        use_default_rounding();
+        const DefaultRounding rounding;
         std::array<float, block> values;
         const size_t first = number * block, last = std::min(first + block, pixels);
         for (const LayeredPicture::Channel& channel : picture.channels)

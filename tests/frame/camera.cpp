@@ -61,7 +61,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
             FrameView frame;
             const dvec3 forward = random.direction();
             frame.camera = camera_looking(forward * -distance, forward, max_or_second(4 / distance, 0.01));
-            frame.is_far = is_far(frame.camera, double(scene.extent));
+            frame.is_far = is_far(frame.camera.position, double(scene.extent));
             frame.width = frame.height = 100;
             frame.camera_sides[0].media.add(3, 1);
             Ray<Real> ray;

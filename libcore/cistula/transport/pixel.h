@@ -40,34 +40,44 @@ CISTULA_INLINE int camera_side(const FrameView& frame, const Vec3<double>& direc
     return side;
 }
 
-/// Whether primary rays start at the sphere of radius 2 M instead of at the camera.
-CISTULA_HD inline bool is_far(const Camera& camera, double extent) {
-    return dot(camera.position, camera.position) > 4 * extent * extent;
+/// Whether rays from a point start at the sphere of radius 2 M instead of there.
+CISTULA_HD inline bool is_far(const Vec3<double>& point, double extent) {
+    return dot(point, point) > 4 * extent * extent;
 }
 
-/// The primary ray, starting where it enters the sphere of radius 2 M (docs/rules.md, 1), computed in double for either
-/// Real. `start` is the distance of that point from the camera. False if the ray misses the sphere.
+/// Moves the origin of a ray that starts beyond the sphere of radius 2 M to where it enters that (docs/rules.md, 1), by
+/// `start`. False if it misses the sphere.
+CISTULA_HD inline bool enter_sphere(double extent, const Vec3<double>& direction, Vec3<double>& origin, double& start) {
+    // Computed from the closest approach, so that a camera at a distance of 1e9 loses no more than its own rounding.
+    const double radius = 2 * extent, square = radius * radius;
+    const double along_view = dot(origin, direction);
+    const Vec3<double> closest = along(origin, -along_view, direction);
+    const double rest = square - dot(closest, closest);
+    if (!(rest > 0) || along_view > 0) return false;
+    const double half = rest > 0x1p-100 ? rest * inverse_root(rest) : 0;
+    start = -along_view - half;
+    origin = along(closest, -half, direction);
+    return true;
+}
+
+/// Sets a ray's origin and direction, rounded to its number type.
+template <class Real, class Media>
+CISTULA_HD inline void place(Ray<Real, Media>& ray, const Vec3<double>& origin, const Vec3<double>& direction) {
+    ray.origin = Vec3<Real>(origin);
+    ray.direction = Vec3<Real>(direction);
+    for (int axis = 0; axis < 3; ++axis) materialize(ray.origin[axis]), materialize(ray.direction[axis]);
+}
+
+/// The primary ray, starting where it enters the sphere of radius 2 M, computed in double for either Real. `start` is
+/// the distance of that point from the camera. False if the ray misses the sphere.
 template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, const Vec3<double>& direction,
                                    Ray<Real, Media>& ray, double& start) {
     const CameraSide& side = frame.camera_sides[camera_side(frame, direction)];
     Vec3<double> origin = frame.camera_planes == 0 ? frame.camera.position : side.start;
     start = 0;
-    if (frame.is_far) {
-        // Computed from the closest approach, so that a camera at a distance of 1e9 loses no more than its own
-        // rounding.
-        const double radius = 2 * double(scene.extent), square = radius * radius;
-        const double along_view = dot(origin, direction);
-        const Vec3<double> closest = along(origin, -along_view, direction);
-        const double rest = square - dot(closest, closest);
-        if (!(rest > 0) || along_view > 0) return false;
-        const double half = rest > 0x1p-100 ? rest * inverse_root(rest) : 0;
-        start = -along_view - half;
-        origin = along(closest, -half, direction);
-    }
-    ray.origin = Vec3<Real>(origin);
-    ray.direction = Vec3<Real>(direction);
-    for (int axis = 0; axis < 3; ++axis) materialize(ray.origin[axis]), materialize(ray.direction[axis]);
+    if (frame.is_far && !enter_sphere(double(scene.extent), direction, origin, start)) return false;
+    place(ray, origin, direction);
     assign(ray.media, side.media);
     return true;
 }
@@ -114,7 +124,7 @@ CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& inte
                                      InteriorList& media) {
     using Real = typename Scene::Scalar;
     media = InteriorList();
-    if (dot(point, point) > 4 * double(scene.extent) * double(scene.extent)) return true;
+    if (is_far(point, double(scene.extent))) return true;
     bool fits = true;
     bool meshes = false;
     for (uint32_t i = 0; i < scene.solids.size; ++i) {

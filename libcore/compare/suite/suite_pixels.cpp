@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "backend_embree/pixel_tree/embree_pixel_tree.h"
+#include "backend_embree/embree/embree_renderer.h"
 #include "image/picture/picture.h"
 #include "image/picture/picture_hash.h"
 #include "render/pixel_report.h"
@@ -30,31 +30,23 @@ struct Followed {
     LayeredPicture picture;
 };
 
-template <class Real>
-Followed follow(const SuiteCase& one, const SceneDescription& scene, const FrameSettings& settings, Precision precision,
-                int frame, const SuitePixel& pixel) {
-    SceneSource source = gather_scene(scene);
-    const SceneNames names = name_scene(source);
-    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
+Followed follow_pixel(const SuiteCase& one, const SceneDescription& scene, FrameSettings settings, Precision precision,
+                      int frame, const SuitePixel& pixel) {
+    settings.layers = {};
+    const Scene compiled(scene, precision);
     const CameraFrame camera = camera_at(scene.camera, frame);
-    const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, pixel.x, pixel.y);
+    PixelTree tree = make_embree_renderer(compiled)->pixel_tree(camera, settings, pixel.x, pixel.y);
     Followed followed;
-    followed.text =
-        pixel_text({pixel.x, pixel.y, precision, scene, names, settings, camera, tree, compiled->hash}, false);
     OutputChannels channels;  // R G B A alone, as the case has them
     channels.half = one.channels.half;
     channels.transparent = one.channels.transparent;
     channels.space = one.channels.space;
     followed.picture = to_layers(tree.film, channels);
     round_to_stored(followed.picture);
+    followed.text = pixel_text({pixel.x, pixel.y, precision, scene.source, compiled.names(), settings, camera,
+                                std::move(tree), compiled.hash(), ""},
+                               false);
     return followed;
-}
-
-Followed follow_pixel(const SuiteCase& one, const SceneDescription& scene, FrameSettings settings, Precision precision,
-                      int frame, const SuitePixel& pixel) {
-    settings.layers = {};
-    return precision == Precision::double_ ? follow<double>(one, scene, settings, precision, frame, pixel)
-                                           : follow<float>(one, scene, settings, precision, frame, pixel);
 }
 
 /// Whether a followed pixel has the bits of R, G, B and A that a picture has there.

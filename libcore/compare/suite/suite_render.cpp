@@ -29,16 +29,6 @@ struct PreparedCase {
     std::unique_ptr<Renderer> renderer;
 };
 
-template <class Real>
-void compile(SceneSource source, PreparedCase& to, Backend backend, const CudaOptions& cuda,
-             std::vector<std::string>& notes) {
-    const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
-    notes.insert(notes.end(), compiled->warnings.begin(), compiled->warnings.end());
-    require_light_layers(to.one.channels, *compiled->layer_names);
-    to.scene_hash = compiled->hash;
-    to.renderer = make_renderer<Real>(backend, compiled, cuda);
-}
-
 SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& progress) {
     const SuiteCase& one = prepared.one;
     const CameraFrame camera = camera_at(prepared.scene.camera, frame);
@@ -93,15 +83,13 @@ SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend
     prepared->one = one;
     prepared->scene = read_scene(one.scene_path(folder));
     prepared->settings = settings_of(one, prepared->scene);
-    SceneSource source = gather_scene(prepared->scene);
-    const PrecisionChoice choice = choose_precision(one.precision, smallest_part(source));
-    for (const std::string& text : {choice.note, choice.warning})
-        if (!text.empty()) result.notes.push_back(text);
-    result.precision = prepared->precision = choice.precision;
-    if (choice.precision == Precision::double_)
-        compile<double>(std::move(source), *prepared, backend, cuda, result.notes);
-    else
-        compile<float>(std::move(source), *prepared, backend, cuda, result.notes);
+    const Scene scene(prepared->scene, one.precision);
+    if (!scene.precision_note().empty()) result.notes.push_back(scene.precision_note());
+    result.notes.insert(result.notes.end(), scene.warnings().begin(), scene.warnings().end());
+    require_light_layers(one.channels, *scene.layer_names());
+    result.precision = prepared->precision = scene.precision();
+    prepared->scene_hash = scene.hash();
+    prepared->renderer = make_renderer(backend, scene, cuda);
     result.render = [prepared](int frame, RenderProgress& progress) {
         return render_prepared(*prepared, frame, progress);
     };

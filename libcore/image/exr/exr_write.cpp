@@ -179,7 +179,7 @@ class Lines {
         for (size_t i = 0; i < of_channels_.size(); ++i)
             of_channels_[i].resize((end - begin) * (picture_.channels[i].half ? sizeof(half) : sizeof(float)));
         tbb::parallel_for(size_t{0}, (end - begin + block - 1) / block, [&](size_t number) {
-            use_default_rounding();
+            const DefaultRounding rounding;
             const size_t at = begin + number * block;
             write(at, std::min(at + block, end), number * block);
         });

@@ -166,7 +166,7 @@ void write_zipped(Imf::OStream& stream, std::vector<Imf::Header> headers,
     };
     tbb::enumerable_thread_specific<ChunkPacker> packers;
     const auto pack = [&](Place place) {
-        use_default_rounding();  // of floats that are made here
+        const DefaultRounding rounding;  // of floats that are made here
         const PartLines& part = parts[place.part];
         const int first = place.chunk * part.lines;
         const std::string_view packed = packers.local().pack(part, first);

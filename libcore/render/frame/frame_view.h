@@ -45,7 +45,7 @@ FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera
     frame.height = settings.full_height;
     frame.supersample = settings.grid();
     frame.half_sample = frame.camera.tan_half_width / (double(frame.width) * frame.supersample);
-    frame.is_far = is_far(frame.camera, double(scene.extent));
+    frame.is_far = is_far(frame.camera.position, double(scene.extent));
     set_camera_sides(scene, coordinate_rounding({&camera.camera.position, 1}).half_unit * unit, frame);
     frame.tree.depth = settings.depth;
     const int shift = fixed_shift(uint32_t(frame.supersample * frame.supersample));

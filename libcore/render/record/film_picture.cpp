@@ -143,7 +143,7 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint6
     // All channels of one block of pixels before the next block, while its pixels are still in a cache.
     constexpr size_t block = 1024;
     tbb::parallel_for(size_t{0}, (film.pixels.size() + block - 1) / block, [&](size_t number) {
-        use_default_rounding();
+        const DefaultRounding rounding;
         const size_t first = number * block, last = std::min(first + block, film.pixels.size());
         for (LayeredPicture::Channel& channel : picture.channels)
             channel.write(first, last, channel.values.data() + first);

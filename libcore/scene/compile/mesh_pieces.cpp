@@ -28,7 +28,7 @@ struct Selection {
 };
 
 /// A surface whose edges are paired, in pieces.
-struct Surface {
+struct Shell {
     std::vector<uint8_t> turned;  // of each triangle
     std::vector<MeshPiece> pieces;
     bool one_sided = false;
@@ -153,7 +153,7 @@ class PieceSearch {
         found.faults.open_edges = pairs.open;
         found.faults.crowded_edges = pairs.crowded;
         if (!pairs.complete() || selection.source.empty()) return false;
-        Surface surface = surface_of(selection, pairs.mate);
+        Shell surface = surface_of(selection, pairs.mate);
         found.faults.one_sided = surface.one_sided;
         if (surface.one_sided) return false;
         measure(selection, surface, found.faults);
@@ -181,12 +181,12 @@ class PieceSearch {
     }
 
     /// Follows the pairs from triangle to triangle, and turns all of a piece alike.
-    static Surface surface_of(const Selection& selection, const std::vector<uint32_t>& mate) {
+    static Shell surface_of(const Selection& selection, const std::vector<uint32_t>& mate) {
         const auto start = [&](uint32_t half_edge) { return selection.corners[half_edge / 3][half_edge % 3]; };
         const auto count = static_cast<uint32_t>(selection.source.size());
         constexpr uint32_t unknown = 0xffffffffu;
         std::vector<uint32_t> piece(count, unknown), found;
-        Surface surface;
+        Shell surface;
         surface.turned.assign(count, 0);
         for (uint32_t first = 0; first < count; ++first) {
             if (piece[first] != unknown) continue;
@@ -213,14 +213,14 @@ class PieceSearch {
         return surface;
     }
 
-    TriangleCorners corners(const Selection& selection, const Surface& surface, uint32_t t) const {
+    TriangleCorners corners(const Selection& selection, const Shell& surface, uint32_t t) const {
         TriangleCorners at = mesh_.triangles[selection.source[t]];
         if (surface.turned[t]) std::swap(at[1], at[2]);
         return at;
     }
 
     /// Turns pieces outward, and leaves out those without a volume.
-    void measure(const Selection& selection, Surface& surface, MeshFaults& faults) const {
+    void measure(const Selection& selection, Shell& surface, MeshFaults& faults) const {
         for (MeshPiece& piece : surface.pieces) {
             const dvec3 origin = mesh_.vertices[mesh_.triangles[selection.source[piece.triangles[0]]][0]];
             double terms = 0;
@@ -249,7 +249,7 @@ class PieceSearch {
     }
 
     /// Leaves out pieces with the same corners, area and volume as an earlier one.
-    void drop_copies(const Selection& selection, Surface& surface, MeshFaults& faults) const {
+    void drop_copies(const Selection& selection, Shell& surface, MeshFaults& faults) const {
         constexpr double rounding = 0x1p-18;
         std::vector<uint32_t> order;
         std::vector<std::vector<uint32_t>> vertices(surface.pieces.size());
@@ -290,7 +290,7 @@ class PieceSearch {
     }
 
     /// Nests the pieces, and gives each to its solid.
-    void arrange_bodies(const Selection& selection, Surface& surface, MeshPieces& found) const {
+    void arrange_bodies(const Selection& selection, Shell& surface, MeshPieces& found) const {
         std::vector<TriangleCorners> outward(selection.source.size());
         for (uint32_t t = 0; t < outward.size(); ++t) outward[t] = corners(selection, surface, t);
         found.faults.passing = nest_pieces(mesh_.vertices, outward, surface.pieces);

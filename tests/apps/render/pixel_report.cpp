@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "apps/common/render_options.h"
-#include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "image/exr/exr.h"
 #include "render/pixel_report.h"
 #include "scene/compile/scene_names.h"
@@ -131,12 +130,13 @@ TYPED_TEST(PixelTrees, AreTheFilmsPixels) {
         const FrameSettings settings = golden::settings_for(scene);
         const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
         const CameraFrame camera = camera_at(scene.camera, 0);
+        const std::unique_ptr<Renderer> renderer = make_embree_renderer<Real>(compiled);
         Film film;
         RenderProgress progress;
-        ASSERT_TRUE(make_embree_renderer<Real>(compiled)->render(camera, settings, film, progress));
+        ASSERT_TRUE(renderer->render(camera, settings, film, progress));
         for (const ChosenPixel& place : places(settings.full_width, settings.full_height, 40)) {
             SCOPED_TRACE(fmt::format("pixel {},{}", place.x, place.y));
-            const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, place.x, place.y);
+            const PixelTree tree = renderer->pixel_tree(camera, settings, place.x, place.y);
             ASSERT_EQ(tree.samples.size(), 1u);
             const PixelRecord& expected =
                 film.pixels[static_cast<size_t>(place.y) * static_cast<size_t>(settings.full_width) +
@@ -177,9 +177,10 @@ TYPED_TEST(PixelTrees, AddUpWithACutoffAndSamples) {
     FrameSettings settings = golden::settings_for(scene);
     settings.supersample = 3;
     settings.cutoff = 0.02;
+    const std::unique_ptr<Renderer> renderer = make_embree_renderer<Real>(compiled);
     size_t pruned = 0;
     for (const ChosenPixel& place : places(settings.full_width, settings.full_height, 60)) {
-        const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, place.x, place.y);
+        const PixelTree tree = renderer->pixel_tree(camera, settings, place.x, place.y);
         ASSERT_EQ(tree.samples.size(), 9u);
         FixedColor sum{};
         for (const SampleTree& sample : tree.samples) {

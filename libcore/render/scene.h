@@ -1,0 +1,61 @@
+// A compiled scene of either precision.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scene/compile/compiled_scene.h"
+#include "scene/compile/precision_choice.h"
+#include "scene/compile/scene_names.h"
+#include "scene/compile/scene_source.h"
+
+namespace cistula {
+
+/// A compiled scene, immutable; copies share it. Renderers are made of it by make_embree_renderer and make_renderer.
+class Scene {
+  public:
+    /// Compiles in the wanted precision; without one, in float unless a part of the scene is too small for it. The
+    /// description that the source is of must outlive the call. Throws Error with the place.
+    explicit Scene(SceneSource source, const std::optional<Precision>& wanted = {});
+    explicit Scene(const SceneDescription& description, const std::optional<Precision>& wanted = {});
+
+    /// Calls a function with the std::shared_ptr<const CompiledScene<Real>> of the precision.
+    template <class Function>
+    decltype(auto) visit(Function&& function) const {
+        return std::visit(std::forward<Function>(function), compiled_);
+    }
+
+    Precision precision() const { return choice_.precision; }
+    /// Why the precision is double where none was wanted; empty: nothing to say.
+    const std::string& precision_note() const { return choice_.note; }
+    /// Degenerate triangles left out, open meshes taken as sheets, a precision that is too small, ...
+    const std::vector<std::string>& warnings() const { return warnings_; }
+    const SceneNames& names() const { return names_; }
+
+    const std::string& hash() const {
+        return visit([](const auto& scene) -> const std::string& { return scene->hash; });
+    }
+    /// Mask of the effects that the scene requires.
+    uint32_t effects() const {
+        return visit([](const auto& scene) { return scene->effects; });
+    }
+    std::shared_ptr<const LayerNames> layer_names() const {
+        return visit([](const auto& scene) { return scene->layer_names; });
+    }
+
+  private:
+    template <class Real>
+    void compile(SceneSource source);
+
+    PrecisionChoice choice_;
+    SceneNames names_;
+    std::vector<std::string> warnings_;
+    std::variant<std::shared_ptr<const CompiledScene<float>>, std::shared_ptr<const CompiledScene<double>>> compiled_;
+};
+
+}  // namespace cistula
