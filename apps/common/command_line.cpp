@@ -53,17 +53,16 @@ void fail_usage(const std::string& message) {
     throw Error(ExitCode::usage, message);
 }
 
-int integer_option(const char* option, const std::string& text, int low, int high) {
+int integer_in(const std::string& text, int low, int high) {
     const std::optional<int> value = whole_number<int>(text);
     if (!value || *value < low || *value > high)
-        fail_usage(fmt::format("{} {}: must be a whole number from {} to {}", option, text, low, high));
+        fail_usage(fmt::format("must be a whole number from {} to {}", low, high));
     return *value;
 }
 
-double number_option(const char* option, const std::string& text, double low, double high, const char* what) {
+double number_in(const std::string& text, double low, double high, const char* what) {
     const std::optional<double> value = whole_number<double>(text);
-    if (!value || !std::isfinite(*value) || *value < low || *value > high)
-        fail_usage(fmt::format("{} {}: must be {}", option, text, what));
+    if (!value || !std::isfinite(*value) || *value < low || *value > high) fail_usage(fmt::format("must be {}", what));
     return *value;
 }
 
@@ -77,18 +76,24 @@ std::vector<std::string_view> parts_at_commas(std::string_view text) {
     return parts;
 }
 
-void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names) {
-    fail_usage(
-        fmt::format("{} {}: must be {}; {}", option, text, fmt::join(names, " or "), suggestion(text, names, "names")));
+void fail_choice(const std::string& text, const std::vector<std::string_view>& names) {
+    fail_usage(fmt::format("must be {}; {}", fmt::join(names, " or "), suggestion(text, names, "names")));
+}
+
+void read_given(const std::string& option, const std::string& text, const OptionReader& read) {
+    constexpr size_t longest = 200;
+    if (text.empty()) fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", option));
+    try {
+        read(text);
+    } catch (const Error& error) {
+        throw Error(error.code(), fmt::format("{} {}: {}", option, first_characters(text, longest), error.what()));
+    }
 }
 
 CLI::Option* add_option(CLI::App& app, const std::string& names, const std::string& value,
                         const std::string& description, const OptionReader& read) {
     const std::string name = names.substr(names.rfind(',') + 1);
-    const auto read_text = [name, read](const std::string& text) {
-        if (text.empty()) fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", name));
-        read(name.c_str(), text);
-    };
+    const auto read_text = [name, read](const std::string& text) { read_given(name, text, read); };
     // option_text: without what the option needs, which its description says.
     return app.add_option_function<std::string>(names, read_text, description)->type_name(value)->option_text(value);
 }

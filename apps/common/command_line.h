@@ -31,55 +31,55 @@ std::optional<T> whole_number(std::string_view text) {
     return value;
 }
 
-/// The text of an option as an integer. Throws Error (usage): "OPTION TEXT: must be a whole number from LOW to HIGH".
-int integer_option(const char* option, const std::string& text, int low, int high);
+/// The text as an integer. Throws Error (usage): "must be a whole number from LOW to HIGH".
+int integer_in(const std::string& text, int low, int high);
 
-/// The text of an option as a finite number. Throws Error (usage): "OPTION TEXT: must be WHAT", of which `what` tells
-/// the limits.
-double number_option(const char* option, const std::string& text, double low, double high, const char* what);
+/// The text as a finite number. Throws Error (usage): "must be WHAT", of which `what` tells the limits.
+double number_in(const std::string& text, double low, double high, const char* what);
 
 /// The parts of a list with commas between; a text without commas is one.
 std::vector<std::string_view> parts_at_commas(std::string_view text);
 
-/// Throws Error (usage) for an unknown choice: "OPTION TEXT: must be a or b; did you mean 'a'?".
-[[noreturn]] void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names);
+/// Throws Error (usage) for an unknown choice: "must be a or b; did you mean 'a'?".
+[[noreturn]] void fail_choice(const std::string& text, const std::vector<std::string_view>& names);
 
 /// The choice named `text`. Throws Error (usage).
 template <class T>
-T chosen(const char* option, const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
+T chosen(const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
     std::vector<std::string_view> names;
     for (const auto& [name, value] : choices) {
         if (name == text) return value;
         names.push_back(name);
     }
-    fail_choice(option, text, names);
+    fail_choice(text, names);
 }
 
-/// Reads the text of an option into a variable, which outlives it. Throws Error (usage) that begins "OPTION TEXT: ".
-using OptionReader = std::function<void(const char* option, const std::string& text)>;
+/// Reads the text of an option into a variable, which outlives it. Throws Error (usage): what would be right. Who calls
+/// it puts the option and the text before that.
+using OptionReader = std::function<void(const std::string& text)>;
 
 /// A reader of whole numbers, of finite numbers, of one of several names: see the functions above.
 template <class T>
 OptionReader read_whole(T& value, int low, int high) {
-    return
-        [=, &value](const char* option, const std::string& text) { value = integer_option(option, text, low, high); };
+    return [=, &value](const std::string& text) { value = integer_in(text, low, high); };
 }
 template <class T>
 OptionReader read_number(T& value, double low, double high, const char* what) {
-    return [=, &value](const char* option, const std::string& text) {
-        value = static_cast<T>(number_option(option, text, low, high, what));
-    };
+    return [=, &value](const std::string& text) { value = static_cast<T>(number_in(text, low, high, what)); };
 }
 template <class T>
 OptionReader read_choice(T& value, std::vector<std::pair<std::string_view, T>> choices) {
-    return [=, &value](const char* option, const std::string& text) { value = chosen<T>(option, text, choices); };
+    return [=, &value](const std::string& text) { value = chosen<T>(text, choices); };
 }
 
 /// A reader of what `parse` makes of a text.
 template <class T, class Parse>
 OptionReader read_by(T& value, Parse parse) {
-    return [=, &value](const char*, const std::string& text) { value = parse(text); };
+    return [=, &value](const std::string& text) { value = parse(text); };
 }
+
+/// Reads the text that was given to an option. Throws Error (usage): "OPTION TEXT: " and what the reader says.
+void read_given(const std::string& option, const std::string& text, const OptionReader& read);
 
 /// Adds an option with a value, which --help calls `value`, and messages the last of its `names`. Options are read in
 /// the order in which they are added, once the whole command line is known.

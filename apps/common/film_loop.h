@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/film_options.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/frame_writer.h"
 #include "apps/common/output_name.h"
+#include "apps/common/render_request.h"
 #include "apps/common/stats.h"
 #include "scene/description/description.h"
 #include "scene/film/renderer.h"
@@ -21,13 +21,14 @@ class UserSignal;
 
 /// The parameters shared by all frames.
 struct FilmJob {
-    const FilmOptions& options;
+    const RenderRequest& request;
     const SceneDescription& scene;
     const std::string& scene_hash;
     const FrameSettings& settings;
     const OutputName& output;
     const OutputName& preview;  // empty text: none
     const std::vector<int>& frames;
+    Precision precision = Precision::single_;
     std::shared_ptr<const LayerNames> layer_names = std::make_shared<const LayerNames>();
     /// Called for each frame whose files are whole, in the film's order, on any thread, one at a time.
     FrameSink written = {};
@@ -54,7 +55,7 @@ inline constexpr size_t stretch_length = 1000;
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats);
 
 /// Limits for frames being written while others render.
-WriterLimits writer_limits(const FilmOptions& options, size_t frames);
+WriterLimits writer_limits(Backend backend, size_t frames);
 
 /// Renders a frame; again with larger tables of objects where a pixel shows more than they hold, which the settings
 /// then keep for the next frame. False if it was stopped; the film is then incomplete.

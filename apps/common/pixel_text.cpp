@@ -346,11 +346,11 @@ std::string pixel_text(const PixelReport& raw, bool verbose) {
                              raw.settings, raw.camera, raw.tree,      raw.scene_hash};
     const FrameSettings& settings = report.settings;
     const int k = settings.supersample;
-    std::string text = fmt::format("{}, frame {}: pixel {},{} of {}x{}; depth {}, cutoff {}, {}, {}\n\n",
-                                   one_line(report.scene.source), report.camera.frame, report.x, report.y,
-                                   settings.full_width, settings.full_height, settings.depth, settings.cutoff,
-                                   report.precision == Precision::double_ ? "double" : "float",
-                                   k == 1 ? std::string("one sample") : fmt::format("{} samples", k * k));
+    std::string text =
+        fmt::format("{}, frame {}: pixel {},{} of {}x{}; depth {}, cutoff {}, {}, {}\n\n",
+                    one_line(report.scene.source), report.camera.frame, report.x, report.y, settings.full_width,
+                    settings.full_height, settings.depth, settings.cutoff, precision_name(report.precision),
+                    k == 1 ? std::string("one sample") : fmt::format("{} samples", k * k));
     const size_t middle = middle_sample(k);
     bool folded = false;
     for (size_t i = 0; i < report.tree.samples.size(); ++i) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/film_options.h"
+#include "apps/common/backends.h"
 #include "apps/common/frame_list.h"
 #include "apps/common/target.h"
 #include "scene/base/atomic_file.h"
@@ -62,6 +62,8 @@ struct FilmTotals {
 };
 
 struct RunStats {
+    Backend backend = Backend::embree;
+    Precision precision = Precision::single_;
     std::string scene, scene_hash, intersector, driver;
     std::vector<std::string> devices;            // GPUs; empty, like the driver, if none is used
     uint32_t required_effects = 0, effects = 0;  // masks
@@ -96,7 +98,7 @@ class StatsFile {
 
     /// Adds the context, with the stages until now, and puts the file in its place. Throws Error (file), as all of
     /// these.
-    void finish(const RunStats& stats, const FilmOptions& options);
+    void finish(const RunStats& stats);
 
   private:
     AtomicFile file_;

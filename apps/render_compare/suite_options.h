@@ -14,8 +14,8 @@ struct SuiteOptions {
     std::string folder;
     std::vector<std::string> cases;    // names; empty: all
     std::vector<std::string> filters;  // patterns of names and tags; empty: all
+    RenderRequest request;             // backend and devices
     std::optional<Backend> backend;    // none: those of the cases
-    DeviceChoice devices;
     int jobs = 1;
     bool update = false, list = false, fail_fast = false, quiet = false;
     std::string junit, json, html;  // files; empty: none

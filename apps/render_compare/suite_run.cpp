@@ -165,7 +165,7 @@ std::vector<SuiteBackend> find_backends(const std::vector<const SuiteCase*>& cho
         SuiteBackend one;
         one.backend = backend;
         try {
-            one.devices = choose_devices(backend, options.devices);
+            one.devices = choose_devices(backend, options.request.devices);
         } catch (const Error& error) {
             if (options.backend) throw;
             one.obstacle = error.what();

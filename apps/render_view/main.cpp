@@ -3,7 +3,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/output_name.h"
-#include "apps/common/view_options.h"
+#include "apps/common/render_request.h"
 #include "layer_choice.h"
 #include "options.h"
 #include "scene/base/file_bytes.h"

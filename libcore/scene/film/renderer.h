@@ -14,6 +14,9 @@
 namespace cistula {
 
 enum class Precision { single_, double_ };
+constexpr const char* precision_name(Precision precision) {
+    return precision == Precision::double_ ? "double" : "float";
+}
 
 struct FrameSettings {
     int full_width = 640, full_height = 480;
