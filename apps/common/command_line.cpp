@@ -45,13 +45,20 @@ void open_standard_streams() {
 
 }  // namespace
 
+void read_given(const std::string& option, const std::string& text, const OptionReader& read) {
+    constexpr size_t longest = 200;
+    if (text.empty()) fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", option));
+    try {
+        read(text);
+    } catch (const Error& error) {
+        throw Error(error.code(), fmt::format("{} {}: {}", option, first_characters(text, longest), error.what()));
+    }
+}
+
 CLI::Option* add_option(CLI::App& app, const std::string& names, const std::string& value,
                         const std::string& description, const OptionReader& read) {
     const std::string name = names.substr(names.rfind(',') + 1);
-    const auto read_text = [name, read](const std::string& text) {
-        if (text.empty()) fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", name));
-        read(name.c_str(), text);
-    };
+    const auto read_text = [name, read](const std::string& text) { read_given(name, text, read); };
     // option_text: without what the option needs, which its description says.
     return app.add_option_function<std::string>(names, read_text, description)->type_name(value)->option_text(value);
 }

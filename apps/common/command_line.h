@@ -17,31 +17,32 @@ class Option;
 
 namespace cistula {
 
-/// Reads the text of an option into a variable, which outlives it. Throws Error (usage) that begins "OPTION TEXT: ".
-using OptionReader = std::function<void(const char* option, const std::string& text)>;
+/// Reads the text of an option into a variable, which outlives it. Throws Error (usage): what would be right. Who calls
+/// it puts the option and the text before that.
+using OptionReader = std::function<void(const std::string& text)>;
 
 /// A reader of whole numbers, of finite numbers, of one of several names: see the functions above.
 template <class T>
 OptionReader read_whole(T& value, int low, int high) {
-    return
-        [=, &value](const char* option, const std::string& text) { value = integer_option(option, text, low, high); };
+    return [=, &value](const std::string& text) { value = integer_in(text, low, high); };
 }
 template <class T>
 OptionReader read_number(T& value, double low, double high, const char* what) {
-    return [=, &value](const char* option, const std::string& text) {
-        value = static_cast<T>(number_option(option, text, low, high, what));
-    };
+    return [=, &value](const std::string& text) { value = static_cast<T>(number_in(text, low, high, what)); };
 }
 template <class T>
 OptionReader read_choice(T& value, std::vector<std::pair<std::string_view, T>> choices) {
-    return [=, &value](const char* option, const std::string& text) { value = chosen<T>(option, text, choices); };
+    return [=, &value](const std::string& text) { value = chosen<T>(text, choices); };
 }
 
 /// A reader of what `parse` makes of a text.
 template <class T, class Parse>
 OptionReader read_by(T& value, Parse parse) {
-    return [=, &value](const char*, const std::string& text) { value = parse(text); };
+    return [=, &value](const std::string& text) { value = parse(text); };
 }
+
+/// Reads the text that was given to an option. Throws Error (usage): "OPTION TEXT: " and what the reader says.
+void read_given(const std::string& option, const std::string& text, const OptionReader& read);
 
 /// Adds an option with a value, which --help calls `value`, and messages the last of its `names`. Options are read in
 /// the order in which they are added, once the whole command line is known.

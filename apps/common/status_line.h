@@ -8,16 +8,9 @@
 #include <string>
 #include <thread>
 
+#include "sequence/film_events.h"
+
 namespace cistula {
-
-/// How a program shows its progress. `automatic`: on a terminal a line that is redrawn, elsewhere a line every 30 s.
-/// `plain`: a line every 10 s and at milestones. `json` and `openjd`: records for other programs on standard output.
-enum class ProgressStyle { automatic, plain, none, json, openjd };
-
-/// Whether a style is for other programs to read.
-constexpr bool is_for_programs(ProgressStyle style) {
-    return style == ProgressStyle::json || style == ProgressStyle::openjd;
-}
 
 /// Whether standard error is a terminal on which a line can be redrawn.
 bool is_terminal();

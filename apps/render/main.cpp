@@ -14,7 +14,6 @@
 #include "apps/common/progress_record.h"
 #include "apps/common/render_options.h"
 #include "apps/common/step_progress.h"
-#include "apps/common/view_options.h"
 #include "backend_embree/embree/embree_renderer.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -38,45 +37,44 @@
 namespace cistula {
 namespace {
 
-int threads_of(const RenderOptions& options) {
-    return options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+int threads_of(const RenderRequest& request) {
+    return request.threads > 0 ? request.threads : tbb::this_task_arena::max_concurrency();
 }
 
 /// Runs `work` with its parallelism limited to --threads.
 template <class Work>
-void on_threads(const RenderOptions& options, const Work& work) {
-    const int threads = threads_of(options);
+void on_threads(const RenderRequest& request, const Work& work) {
+    const int threads = threads_of(request);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
     tbb::task_arena arena(threads);
     arena.execute(work);
 }
 
-Talk talk_of(const RenderOptions& options) {
-    return options.quiet ? Talk::errors : options.verbose ? Talk::much : Talk::some;
+Talk talk_of(const RenderRequest& request) {
+    return request.quiet ? Talk::errors : request.verbose ? Talk::much : Talk::some;
 }
 
-void print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
-    if (options.quiet) return;
+void print_warnings(const std::vector<std::string>& warnings, const RenderRequest& request) {
+    if (request.quiet) return;
     for (const std::string& warning : warnings) note(fmt::format("render: warning: {}", warning));
 }
 
-/// Sets the precision of the frames, and says so where the scene decides it.
-void choose_precision(RenderOptions& options, const SceneSource& source) {
-    const PrecisionChoice choice = choose_precision(options.wanted_precision, smallest_part(source));
-    options.precision = choice.precision;
-    if (!choice.warning.empty()) print_warnings({choice.warning}, options);
-    if (!choice.note.empty() && !options.quiet) note(fmt::format("render: {}", choice.note));
+/// The precision of the frames, which is said where the scene decides it.
+Precision choose_precision(const RenderRequest& request, const SceneSource& source) {
+    const PrecisionChoice choice = choose_precision(request.precision, smallest_part(source));
+    if (!choice.warning.empty()) print_warnings({choice.warning}, request);
+    if (!choice.note.empty() && !request.quiet) note(fmt::format("render: {}", choice.note));
+    return choice.precision;
 }
 
 /// Says what the compilation of a scene found, and keeps its precision.
-void tell_of(const Scene& scene, RenderOptions& options) {
-    options.precision = scene.precision();
-    print_warnings(scene.warnings(), options);
-    if (!scene.precision_note().empty() && !options.quiet) note(fmt::format("render: {}", scene.precision_note()));
+void tell_of(const Scene& scene, const RenderRequest& request) {
+    print_warnings(scene.warnings(), request);
+    if (!scene.precision_note().empty() && !request.quiet) note(fmt::format("render: {}", scene.precision_note()));
 }
 
 /// A renderer on the devices that are being made ready.
-std::unique_ptr<Renderer> renderer_of(const Scene& scene, const RenderOptions& options,
+std::unique_ptr<Renderer> renderer_of(const Scene& scene, const RenderRequest& request,
                                       std::future<ChosenDevices> choice, RunStats& stats) {
     stats.scene_hash = scene.hash();
     stats.required_effects = scene.effects();
@@ -85,7 +83,7 @@ std::unique_ptr<Renderer> renderer_of(const Scene& scene, const RenderOptions& o
     stats.devices = devices.names;
     stats.driver = devices.driver;
     enter_stage(Stage::tree);
-    return make_renderer(options.backend, scene, devices.options);
+    return make_renderer(request.backend, scene, devices.request);
 }
 
 /// The names of the images and previews, and their frames.
@@ -97,56 +95,56 @@ struct Outputs {
 
 /// Checks the names of these frames against all others, creates their directories, and finds their cameras. Returns
 /// where the picture turns at once.
-std::string look_ahead(const Outputs& outputs, const RenderOptions& options, const SceneDescription& scene,
+std::string look_ahead(const Outputs& outputs, const RenderRequest& request, const SceneDescription& scene,
                        const RunFiles& others, const std::vector<int>& frames) {
     require_different_files(others, outputs.image, outputs.preview, frames, outputs.layers);
     make_directories(outputs.image, frames);
-    if (!options.preview.empty()) make_directories(outputs.preview, frames);
+    if (!request.preview.empty()) make_directories(outputs.preview, frames);
     return camera_turns(scene.camera, frames);
 }
 
-Outputs plan_outputs(const RenderOptions& options, const SceneDescription& scene) {
+Outputs plan_outputs(const RenderRequest& request, const SceneDescription& scene) {
     Outputs outputs;
-    const std::string name = options.output.empty() ? default_output(scene, options.frames.size()) : options.output;
+    const std::string name = request.output.empty() ? default_output(scene, request.frames.size()) : request.output;
     outputs.image = OutputName(name, "-o");
-    if (options.tile) outputs.image = outputs.image.named(tile_name(options.tiles, *options.tile));
-    outputs.frames = frames_to_render(outputs.image, options.frames, scene.film.frames);
+    if (request.tile) outputs.image = outputs.image.named(tile_name(*request.tiles, *request.tile));
+    outputs.frames = frames_to_render(outputs.image, request.frames, scene.film.frames);
     if (file_kind(name) == FileKind::raw) {
         const auto refuse = [&](const std::string& option, const char* why) {
             throw Error(ExitCode::usage, fmt::format("-o {}: {} needs an .exr; {}", name, option, why));
         };
-        if (options.channels.half) refuse("--bits half", "raw frames have 8 bits a channel");
-        const OutputChannels& c = options.channels;
-        if (!options.layers.empty()) refuse("--layers", "raw frames have none");
+        if (request.channels.half) refuse("--bits half", "raw frames have 8 bits a channel");
+        const OutputChannels& c = request.channels;
+        if (!request.layers.empty()) refuse("--layers", "raw frames have none");
         if (c.transparent) refuse("--background transparent", "raw frames have no alpha");
         if (c.space != &color_spaces().front()) refuse("--colorspace", "raw frames are sRGB");
         if (c.compression != Compression::zip) refuse("--compression", "raw frames have none");
-        if (options.tile) refuse("--tile", "raw frames do not say what part they are");
-        if (options.resume) refuse("--resume", "raw frames do not say what they show");
+        if (request.tile) refuse("--tile", "raw frames do not say what part they are");
+        if (request.resume) refuse("--resume", "raw frames do not say what they show");
     }
-    outputs.preview = preview_name(options.preview, outputs.frames);
+    outputs.preview = preview_name(request.preview, outputs.frames);
     return outputs;
 }
 
 /// Checks the names of all frames that may be those of `others`: `paths`, the scene and the stats.
-void check_names(const RenderOptions& options, const RunFiles& others, std::vector<std::string> paths,
+void check_names(const RenderRequest& request, const RunFiles& others, std::vector<std::string> paths,
                  const Outputs& outputs) {
-    paths.insert(paths.end(), {options.scene, options.stats});
+    paths.insert(paths.end(), {request.scene, request.stats});
     require_different_files(others, outputs.image, outputs.preview, frames_named_in(paths, outputs.frames),
                             outputs.layers);
 }
 
 /// Checks the files to be written against all others, makes the directories of the first frames, and finds their
 /// cameras.
-void prepare_files(const RenderOptions& options, const SceneDescription& scene, const RunFiles& others,
+void prepare_files(const RenderRequest& request, const SceneDescription& scene, const RunFiles& others,
                    const std::vector<std::string>& read, const Outputs& outputs) {
-    check_names(options, others, read, outputs);
+    check_names(request, others, read, outputs);
     const std::string turns =
-        look_ahead(outputs, options, scene, others, frames_from(outputs.frames, 0, stretch_length));
-    if (!turns.empty()) print_warnings({turns}, options);
-    if (options.stats.empty()) return;
-    make_directory_of(options.stats);
-    const AtomicFile probe(options.stats);
+        look_ahead(outputs, request, scene, others, frames_from(outputs.frames, 0, stretch_length));
+    if (!turns.empty()) print_warnings({turns}, request);
+    if (request.stats.empty()) return;
+    make_directory_of(request.stats);
+    const AtomicFile probe(request.stats);
 }
 
 void print_summary(const FilmTotals& totals, const OutputName& image, double seconds) {
@@ -158,42 +156,43 @@ void print_summary(const FilmTotals& totals, const OutputName& image, double sec
 }
 
 /// Prints a warning if values of the written frames were clamped to half precision.
-void warn_of_clamped(const FilmTotals& totals, const OutputName& image, const RenderOptions& options) {
+void warn_of_clamped(const FilmTotals& totals, const OutputName& image, const RenderRequest& request) {
     if (totals.clamped == 0) return;
     const std::string where =
         totals.frames == 1 ? totals.first_file
                            : fmt::format("{}: in {} of {} frames", image.text(), totals.clamped_frames, totals.frames);
-    print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(totals.clamped))}, options);
+    print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(totals.clamped))}, request);
 }
 
 /// Prints a warning if it is seen in the written frames what the depth took.
 void warn_of_depth(const FilmTotals& totals, const OutputName& image, const FrameSettings& settings,
-                   const RenderOptions& options) {
+                   const RenderRequest& request) {
     const std::string warning = describe_depth_loss(totals, image.text(), settings.depth);
-    if (!warning.empty()) print_warnings({warning}, options);
+    if (!warning.empty()) print_warnings({warning}, request);
 }
 
 /// Prints the target report. Throws Error (target) if pixels missed the target.
-void judge_target(const FilmTotals& totals, const FrameSettings& settings, const RenderOptions& options) {
-    const std::string text = describe_target(totals.target, totals.pixels, settings, options.precision);
+void judge_target(const FilmTotals& totals, const FrameSettings& settings, Precision precision,
+                  const RenderRequest& request) {
+    const std::string text = describe_target(totals.target, totals.pixels, settings, precision);
     if (totals.target.missed != 0) throw Error(ExitCode::target, text);
-    if (!options.quiet) note(fmt::format("render: {}", text));
+    if (!request.quiet) note(fmt::format("render: {}", text));
 }
 
 /// What is advised when memory runs out.
-std::string advice_on_memory(const RenderOptions& options, const FrameSettings& settings) {
+std::string advice_on_memory(const RenderRequest& request, const FrameSettings& settings) {
     const PixelRect& crop = settings.crop;
     const uint64_t pixels = static_cast<uint64_t>(crop.width) * static_cast<uint64_t>(crop.height);
     const uint64_t mebibytes = pixels * settings.kept_parts().bytes() >> 20;
     if (mebibytes < 64)
         return fmt::format("the scene and {} threads take most of it; allow more (ulimit -v), or give fewer --threads",
-                           threads_of(options));
+                           threads_of(request));
     return fmt::format("a frame of {}x{} takes {} MiB of it while it is rendered; a smaller --res or --crop needs less",
                        crop.width, crop.height, mebibytes);
 }
 
-void render_scene(RenderOptions options, std::string& memory_advice) {
-    const bool explain = options.action == Action::explain;
+void render_scene(RenderCommand request, std::string& memory_advice) {
+    const bool explain = request.action == Action::explain;
     SnapshotRequests snapshot_requests;
     std::optional<UserSignal> user_signal;
     if (!explain) user_signal.emplace(snapshot_requests);
@@ -201,47 +200,49 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
     std::future<ChosenDevices> devices;
     if (!explain)
         devices =
-            std::async(std::launch::async, [&options] { return choose_devices(options.backend, options.devices); });
+            std::async(std::launch::async, [&request] { return choose_devices(request.backend, request.devices); });
     enter_stage(Stage::read);
-    SceneDescription scene = read_scene(options);
+    SceneDescription scene = read_scene(request);
     enter_stage(Stage::other);
     if (explain) {
         SceneSource source = gather_scene(scene);
-        choose_precision(options, source);
-        return print(explain_table(scene.source, explain_scene(std::move(source), options.precision), options.backend));
+        const Precision precision = choose_precision(request, source);
+        return print(explain_table(scene.source, explain_scene(std::move(source), precision), request.backend));
     }
 
-    if (const std::string warning = open_config_view(options.view); !warning.empty())
-        print_warnings({warning}, options);
-    const FrameSettings settings = frame_settings(options, scene);
-    memory_advice = advice_on_memory(options, settings);
-    Outputs outputs = plan_outputs(options, scene);
+    if (const std::string warning = open_config_view(request.view); !warning.empty())
+        print_warnings({warning}, request);
+    const FrameSettings settings = frame_settings(request, scene);
+    memory_advice = advice_on_memory(request, settings);
+    Outputs outputs = plan_outputs(request, scene);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
 
     RunStats stats;
-    stats.scene = options.scene;
-    stats.threads = threads_of(options);
-    on_threads(options, [&] {
+    stats.scene = request.scene;
+    stats.backend = request.backend;
+    stats.threads = threads_of(request);
+    on_threads(request, [&] {
         enter_stage(Stage::read);
         SceneSource source = gather_scene(scene);
         enter_stage(Stage::other);
         RunFiles others;
-        others.reads_scene(options.scene, source.files);
-        others.writes(options.stats, "--stats");
+        others.reads_scene(request.scene, source.files);
+        others.writes(request.stats, "--stats");
         const std::vector<std::string> read = source.files;
-        prepare_files(options, scene, others, read, outputs);
+        prepare_files(request, scene, others, read, outputs);
         enter_stage(Stage::compile);
-        std::optional<Scene> compiled(std::in_place, std::move(source), options.wanted_precision);
-        tell_of(*compiled, options);
-        std::unique_ptr<Renderer> made = renderer_of(*compiled, options, std::move(devices), stats);
+        std::optional<Scene> compiled(std::in_place, std::move(source), request.precision);
+        tell_of(*compiled, request);
+        const Precision precision = stats.precision = compiled->precision();
+        std::unique_ptr<Renderer> made = renderer_of(*compiled, request, std::move(devices), stats);
         Renderer& renderer = *made;
         const std::shared_ptr<const LayerNames> layer_names = compiled->layer_names();
         compiled.reset();  // the renderer keeps what it needs
         enter_stage(Stage::other);
         guard.watch(progress.stop);
         std::optional<StatsFile> file;
-        if (!options.stats.empty()) file.emplace(options.stats, settings, !stats.devices.empty());
+        if (!request.stats.empty()) file.emplace(request.stats, settings, !stats.devices.empty());
         const auto write_stats = [&] {
             stats.intersector = renderer.intersector();
             stats.lanes = renderer.lanes();
@@ -250,107 +251,113 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
             enter_stage(Stage::end);  // of what the renderer has, too, so that the time for that is among the stages
             made.reset();
             enter_stage(Stage::other);
-            if (file) file->finish(stats, options);
+            if (file) file->finish(stats);
         };
-        if (options.verbose) {
+        if (request.verbose) {
             const StageSeconds so_far = stage_seconds();
             const auto seconds = [&](Stage stage) { return so_far[static_cast<size_t>(stage)]; };
             note(fmt::format("render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}",
                              seconds(Stage::read), seconds(Stage::compile), seconds(Stage::tree), renderer.memory(),
                              stats.scene_hash));
         }
-        FilmProgress report(options.progress, talk_of(options), progress);
-        FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames, report};
+        FilmProgress report(request.progress, talk_of(request), progress);
+        FilmJob job{request, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames, report, precision};
         job.layer_names = layer_names;
         job.snapshot_requests = &snapshot_requests;
-        require_light_layers(options.channels, *job.layer_names);
+        require_light_layers(request.channels, *job.layer_names);
         outputs.layers = layers_with_files(job);
         if (!outputs.layers.empty()) {  // their names are known only now
-            check_names(options, others, read, outputs);
+            check_names(request, others, read, outputs);
             require_different_files(others, outputs.image, outputs.preview,
                                     frames_from(outputs.frames, 0, stretch_length), outputs.layers);
         }
         if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
         job.look_ahead = [&](const std::vector<int>& frames) {
-            return look_ahead(outputs, options, scene, others, frames);
+            return look_ahead(outputs, request, scene, others, frames);
         };
         double seconds = 0;
         try {
             seconds = seconds_of([&] { render_film(job, renderer, progress, stats); });
         } catch (const Error&) {
-            warn_of_clamped(stats.totals, outputs.image, options);
+            warn_of_clamped(stats.totals, outputs.image, request);
             try {
                 write_stats();        // of the finished frames
             } catch (const Error&) {  // the original error is the one to report
             }
             throw;
         }
-        warn_of_clamped(stats.totals, outputs.image, options);
-        warn_of_depth(stats.totals, outputs.image, settings, options);
+        warn_of_clamped(stats.totals, outputs.image, request);
+        warn_of_depth(stats.totals, outputs.image, settings, request);
         write_stats();
-        if (options.verbose && stats.totals.frames > 0)  // the renderer knows which effects it used
+        if (request.verbose && stats.totals.frames > 0)  // the renderer knows which effects it used
             note(fmt::format("render: effects: {}", fmt::join(names_of_effects(stats.effects), ", ")));
-        if (!options.quiet) print_summary(stats.totals, outputs.image, seconds);
-        if (settings.adaptive() && stats.totals.frames > 0) judge_target(stats.totals, settings, options);
+        if (!request.quiet) print_summary(stats.totals, outputs.image, seconds);
+        if (settings.adaptive() && stats.totals.frames > 0) judge_target(stats.totals, settings, precision, request);
     });
 }
 
-void measure_scene(RenderOptions options) {
-    const ChosenDevices devices = choose_devices(options.backend, options.devices);
-    const SceneDescription scene = read_scene(options);
-    const FrameSettings settings = frame_settings(options, scene);
-    StepProgress progress(options.quiet ? ProgressStyle::none : options.progress);  // must outlive the guard
+void measure_scene(const RenderRequest& request) {
+    const ChosenDevices devices = choose_devices(request.backend, request.devices);
+    const SceneDescription scene = read_scene(request);
+    const FrameSettings settings = frame_settings(request, scene);
+    StepProgress progress(request.quiet ? ProgressStyle::none : request.progress);  // must outlive the guard
     InterruptGuard guard;
     guard.watch(progress.render.stop);
-    on_threads(options, [&] {
+    on_threads(request, [&] {
         SceneSource source = gather_scene(scene);
-        choose_precision(options, source);
-        const Explanation explanation = explain_scene(std::move(source), options.precision);
+        const Precision precision = choose_precision(request, source);
+        const Explanation explanation = explain_scene(std::move(source), precision);
         const auto make = [&](const SceneDescription& of) {
-            return make_renderer(options.backend, Scene(of, options.precision), devices.options);
+            return make_renderer(request.backend, Scene(of, precision), devices.request);
         };
-        const int frame = options.frames.empty() ? 0 : options.frames.front();
+        const int frame = request.frames.empty() ? 0 : request.frames.front();
         const EffectCosts costs = measure_effects(scene, explanation.effects, frame, settings, make, progress);
-        print(explain_table(scene.source, explanation, options.backend, &costs));
+        print(explain_table(scene.source, explanation, request.backend, &costs));
     });
 }
 
-void report_pixel(RenderOptions options, const SceneDescription& description, SceneSource source,
+void report_pixel(const RenderCommand& request, const SceneDescription& description, SceneSource source,
                   const FrameSettings& settings, const CameraFrame& camera) {
-    const Scene scene(std::move(source), options.wanted_precision);
-    tell_of(scene, options);
-    PixelTree tree = make_embree_renderer(scene)->pixel_tree(camera, settings, options.pixel.x, options.pixel.y);
+    const Scene scene(std::move(source), request.precision);
+    tell_of(scene, request);
+    PixelTree tree = make_embree_renderer(scene)->pixel_tree(camera, settings, request.pixel.x, request.pixel.y);
     const std::string flaws = describe_flags(tree.film.flags, description);
-    const PixelReport report{options.pixel.x, options.pixel.y, scene.precision(), description.source, scene.names(),
+    const PixelReport report{request.pixel.x, request.pixel.y, scene.precision(), description.source, scene.names(),
                              settings,        camera,          std::move(tree),   scene.hash(),       flaws};
-    if (options.json != "-") print(pixel_text(report, options.verbose));
-    if (options.json == "-")
+    if (request.json != "-") print(pixel_text(report, request.verbose));
+    if (request.json == "-")
         print(pixel_json(report));
-    else if (!options.json.empty())
-        write_file_atomically(options.json, pixel_json(report));
+    else if (!request.json.empty())
+        write_file_atomically(request.json, pixel_json(report));
     if (!flaws.empty())
         throw Error(ExitCode::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
-                                                  options.pixel.x, options.pixel.y, flaws));
+                                                  request.pixel.x, request.pixel.y, flaws));
 }
 
-void report_pixel(RenderOptions options) {
-    const SceneDescription scene = read_scene(options);
-    const FrameSettings settings = frame_settings(options, scene);
-    const CameraFrame camera = camera_at(scene.camera, options.frames.empty() ? 0 : options.frames.front());
+void report_pixel(const RenderCommand& request) {
+    const SceneDescription scene = read_scene(request);
+    const FrameSettings settings = frame_settings(request, scene);
+    const ChosenPixel& pixel = request.pixel;
+    if (pixel.x >= settings.full_width || pixel.y >= settings.full_height)
+        throw Error(ExitCode::usage,
+                    fmt::format("--pixel {},{}: is outside of the frame, which is {}x{}; its last pixel is {},{}",
+                                pixel.x, pixel.y, settings.full_width, settings.full_height, settings.full_width - 1,
+                                settings.full_height - 1));
+    const CameraFrame camera = camera_at(scene.camera, request.frames.empty() ? 0 : request.frames.front());
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<size_t>(threads_of(options)));
+                                    static_cast<size_t>(threads_of(request)));
     SceneSource source = gather_scene(scene);
-    if (!options.json.empty() && options.json != "-") {
+    if (!request.json.empty() && request.json != "-") {
         RunFiles files;
-        files.reads_scene(options.scene, source.files);
-        files.writes(options.json, "--json");
-        make_directory_of(options.json);
+        files.reads_scene(request.scene, source.files);
+        files.writes(request.json, "--json");
+        make_directory_of(request.json);
     }
-    report_pixel(options, scene, std::move(source), settings, camera);
+    report_pixel(request, scene, std::move(source), settings, camera);
 }
 
-void run(const RenderOptions& options, std::string& memory_advice) {
-    switch (options.action) {
+void run(const RenderCommand& request, std::string& memory_advice) {
+    switch (request.action) {
         case Action::print_help:
             return print(help_text());
         case Action::print_version:
@@ -360,22 +367,22 @@ void run(const RenderOptions& options, std::string& memory_advice) {
         case Action::list_devices:
             return print(list_devices_text());
         case Action::pixel:
-            return report_pixel(options);
+            return report_pixel(request);
         case Action::measure:
-            return measure_scene(options);
+            return measure_scene(request);
         case Action::explain:
         case Action::render:
-            return render_scene(options, memory_advice);
+            return render_scene(request, memory_advice);
     }
 }
 
 /// Runs, and tells programs that read the progress of an error that ends it.
-void run_and_record(const RenderOptions& options, std::string& memory_advice) {
+void run_and_record(const RenderCommand& request, std::string& memory_advice) {
     try {
-        run(options, memory_advice);
+        run(request, memory_advice);
     } catch (const std::exception& error) {
         const Failure failure = failure_of(error, memory_advice);
-        const std::string lines = failure_record(options.progress, failure.text, failure.code);
+        const std::string lines = failure_record(request.progress, failure.text, failure.code);
         if (!lines.empty()) std::fputs((lines + "\n").c_str(), stdout);
         std::fflush(stdout);
         throw;

@@ -22,16 +22,14 @@ PixelRect parse_window(const std::string& text) {
     for (const std::string_view part : parts)
         if (const auto number = whole_number<int>(part)) numbers.push_back(*number);
     if (parts.size() != 4 || numbers.size() != 4 || numbers[2] < 1 || numbers[3] < 1)
-        fail_usage(fmt::format("--crop {}: must be X,Y,WIDTH,HEIGHT in pixels, as in 128,96,64,64", text));
+        fail_usage("must be X,Y,WIDTH,HEIGHT in pixels, as in 128,96,64,64");
     return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 std::vector<std::string> parse_patterns(const std::string& text) {
     std::vector<std::string> patterns;
     for (const std::string_view pattern : parts_at_commas(text)) {
-        if (pattern.empty())
-            fail_usage(
-                fmt::format("--layers {}: has an empty name; names have commas between, as in R,G,B,diffuse.*", text));
+        if (pattern.empty()) fail_usage("has an empty name; names have commas between, as in R,G,B,diffuse.*");
         patterns.emplace_back(pattern);
     }
     return patterns;
@@ -58,10 +56,9 @@ void declare(CLI::App& app, CompareOptions& options, std::string& sums) {
                read_by(selection.crop, parse_window));
     app.add_option("--mask", options.mask, "only pixels where this image is above 0")->type_name("FILE");
     add_option(app, "--metrics", "LIST", "also ssim, or flip (by NVIDIA's program), or both",
-               [&](const char* option, const std::string& text) {
+               [&](const std::string& text) {
                    for (const std::string_view metric : parts_at_commas(text))
-                       *chosen<bool*>(option, std::string(metric),
-                                      {{"ssim", &selection.ssim}, {"flip", &options.flip}}) = true;
+                       *chosen<bool*>(std::string(metric), {{"ssim", &selection.ssim}, {"flip", &options.flip}}) = true;
                });
     app.add_option("--diff", options.diff, "write the absolute differences as an image")->type_name("FILE.exr");
     app.add_option("--json", options.json, "write the result as JSON")->type_name("FILE");

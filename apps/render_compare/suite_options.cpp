@@ -9,9 +9,11 @@
 #include <set>
 
 #include "apps/common/command_line.h"
+#include "apps/common/render_options.h"
+#include "base/suggest.h"
+#include "sequence/run_files.h"
 #include "scene/compile/scene_source.h"
 #include "scene/readers/read_scene.h"
-#include "sequence/run_files.h"
 
 namespace cistula {
 namespace {
@@ -25,12 +27,8 @@ void declare(CLI::App& app, SuiteOptions& options) {
         ->type_name("PATTERN")
         ->expected(1)
         ->take_all();
-    add_option(app, "--backend", "NAME", "embree (CPU) or cuda (GPU); those that each case names",
-               read_by(options.backend, parse_backend));
-    add_option(app, "--device", "LIST", "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0",
-               [&](const char*, const std::string& text) {
-                   options.devices = parse_devices(text, options.backend.value_or(Backend::embree));
-               });
+    add_key(app, options.request, "backend", "embree (CPU) or cuda (GPU); those that each case names");
+    add_key(app, options.request, "device");
     app.add_flag("--update", options.update,
                  "write golden images and hashes anew where they differ, and say what changed");
     add_option(app, "--jobs", "N", "cases that are rendered at once; 1", read_whole(options.jobs, 1, 1024));
@@ -39,9 +37,7 @@ void declare(CLI::App& app, SuiteOptions& options) {
     app.add_option("--json", options.json, "write the results as JSON")->type_name("FILE");
     add_option(app, "--html", "DIR",
                "write the results, with what differs, as a page that needs nothing else: DIR/index.html",
-               [&](const char*, const std::string& text) {
-                   options.html = (std::filesystem::path(text) / "index.html").string();
-               });
+               [&](const std::string& text) { options.html = (std::filesystem::path(text) / "index.html").string(); });
     app.add_flag("--list", options.list, "print the cases, each with a tab and its tags, and exit");
     app.add_flag("-q,--quiet", options.quiet, "errors only; the exit code tells");
     app.set_help_flag("-h,--help", "print this and exit");
@@ -65,6 +61,8 @@ SuiteOptions parse_suite_options(int argc, const char* const* argv) {
     declare(app, options);
     options.help =
         !parse_command_line(app, argc, argv, [](const std::string& extra) { return extra + ": no such word"; });
+    if (app.count("--backend") > 0) options.backend = options.request.backend;
+    options.devices = options.request.devices;
     if (!options.help && options.folder.empty())
         fail_usage("no suite is given: render-compare suite DIR, the folder of a suite.json");
     return options;

@@ -37,13 +37,13 @@ std::string folder_of_programs() {
     return fs::read_symlink("/proc/self/exe", error).parent_path().string();
 }
 
-void check_output(const RenderOptions& options, const OutputName& output, const std::vector<int>& frames) {
+void check_output(const RenderRequest& request, const OutputName& output, const std::vector<int>& frames) {
     if (file_kind(output.text()) == FileKind::raw)
         throw Error(ExitCode::usage,
                     fmt::format("-o {}: tasks go on from what is complete, and raw frames do not say what they show; "
                                 "name it *.exr",
                                 output.text()));
-    preview_name(options.preview, frames);
+    preview_name(request.preview, frames);
 }
 
 /// The names of the film's images, as sha256sum reads them from xargs -0: a zero byte after each.
@@ -59,42 +59,41 @@ std::string names_of_files(const OutputName& output, const std::vector<int>& fra
 }
 
 void write_job(const FarmOptions& farm) {
-    RenderOptions options = farm.render;
-    const SceneDescription scene = read_scene(options);
-    const FrameSettings settings = frame_settings(options, scene);
-    const OutputName output(options.output.empty() ? default_output(scene, options.frames.size()) : options.output,
+    const RenderRequest& request = farm.render;
+    const SceneDescription scene = read_scene(request);
+    const FrameSettings settings = frame_settings(request, scene);
+    const OutputName output(request.output.empty() ? default_output(scene, request.frames.size()) : request.output,
                             "-o");
-    const std::vector<int> frames = frames_to_render(output, options.frames, scene.film.frames);
-    check_output(options, output, frames);
-    const TileGrid grid = farm.tiles.value_or(TileGrid());
+    const std::vector<int> frames = frames_to_render(output, request.frames, scene.film.frames);
+    check_output(request, output, frames);
+    const TileGrid grid = request.tiles.value_or(TileGrid());
     (void)tile_rect(settings.crop, grid, 0);
 
-    StepProgress progress(farm.quiet ? ProgressStyle::none : ProgressStyle::automatic);
+    StepProgress progress(request.quiet ? ProgressStyle::none : ProgressStyle::automatic);
     InterruptGuard guard;
     guard.watch(progress.render.stop);
     const std::optional<tbb::global_control> limit =
-        options.threads > 0
+        request.threads > 0
             ? std::optional<tbb::global_control>(std::in_place, tbb::global_control::max_allowed_parallelism,
-                                                 static_cast<size_t>(options.threads))
+                                                 static_cast<size_t>(request.threads))
             : std::nullopt;
-    const Scene compiled(scene, options.wanted_precision);
-    options.precision = compiled.precision();
-    require_light_layers(options.channels, *compiled.layer_names());
+    const Scene compiled(scene, request.precision);
+    require_light_layers(request.channels, *compiled.layer_names());
     const std::unique_ptr<Renderer> renderer = make_embree_renderer(compiled);
     const MeasuredFrames measured = measure_tiles(*renderer, scene, settings, frames, grid, progress);
 
     const OutputName none;
     FilmEvents nothing;
-    FilmJob job{options, scene, "", settings, output, none, frames, nothing};
+    FilmJob job{request, scene, "", settings, output, none, frames, nothing, compiled.precision()};
     job.layer_names = compiled.layer_names();
-    FarmJob farm_job{job_name(options.scene),
+    FarmJob farm_job{job_name(request.scene),
                      fs::current_path().string(),
                      folder_of_programs(),
-                     options.scene,
+                     request.scene,
                      output.text(),
                      farm.passed,
                      farm.merged,
-                     farm.tiles,
+                     request.tiles,
                      frames,
                      {}};
     farm_job.tasks = plan_tasks(frames, static_cast<size_t>(grid.count()), measured, farm.task_seconds,
@@ -109,7 +108,7 @@ void write_job(const FarmOptions& farm) {
         make_directory_of(path);
         write_file_atomically(path, file.text);
     }
-    if (!farm.quiet)
+    if (!request.quiet)
         progress.say(fmt::format("render-farm: {}: {} tasks, {} frames, {} tiles each; about {} on this machine",
                                  folder, farm_job.tasks.size(), frames.size(), grid.count(), format_duration(seconds)));
 }

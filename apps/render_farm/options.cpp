@@ -13,24 +13,18 @@ namespace cistula {
 namespace {
 
 /// Options of render that are of one run and not of a job.
-constexpr std::string_view refused[] = {"--tile",   "--stats",    "--explain",      "--pixel",         "--json",
-                                        "--resume", "--progress", "--list-devices", "--print-template"};
+constexpr const char* refused[] = {"--tile",   "--stats",    "--explain",      "--pixel",         "--json",
+                                   "--resume", "--progress", "--list-devices", "--print-template"};
 
-/// Options that tasks do not pass on as they are.
-constexpr std::string_view own[] = {"--output",     "--frames", "--tiles",   "--to",      "--task-seconds",
-                                    "--most-tasks", "--quiet",  "--verbose", "--version", "--help"};
+/// Keys that tasks do not pass on as they are.
+constexpr std::string_view own[] = {"scene", "output", "frames", "tiles", "quiet", "verbose"};
 
-/// Options of previews: of tiles, render-merge makes them.
-constexpr std::string_view of_previews[] = {"--preview", "--exposure", "--view", "--bloom"};
-
-template <size_t count>
-bool is_in(const std::string_view (&names)[count], const std::string& name) {
-    return std::find(std::begin(names), std::end(names), name) != std::end(names);
-}
+/// Keys of previews: of tiles, render-merge makes them.
+constexpr std::string_view of_previews[] = {"preview", "exposure", "view", "bloom"};
 
 void declare_farm_options(CLI::App& app, FarmOptions& options) {
     declare_render_options(app, options.render);
-    for (const std::string_view name : refused) app.get_option(std::string(name))->group("");
+    for (const char* name : refused) app.get_option(name)->group("");
     app.get_option("--tiles")->description("cut every frame into a grid of tiles, which render-merge puts together");
     app.add_option("--to", options.folder, "the folder of the job's files; NAME.farm in the working directory")
         ->type_name("DIR");
@@ -40,18 +34,12 @@ void declare_farm_options(CLI::App& app, FarmOptions& options) {
                read_whole(options.most_tasks, 1, 1'000'000));
 }
 
-/// The argument by which an option was given.
-std::string given(const CLI::Option& option, const std::string& name) {
-    const bool is_flag = option.get_type_size_max() == 0 || option.get_items_expected_max() == 0;
-    return is_flag ? name : name + '=' + option.results().back();
-}
-
 }  // namespace
 
 FarmOptions parse_farm_options(int argc, const char* const* argv) {
     CLI::App app;
     FarmOptions options;
-    RenderOptions& render = options.render;
+    RenderCommand& render = options.render;
     declare_farm_options(app, options);
     const bool whole = parse_command_line(app, argc, argv, [&](const std::string& extra) {
         return fmt::format("{}: one scene at a time, and {} is it already", extra, render.scene);
@@ -60,23 +48,19 @@ FarmOptions parse_farm_options(int argc, const char* const* argv) {
         options.action = whole ? FarmAction::print_version : FarmAction::print_help;
         return options;
     }
-    if (render.tiles.count() > 1) options.tiles = render.tiles;
-    render.tiles = {};
-    for (const CLI::Option* option : app.get_options()) {
-        if (option->count() == 0 || option->get_lnames().empty()) continue;
-        const std::string name = "--" + option->get_lnames().front();
-        if (is_in(refused, name))
+    for (const char* name : refused)
+        if (app.count(name) > 0)
             fail_usage(fmt::format("{}: is of a run of render, not of a job of many; leave it out", name));
-        if (is_in(own, name)) continue;
-        std::vector<std::string>& to = options.tiles && is_in(of_previews, name) ? options.merged : options.passed;
-        to.push_back(given(*option, name));
-    }
+    if (render.tiles && render.tiles->count() == 1) render.tiles.reset();
     check_render_options(app, render);
-    if (options.tiles && is_dwa(render.channels.compression))
-        fail_usage(fmt::format("--tiles {}: --compression dwaa and dwab has no place here: {}; leave it out",
-                               given_text(app, "--tiles"), why_no_dwa_of_tiles));
+    for (const RequestKey& key : request_keys()) {
+        if (std::ranges::count(own, key.name) > 0 || !key.given(render)) continue;
+        const bool of_preview = std::ranges::count(of_previews, key.name) > 0;
+        std::vector<std::string>& to = render.tiles && of_preview ? options.merged : options.passed;
+        const std::string name = option_name(key);
+        to.push_back(key.type == KeyType::boolean ? name : name + '=' + key.text(render));
+    }
     if (render.scene == "-") fail_usage("-: every task reads the scene; give a file");
-    options.quiet = render.quiet;
     return options;
 }
 

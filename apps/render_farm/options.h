@@ -1,7 +1,6 @@
 // The command line of `render-farm`: render's options, and its own.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,14 +12,12 @@ enum class FarmAction { write, print_help, print_version };
 
 struct FarmOptions {
     FarmAction action = FarmAction::write;
-    RenderOptions render;             // of the whole film
+    RenderCommand render;             // of the whole film; its tiles, if given, are more than one
     std::vector<std::string> passed;  // arguments that every task passes to render
     std::vector<std::string> merged;  // arguments for render-merge
-    std::optional<TileGrid> tiles;    // more than one
     std::string folder;               // where the job's files go
     double task_seconds = 300;        // that a task takes here, about
     int most_tasks = 1000;
-    bool quiet = false;
 };
 
 /// Parses the command line. Throws Error (usage).

@@ -3,16 +3,15 @@
 #include <tbb/task_arena.h>
 
 #include "apps/common/command_line.h"
-#include "apps/common/view_options.h"
 #include "base/error.h"
 #include "image/color/color_space.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture.h"
 #include "image/picture/picture_io.h"
 #include "image/view/picture_view.h"
-#include "options.h"
 #include "sequence/merge.h"
 #include "sequence/run_files.h"
+#include "options.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -66,9 +65,10 @@ void require_tiles(const FileToMerge& file, const TileGrid& grid, int frame) {
 /// main one. Throws Error (file) for tiles that are missing, with the option of render that makes the first of them.
 std::vector<FileToMerge> files_to_merge(const MergeOptions& options, int frame) {
     FileToMerge main{options.output.for_frame(frame), options.files};
-    if (!options.grid) return {main};
+    if (!options.request.tiles) return {main};
     std::vector<OutputName> names;
-    for (int i = 0; i < options.grid->count(); ++i) names.push_back(options.output.named(tile_name(*options.grid, i)));
+    for (int i = 0; i < options.request.tiles->count(); ++i)
+        names.push_back(options.output.named(tile_name(*options.request.tiles, i)));
     for (const OutputName& name : names) main.tiles.push_back(name.for_frame(frame));
     std::vector<FileToMerge> files;
     for (const std::string& layer : layers_beside(names.front(), frame)) {
@@ -76,7 +76,7 @@ std::vector<FileToMerge> files_to_merge(const MergeOptions& options, int frame) 
         for (const OutputName& name : names) file.tiles.push_back(name.for_layer(frame, layer));
     }
     files.push_back(std::move(main));
-    for (const FileToMerge& file : files) require_tiles(file, *options.grid, frame);
+    for (const FileToMerge& file : files) require_tiles(file, *options.request.tiles, frame);
     return files;
 }
 
@@ -115,24 +115,26 @@ void require_different_files(const std::vector<FileToMerge>& files, const std::s
 void merge_frame(const MergeOptions& options, int frame) {
     const std::vector<FileToMerge> files = files_to_merge(options, frame);
     const std::string preview = options.preview.for_frame(frame);
+    const PixelRect& crop = options.request.frame.crop;
     require_different_files(files, preview);
     for (const FileToMerge& file : files) {
-        Merge merge(options.window);
+        Merge merge(crop.width > 0 ? std::optional(crop) : std::nullopt);
         for (const std::string& tile : file.tiles) merge.add(tile);
         const std::vector<PicturePart> whole = std::move(merge).whole();
         if (!preview.empty() && &file == &files.back())
-            write_merged_preview(preview, whole.front().picture, options.view);
+            write_merged_preview(preview, whole.front().picture, options.request.view);
         write_exr(file.path, whole);
     }
-    if (!options.quiet) note(fmt::format("render-merge: {}: {} tiles", files.back().path, files.back().tiles.size()));
+    if (!options.request.quiet)
+        note(fmt::format("render-merge: {}: {} tiles", files.back().path, files.back().tiles.size()));
 }
 
 void merge(MergeOptions options) {
-    const std::string warning = open_config_view(options.view);
-    if (!warning.empty() && !options.quiet) note(fmt::format("render-merge: warning: {}", warning));
+    const std::string warning = open_config_view(options.request.view);
+    if (!warning.empty() && !options.request.quiet) note(fmt::format("render-merge: warning: {}", warning));
     const int threads = tbb::this_task_arena::max_concurrency();
     set_exr_threads(threads, threads);
-    for (const int frame : options.frames) {
+    for (const int frame : options.request.frames) {
         make_directories(options.output, {frame});
         if (!options.preview.text().empty()) make_directories(options.preview, {frame});
         merge_frame(options, frame);

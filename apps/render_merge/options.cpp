@@ -5,31 +5,21 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/common/command_line.h"
-#include "apps/common/view_options.h"
 #include "base/file_bytes.h"
 #include "render/picture_size.h"
 
 namespace cistula {
 namespace {
 
-void declare(CLI::App& app, MergeOptions& options, std::string& preview) {
+void declare(CLI::App& app, MergeOptions& options) {
+    RenderRequest& request = options.request;
     app.add_option("TILE.exr", options.files, "the tiles of one frame, in any order")->type_name("");
-    add_option(app, "-o,--output", "FILE", "the whole frame's file; with --tiles the name that render was given",
-               [&](const char*, const std::string& text) {
-                   options.output = OutputName(text, "-o");
-                   if (lower_extension(text) != ".exr")
-                       fail_usage(fmt::format("-o {}: tiles and what they make are EXRs; name it *.exr", text));
-               });
+    add_key(app, request, "output", "the whole frame's file; with --tiles the name that render was given");
     CLI::Option* const tiles =
-        add_option(app, "--tiles", "CxR", "the tiles of render's --tiles CxR, by the names that it gave them",
-                   read_by(options.grid, parse_tiles));
-    add_option(app, "-f,--frames", "LIST", "with --tiles: the frames, e.g. 0-299x5,7",
-               read_by(options.frames, parse_frames))
-        ->needs(tiles);
-    add_option(app, "--crop", "WxH+X+Y", "the pixels to be covered, where render had this crop; the full frame",
-               read_by(options.window, parse_crop));
-    add_preview_options(app, preview, options.view);
-    app.add_flag("-q,--quiet", options.quiet, "errors only");
+        add_key(app, request, "tiles", "the tiles of render's --tiles CxR, by the names that it gave them");
+    add_key(app, request, "frames", "with --tiles: the frames, e.g. 0-299x5,7")->needs(tiles);
+    add_key(app, request, "crop", "the pixels to be covered, where render had this crop; the full frame");
+    for (const char* key : {"preview", "exposure", "view", "bloom", "quiet"}) add_key(app, request, key);
     app.add_flag_callback(
         "--version", [&] { options.action = MergeAction::print_version; }, "print the version and exit");
     app.set_help_flag("-h,--help", "print this and exit");
@@ -40,24 +30,28 @@ void declare(CLI::App& app, MergeOptions& options, std::string& preview) {
 MergeOptions parse_merge_options(int argc, const char* const* argv) {
     CLI::App app;
     MergeOptions options;
-    std::string preview;
-    declare(app, options, preview);
+    declare(app, options);
     const bool whole = parse_command_line(app, argc, argv, [](const std::string& extra) { return extra; });
     if (!whole) options.action = MergeAction::print_help;
     if (options.action != MergeAction::merge) return options;
-    const std::string& output = options.output.text();
+    RenderRequest& request = options.request;
+    check_request(request);
+    const std::string& output = request.output;
     if (output.empty()) fail_usage("no output is given: -o FILE.exr; --help tells more");
-    if (options.grid && !options.files.empty())
+    options.output = OutputName(output, "-o");
+    if (lower_extension(output) != ".exr")
+        fail_usage(fmt::format("-o {}: tiles and what they make are EXRs; name it *.exr", output));
+    if (request.tiles && !options.files.empty())
         fail_usage(fmt::format("{}: --tiles {} finds the tiles by their names; leave one out", options.files.front(),
                                given_text(app, "--tiles")));
-    if (!options.grid && options.files.empty())
+    if (!request.tiles && options.files.empty())
         fail_usage("no tiles are given: render-merge TILE.exr... -o FILE.exr, or --tiles CxR; --help tells more");
-    if (options.grid && options.output.has_pattern() && options.frames.empty())
+    if (request.tiles && options.output.has_pattern() && request.frames.empty())
         fail_usage(fmt::format("-o {}: has a place for frame numbers; --frames LIST says which", output));
-    if (!options.grid && options.output.has_pattern())
+    if (!request.tiles && options.output.has_pattern())
         fail_usage(fmt::format("-o {}: the tiles that are named are of one frame; give its name", output));
-    options.frames = frames_to_render(options.output, options.frames, 1);
-    options.preview = preview_name(preview, options.frames);
+    request.frames = frames_to_render(options.output, request.frames, 1);
+    options.preview = preview_name(request.preview, request.frames);
     return options;
 }
 
@@ -65,8 +59,7 @@ std::string merge_help_text() {
     CLI::App app("Puts the tiles of a frame together: to the file, byte for byte, that one job would have written.",
                  "render-merge");
     MergeOptions options;
-    std::string preview;
-    declare(app, options, preview);
+    declare(app, options);
     app.footer(R"(
 Examples:
   render-merge f.tile0.exr f.tile1.exr -o f.exr

@@ -1,10 +1,10 @@
 // The command line of `render-merge`.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/common/render_options.h"
 #include "image/view/picture_view.h"
 #include "render/picture_size.h"
 #include "sequence/frame_list.h"
@@ -17,13 +17,9 @@ enum class MergeAction { merge, print_help, print_version };
 struct MergeOptions {
     MergeAction action = MergeAction::merge;
     std::vector<std::string> files;  // the tiles; empty: those of the grid, by the names that render gives them
-    std::optional<TileGrid> grid;
-    OutputName output;
-    std::vector<int> frames;  // one without a number of its own where the output has no pattern
-    std::optional<PixelRect> window;
-    OutputName preview;  // empty text: none
-    PictureView view;    // of the preview
-    bool quiet = false;
+    /// Tiles, frames (one without a number of its own where the output has no pattern), crop and preview.
+    RenderRequest request;
+    OutputName output, preview;  // the preview's empty text: none
 };
 
 /// Parses the command line. Throws Error (usage).

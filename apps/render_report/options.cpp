@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/common/command_line.h"
+#include "apps/common/render_options.h"
 #include "reference.h"
 #include "render/picture_size.h"
 
@@ -18,7 +19,8 @@ constexpr int quick_repetitions = 3;
 /// The options' texts as CLI11 stores them.
 struct Texts {
     std::vector<std::string> scenes, from;
-    std::string output, json, verify, seed_baseline, cache, backend, device, threads, resolution, repetitions, limit;
+    std::string output, json, verify, seed_baseline, cache, repetitions, limit;
+    RenderRequest request;  // backend, devices, threads and resolution
     std::string scaling;
     bool no_cache = false, quick = false, quiet = false, version = false;
 };
@@ -29,11 +31,10 @@ void declare(CLI::App& app, Texts& texts) {
         ->type_name("FILE");
     app.add_option("-o,--output", texts.output, "the report, one HTML file that needs nothing else")->type_name("FILE");
     app.add_option("--json", texts.json, "write what was measured, for --from and for programs")->type_name("FILE");
-    app.add_option("--backend", texts.backend, "embree (CPU) or cuda (GPU); embree")->type_name("NAME");
-    app.add_option("--device", texts.device, "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0")
-        ->type_name("LIST");
-    app.add_option("--threads", texts.threads, "threads; all")->type_name("N");
-    app.add_option("--res", texts.resolution, "frames of this many pixels; each scene's film")->type_name("WxH");
+    add_key(app, texts.request, "backend", "embree (CPU) or cuda (GPU); embree");
+    add_key(app, texts.request, "device");
+    add_key(app, texts.request, "threads", "threads; all");
+    add_key(app, texts.request, "resolution", "frames of this many pixels; each scene's film");
     app.add_option("--repetitions", texts.repetitions, "timed runs of each setting after warm-up; 10, --quick 3")
         ->type_name("N");
     app.add_option("--limit", texts.limit, "leave out settings whose frames take longer than S seconds; 2")
@@ -41,7 +42,7 @@ void declare(CLI::App& app, Texts& texts) {
     app.add_flag("--quick", texts.quick, "fewer settings and runs: to try it out");
     add_valued_flag(app, "--scaling", "also",
                     "also time against triangles, lights, depth, pixels and GPUs; --scaling=only: nothing else",
-                    [&texts](const char*, const std::string& text) { texts.scaling = text; });
+                    [&texts](const std::string& text) { texts.scaling = text; });
     app.add_option("--verify", texts.verify, "show the hard cases' verdicts from render-verify's --json")
         ->type_name("FILE");
     app.add_option("--seed-baseline", texts.seed_baseline,
@@ -58,23 +59,14 @@ void refuse(bool given, const char* option, const char* why) {
     if (given) fail_usage(fmt::format("{}: {}", option, why));
 }
 
-void check_from(const Texts& texts) {
+void check_from(const CLI::App& app, const Texts& texts) {
     constexpr const char* why = "is for measuring; --from shows what was measured before";
     if (!texts.scenes.empty())
         fail_usage(fmt::format("{}: a scene and --from; measure the scene first with --json FILE, or leave --from out",
                                texts.scenes.front()));
-    const std::pair<const char*, bool> measuring[] = {{"--backend", !texts.backend.empty()},
-                                                      {"--device", !texts.device.empty()},
-                                                      {"--threads", !texts.threads.empty()},
-                                                      {"--res", !texts.resolution.empty()},
-                                                      {"--limit", !texts.limit.empty()},
-                                                      {"--repetitions", !texts.repetitions.empty()},
-                                                      {"--quick", texts.quick},
-                                                      {"--scaling", !texts.scaling.empty()},
-                                                      {"--cache", !texts.cache.empty()},
-                                                      {"--no-cache", texts.no_cache},
-                                                      {"--json", !texts.json.empty()}};
-    for (const auto& [option, given] : measuring) refuse(given, option, why);
+    for (const char* option : {"--backend", "--device", "--threads", "--res", "--limit", "--repetitions", "--quick",
+                               "--scaling", "--cache", "--no-cache", "--json"})
+        refuse(app.count(option) > 0, option, why);
 }
 
 double limit_option(const std::string& text) {
@@ -100,7 +92,7 @@ ReportOptions parse_report_options(int argc, const char* const* argv) {
     if (texts.scenes.empty() && texts.from.empty())
         fail_usage("no scene is given; render-report SCENE... -o report.html, or --from FILE.json; --help tells more");
     for (const std::string& scene : texts.scenes) refuse(scene == "-", "-", "a report names its scenes; give files");
-    if (!texts.from.empty()) check_from(texts);
+    if (!texts.from.empty()) check_from(app, texts);
     if (texts.output.empty() && texts.json.empty())
         fail_usage("nothing would be written; add -o FILE.html, or --json FILE");
     refuse(texts.output.empty() && !texts.from.empty(), "--from", "is shown in a page; add -o FILE.html");
@@ -110,26 +102,24 @@ ReportOptions parse_report_options(int argc, const char* const* argv) {
     options.json = texts.json;
     options.verify = texts.verify;
     options.seed_baseline = texts.seed_baseline;
-    if (!texts.backend.empty()) options.backend = parse_backend(texts.backend);
-    options.devices = parse_devices(texts.device, options.backend);
-    if (!texts.threads.empty()) options.threads = integer_option("--threads", texts.threads, 1, 1024);
-    if (!texts.resolution.empty()) {
-        const PictureSize size = parse_size(texts.resolution);
-        options.width = size.width;
-        options.height = size.height;
-    }
+    options.backend = texts.request.backend;
+    options.devices = texts.request.devices;
+    options.threads = texts.request.threads;
+    options.width = texts.request.frame.full_width;
+    options.height = texts.request.frame.full_height;
     options.quick = texts.quick;
     if (!texts.scaling.empty())
-        options.scaling = chosen<ScalingChoice>("--scaling", texts.scaling,
-                                                {{"also", ScalingChoice::also}, {"only", ScalingChoice::only}});
+        read_given("--scaling", texts.scaling,
+                   read_choice(options.scaling, {{"also", ScalingChoice::also}, {"only", ScalingChoice::only}}));
     if (options.scaling == ScalingChoice::only) {
         refuse(texts.scenes.size() > 1, "--scaling=only", "looks at one scene; give one");
         refuse(!texts.seed_baseline.empty(), "--seed-baseline",
                "is measured beside scenes; --scaling=only measures none");
     }
     options.quiet = texts.quiet;
-    options.repetitions = texts.repetitions.empty() ? (options.quick ? quick_repetitions : options.repetitions)
-                                                    : integer_option("--repetitions", texts.repetitions, 1, 1000);
+    if (options.quick) options.repetitions = quick_repetitions;
+    if (!texts.repetitions.empty())
+        read_given("--repetitions", texts.repetitions, read_whole(options.repetitions, 1, 1000));
     if (!texts.limit.empty()) options.limit = limit_option(texts.limit);
     refuse(texts.no_cache && !texts.cache.empty(), "--no-cache", "and --cache are opposites; leave one out");
     if (!texts.no_cache) options.cache = texts.cache.empty() ? default_cache() : texts.cache;

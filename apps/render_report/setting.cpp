@@ -55,8 +55,4 @@ std::string command_line(const std::string& scene, int width, int height, const 
                        precision_name(setting.precision), backend == "embree" ? "" : " --backend " + backend);
 }
 
-const char* precision_name(Precision precision) {
-    return precision == Precision::double_ ? "double" : "float";
-}
-
 }  // namespace cistula::report

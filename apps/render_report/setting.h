@@ -36,6 +36,4 @@ std::string setting_name(const Setting& setting);
 std::string command_line(const std::string& scene, int width, int height, const Setting& setting,
                          const std::string& backend);
 
-const char* precision_name(Precision precision);
-
 }  // namespace cistula::report

@@ -26,7 +26,7 @@ std::string number_text(double value) {
 }
 
 const char* precision_name(const Outcome& outcome) {
-    return outcome.precision == Precision::double_ ? "double" : "float";
+    return cistula::precision_name(outcome.precision);
 }
 
 /// A number as JSON, which has no infinities.

@@ -56,10 +56,9 @@ std::string row(const Outcome& outcome, bool first, size_t of_case) {
         text += fmt::format("<td rowspan=\"{}\"><code>{}</code><br><span class=\"small\">{}{}</span></td>", of_case,
                             escaped(outcome.info->name), outcome.info->bound.must_fail ? "broken on purpose: " : "",
                             escaped(outcome.info->exact));
-    text +=
-        fmt::format("<td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>",
-                    intersector_name(outcome.intersector), outcome.precision == Precision::double_ ? "double" : "float",
-                    escaped(measured_text(outcome)), escaped(bound_text(outcome)));
+    text += fmt::format("<td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>",
+                        intersector_name(outcome.intersector), cistula::precision_name(outcome.precision),
+                        escaped(measured_text(outcome)), escaped(bound_text(outcome)));
     const std::string why = complaint(outcome);
     text += outcome.holds() ? fmt::format("<td class=\"holds\">{}", outcome.warned > 0 ? "warns" : "holds")
                             : fmt::format("<td class=\"fails\">fails<br><span class=\"small\">{}</span>", escaped(why));

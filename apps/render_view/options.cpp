@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "apps/common/command_line.h"
-#include "apps/common/view_options.h"
+#include "apps/common/render_options.h"
 #include "base/file_bytes.h"
 #include "sequence/run_files.h"
 
@@ -16,32 +16,30 @@ namespace {
 
 constexpr int most_columns = 1000;
 
-/// The options' texts as CLI11 stores them.
-struct Texts {
-    std::string file, output, columns;
-    std::vector<std::string> layers;
-    bool all = false, list = false, quiet = false, version = false;
-};
-
-void declare(CLI::App& app, Texts& texts, PictureView& view) {
-    app.add_option("FILE.exr", texts.file, "the image")->type_name("");
-    app.add_option("-o,--output", texts.output, "the PNG; FILE.view.png in the working directory")->type_name("FILE");
-    app.add_option("--layer", texts.layers,
+/// Adds the options; `request`: how colors are shown.
+void declare(CLI::App& app, ViewOptions& options, RenderRequest& request) {
+    app.add_option("FILE.exr", options.file, "the image")->type_name("");
+    app.add_option("-o,--output", options.output, "the PNG; FILE.view.png in the working directory")->type_name("FILE");
+    app.add_option("--layer", options.layers,
                    "a layer, or several with commas between; may be given several times; the first of colors")
         ->type_name("NAME")
         ->expected(1)
         ->allow_extra_args(false)  // the next word is the image
         ->take_all();
-    app.add_flag("--all", texts.all, "all layers");
-    app.add_flag("--list", texts.list, "print the layers and how each is shown, and exit");
-    app.add_option("--columns", texts.columns, "of several layers: so many in a row; 4")->type_name("N");
-    add_option(app, "--exposure", "EV", "stops by which colors and scalars are brighter; 0", read_exposure(view));
-    add_option(app, "--view", "NAME",
-               "of colors: srgb cuts off above white, filmic tells bright colors apart, or a view of $OCIO; srgb",
-               read_view(view));
-    add_option(app, "--bloom", "AMOUNT", "of colors: how much light above white glows around; 0", read_bloom(view));
-    app.add_flag("-q,--quiet", texts.quiet, "errors only");
-    app.add_flag("--version", texts.version, "print the version and exit");
+    app.add_flag("--all", options.all, "all layers");
+    const auto add_action = [&](const char* name, const char* description, ViewAction action) {
+        app.add_flag_callback(
+            name, [&options, action] { options.action = action; }, description);
+    };
+    add_action("--list", "print the layers and how each is shown, and exit", ViewAction::list);
+    add_option(app, "--columns", "N", "of several layers: so many in a row; 4",
+               read_whole(options.columns, 1, most_columns));
+    add_key(app, request, "exposure", "stops by which colors and scalars are brighter; 0");
+    add_key(app, request, "view",
+            "of colors: srgb cuts off above white, filmic tells bright colors apart, or a view of $OCIO; srgb");
+    add_key(app, request, "bloom", "of colors: how much light above white glows around; 0");
+    app.add_flag("-q,--quiet", options.quiet, "errors only");
+    add_action("--version", "print the version and exit", ViewAction::print_version);
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
@@ -54,33 +52,26 @@ std::string default_view_name(const std::string& file) {
 
 ViewOptions parse_view_options(int argc, const char* const* argv) {
     CLI::App app;
-    Texts texts;
     ViewOptions options;
-    declare(app, texts, options.view);
+    RenderRequest request;
+    declare(app, options, request);
     const bool whole = parse_command_line(app, argc, argv, [&](const std::string& extra) {
-        return fmt::format("{}: one image at a time, and {} is it already", extra, texts.file);
+        return fmt::format("{}: one image at a time, and {} is it already", extra, options.file);
     });
-    if (!whole || texts.version) {
-        options.action = whole ? ViewAction::print_version : ViewAction::print_help;
-        return options;
-    }
-    if (texts.file.empty()) fail_usage("no image is given: render-view FILE.exr; --help tells more");
-    options.file = texts.file;
+    if (!whole) options.action = ViewAction::print_help;
+    if (!whole || options.action == ViewAction::print_version) return options;
+    if (options.file.empty()) fail_usage("no image is given: render-view FILE.exr; --help tells more");
+    options.view = request.view;
     options.exposed = app.count("--exposure") > 0;
-    options.layers = texts.layers;
-    options.all = texts.all;
-    options.quiet = texts.quiet;
-    if (!texts.columns.empty()) options.columns = integer_option("--columns", texts.columns, 1, most_columns);
-    if (texts.all && !texts.layers.empty())
+    if (options.all && !options.layers.empty())
         fail_usage(fmt::format("--layer {}: has no place beside --all, which shows every layer; leave one out",
-                               texts.layers.front()));
-    if (texts.list) {
-        options.action = ViewAction::list;
-        if (!texts.output.empty())
-            fail_usage(fmt::format("-o {}: --list writes no picture; leave it out", texts.output));
+                               options.layers.front()));
+    if (options.action == ViewAction::list) {
+        if (!options.output.empty())
+            fail_usage(fmt::format("-o {}: --list writes no picture; leave it out", options.output));
         return options;
     }
-    options.output = texts.output.empty() ? default_view_name(texts.file) : texts.output;
+    if (options.output.empty()) options.output = default_view_name(options.file);
     if (lower_extension(options.output) != ".png")
         fail_usage(fmt::format("-o {}: what is seen is written as a PNG; name it *.png", options.output));
     RunFiles files;
@@ -92,9 +83,9 @@ ViewOptions parse_view_options(int argc, const char* const* argv) {
 std::string view_help_text() {
     CLI::App app("Shows layers of an EXR image as a PNG: colors, ids, mattes, depth, normals, any channel.",
                  "render-view");
-    Texts texts;
-    PictureView view;
-    declare(app, texts, view);
+    ViewOptions options;
+    RenderRequest request;
+    declare(app, options, request);
     app.footer(R"(
 Examples:
   render-view film.exr --list

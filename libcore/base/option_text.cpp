@@ -16,17 +16,16 @@ void fail_usage(const std::string& message) {
     throw Error(ExitCode::usage, message);
 }
 
-int integer_option(const char* option, const std::string& text, int low, int high) {
+int integer_in(const std::string& text, int low, int high) {
     const std::optional<int> value = whole_number<int>(text);
     if (!value || *value < low || *value > high)
-        fail_usage(fmt::format("{} {}: must be a whole number from {} to {}", option, text, low, high));
+        fail_usage(fmt::format("must be a whole number from {} to {}", low, high));
     return *value;
 }
 
-double number_option(const char* option, const std::string& text, double low, double high, const char* what) {
+double number_in(const std::string& text, double low, double high, const char* what) {
     const std::optional<double> value = whole_number<double>(text);
-    if (!value || !std::isfinite(*value) || *value < low || *value > high)
-        fail_usage(fmt::format("{} {}: must be {}", option, text, what));
+    if (!value || !std::isfinite(*value) || *value < low || *value > high) fail_usage(fmt::format("must be {}", what));
     return *value;
 }
 
@@ -40,9 +39,8 @@ std::vector<std::string_view> parts_at_commas(std::string_view text) {
     return parts;
 }
 
-void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names) {
-    fail_usage(
-        fmt::format("{} {}: must be {}; {}", option, text, fmt::join(names, " or "), suggestion(text, names, "names")));
+void fail_choice(const std::string& text, const std::vector<std::string_view>& names) {
+    fail_usage(fmt::format("must be {}; {}", fmt::join(names, " or "), suggestion(text, names, "names")));
 }
 
 Failure failure_of(const std::exception& error, const std::string& memory_advice) {

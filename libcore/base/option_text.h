@@ -1,4 +1,5 @@
-// Reading values from texts: numbers, choices, lists. What is wrong is an Error (usage) that names the option.
+// Reading values from texts: numbers, choices, lists. What is wrong is an Error (usage) that says what would be
+// right; who reads adds the place and the text.
 #pragma once
 
 #include <charconv>
@@ -25,28 +26,27 @@ std::optional<T> whole_number(std::string_view text) {
     return value;
 }
 
-/// The text of an option as an integer. Throws Error (usage): "OPTION TEXT: must be a whole number from LOW to HIGH".
-int integer_option(const char* option, const std::string& text, int low, int high);
+/// The text as an integer. Throws Error (usage): "must be a whole number from LOW to HIGH".
+int integer_in(const std::string& text, int low, int high);
 
-/// The text of an option as a finite number. Throws Error (usage): "OPTION TEXT: must be WHAT", of which `what` tells
-/// the limits.
-double number_option(const char* option, const std::string& text, double low, double high, const char* what);
+/// The text as a finite number. Throws Error (usage): "must be WHAT", of which `what` tells the limits.
+double number_in(const std::string& text, double low, double high, const char* what);
 
 /// The parts of a list with commas between; a text without commas is one.
 std::vector<std::string_view> parts_at_commas(std::string_view text);
 
-/// Throws Error (usage) for an unknown choice: "OPTION TEXT: must be a or b; did you mean 'a'?".
-[[noreturn]] void fail_choice(const char* option, const std::string& text, const std::vector<std::string_view>& names);
+/// Throws Error (usage) for an unknown choice: "must be a or b; did you mean 'a'?".
+[[noreturn]] void fail_choice(const std::string& text, const std::vector<std::string_view>& names);
 
 /// The choice named `text`. Throws Error (usage).
 template <class T>
-T chosen(const char* option, const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
+T chosen(const std::string& text, const std::vector<std::pair<std::string_view, T>>& choices) {
     std::vector<std::string_view> names;
     for (const auto& [name, value] : choices) {
         if (name == text) return value;
         names.push_back(name);
     }
-    fail_choice(option, text, names);
+    fail_choice(text, names);
 }
 
 /// What is told of an error that ends a program.

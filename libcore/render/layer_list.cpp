@@ -18,22 +18,8 @@ OutputChannels parse_layers(std::string_view text, OutputChannels layers) {
         std::string_view name, group;
         bool* wanted;
     };
-    std::vector<Layer> known = {{"P", "data", &layers.position},
-                                {"uv", "data", &layers.uv},
-                                {"albedo", "data", &layers.albedo},
-                                {"N", "data", &layers.normal},
-                                {"Z", "data", &layers.z},
-                                {"depth_ray", "data", &layers.depth_ray},
-                                {"coverage", "data", &layers.coverage},
-                                {"id", "data", &layers.id},
-                                {"material_id", "data", &layers.material_id},
-                                {"samples", "data", &layers.samples},
-                                {"cost", "data", &layers.cost},
-                                {"error", "data", &layers.error},
-                                {"light", "light", &layers.light},
-                                {"CryptoObject", "cryptomatte", &layers.object_mattes},
-                                {"CryptoMaterial", "cryptomatte", &layers.material_mattes},
-                                {"CryptoLight", "cryptomatte", &layers.light_mattes}};
+    std::vector<Layer> known;
+    for (const auto& [name, group, wanted] : named_layers) known.push_back({name, group, &(layers.*wanted)});
     for (int layer = 0; layer < path_layer_count; ++layer)
         known.push_back({path_layer_names[layer], "path", &layers.path[layer]});
     std::vector<std::string_view> names = {"path", "data", "cryptomatte"};
@@ -43,6 +29,8 @@ OutputChannels parse_layers(std::string_view text, OutputChannels layers) {
         lights.push_back(std::string(light_layer_prefix).append(name));
     lights.push_back(std::string(light_layer_prefix).append("GROUP"));  // of the scene, which is not read yet
     names.insert(names.end(), lights.begin(), lights.end());
+    for (const Layer& layer : known) *layer.wanted = false;
+    layers.light_layers.clear();
     bool all_lights = false;
     for (const std::string_view name : parts_at_commas(text)) {
         bool found = false;
@@ -53,9 +41,7 @@ OutputChannels parse_layers(std::string_view text, OutputChannels layers) {
         all_lights |= name == "light";
         for (const Layer& layer : known)
             if (layer.name == name || layer.group == name) *layer.wanted = found = true;
-        if (!found)
-            fail_usage(fmt::format("--layers {}: there is no layer '{}'; {}", text, name,
-                                   nearest_first(name, names, "layers")));
+        if (!found) fail_usage(fmt::format("there is no layer '{}'; {}", name, nearest_first(name, names, "layers")));
     }
     if (all_lights) layers.light_layers.clear();
     return layers;

@@ -15,10 +15,10 @@ struct PictureSize {
 
 inline constexpr int largest_side = 65536;  // pixels
 
-/// Parses the size given to --res, such as "640x480". Throws Error (usage).
+/// Parses a size such as "640x480". Throws Error (usage), as those below: what would be right.
 PictureSize parse_size(std::string_view text);
 
-/// Parses the rectangle given to --crop, "WxH+X+Y"; X and Y from the top left of the full frame. Throws Error (usage).
+/// Parses a rectangle, "WxH+X+Y"; X and Y from the top left of the full frame.
 PixelRect parse_crop(std::string_view text);
 
 /// A grid of tiles over the pixels of a frame. They are numbered from 0, row by row from the top left.
@@ -31,7 +31,7 @@ struct TileGrid {
 
 inline constexpr int most_tiles = 10'000;
 
-/// Parses the grid given to --tiles, "CxR". Throws Error (usage).
+/// Parses a grid, "CxR".
 TileGrid parse_tiles(std::string_view text);
 
 /// The pixels of a tile, of a grid over these. Sizes differ by one pixel at most; every pixel is in one tile. Throws

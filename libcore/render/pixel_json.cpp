@@ -47,7 +47,7 @@ class PixelJson {
             {"supersample", settings.supersample},
             {"depth", settings.depth},
             {"cutoff", settings.cutoff},
-            {"precision", report_.precision == Precision::double_ ? "double" : "float"},
+            {"precision", precision_name(report_.precision)},
             {"sum_unit", number(radiance_of({1, 1, 1}, film).x)},
             {"samples", std::move(samples)},
             {"totals", totals()},

@@ -342,7 +342,7 @@ std::string pixel_text(PixelReport report, bool verbose) {
     std::string text =
         fmt::format("{}, frame {}: pixel {},{} of {}x{}; depth {}, cutoff {}, {}, {}\n\n", one_line(report.scene),
                     report.camera.frame, report.x, report.y, settings.full_width, settings.full_height, settings.depth,
-                    settings.cutoff, report.precision == Precision::double_ ? "double" : "float",
+                    settings.cutoff, precision_name(report.precision),
                     k == 1 ? std::string("one sample") : fmt::format("{} samples", k * k));
     const size_t middle = middle_sample(k);
     bool folded = false;

@@ -30,33 +30,25 @@ std::string describe(const CudaDevice& device) {
 
 }  // namespace
 
-Backend parse_backend(const std::string& text) {
-    return chosen<Backend>("--backend", text, {{"embree", Backend::embree}, {"cuda", Backend::cuda}});
-}
-
-const char* backend_name(Backend backend) {
-    return backend == Backend::cuda ? "cuda" : "embree";
-}
-
 DeviceChoice parse_devices(const std::string& text, Backend backend) {
-    if (text.empty()) return {};
     if (backend != Backend::cuda)
-        fail_usage(fmt::format("--device {}: chooses GPUs, and --backend is {}; add --backend cuda or leave it out",
-                               text, backend_name(backend)));
+        fail_usage(fmt::format("chooses GPUs, and --backend is {}; add --backend cuda or leave it out",
+                               backend_name(backend)));
     if (text == "all") return {true, {}};
     DeviceChoice choice{false, {}};
     for (const std::string_view part : parts_at_commas(text)) {
         const auto index = whole_number<int>(part);
         if (!index || *index < 0)
-            fail_usage(
-                fmt::format("--device {}: must be numbers of GPUs, as in 0 or 0,2, or all; render "
-                            "--list-devices shows them",
-                            text));
+            fail_usage("must be numbers of GPUs, as in 0 or 0,2, or all; render --list-devices shows them");
         if (std::find(choice.indices.begin(), choice.indices.end(), *index) != choice.indices.end())
-            fail_usage(fmt::format("--device {}: names GPU {} twice; once is enough", text, *index));
+            fail_usage(fmt::format("names GPU {} twice; once is enough", *index));
         choice.indices.push_back(*index);
     }
     return choice;
+}
+
+std::string devices_text(const DeviceChoice& choice) {
+    return choice.all ? "all" : fmt::format("{}", fmt::join(choice.indices, ","));
 }
 
 std::vector<CudaDevice> pick_devices(const DeviceChoice& choice, const std::vector<CudaDevice>& present) {

@@ -15,9 +15,11 @@ namespace cistula {
 
 enum class Backend { embree, cuda };
 
-/// The backend named by --backend: "embree" or "cuda". Throws Error (usage).
-Backend parse_backend(const std::string& text);
-const char* backend_name(Backend backend);
+/// The names of backends, in their order.
+inline constexpr std::string_view backend_names[] = {"embree", "cuda"};
+constexpr const char* backend_name(Backend backend) {
+    return backend_names[static_cast<size_t>(backend)].data();
+}
 
 /// The GPUs named by --device: a list, or all usable ones.
 struct DeviceChoice {
@@ -25,8 +27,9 @@ struct DeviceChoice {
     std::vector<int> indices = {0};
 };
 
-/// Parses "0,2" or "all"; empty: the default. Throws Error (usage), also for any text if the backend is not CUDA.
+/// Parses "0,2" or "all". Throws Error (usage): what would be right, for any text if the backend is not CUDA.
 DeviceChoice parse_devices(const std::string& text, Backend backend);
+std::string devices_text(const DeviceChoice& choice);
 
 /// The GPUs that a program runs on, and their names for records. All empty if the backend is not CUDA.
 struct ChosenDevices {

@@ -9,6 +9,15 @@ namespace cistula {
 
 struct FrameStats;
 
+/// How a program shows its progress. `automatic`: on a terminal a line that is redrawn, elsewhere a line every 30 s.
+/// `plain`: a line every 10 s and at milestones. `json` and `openjd`: records for other programs on standard output.
+enum class ProgressStyle { automatic, plain, none, json, openjd };
+
+/// Whether a style is for other programs to read.
+constexpr bool is_for_programs(ProgressStyle style) {
+    return style == ProgressStyle::json || style == ProgressStyle::openjd;
+}
+
 /// Receives what happens to a film, on any thread, one call at a time for each member. The library prints nothing
 /// itself. What these throw ends the film.
 class FilmEvents {

@@ -33,7 +33,7 @@ std::vector<FrameFile> expected_files(const FilmJob& job, const CameraFrame& cam
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
     one.pixels.assign(1);
     begin_layers(one.layers, job.settings.layers, 1, job.layer_names);
-    LayeredPicture picture = channels_of(one, job.options.channels);
+    LayeredPicture picture = channels_of(one, job.request.channels);
     const PixelRect& crop = job.settings.crop;
     picture.width = crop.width;
     picture.height = crop.height;
@@ -42,7 +42,7 @@ std::vector<FrameFile> expected_files(const FilmJob& job, const CameraFrame& cam
     picture.display_width = job.settings.full_width;
     picture.display_height = job.settings.full_height;
     picture.attributes.merge(attributes_of(job, camera));
-    return frame_files(std::move(picture), job.options.split, job.output, camera.frame);
+    return frame_files(std::move(picture), job.request.split, job.output, camera.frame);
 }
 
 /// Whether a file is complete, and of this frame.
@@ -73,7 +73,7 @@ bool is_finished(const FilmJob& job, const CameraFrame& camera) {
 /// The files that are written for a frame: images, those of layers first, and the preview.
 std::vector<std::string> paths_of(const FilmJob& job, const CameraFrame& camera) {
     std::vector<std::string> paths;
-    if (job.options.split == Split::files)
+    if (job.request.split == Split::files)
         for (const FrameFile& file : expected_files(job, camera)) paths.push_back(file.path);
     else
         paths.push_back(job.output.for_frame(camera.frame));
@@ -106,7 +106,7 @@ class FramesToRender {
         for (; index_ < job_.frames.size() && most > 0 && !stop_; ++index_, --most) {
             if (index_ > 0 && index_ % stretch_length == 0) look_ahead();
             const CameraFrame camera = camera_at(job_.scene.camera, job_.frames[index_]);
-            if (!job_.options.resume || !is_finished(job_, camera)) {
+            if (!job_.request.resume || !is_finished(job_, camera)) {
                 ++index_;
                 return camera;
             }
@@ -160,7 +160,7 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
 }  // namespace
 
 Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
-    Attributes attributes = header_attributes(job.scene_hash, job.settings, job.options.precision, camera);
+    Attributes attributes = header_attributes(job.scene_hash, job.settings, job.precision, camera);
     add_film_attributes(job.scene.film, attributes);
     return attributes;
 }
@@ -170,12 +170,12 @@ Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
 // threads a few share each: with one frame per core, cores would idle until as many frames are rendered, and again
 // while the last ones are written. At least two frames, so that one is encoded while the
 // other is compressed. The CPU backend writes one, with all cores: it has memory for no more than two films.
-WriterLimits writer_limits(const FilmOptions& options, size_t frames) {
+WriterLimits writer_limits(Backend backend, size_t frames) {
     constexpr int few = 4;  // a frame queues twice as many blocks of lines, and others wait behind them
     const int threads = tbb::this_task_arena::max_concurrency();
     WriterLimits limits;
     limits.exr_threads = limits.exr_threads_of_a_frame = threads;
-    if (options.backend == Backend::cuda && frames > 1) {
+    if (backend == Backend::cuda && frames > 1) {
         limits.frames = std::max(2, threads / 2);
         limits.exr_threads_of_a_frame = std::min(threads, few);
     }
@@ -184,16 +184,16 @@ WriterLimits writer_limits(const FilmOptions& options, size_t frames) {
 
 std::vector<std::string> layers_with_files(const FilmJob& job) {
     std::vector<std::string> layers;
-    if (job.options.split != Split::files) return layers;
+    if (job.request.split != Split::files) return layers;
     for (const FrameFile& file : expected_files(job, camera_at(job.scene.camera, job.frames.front())))
         if (file.parts.front().name != main_part) layers.push_back(file.parts.front().name);
     return layers;
 }
 
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
-    const FilmOptions& options = job.options;
+    const RenderRequest& request = job.request;
     std::set<std::string> notes;  // printed so far
-    FrameWriter writer(options.channels, !options.stats.empty(), writer_limits(options, job.frames.size()),
+    FrameWriter writer(request.channels, !request.stats.empty(), writer_limits(request.backend, job.frames.size()),
                        progress.stop, [&](const FrameStats& frame) {
                            stats.totals.add(frame);
                            if (job.written) job.written(frame);
@@ -244,9 +244,9 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
                                         camera.frame, describe_flags(finished.film.flags, job.scene)));
             }
             finished.image = job.output;
-            finished.split = options.split;
+            finished.split = request.split;
             finished.preview = job.preview.for_frame(camera.frame);
-            finished.view = options.view;
+            finished.view = request.view;
             finished.attributes = attributes_of(job, camera);
             finished.stats =
                 stats_of(finished.film, camera.frame, job.output.for_frame(camera.frame), seconds, renderer.times());
@@ -254,7 +254,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
                 finished.stats.depth_loss =
                     depth_loss(finished.stats.cut, ledger_totals(finished.film, finished.film.totals.radiance));
             finished.settings = job.settings;
-            finished.strict = options.strict;
+            finished.strict = request.strict;
             job.events.end_frame(finished.stats);
             writer.put(std::move(finished));
             ++rendered;

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "render/renderer.h"
-#include "scene/description/description.h"
-#include "sequence/film_events.h"
-#include "sequence/film_options.h"
 #include "sequence/frame_list.h"
 #include "sequence/frame_writer.h"
 #include "sequence/output_name.h"
 #include "sequence/stats.h"
+#include "scene/description/description.h"
+#include "sequence/film_events.h"
+#include "sequence/render_request.h"
 
 namespace cistula {
 
@@ -22,7 +22,7 @@ class SnapshotRequests;
 
 /// The parameters shared by all frames.
 struct FilmJob {
-    const FilmOptions& options;
+    const RenderRequest& request;
     const SceneDescription& scene;
     const std::string& scene_hash;
     const FrameSettings& settings;
@@ -30,6 +30,7 @@ struct FilmJob {
     const OutputName& preview;  // empty text: none
     const std::vector<int>& frames;
     FilmEvents& events;
+    Precision precision = Precision::single_;
     std::shared_ptr<const LayerNames> layer_names = std::make_shared<const LayerNames>();
     /// Called for each frame whose files are whole, in the film's order, on any thread, one at a time.
     FrameSink written = {};
@@ -56,6 +57,6 @@ inline constexpr size_t stretch_length = 1000;
 void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats);
 
 /// Limits for frames being written while others render.
-WriterLimits writer_limits(const FilmOptions& options, size_t frames);
+WriterLimits writer_limits(Backend backend, size_t frames);
 
 }  // namespace cistula

@@ -13,11 +13,6 @@
 namespace cistula {
 namespace {
 
-[[noreturn]] void fail(std::string_view text, const std::string& what) {
-    constexpr size_t longest = 200;
-    throw Error(ExitCode::usage, fmt::format("--frames {}: {}", first_characters(text, longest), what));
-}
-
 /// Removes a number from the front of `rest` and returns it; nothing if there are no digits or too many.
 std::optional<int> take_number(std::string_view& rest) {
     if (rest.empty() || rest[0] < '0' || rest[0] > '9') return std::nullopt;
@@ -28,15 +23,16 @@ std::optional<int> take_number(std::string_view& rest) {
     return value;
 }
 
-struct Range {
+struct FrameRange {
     int first, last, step;
 };
 
-Range parse_range(std::string_view text, std::string_view item) {
+FrameRange parse_range(std::string_view item) {
     const auto malformed = [&]() {
-        fail(text, fmt::format("\"{}\" is no frame (0 to {}), no range A-B and no range with a step A-BxS; "
-                               "a list looks like 0-299x5,7",
-                               first_characters(item, 40), largest_frame));
+        fail_usage(
+            fmt::format("\"{}\" is no frame (0 to {}), no range A-B and no range with a step A-BxS; "
+                        "a list looks like 0-299x5,7",
+                        first_characters(item, 40), largest_frame));
     };
     std::string_view rest = item;
     const std::optional<int> first = take_number(rest);
@@ -54,8 +50,8 @@ Range parse_range(std::string_view text, std::string_view item) {
         if (!given || !rest.empty()) malformed();
         step = *given;
     }
-    if (*last < *first) fail(text, fmt::format("{} runs backward; write {}-{}", item, *last, *first));
-    if (step == 0) fail(text, fmt::format("the step of {} must be 1 or more", item));
+    if (*last < *first) fail_usage(fmt::format("{} runs backward; write {}-{}", item, *last, *first));
+    if (step == 0) fail_usage(fmt::format("the step of {} must be 1 or more", item));
     return {*first, *last, step};
 }
 
@@ -66,10 +62,10 @@ std::vector<int> parse_frames(std::string_view text) {
     std::vector<bool> seen(largest_frame + 1);
     size_t written = 0;
     for (const std::string_view part : parts_at_commas(text)) {
-        const Range range = parse_range(text, part);
+        const FrameRange range = parse_range(part);
         for (int64_t frame = range.first; frame <= range.last; frame += range.step) {
             if (++written > most_frames)
-                fail(text, fmt::format("more than {} frames; render them in several runs", most_frames));
+                fail_usage(fmt::format("more than {} frames; render them in several runs", most_frames));
             const auto index = static_cast<size_t>(frame);
             if (!seen[index]) frames.push_back(static_cast<int>(frame));
             seen[index] = true;

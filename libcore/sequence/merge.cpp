@@ -70,7 +70,7 @@ void Merge::begin(const std::string& path, const std::vector<PicturePart>& tile)
     const LayeredPicture& first = tile.front().picture;
     if (first.attributes.count("cistula:sceneHash") == 0)
         fail(path, "is no tile that render wrote: its header has no cistula:sceneHash");
-    if (first.compression == Compression::dwaa || first.compression == Compression::dwab)
+    if (is_dwa(first.compression))
         fail(path,
              "its compression loses something, and not what that of the whole frame does; render tiles with another");
     const PixelRect frame{0, 0, first.display_width, first.display_height};

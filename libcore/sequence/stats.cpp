@@ -139,7 +139,7 @@ void StatsFile::add(const FrameStats& frame) {
     is_empty_ = false;
 }
 
-void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
+void StatsFile::finish(const RunStats& stats) {
     const StageSeconds seconds = stage_seconds();
     Json stages;
     for (size_t i = 0; i < seconds.size(); ++i) stages[stage_names[i]] = seconds[i] * 1e3;
@@ -148,9 +148,9 @@ void StatsFile::finish(const RunStats& stats, const FilmOptions& options) {
     context.update({
         {"scene", stats.scene},
         {"scene_hash", stats.scene_hash},
-        {"backend", backend_name(options.backend)},
+        {"backend", backend_name(stats.backend)},
         {"intersector", stats.intersector},
-        {"precision", options.precision == Precision::double_ ? "double" : "float"},
+        {"precision", precision_name(stats.precision)},
         {"threads", stats.threads},
         {"lanes", stats.lanes},
         {"resolution", {settings_.full_width, settings_.full_height}},

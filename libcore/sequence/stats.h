@@ -11,7 +11,8 @@
 #include "render/record/film.h"
 #include "render/renderer.h"
 #include "render/target.h"
-#include "sequence/film_options.h"
+#include "sequence/backends.h"
+#include "sequence/render_request.h"
 #include "sequence/frame_list.h"
 
 namespace cistula {
@@ -62,6 +63,8 @@ struct FilmTotals {
 };
 
 struct RunStats {
+    Backend backend = Backend::embree;
+    Precision precision = Precision::single_;
     std::string scene, scene_hash, intersector, driver;
     std::vector<std::string> devices;            // GPUs; empty, like the driver, if none is used
     uint32_t required_effects = 0, effects = 0;  // masks
@@ -96,7 +99,7 @@ class StatsFile {
 
     /// Adds the context, with the stages until now, and puts the file in its place. Throws Error (file), as all of
     /// these.
-    void finish(const RunStats& stats, const FilmOptions& options);
+    void finish(const RunStats& stats);
 
   private:
     AtomicFile file_;

@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         } else if (words[0] == "render-report") {
             report::parse_report_options(count, arguments.data());
         } else {
-            const RenderOptions options = parse_options(count, arguments.data());
+            const RenderCommand options = parse_options(count, arguments.data());
             fuzz::require(options.frames.size() <= most_frames);
             SceneDescription scene;
             scene.source = options.scene;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sequence/render_request.h"
 #include "compare/metrics/compare.h"
 #include "render/picture_size.h"
 #include "render/record/film_picture.h"
@@ -13,24 +14,11 @@
 
 namespace cistula {
 
-/// What pictures of a case are rendered with: the options of `render` that change a picture.
-struct SuiteSettings {
-    std::string scene;  // as given
-    std::vector<int> frames{0};
-    std::optional<PictureSize> resolution;
-    std::optional<PixelRect> crop;
-    std::optional<int> supersample, depth;
-    std::optional<double> cutoff, target_error;
-    std::optional<int> max_samples;
-    std::optional<Precision> precision;  // none: auto
-    std::string layers;                  // as given
-    OutputChannels channels;
+/// A picture, with the keys of a request that change it, and what is expected of it.
+struct SuiteCase : RenderRequest {
     Thresholds thresholds;
     std::vector<Backend> backends = {Backend::embree};
     std::vector<std::string> tags;
-};
-
-struct SuiteCase : SuiteSettings {
     std::string name;
     std::string place;                     // in suite.json: "/cases/3"
     std::string golden;                    // as given: an EXR, with a pattern for several frames; or empty
@@ -51,9 +39,6 @@ struct Suite {
     std::string text;    // of suite.json
     std::vector<SuiteCase> cases;
 };
-
-/// The name of a precision: "float", "double".
-const char* precision_name(Precision precision);
 
 /// Reads FOLDER/suite.json. Throws Error: `file` if it cannot be read, `usage` with the JSON pointer, or line and
 /// column, if its contents are wrong. Scenes and golden images are not opened.

@@ -15,8 +15,8 @@ extern const KeyTable suite_keys, suite_case_keys, suite_defaults_keys, suite_th
 /// All of the tables above.
 std::span<const KeyTable* const> all_suite_tables();
 
-/// Parts of values that no table describes.
-extern const Key suite_width_key, suite_offset_key, suite_frame_key, suite_backend_key;
+/// One of the backends.
+extern const Key suite_backend_key;
 
 /// The name of a case or a tag: letters, digits and these, but one of the first kinds first. Nothing else, since names
 /// are words of command lines, tests of ctest and parts of lists.

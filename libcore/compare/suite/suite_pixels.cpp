@@ -9,8 +9,10 @@
 #include <numeric>
 
 #include "backend_embree/embree/embree_renderer.h"
+#include "backend_embree/pixel_tree/embree_pixel_tree.h"
 #include "image/picture/picture.h"
 #include "image/picture/picture_hash.h"
+#include "render/header_attributes.h"
 #include "render/pixel_report.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/scene_names.h"
@@ -61,15 +63,19 @@ bool gives(const Followed& followed, const LayeredPicture& picture, const SuiteP
 
 /// The settings that the header of a golden image names, and its precision; false if it names too few.
 bool read_header(const LayeredPicture& golden, FrameSettings& settings, Precision& precision) {
-    const auto *depth = attribute_of<int>(golden, "cistula:depth"),
-               *grid = attribute_of<int>(golden, "cistula:supersample");
-    const auto* cutoff = attribute_of<double>(golden, "cistula:cutoff");
-    const auto* in = attribute_of<std::string>(golden, "cistula:precision");
-    if (!depth || !grid || !cutoff || !in || *depth < 1 || *depth > 1024 || *grid < 1 || *grid > 64) return false;
-    settings.depth = *depth;
-    settings.supersample = *grid;
-    settings.cutoff = *cutoff;
-    precision = *in == "double" ? Precision::double_ : Precision::single_;
+    RenderRequest named;
+    try {
+        for (const char* name : {"depth", "supersample", "cutoff", "precision"}) {
+            const RequestKey& key = request_key(name);
+            key.set(named, attribute_text(golden.attributes.at(std::string(key.attribute))));
+        }
+    } catch (const std::exception&) {  // it is not there, or out of range
+        return false;
+    }
+    settings.depth = named.frame.depth;
+    settings.supersample = named.frame.supersample;
+    settings.cutoff = named.frame.cutoff;
+    precision = named.precision.value_or(precision);
     return true;
 }
 
@@ -134,7 +140,7 @@ SuitePixelWhy why_pixel(const SuiteResult& result, const std::string& folder, co
                         const LayeredPicture& fresh, const SuitePixel& pixel) {
     const SuiteCase& one = *result.of;
     SuitePixelWhy why;
-    if (one.target_error) {
+    if (one.frame.adaptive()) {
         why.fresh_note = "rays of images by a grid of samples are followed, and this is none";
         return why;
     }

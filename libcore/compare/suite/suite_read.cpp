@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <limits>
 #include <map>
 
 #include "base/file_bytes.h"
@@ -11,8 +9,8 @@
 #include "compare/suite/suite_keys.h"
 #include "image/color/color_space.h"
 #include "render/layer_list.h"
-#include "scene/readers/json_reader.h"
 #include "sequence/output_name.h"
+#include "scene/readers/json_reader.h"
 
 namespace cistula {
 namespace {
@@ -26,37 +24,14 @@ const std::string& name_in(const JsonValue& value) {
     return json.get_ref<const std::string&>();
 }
 
-/// What `parse` makes of a text; its errors get the value's place.
+/// What `parse` returns; its errors get the value's place.
 template <class Parse>
 auto parsed_at(const JsonValue& value, const Parse& parse) {
     try {
-        return parse(value.json().get_ref<const std::string&>());
+        return parse();
     } catch (const Error& error) {
         value.fail(error.what());
     }
-}
-
-std::vector<int> whole_numbers(const JsonValue& value, std::initializer_list<Key> keys, const char* expected) {
-    if (!value.json().is_array() || value.json().size() != keys.size()) value.fail_expected(expected);
-    std::vector<int> numbers;
-    for (const Key& key : keys) numbers.push_back(static_cast<int>(value.item(numbers.size()).whole(key)));
-    return numbers;
-}
-
-std::vector<int> frames_in(const JsonValue& value) {
-    if (value.json().is_string()) return parsed_at(value, [](const std::string& text) { return parse_frames(text); });
-    if (!value.json().is_number())
-        value.fail_expected("a frame's number, or a list as --frames takes it: \"0-299x30\"");
-    return {static_cast<int>(value.whole(suite_frame_key))};
-}
-
-float z_far_in(const JsonValue& value) {
-    if (value.json().is_string() && value.json().get_ref<const std::string&>() == "inf")
-        return std::numeric_limits<float>::infinity();
-    const double number = value.json().is_number() ? value.json().get<double>() : 0;
-    if (!(static_cast<float>(number) > 0) || number > double(std::numeric_limits<float>::max()))
-        value.fail_expected("a number above 0 in single precision, or \"inf\"");
-    return static_cast<float>(number);
 }
 
 Thresholds thresholds_in(const JsonValue& value) {
@@ -83,80 +58,29 @@ std::vector<T> different_items(const JsonValue& value, size_t least, const char*
     return items;
 }
 
-void read(JsonObject& keys, std::string_view key, std::optional<int>& value) {
-    if (keys.has(key)) keys.read(key, value.emplace());
-}
-
-/// Two keys of one object that exclude each other.
-void refuse_both(JsonObject& keys, std::string_view key, std::string_view other, const char* why) {
-    if (keys.has(key) && keys.has(other))
-        keys.fail(key, fmt::format("\"{}\" has no place beside it: {}; leave one out", other, why));
-}
-
-/// How many samples a pixel gets: a target error, or a grid and a cutoff. One in a case replaces the other of the
-/// defaults.
-void read_samples(JsonObject& keys, SuiteSettings& settings) {
-    refuse_both(keys, "target_error", "supersample", "pixels get as many samples as they need");
-    refuse_both(keys, "target_error", "cutoff", "a quarter of the target is the cutoff");
-    if (keys.has("target_error")) settings.supersample.reset(), settings.cutoff.reset();
-    if (keys.has("supersample") || keys.has("cutoff")) settings.target_error.reset(), settings.max_samples.reset();
-    read(keys, "supersample", settings.supersample);
-    read(keys, "depth", settings.depth);
-    keys.read("cutoff", settings.cutoff);
-    keys.read("target_error", settings.target_error);
-    read(keys, "max_samples", settings.max_samples);
-    if (keys.has("max_samples") && !settings.target_error)
-        keys.fail("max_samples", "is for a \"target_error\"; a grid's samples are those of \"supersample\"");
-}
-
-/// The channels of a picture, whose layers are a choice apart.
-void read_channels(JsonObject& keys, SuiteSettings& settings) {
-    OutputChannels& channels = settings.channels;
-    keys.read("layers", settings.layers);
-    if (keys.has("layers")) {
-        const OutputChannels before = channels;
-        channels = parsed_at(keys.at("layers"), [](const std::string& text) { return parse_layers(text); });
-        channels.half = before.half;
-        channels.transparent = before.transparent;
-        channels.space = before.space;
-        channels.z_far = before.z_far;
+void read_settings(JsonObject& keys, SuiteCase& one) {
+    // A target error in a case replaces the grid and the cutoff of the defaults, and they it.
+    const RenderRequest unset;
+    if (keys.has("target_error")) {
+        one.frame.supersample = unset.frame.supersample;
+        one.frame.cutoff = unset.frame.cutoff;
     }
-    if (keys.has("bits")) channels.half = keys.read_choice("bits") == 1;
-    if (keys.has("background")) channels.transparent = keys.read_choice("background") == 1;
-    if (keys.has("colorspace")) {
-        keys.read_choice("colorspace");
-        channels.space = find_color_space(keys.at("colorspace").json().get<std::string>());
+    if (keys.has("supersample") || keys.has("cutoff")) {
+        one.frame.target_error = unset.frame.target_error;
+        one.frame.max_samples = unset.frame.max_samples;
     }
-    if (keys.has("z_far")) channels.z_far = z_far_in(keys.at("z_far"));
-}
-
-void read_settings(JsonObject& keys, SuiteSettings& settings) {
-    keys.read("scene", settings.scene);
-    if (keys.has("frames")) settings.frames = frames_in(keys.at("frames"));
-    if (keys.has("resolution")) {
-        const auto size = whole_numbers(keys.at("resolution"), {suite_width_key, suite_width_key}, "[width, height]");
-        settings.resolution = {size[0], size[1]};
-    }
-    if (keys.has("crop")) {
-        const auto crop =
-            whole_numbers(keys.at("crop"), {suite_width_key, suite_width_key, suite_offset_key, suite_offset_key},
-                          "[width, height, x, y]");
-        settings.crop = {crop[2], crop[3], crop[0], crop[1]};
-    }
-    read_samples(keys, settings);
-    if (keys.has("precision"))
-        settings.precision = std::array<std::optional<Precision>, 3>{
-            std::nullopt, Precision::single_, Precision::double_}[size_t(keys.read_choice("precision"))];
-    read_channels(keys, settings);
-    if (keys.has("thresholds")) settings.thresholds = thresholds_in(keys.at("thresholds"));
+    for (const RequestKey& key : request_keys())
+        if (key.in_suite && keys.has(key.name)) read_key(one, key, keys.at(key.name));
+    parsed_at(keys.value(), [&] { check_request(one, quoted_name); });
+    if (one.frames.empty()) one.frames = {0};
+    if (keys.has("thresholds")) one.thresholds = thresholds_in(keys.at("thresholds"));
     if (keys.has("backends"))
-        settings.backends =
+        one.backends =
             different_items<Backend>(keys.at("backends"), 1, "an array of one backend or more: [\"embree\", \"cuda\"]",
                                      [](const JsonValue& item) {
                                          return item.choice(suite_backend_key) == 1 ? Backend::cuda : Backend::embree;
                                      });
-    if (keys.has("tags"))
-        settings.tags = different_items<std::string>(keys.at("tags"), 0, "an array of names", name_in);
+    if (keys.has("tags")) one.tags = different_items<std::string>(keys.at("tags"), 0, "an array of names", name_in);
 }
 
 std::string hash_in(const JsonValue& value) {
@@ -188,15 +112,17 @@ void read_recorded(const JsonValue& value, SuiteCase& one) {
 void read_golden(JsonObject& keys, SuiteCase& one) {
     keys.read("golden", one.golden);
     if (keys.has("golden")) {
-        const OutputName name = parsed_at(keys.at("golden"), [](const std::string& text) {
-            if (lower_extension(text) != ".exr") throw Error(ExitCode::usage, text + ": golden images are EXRs");
-            return OutputName(text, "golden");
+        const OutputName name = parsed_at(keys.at("golden"), [&] {
+            if (lower_extension(one.golden) != ".exr")
+                throw Error(ExitCode::usage, one.golden + ": golden images are EXRs");
+            return OutputName(one.golden, "golden");
         });
         if (one.frames.size() > 1 && !name.has_pattern())
             keys.fail("golden",
                       fmt::format("is one file, and \"frames\" names {}; put #### into its name", one.frames.size()));
     }
-    refuse_both(keys, "hash", "golden", "either says what is expected");
+    if (keys.has("hash") && keys.has("golden"))
+        keys.fail("hash", "\"golden\" has no place here: either says what is expected; leave it out");
     if (keys.has("hash")) {
         one.hashes = hashes_in(keys.at("hash"), one.frames.size());
         if (keys.has("thresholds")) keys.fail("thresholds", "a \"hash\" is equal or not; give a \"golden\" image");
@@ -205,8 +131,7 @@ void read_golden(JsonObject& keys, SuiteCase& one) {
     if (keys.has("recorded")) read_recorded(keys.at("recorded"), one);
 }
 
-SuiteCase read_case(const JsonValue& value, const SuiteSettings& defaults) {
-    SuiteCase one{defaults, {}, {}, {}, {}, {}, {}, {}};
+SuiteCase read_case(const JsonValue& value, SuiteCase one) {
     JsonObject keys(value, suite_case_keys);
     one.place = value.place();
     one.name = name_in(keys.at("name"));
@@ -231,10 +156,6 @@ std::string SuiteCase::golden_path(const std::string& folder, int frame) const {
     return golden.empty() ? "" : below(folder, OutputName(golden, "golden").for_frame(frame));
 }
 
-const char* precision_name(Precision precision) {
-    return precision == Precision::double_ ? "double" : "float";
-}
-
 Suite read_suite(const std::string& folder) {
     namespace fs = std::filesystem;
     Suite suite;
@@ -251,7 +172,7 @@ Suite read_suite(const std::string& folder) {
     JsonObject keys(root, suite_keys);
     std::string ignored;
     keys.read("$schema", ignored);
-    SuiteSettings defaults;
+    SuiteCase defaults;
     if (keys.has("defaults")) {
         JsonObject values(keys.at("defaults"), suite_defaults_keys);
         read_settings(values, defaults);

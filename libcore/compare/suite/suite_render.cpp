@@ -12,9 +12,9 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/precision_choice.h"
 #include "scene/compile/scene_source.h"
-#include "scene/readers/read_scene.h"
 #include "sequence/film_loop.h"
 #include "sequence/frame_writer.h"
+#include "scene/readers/read_scene.h"
 
 namespace cistula {
 namespace {
@@ -59,22 +59,11 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
 }  // namespace
 
 FrameSettings settings_of(const SuiteCase& one, const SceneDescription& scene) {
-    FrameSettings settings = frame_settings(scene);
-    if (one.resolution) settings.set_size(one.resolution->width, one.resolution->height);
-    settings.supersample = one.supersample.value_or(settings.supersample);
-    settings.depth = one.depth.value_or(settings.depth);
-    settings.cutoff = one.cutoff.value_or(settings.cutoff);
-    settings.target_error = one.target_error.value_or(0);
-    settings.max_samples = one.max_samples.value_or(settings.max_samples);
-    settings.layers = layers_for(one.channels);
-    if (settings.adaptive()) settings.depth = one.depth.value_or(largest_depth);
-    settings.crop = one.crop.value_or(settings.crop);
-    const PixelRect& crop = settings.crop;
-    if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)
-        throw Error(ExitCode::usage,
-                    fmt::format("{}/crop: {}x{} at {},{} leaves the frame, which is {}x{}", one.place, crop.width,
-                                crop.height, crop.x, crop.y, settings.full_width, settings.full_height));
-    return settings;
+    try {
+        return frame_settings(one, scene, quoted_name);
+    } catch (const Error& error) {
+        throw Error(ExitCode::usage, fmt::format("{}: {}", one.place, error.what()));
+    }
 }
 
 SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend backend, const CudaOptions& cuda) {

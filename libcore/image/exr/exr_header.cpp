@@ -19,6 +19,7 @@
 #include <bit>
 #include <set>
 #include <string_view>
+#include <utility>
 
 namespace cistula {
 namespace {
@@ -96,9 +97,14 @@ std::map<std::string, StoredAttribute> exr_header_values(const Imf::Header& head
 
 std::map<std::string, std::string> exr_packing(const Imf::Header& header) {
     std::map<std::string, std::string> packing;
-    packing["compression"] = fmt::format("number {}", static_cast<int>(header.compression()));
-    for (const NamedCompression& named : compressions)
-        if (named.theirs == header.compression()) packing["compression"] = named.name;
+    constexpr std::pair<Imf::Compression, const char*> others[] = {
+        {Imf::PXR24_COMPRESSION, "pxr24"}, {Imf::B44_COMPRESSION, "b44"}, {Imf::B44A_COMPRESSION, "b44a"}};
+    const Compression compression = compression_of(header.compression());
+    packing["compression"] = compression != Compression::other
+                                 ? std::string(compression_names[static_cast<size_t>(compression)])
+                                 : fmt::format("number {}", static_cast<int>(header.compression()));
+    for (const auto& [number, name] : others)
+        if (number == header.compression()) packing["compression"] = name;
     const Imf::LineOrder order = header.lineOrder();
     packing["order of lines"] = order == Imf::INCREASING_Y ? "downward" : order == Imf::DECREASING_Y ? "upward" : "any";
     packing["tiles"] = header.hasTileDescription()
@@ -108,9 +114,9 @@ std::map<std::string, std::string> exr_packing(const Imf::Header& header) {
 }
 
 Compression compression_of(Imf::Compression compression) {
-    for (const NamedCompression& named : compressions)
-        if (named.theirs == compression) return named.ours;
-    return Compression::other;
+    const auto found = std::find(std::begin(compressions), std::end(compressions), compression);
+    return found == std::end(compressions) ? Compression::other
+                                           : static_cast<Compression>(found - std::begin(compressions));
 }
 
 ExrAttributes read_attributes(const Imf::Header& header) {

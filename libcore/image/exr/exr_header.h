@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfForward.h>
 
+#include <iterator>
 #include <map>
 #include <string>
 
@@ -12,19 +13,11 @@
 
 namespace cistula {
 
-/// A compression, by our name and the library's number. Those that only other programs write are `other`.
-struct NamedCompression {
-    Compression ours;
-    Imf::Compression theirs;
-    const char* name;
-};
-inline constexpr NamedCompression compressions[] = {
-    {Compression::none, Imf::NO_COMPRESSION, "none"},   {Compression::rle, Imf::RLE_COMPRESSION, "rle"},
-    {Compression::zips, Imf::ZIPS_COMPRESSION, "zips"}, {Compression::zip, Imf::ZIP_COMPRESSION, "zip"},
-    {Compression::piz, Imf::PIZ_COMPRESSION, "piz"},    {Compression::other, Imf::PXR24_COMPRESSION, "pxr24"},
-    {Compression::other, Imf::B44_COMPRESSION, "b44"},  {Compression::other, Imf::B44A_COMPRESSION, "b44a"},
-    {Compression::dwaa, Imf::DWAA_COMPRESSION, "dwaa"}, {Compression::dwab, Imf::DWAB_COMPRESSION, "dwab"},
-};
+/// The library's numbers of the compressions that are written, in our order.
+inline constexpr Imf::Compression compressions[] = {Imf::NO_COMPRESSION,  Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                                    Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAA_COMPRESSION,
+                                                    Imf::DWAB_COMPRESSION};
+static_assert(std::size(compressions) == std::size(compression_names));
 Compression compression_of(Imf::Compression compression);
 
 using ExrAttributes = decltype(LayeredPicture::attributes);

@@ -137,9 +137,8 @@ void insert(Imf::Header& header, const std::string& name, const std::vector<floa
 }
 
 Imf::Compression compression_of(Compression compression) {
-    for (const NamedCompression& named : compressions)
-        if (named.ours == compression && compression != Compression::other) return named.theirs;
-    throw std::invalid_argument("write_exr: no such compression");
+    if (compression == Compression::other) throw std::invalid_argument("write_exr: no such compression");
+    return compressions[static_cast<size_t>(compression)];
 }
 
 Imf::Header header_of(const LayeredPicture& picture) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -33,6 +34,12 @@ struct Ratio {
 /// How the pixels of an EXR file are compressed; dwaa and dwab lose some. `other`: as in files of other programs; never
 /// written.
 enum class Compression { none, rle, zips, zip, piz, dwaa, dwab, other };
+/// The names of those that are written, in their order.
+inline constexpr std::string_view compression_names[] = {"none", "rle", "zips", "zip", "piz", "dwaa", "dwab"};
+/// Whether a compression is one of those that lose something.
+constexpr bool is_dwa(Compression compression) {
+    return compression == Compression::dwaa || compression == Compression::dwab;
+}
 
 /// The contents of an EXR file: named channels of width x height floats each, row-major from the top left, in memory or
 /// made as they are written.

@@ -48,8 +48,7 @@ decltype(LayeredPicture::attributes) attributes_of(const OutputChannels& channel
         for (int i = 0; i < 2; ++i) chromaticities.push_back(static_cast<float>(xy[i]));
     decltype(LayeredPicture::attributes) attributes = {{"chromaticities", chromaticities},
                                                        {"colorInteropID", std::string(space.id)}};
-    if (channels.compression == Compression::dwaa || channels.compression == Compression::dwab)
-        attributes["cistula:dwaLevel"] = static_cast<double>(channels.dwa_level);
+    if (is_dwa(channels.compression)) attributes["cistula:dwaLevel"] = static_cast<double>(channels.dwa_level);
     if (channels.transparent) attributes["cistula:background"] = std::string("transparent");
     if (channels.z && channels.z_far != OutputChannels().z_far)
         attributes["cistula:zFar"] = static_cast<double>(channels.z_far);

@@ -29,6 +29,29 @@ struct OutputChannels {
     float dwa_level = 45;
 };
 
+/// A layer's name, the group that asks for it too, and its member.
+struct NamedLayer {
+    std::string_view name, group;
+    bool OutputChannels::*wanted;
+};
+/// All but those by path; of light layers one asks for all.
+inline constexpr NamedLayer named_layers[] = {{"P", "data", &OutputChannels::position},
+                                              {"uv", "data", &OutputChannels::uv},
+                                              {"albedo", "data", &OutputChannels::albedo},
+                                              {"N", "data", &OutputChannels::normal},
+                                              {"Z", "data", &OutputChannels::z},
+                                              {"depth_ray", "data", &OutputChannels::depth_ray},
+                                              {"coverage", "data", &OutputChannels::coverage},
+                                              {"id", "data", &OutputChannels::id},
+                                              {"material_id", "data", &OutputChannels::material_id},
+                                              {"samples", "data", &OutputChannels::samples},
+                                              {"cost", "data", &OutputChannels::cost},
+                                              {"error", "data", &OutputChannels::error},
+                                              {"light", "light", &OutputChannels::light},
+                                              {"CryptoObject", "cryptomatte", &OutputChannels::object_mattes},
+                                              {"CryptoMaterial", "cryptomatte", &OutputChannels::material_mattes},
+                                              {"CryptoLight", "cryptomatte", &OutputChannels::light_mattes}};
+
 /// The names of path layers, in the order of PathLayer.
 inline constexpr const char* path_layer_names[path_layer_count] = {"emission", "background", "ambient",     "diffuse",
                                                                    "specular", "reflection", "transmission"};

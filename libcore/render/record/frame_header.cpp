@@ -57,7 +57,7 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
         {"cistula:cutoff", settings.truncation()},
         {"cistula:depth", settings.depth},
         {"cistula:frame", camera.frame},
-        {"cistula:precision", std::string(precision == Precision::double_ ? "double" : "float")},
+        {"cistula:precision", std::string(precision_name(precision))},
         {"cistula:sceneHash", scene_hash},
         {"cistula:supersample", settings.grid()},
         {"cistula:time", camera.time},

@@ -5,14 +5,10 @@
 namespace cistula {
 namespace {
 
-const char* name(Precision precision) {
-    return precision == Precision::double_ ? "double" : "float";
-}
-
 /// "float: /objects/1: pebble: its inradius is 7.9e-07 of the scene's extent; float holds from 1.2e-04 on".
 std::string verdict(Precision chosen, const SmallestPart& part, Precision judged) {
-    return fmt::format("{}: {} is {:.1e} of the scene's extent; {} holds from {:.1e} on", name(chosen), part.what,
-                       part.share, name(judged), least_share(judged));
+    return fmt::format("{}: {} is {:.1e} of the scene's extent; {} holds from {:.1e} on", precision_name(chosen),
+                       part.what, part.share, precision_name(judged), least_share(judged));
 }
 
 }  // namespace

@@ -17,6 +17,9 @@ namespace cistula {
 
 /// The numbers that rays are traced with.
 enum class Precision { single_, double_ };
+constexpr const char* precision_name(Precision precision) {
+    return precision == Precision::double_ ? "double" : "float";
+}
 
 struct MaterialDescription {
     std::string name;

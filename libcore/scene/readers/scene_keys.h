@@ -35,10 +35,10 @@ enum class KeyType {
 struct Key {
     std::string_view name;
     KeyType type = KeyType::other;
-    Range range;                // of every number in the value
-    std::string_view fallback;  // the default as JSON text; empty: none
+    Range range{};                // of every number in the value
+    std::string_view fallback{};  // the default as JSON text; empty: none
     bool required = false;
-    std::span<const std::string_view> choices;
+    std::span<const std::string_view> choices{};
 };
 
 struct KeyTable {

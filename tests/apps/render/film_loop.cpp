@@ -90,7 +90,7 @@ class FilmLoop : public RenderProgram {
     }
 
     const SceneDescription scene_;
-    FilmOptions options_;
+    RenderRequest options_;
     Talk talk_ = Talk::some;
     FrameSettings settings_;
     FakeRenderer renderer_;
@@ -138,7 +138,7 @@ TEST_F(FilmLoop, FramesArePassedOnInTheOrderOfTheFilmWithTheDevicesTimes) {
     const auto text = [&](bool has_device) {
         StatsFile stats(file("stats.json"), settings_, has_device);
         for (const FrameStats& frame : written_) stats.add(frame);
-        stats.finish(stats_, options_);
+        stats.finish(stats_);
         return bytes_of(file("stats.json"));
     };
     EXPECT_EQ(nlohmann::json::parse(text(false)).at("benchmarks").size(), 20u);
@@ -185,13 +185,13 @@ TEST_F(FilmLoop, TheThreadsOfTheArenaCompress) {
         tbb::task_arena(threads).execute([&] {
             film({0, 1, 2}, Backend::cuda);
             EXPECT_EQ(Imf::globalThreadCount(), threads);
-            EXPECT_EQ(writer_limits(options_, 3).frames, threads == 9 ? 4 : 2);
-            EXPECT_EQ(writer_limits(options_, 3).exr_threads_of_a_frame, std::min(threads, 4));
-            EXPECT_EQ(writer_limits(options_, 1).exr_threads_of_a_frame, threads) << "no other frame waits";
+            EXPECT_EQ(writer_limits(options_.backend, 3).frames, threads == 9 ? 4 : 2);
+            EXPECT_EQ(writer_limits(options_.backend, 3).exr_threads_of_a_frame, std::min(threads, 4));
+            EXPECT_EQ(writer_limits(options_.backend, 1).exr_threads_of_a_frame, threads) << "no other frame waits";
             film({0, 1, 2}, Backend::embree);
             EXPECT_EQ(Imf::globalThreadCount(), threads);
-            EXPECT_EQ(writer_limits(options_, 3).frames, 1);
-            EXPECT_EQ(writer_limits(options_, 3).exr_threads_of_a_frame, threads);
+            EXPECT_EQ(writer_limits(options_.backend, 3).frames, 1);
+            EXPECT_EQ(writer_limits(options_.backend, 3).exr_threads_of_a_frame, threads);
         });
     }
 }

@@ -32,21 +32,20 @@ TEST(FrameList, ListsKeepTheirOrderAndNameAFrameOnce) {
 }
 
 TEST(FrameList, Errors) {
-    const auto malformed = [](const std::string& text, const std::string& item) {
-        return "--frames " + text + ": \"" + item +
+    const auto malformed = [](const std::string& item) {
+        return "\"" + item +
                "\" is no frame (0 to 9999999), no range A-B and no range with a step A-BxS; a list looks like "
                "0-299x5,7";
     };
     for (const std::string text : {"", "a", "-3", "3-", "3-x2", "1x2", "0-9x", "0-9x-1", "0-9x2x3", "1.5", " 1", "1 ",
                                    "+1", "10000000", "99999999999999999999", "0-10000000", "1-2-3"})
-        EXPECT_ERROR(parse_frames(text), ExitCode::usage, malformed(text, text));
-    EXPECT_ERROR(parse_frames("1,,2"), ExitCode::usage, malformed("1,,2", ""));
-    EXPECT_ERROR(parse_frames("1,2,"), ExitCode::usage, malformed("1,2,", ""));
-    EXPECT_ERROR(parse_frames("1;2"), ExitCode::usage, malformed("1;2", "1;2"));
-    EXPECT_ERROR(parse_frames("1,9-3"), ExitCode::usage, "--frames 1,9-3: 9-3 runs backward; write 3-9");
-    EXPECT_ERROR(parse_frames("0-9x0"), ExitCode::usage, "--frames 0-9x0: the step of 0-9x0 must be 1 or more");
-    EXPECT_ERROR(parse_frames("0-1000000"), ExitCode::usage,
-                 "--frames 0-1000000: more than 1000000 frames; render them in several runs");
+        EXPECT_ERROR(parse_frames(text), ExitCode::usage, malformed(text));
+    EXPECT_ERROR(parse_frames("1,,2"), ExitCode::usage, malformed(""));
+    EXPECT_ERROR(parse_frames("1,2,"), ExitCode::usage, malformed(""));
+    EXPECT_ERROR(parse_frames("1;2"), ExitCode::usage, malformed("1;2"));
+    EXPECT_ERROR(parse_frames("1,9-3"), ExitCode::usage, "9-3 runs backward; write 3-9");
+    EXPECT_ERROR(parse_frames("0-9x0"), ExitCode::usage, "the step of 0-9x0 must be 1 or more");
+    EXPECT_ERROR(parse_frames("0-1000000"), ExitCode::usage, "more than 1000000 frames; render them in several runs");
     EXPECT_EQ(parse_frames("0-999999").size(), 1000000u);
     EXPECT_EQ(frames_from(parse_frames("9000000-9999999"), 999998, 9), (Frames{9999998, 9999999}));
     std::string many;
@@ -56,7 +55,7 @@ TEST(FrameList, Errors) {
         ADD_FAILURE();
     } catch (const Error& error) {
         EXPECT_LT(std::string(error.what()).size(), 300u);
-        EXPECT_TRUE(std::string(error.what()).ends_with(": more than 1000000 frames; render them in several runs"));
+        EXPECT_TRUE(std::string(error.what()).starts_with("more than 1000000 frames; render them in several runs"));
     }
 }
 

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -22,6 +23,7 @@
 #include "render/header_attributes.h"
 #include "render/layer_list.h"
 #include "render/record/film_difference.h"
+#include "scene/readers/json_reader.h"
 #include "sequence/film_loop.h"
 #include "sequence/stats.h"
 #include "testing/support/expect_error.h"
@@ -31,7 +33,7 @@
 namespace cistula {
 namespace {
 
-RenderOptions parse(std::vector<const char*> arguments) {
+RenderCommand parse(std::vector<const char*> arguments) {
     arguments.insert(arguments.begin(), "render");
     return parse_options(static_cast<int>(arguments.size()), arguments.data());
 }
@@ -41,23 +43,23 @@ void expect_refused(const std::vector<const char*>& arguments, const std::string
 }
 
 TEST(RenderOptions, Defaults) {
-    const RenderOptions options = parse({"s.json"});
+    const RenderCommand options = parse({"s.json"});
     EXPECT_EQ(options.action, Action::render);
     EXPECT_EQ(options.scene, "s.json");
     EXPECT_EQ(options.backend, Backend::embree);
     EXPECT_FALSE(options.devices.all);
     EXPECT_EQ(options.devices.indices, (std::vector<int>{0}));
-    EXPECT_EQ(options.wanted_precision, std::nullopt);
+    EXPECT_EQ(options.precision, std::nullopt);
     EXPECT_EQ(options.progress, ProgressStyle::automatic);
     EXPECT_TRUE(options.output.empty() && options.frames.empty() && options.preview.empty() && options.stats.empty());
-    EXPECT_FALSE(options.resolution || options.crop || options.supersample || options.depth || options.cutoff);
-    EXPECT_FALSE(options.target_error || options.max_samples);
+    for (const RequestKey& key : request_keys())
+        EXPECT_EQ(key.given(options), key.name == "scene") << key.name << ": " << key.text(options);
     EXPECT_FALSE(options.channels.half || options.channels.error || options.resume || options.quiet || options.verbose);
     EXPECT_EQ(options.threads, 0);
 }
 
 TEST(RenderOptions, AllTogether) {
-    const RenderOptions options = parse({"-o",
+    const RenderCommand options = parse({"-o",
                                          "b.####.exr",
                                          "-f",
                                          "0-10x5,7",
@@ -96,16 +98,13 @@ TEST(RenderOptions, AllTogether) {
     EXPECT_EQ(options.frames, (std::vector<int>{0, 5, 10, 7}));
     EXPECT_EQ(options.backend, Backend::cuda);
     EXPECT_EQ(options.devices.indices, (std::vector<int>{2, 0}));
-    EXPECT_EQ(options.resolution->width, 320);
-    EXPECT_EQ(options.resolution->height, 180);
-    EXPECT_EQ(options.crop->x, 16);
-    EXPECT_EQ(options.crop->y, 2);
-    EXPECT_EQ(options.crop->width, 8);
-    EXPECT_EQ(options.crop->height, 4);
-    EXPECT_EQ(options.supersample, 3);
-    EXPECT_EQ(options.depth, 9);
-    EXPECT_EQ(options.cutoff, 1e-3);
-    EXPECT_EQ(options.wanted_precision, Precision::double_);
+    EXPECT_EQ(options.frame.full_width, 320);
+    EXPECT_EQ(options.frame.full_height, 180);
+    EXPECT_EQ(options.frame.crop, (PixelRect{16, 2, 8, 4}));
+    EXPECT_EQ(options.frame.supersample, 3);
+    EXPECT_EQ(options.frame.depth, 9);
+    EXPECT_EQ(options.frame.cutoff, 1e-3);
+    EXPECT_EQ(options.precision, Precision::double_);
     EXPECT_EQ(options.threads, 2);
     EXPECT_EQ(options.preview, "p.png");
     EXPECT_EQ(options.stats, "s.json");
@@ -134,15 +133,128 @@ TEST(RenderOptions, Actions) {
                    "--explain measure: --target-error has no place here: it times the samples of a grid; --supersample "
                    "chooses one; "
                    "leave it out");
-    EXPECT_FALSE(parse({"s.json"}).all_effects || parse({"s.json", "--effects", "auto"}).all_effects);
-    EXPECT_TRUE(parse({"s.json", "--effects", "all"}).all_effects);
+    EXPECT_EQ(parse({"s.json", "--effects", "auto"}).frame.effects, 0u);
+    EXPECT_EQ(parse({"s.json", "--effects", "all"}).frame.effects, all_effects);
     expect_refused({"s.json", "--effects", "most"}, "--effects most: must be auto or all; known names: auto, all");
-    const RenderOptions pixel = parse({"s.json", "--pixel", "12,034", "--json", "-", "-f", "7", "-v"});
+    const RenderCommand pixel = parse({"s.json", "--pixel", "12,034", "--json", "-", "-f", "7", "-v"});
     EXPECT_EQ(pixel.action, Action::pixel);
     EXPECT_EQ(pixel.pixel.x, 12);
     EXPECT_EQ(pixel.pixel.y, 34);
     EXPECT_EQ(pixel.json, "-");
     EXPECT_EQ(pixel.frames, (std::vector<int>{7}));
+}
+
+/// A request with a value of every key, none the default, but for a target error, which excludes others.
+RenderRequest request_of_all(bool with_target) {
+    const std::map<std::string_view, const char*> values = {{"scene", "s.json"},
+                                                            {"output", "o.exr"},
+                                                            {"frames", "0-10x5,7"},
+                                                            {"backend", "cuda"},
+                                                            {"device", "2,0"},
+                                                            {"resolution", "320x180"},
+                                                            {"crop", "8x4+16+2"},
+                                                            {"tiles", "4x3"},
+                                                            {"tile", "11"},
+                                                            {"supersample", "3"},
+                                                            {"depth", "9"},
+                                                            {"cutoff", "0.001"},
+                                                            {"target_error", "0.5"},
+                                                            {"max_samples", "64"},
+                                                            {"effects", "all"},
+                                                            {"precision", "double"},
+                                                            {"threads", "2"},
+                                                            {"lanes", "8"},
+                                                            {"max_texture_gb", "0.5"},
+                                                            {"bits", "half"},
+                                                            {"strict", "true"},
+                                                            {"layers", "Z,error"},
+                                                            {"split", "parts"},
+                                                            {"z_far", "inf"},
+                                                            {"background", "transparent"},
+                                                            {"colorspace", "lin_ap1_scene"},
+                                                            {"compression", "dwab"},
+                                                            {"dwa_level", "20.5"},
+                                                            {"preview", "p.png"},
+                                                            {"exposure", "-1.5"},
+                                                            {"view", "filmic"},
+                                                            {"bloom", "2"},
+                                                            {"stats", "t.json"},
+                                                            {"resume", "true"},
+                                                            {"progress", "json"},
+                                                            {"quiet", "true"},
+                                                            {"verbose", "true"}};
+    RenderRequest request;
+    for (const RequestKey& key : request_keys()) {
+        const bool of_target = key.name == "target_error" || key.name == "max_samples";
+        if (of_target != with_target && (of_target || key.name == "supersample" || key.name == "cutoff")) continue;
+        EXPECT_FALSE(key.given(request)) << key.name;
+        key.set(request, values.at(key.name));
+        EXPECT_TRUE(key.given(request)) << key.name;
+        EXPECT_EQ(key.text(request), values.at(key.name)) << key.name;
+    }
+    return request;
+}
+
+TEST(RequestKeys, TextsAreReadBackAndNoTwoKeysShareAMember) {
+    for (const bool with_target : {false, true}) {
+        const RenderRequest all = request_of_all(with_target);
+        for (const RequestKey& key : request_keys()) {
+            if (!key.given(all) || key.name == "device") continue;  // which asks for the backend
+            RenderRequest one;
+            key.set(one, key.text(all));
+            for (const RequestKey& other : request_keys())
+                EXPECT_EQ(other.given(one), other.name == key.name) << other.name << " by " << key.name;
+        }
+    }
+}
+
+TEST(RequestKeys, HeadersTellThoseThatHaveAnAttribute) {
+    SceneDescription scene;
+    for (const bool with_target : {false, true}) {
+        const RenderRequest request = request_of_all(with_target);
+        const FrameSettings settings = frame_settings(request, scene);
+        Film film;
+        film.full_width = film.full_height = film.rect.width = film.rect.height = 1;
+        film.pixels.assign(1);
+        Attributes attributes = to_layers(film, request.channels).attributes;
+        attributes.merge(header_attributes("abc", settings, *request.precision, camera_at(scene.camera, 0)));
+        for (const RequestKey& key : request_keys()) {
+            if (key.attribute.empty() || !key.given(request)) continue;
+            const auto found = attributes.find(std::string(key.attribute));
+            ASSERT_NE(found, attributes.end()) << key.attribute;
+            RenderRequest read;
+            key.set(read, attribute_text(found->second));
+            EXPECT_EQ(key.text(read), key.text(request)) << key.name;
+        }
+    }
+}
+
+TEST(RequestKeys, ThePageHasEveryOption) {
+    const std::string page = bytes_of(std::string(CISTULA_SOURCE_DIR) + "/docs/programs.md");
+    for (const RequestKey& key : request_keys())
+        EXPECT_NE(page.find("`" + option_name(key)), std::string::npos) << key.name;
+}
+
+TEST(RequestKeys, AreReadFromJsonAsFromText) {
+    const auto read = [](const char* name, const char* json) {
+        RenderRequest request;
+        read_key(request, request_key(name), JsonValue(Json::parse(json), "s", "/a"));
+        return request_key(name).text(request);
+    };
+    EXPECT_EQ(read("depth", "7") + read("cutoff", "0.25") + read("bits", "\"half\"") + read("strict", "true"),
+              "70.25halftrue");
+    EXPECT_EQ(read("resolution", "[64, 48]") + " " + read("crop", "[8, 6, 2, 1]"), "64x48 8x6+2+1");
+    EXPECT_EQ(read("frames", "5") + " " + read("frames", "\"3-5\""), "5 3-5");
+    const auto refused = [&](const char* name, const char* json, const char* message) {
+        EXPECT_ERROR(read(name, json), ExitCode::usage, std::string("s: /a: ") + message);
+    };
+    refused("depth", "1025", "1025: must be a whole number from 1 to 1024");
+    refused("depth", "2.5", "2.5: must be a whole number from 1 to 1024");
+    refused("depth", "\"2\"", "expected a whole number from 1 to 1024, found '2'");
+    refused("strict", "1", "expected true or false, found 1");
+    refused("scene", "5", "expected a string that is not empty, found 5");
+    refused("scene", "\"\"", "expected a string that is not empty, found an empty string");
+    refused("crop", "[1, 2]", "[1,2]: must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");
 }
 
 TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
@@ -182,7 +294,7 @@ TEST(RenderOptions, Errors) {
     for (const char* cutoff : {"-1", "nan", "inf", "1e", "x"})
         expect_refused(
             {"s", "--cutoff", cutoff},
-            std::string("--cutoff ") + cutoff + ": must be a number, 0 or above, in the scene's units of radiance");
+            std::string("--cutoff ") + cutoff + ": must be a number from 0 to 1e30, in the scene's units of radiance");
     expect_refused({"s", "--backend", "cud"}, "--backend cud: must be embree or cuda; did you mean 'cuda'?");
     expect_refused({"s", "--precision", "half"},
                    "--precision half: must be auto or float or double; known names: auto, float, double");
@@ -200,21 +312,21 @@ TEST(RenderOptions, TargetErrors) {
     for (const char* part : {"--target-error", "--max-samples", "5 target error not met"})
         EXPECT_NE(help_text().find(part), std::string::npos) << part;
     for (const auto& [text, value] : {std::pair("0.004", 0.004), {"1e-3", 1e-3}, {"7", 7.0}, {"1e-300", 1e-300}}) {
-        const RenderOptions options = parse({"s", "--target-error", text});
-        EXPECT_EQ(options.target_error, value);
-        EXPECT_FALSE(options.max_samples.has_value());
+        const RenderCommand options = parse({"s", "--target-error", text});
+        EXPECT_EQ(options.frame.target_error, value);
+        EXPECT_EQ(options.frame.max_samples, 256);
     }
     for (const auto& [text, value] : {std::pair("5", 5), {"64", 64}, {"256", 256}})
-        EXPECT_EQ(parse({"s", "--target-error", "1", "--max-samples", text}).max_samples, value);
-    EXPECT_EQ(parse({"s", "--target-error", "1", "--depth", "3"}).depth, 3);
+        EXPECT_EQ(parse({"s", "--target-error", "1", "--max-samples", text}).frame.max_samples, value);
+    EXPECT_EQ(parse({"s", "--target-error", "1", "--depth", "3"}).frame.depth, 3);
     for (const char* target : {"0", "-0", "-1", "nan", "inf", "1e", "x", "0.1 ", "0,1"})
-        expect_refused(
-            {"s", "--target-error", target},
-            std::string("--target-error ") + target + ": must be a number above 0, in the scene's units of radiance");
+        expect_refused({"s", "--target-error", target},
+                       std::string("--target-error ") + target +
+                           ": must be a number above 0, to 1e30, in the scene's units of radiance");
     for (const char* samples : {"0", "4", "257", "-5", "x", "8.0"})
         expect_refused({"s", "--target-error", "1", "--max-samples", samples},
                        std::string("--max-samples ") + samples + ": must be a whole number from 5 to 256");
-    expect_refused({"s", "--max-samples", "64"}, "--max-samples requires --target-error; --help shows the options");
+    expect_refused({"s", "--max-samples", "64"}, "--max-samples 64: is for --target-error");
     expect_refused({"s", "--target-error", "0.1", "--supersample", "2"},
                    "--target-error 0.1: --supersample has no place here: pixels get as many samples as they need; "
                    "leave it out");
@@ -317,15 +429,14 @@ TEST(Backends, WithOneKernelThereIsNothingInstead) {
 
 TEST(Stats, NameTheGpusWhereOnesRan) {
     RunStats stats;
-    RenderOptions options;
     const ScratchDirectory scratch;
     const auto context = [&] {
-        StatsFile(scratch.file("s.json"), {}, !stats.devices.empty()).finish(stats, options);
+        StatsFile(scratch.file("s.json"), {}, !stats.devices.empty()).finish(stats);
         return nlohmann::json::parse(bytes_of(scratch.file("s.json"))).at("context");
     };
     EXPECT_EQ(context().at("backend"), "embree");
     EXPECT_FALSE(context().contains("devices") || context().contains("driver"));
-    options.backend = Backend::cuda;
+    stats.backend = Backend::cuda;
     stats.devices = {"New", "Newer"};
     stats.driver = "13.0";
     EXPECT_EQ(context().at("backend"), "cuda");
@@ -336,12 +447,10 @@ TEST(Stats, NameTheGpusWhereOnesRan) {
 TEST(RenderOptions, Sizes) {
     for (const char* text :
          {"", "640", "640x", "x480", "0x480", "640x-1", "640x480x2", "640X480", "65537x1", "640x480+0+0"})
-        EXPECT_ERROR(parse_size(text), ExitCode::usage,
-                     std::string("--res ") + text + ": must be WIDTHxHEIGHT, each from 1 to 65536, as in 1280x720");
+        EXPECT_ERROR(parse_size(text), ExitCode::usage, "must be WIDTHxHEIGHT, each from 1 to 65536, as in 1280x720");
     for (const char* text : {"", "8x8", "8x8+1", "8x8+1+", "8x8-1+0", "8x8+1+-1", "8x8+1+1+1", "0x8+0+0", "8+1+1"})
         EXPECT_ERROR(parse_crop(text), ExitCode::usage,
-                     std::string("--crop ") + text +
-                         ": must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");
+                     "must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");
 }
 
 TEST(RenderOptions, Layers) {
@@ -375,10 +484,10 @@ TEST(RenderOptions, Layers) {
         return "";
     };
     const std::string eror = message_of("eror"), empty = message_of("id,");
-    EXPECT_EQ(eror.rfind("--layers eror: there is no layer 'eror'; the layers are: error, ", 0), 0u) << eror;
+    EXPECT_EQ(eror.rfind("there is no layer 'eror'; the layers are: error, ", 0), 0u) << eror;
     for (const char* layer : {"path", "light", "data", "cryptomatte", "material_id", "transmission", "CryptoLight"})
         EXPECT_NE(eror.find(layer), std::string::npos) << layer;
-    EXPECT_EQ(empty.rfind("--layers id,: there is no layer ''; the layers are: ", 0), 0u) << empty;
+    EXPECT_EQ(empty.rfind("there is no layer ''; the layers are: ", 0), 0u) << empty;
 }
 
 TEST(RenderOptions, OptionsOverrideTheScene) {

@@ -140,7 +140,7 @@ TEST_F(SuiteProgram, WhatDiffersIsSaidAndTheOthersGoOn) {
     expect_has(out, "layers of the golden image alone: N.X, N.Y, N.Z; layers that the golden image lacks: Z\n");
     expect_has(out, "failed: s/damaged.exr: cannot read");
     expect_has(out, "failed: s/none.json: cannot read the scene");
-    expect_has(out, "failed: /cases/5/crop: 10x10 at 20,0 leaves the frame, which is 24x16\n");
+    expect_has(out, "failed: /cases/5: \"crop\" 10x10+20+0: leaves the frame, which is 24x16\n");
     expect_has(out, "failed: --layers Combined_key: the scene has no such group of lights");
     expect_has(out, "differ: 1 of 1536 floats differ; worst: B at (5, 3): 9 / ");
     expect_has(out, "neither \"golden\" nor \"hash\" says what is expected; --update bare records it\n");

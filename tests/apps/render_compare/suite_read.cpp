@@ -10,6 +10,7 @@
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_keys.h"
 #include "image/color/color_space.h"
+#include "sequence/frame_list.h"
 #include "scene/readers/json_reader.h"
 #include "testing/support/schema_keys.h"
 #include "testing/support/scratch_directory.h"
@@ -61,12 +62,12 @@ TEST_F(SuiteFile, HasTheOptionsOfRender) {
     EXPECT_EQ(one.frames, (std::vector<int>{4, 6, 8}));
     EXPECT_EQ(one.golden_path("d", 6), "d/g/a.0006.exr");
     EXPECT_EQ(one.scene_path("d"), "d/s.json");
-    EXPECT_EQ(one.resolution->width, 64);
-    EXPECT_EQ(one.resolution->height, 48);
-    EXPECT_EQ(*one.crop, (PixelRect{2, 1, 8, 6}));
-    EXPECT_EQ(one.supersample, 3);
-    EXPECT_EQ(one.depth, 7);
-    EXPECT_EQ(one.cutoff, 0.5);
+    EXPECT_EQ(one.frame.full_width, 64);
+    EXPECT_EQ(one.frame.full_height, 48);
+    EXPECT_EQ(one.frame.crop, (PixelRect{2, 1, 8, 6}));
+    EXPECT_EQ(one.frame.supersample, 3);
+    EXPECT_EQ(one.frame.depth, 7);
+    EXPECT_EQ(one.frame.cutoff, 0.5);
     EXPECT_EQ(one.precision, Precision::double_);
     EXPECT_TRUE(one.channels.normal && one.channels.z && one.channels.half && one.channels.transparent);
     EXPECT_EQ(one.channels.space->id, "lin_ap1_scene");
@@ -77,16 +78,17 @@ TEST_F(SuiteFile, HasTheOptionsOfRender) {
     EXPECT_EQ(one.backends, (std::vector{Backend::cuda, Backend::embree}));
     EXPECT_EQ(one.tags, (std::vector<std::string>{"smoke", "glass/2"}));
     const SuiteCase adaptive = read_case(R"("target_error": 0.02, "max_samples": 64, "z_far": "inf")");
-    EXPECT_EQ(adaptive.target_error, 0.02);
-    EXPECT_EQ(adaptive.max_samples, 64);
+    EXPECT_EQ(adaptive.frame.target_error, 0.02);
+    EXPECT_EQ(adaptive.frame.max_samples, 64);
     EXPECT_TRUE(std::isinf(adaptive.channels.z_far));
 }
 
 TEST_F(SuiteFile, LeavesTheRestToTheScene) {
     const SuiteCase one = read_case(R"("golden": "a.exr")");
     EXPECT_EQ(one.frames, std::vector<int>{0});
-    EXPECT_FALSE(one.resolution || one.crop || one.supersample || one.depth || one.cutoff || one.target_error ||
-                 one.precision || one.thresholds.any());
+    for (const RequestKey& key : request_keys())
+        EXPECT_EQ(key.given(one), key.name == "scene" || key.name == "frames") << key.name;
+    EXPECT_FALSE(one.thresholds.any());
     EXPECT_EQ(one.backends, std::vector{Backend::embree});
 }
 
@@ -102,8 +104,8 @@ TEST_F(SuiteFile, CasesOverrideDefaults) {
     EXPECT_EQ(suite.cases[1].scene, "b.json");
     EXPECT_TRUE(suite.cases[1].channels.normal && suite.cases[1].channels.half && !suite.cases[1].channels.z);
     EXPECT_TRUE(suite.cases[1].tags.empty());
-    EXPECT_EQ(suite.cases[1].supersample, 2);
-    EXPECT_FALSE(suite.cases[2].supersample);
+    EXPECT_EQ(suite.cases[1].frame.supersample, 2);
+    EXPECT_EQ(suite.cases[2].frame.supersample, 0);
     EXPECT_EQ(suite.cases[2].place, "/cases/2");
 }
 
@@ -128,25 +130,27 @@ TEST_F(SuiteFile, ErrorsHaveTheirPlace) {
 }
 
 TEST_F(SuiteFile, ValuesAreChecked) {
-    expect_refused_case(R"("resolution": [64])", " /cases/0/resolution: expected [width, height], found an array of 1");
-    expect_refused_case(R"("resolution": [64, 0])",
-                        " /cases/0/resolution/1: expected a whole number from 1 to 65536, found 0");
-    expect_refused_case(R"("crop": [1, 1, -1, 0])",
-                        " /cases/0/crop/2: expected a whole number from 0 to 65535, found -1");
-    expect_refused_case(R"("supersample": 65)",
-                        " /cases/0/supersample: expected a whole number from 1 to 64, found 65");
-    expect_refused_case(R"("target_error": 0)", " /cases/0/target_error: expected a number above 0, to 1e30, found 0");
+    const std::string size = ": must be WIDTHxHEIGHT, each from 1 to 65536, as in 1280x720";
+    expect_refused_case(R"("resolution": [64])", " /cases/0/resolution: [64]" + size);
+    expect_refused_case(R"("resolution": [64, 0])", " /cases/0/resolution: [64,0]" + size);
+    expect_refused_case(
+        R"("crop": [1, 1, -1, 0])",
+        " /cases/0/crop: [1,1,-1,0]: must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");
+    expect_refused_case(R"("supersample": 65)", " /cases/0/supersample: 65: must be a whole number from 1 to 64");
+    expect_refused_case(R"("supersample": "2")",
+                        " /cases/0/supersample: expected a whole number from 1 to 64, found '2'");
+    expect_refused_case(
+        R"("target_error": 0)",
+        " /cases/0/target_error: 0: must be a number above 0, to 1e30, in the scene's units of radiance");
     expect_refused_case(R"("precision": "duoble")",
-                        " /cases/0/precision: unknown value 'duoble'; did you mean 'double'?");
+                        " /cases/0/precision: 'duoble': must be auto or float or double; did you mean 'double'?");
     expect_refused_case(R"("frames": true)",
-                        " /cases/0/frames: expected a frame's number, or a list as --frames takes "
-                        "it: \"0-299x30\", found true");
-    EXPECT_EQ(refusal(R"({"cases": [{"name": "a", "scene": "s", "frames": "5-1"}]})").substr(0, 28),
-              " /cases/0/frames: --frames 5");
-    EXPECT_EQ(refusal(R"({"cases": [{"name": "a", "scene": "s", "layers": "N,Zz"}]})").substr(0, 64),
-              " /cases/0/layers: --layers N,Zz: there is no layer 'Zz'; the lay");
-    expect_refused_case(R"("z_far": -1)",
-                        " /cases/0/z_far: expected a number above 0 in single precision, or \"inf\", found -1");
+                        " /cases/0/frames: true: \"true\" is no frame (0 to 9999999), no range A-B and no range with "
+                        "a step A-BxS; a list looks like 0-299x5,7");
+    expect_refused_case(R"("frames": "5-1")", " /cases/0/frames: '5-1': 5-1 runs backward; write 1-5");
+    EXPECT_EQ(refusal(R"({"cases": [{"name": "a", "scene": "s", "layers": "N,Zz"}]})").substr(0, 59),
+              " /cases/0/layers: 'N,Zz': there is no layer 'Zz'; the layer");
+    expect_refused_case(R"("z_far": -1)", " /cases/0/z_far: -1: must be a number above 0 in single precision, or inf");
     expect_refused_case(R"("thresholds": {"fial": 1})", " /cases/0/thresholds/fial: unknown key; did you mean 'fail'?");
     expect_refused_case(R"("thresholds": {"failpercent": 1})",
                         " /cases/0/thresholds/failpercent: needs to know when a pixel fails; add \"fail\"");
@@ -167,14 +171,13 @@ TEST_F(SuiteFile, ValuesAreChecked) {
 }
 
 TEST_F(SuiteFile, WhatExcludesEachOtherIsSaid) {
-    expect_refused_case(R"("target_error": 0.1, "supersample": 2)",
-                        " /cases/0/target_error: \"supersample\" has no place beside it: pixels get as many samples as "
-                        "they need; leave one out");
-    expect_refused_case(R"("max_samples": 9)",
-                        " /cases/0/max_samples: is for a \"target_error\"; a grid's samples are "
-                        "those of \"supersample\"");
+    expect_refused_case(
+        R"("target_error": 0.1, "supersample": 2)",
+        " /cases/0: \"target_error\" 0.1: \"supersample\" has no place here: pixels get as many samples as "
+        "they need; leave it out");
+    expect_refused_case(R"("max_samples": 9)", " /cases/0: \"max_samples\" 9: is for \"target_error\"");
     expect_refused_case(R"("golden": "a.exr", "hash": "00000000000000000000000000000000")",
-                        " /cases/0/hash: \"golden\" has no place beside it: either says what is expected; leave one "
+                        " /cases/0/hash: \"golden\" has no place here: either says what is expected; leave it "
                         "out");
     expect_refused_case(R"("hash": "00000000000000000000000000000000", "thresholds": {"fail": 1})",
                         " /cases/0/thresholds: a \"hash\" is equal or not; give a \"golden\" image");
@@ -202,14 +205,15 @@ TEST(SuiteSchema, HasEveryKeyWithItsTypeDefaultAndRange) {
         test::expect_keys(*table, table == &suite_keys ? root : definitions.at(std::string(table->name)), definitions);
     EXPECT_EQ(definitions.at("name").at("pattern"), suite_name_pattern);
     const Json& properties = definitions.at("case").at("properties");
-    EXPECT_EQ(properties.at("resolution").at("minItems"), 2);
-    EXPECT_EQ(properties.at("resolution").at("maxItems"), 2);
-    test::expect_range(properties.at("resolution").at("items"), suite_width_key.range, true);
-    EXPECT_EQ(properties.at("crop").at("prefixItems").size(), 4u);
+    const Json &size = properties.at("resolution").at("oneOf").at(0), &crop = properties.at("crop").at("oneOf").at(0);
+    EXPECT_EQ(size.at("minItems"), 2);
+    EXPECT_EQ(size.at("maxItems"), 2);
+    const Range side = film_keys.find("width")->range;
+    test::expect_range(size.at("items"), side, true);
+    EXPECT_EQ(crop.at("prefixItems").size(), 4u);
     for (size_t i = 0; i < 4; ++i)
-        test::expect_range(properties.at("crop").at("prefixItems").at(i),
-                           i < 2 ? suite_width_key.range : suite_offset_key.range, true);
-    test::expect_range(properties.at("frames").at("oneOf").at(0), suite_frame_key.range, true);
+        test::expect_range(crop.at("prefixItems").at(i), i < 2 ? side : Range{0, side.high - 1}, true);
+    test::expect_range(properties.at("frames").at("oneOf").at(0), {0, largest_frame}, true);
     EXPECT_EQ(properties.at("backends").at("items").at("enum").size(), suite_backend_key.choices.size());
     for (const KeyTable* of : {&suite_case_keys, &suite_defaults_keys})
         for (const Key& key : of->keys)

@@ -70,7 +70,7 @@ TEST(FarmOptions, WhatRenderTakesIsPassedOn) {
     const FarmOptions options = parse_farm_options(static_cast<int>(std::size(line)), line);
     EXPECT_EQ(options.passed, (std::vector<std::string>{"--bits=half", "--strict"}));
     EXPECT_EQ(options.merged, (std::vector<std::string>{"--preview=p.#.png", "--exposure=-1"}));
-    EXPECT_EQ(options.tiles, (TileGrid{4, 3}));
+    EXPECT_EQ(options.render.tiles, (TileGrid{4, 3}));
     EXPECT_EQ(options.folder, "farm");
     const auto refuse = [](std::vector<const char*> more) {
         more.insert(more.begin(), {"render-farm", "s.json"});

@@ -181,7 +181,7 @@ TEST_F(RenderMerge, RefusesInOneLine) {
     expect_no_merge({"t.exr", "-o", "a.#.exr"}, ExitCode::usage, "of one frame");
     expect_no_merge({"--tiles", "2x2", "-o", "a.#.exr"}, ExitCode::usage, "--frames LIST says which");
     expect_no_merge({"t.exr", "--tiles", "2x2", "-o", "a.exr"}, ExitCode::usage, "leave one out");
-    expect_no_merge({"t.exr", "-o", "a.exr", "--bloom", "1"}, ExitCode::usage, "--bloom requires --preview");
+    expect_no_merge({"t.exr", "-o", "a.exr", "--bloom", "1"}, ExitCode::usage, "--bloom 1: is for --preview");
     expect_no_merge({"s.json", "-o", "s.json.exr"}, ExitCode::file, "s.json");
     render_tiles("t.exr", "1x1", 1, {});
     expect_no_merge({"t.tile0.exr", "-o", "t.tile0.exr"}, ExitCode::usage, "would be both a tile and the whole frame");
@@ -195,11 +195,11 @@ TEST_F(RenderMerge, RenderRefusesWhatATileCannotBe) {
         expect_refused(more, ExitCode::usage, part);
     };
     refused({"--preview", "p.png"}, "--tile 1: --preview has no place here: it is of whole frames; render-merge");
-    refused({"--compression", "dwab"}, "--compression dwaa and dwab has no place here");
+    refused({"--compression", "dwab"}, "--compression dwab has no place here");
     refused({"--pixel", "1,1"}, "--pixel 1,1:");
     refused({"--explain"}, "--explain has no place here");
     expect_refused({"s.json", "-o", "a.out", "--tiles", "2x2", "--tile", "1"}, ExitCode::usage, "--tile needs an .exr");
-    expect_refused({"s.json", "--tile", "1"}, ExitCode::usage, "--tile requires --tiles");
+    expect_refused({"s.json", "--tile", "1"}, ExitCode::usage, "--tile 1: is for --tiles");
     expect_refused({"s.json", "--tiles", "2x2"}, ExitCode::usage, "is for --tile N");
     expect_refused({"s.json", "--tiles", "2x2", "--tile", "4"}, ExitCode::usage, "a whole number from 0 to 3");
     expect_refused({"s.json", "--tiles", "41x1", "--tile", "4"}, ExitCode::usage, "more than there are pixels, 40x24");
