@@ -211,18 +211,19 @@ RayMethods<Real> methods_of() {
 /// The cases of a group, in order.
 class Cases {
   public:
+    std::string group;  // "contact/": what names begin with
     std::vector<Case> all;
 
     /// A case of images: render(stage, tally) is called with the renderer of every intersector.
     void images(const std::string& name, const char* exact, const Bound& bound,
                 std::function<void(Stage&, Tally&)> render) {
-        all.push_back({name, exact, bound, {}, std::move(render)});
+        all.push_back({group + name, exact, bound, {}, std::move(render)});
     }
     /// A case of rays: plan(plan) adds parts with functors of this type (device_run.h says what these are), which are
     /// run for i in [0, count) on every intersector. device_cases.cu lists all types but those of tests.
     template <class Functor, bool on_devices = true>
     void rays(const std::string& name, const char* exact, const Bound& bound, std::function<void(Plan&)> plan) {
-        Case& one = all.emplace_back(Case{name, exact, bound, std::move(plan), {}});
+        Case& one = all.emplace_back(Case{group + name, exact, bound, std::move(plan), {}});
         one.own_traversal = AsksNothing<Functor>;
         one.in_float = methods_of<Functor, float, on_devices>();
         one.in_double = methods_of<Functor, double, on_devices>();

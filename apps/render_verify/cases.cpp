@@ -17,9 +17,21 @@ void add_sums(Cases& cases);
 const std::vector<Case>& all_cases() {
     static const std::vector<Case> all = [] {
         Cases cases;
-        for (const auto add : {add_contact, add_digits, add_geometry, add_metamorphic, add_mirrors, add_overlap,
-                               add_pieces, add_refraction, add_shadows, add_size, add_sums})
-            add(cases);
+        const auto add = [&](const char* group, void (*cases_of)(Cases&)) {
+            cases.group = group;
+            cases_of(cases);
+        };
+        add("contact/", add_contact);
+        add("digits/", add_digits);
+        add("geometry/", add_geometry);
+        add("metamorphic/", add_metamorphic);
+        add("mirrors/", add_mirrors);
+        add("overlap/", add_overlap);
+        add("pieces/", add_pieces);
+        add("refraction/", add_refraction);
+        add("shadows/", add_shadows);
+        add("size/", add_size);
+        add("sums/", add_sums);
         return cases.all;
     }();
     return all;

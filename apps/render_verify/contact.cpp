@@ -391,7 +391,7 @@ void add_contact(Cases& cases) {
         for (const auto& [name, arrangements, shape] : rows)
             cases.images(prefix + name, exact, bound, make(arrangements, shape));
     };
-    add_all("contact/invisible/", "the colors of the paper alone", bound_of_displaced, invisible,
+    add_all("invisible/", "the colors of the paper alone", bound_of_displaced, invisible,
             {{"on-a-floor", {floor_}, Shape::planes},
              {"on-a-tessellated-floor", {mesh_floor}, Shape::planes},
              {"on-a-solid", {solid}, Shape::planes},
@@ -403,10 +403,10 @@ void add_contact(Cases& cases) {
              {"convex-meshes", {floor_, corner, stack}, Shape::convex_mesh},
              {"meshes", {floor_, mesh_floor, edge}, Shape::triangles},
              {"meshes/side-by-side", {sides, corner, stack}, Shape::triangles}});
-    cases.images("contact/invisible/solids", "the colors of the paper alone, under every face of the Platonic solids",
+    cases.images("invisible/solids", "the colors of the paper alone, under every face of the Platonic solids",
                  bound_of_displaced, invisible_solids);
-    add_all("contact/apart/", "the picture of the bodies 2^-12 larger, with some of them within others",
-            no_failures("pixels"), apart,
+    add_all("apart/", "the picture of the bodies 2^-12 larger, with some of them within others", no_failures("pixels"),
+            apart,
             {{"on-a-floor", {floor_}, Shape::planes},
              {"on-a-tessellated-floor", {mesh_floor}, Shape::planes},
              {"on-a-solid", {solid}, Shape::planes},
@@ -417,11 +417,11 @@ void add_contact(Cases& cases) {
              {"stack", {stack}, Shape::planes},
              {"convex-meshes", {floor_, sides, corner}, Shape::convex_mesh},
              {"meshes", {floor_, mesh_floor, edge, sides}, Shape::triangles}});
-    cases.images("contact/optical", "Fresnel products of a glass cube on a floor, in every pixel",
-                 no_failures("pixels"), optical);
+    cases.images("optical", "Fresnel products of a glass cube on a floor, in every pixel", no_failures("pixels"),
+                 optical);
 
     const auto add = [&](const std::string& name, const char* exact, const Render& render) {
-        cases.images("contact/" + name, exact, no_failures("pixels"), render);
+        cases.images(name, exact, no_failures("pixels"), render);
     };
     const char* in_one_piece = "the picture of the cube in one piece";
     add("blocks/eight", in_one_piece, blocks(2, 1));
@@ -437,8 +437,7 @@ void add_contact(Cases& cases) {
     add("decals/on-glass", "each pixel is one of the label raised by 2^-14, or one of it lowered", label_on_glass);
 
     const auto shadows = [&](const std::string& name, const Render& render) {
-        cases.images("contact/shadows/" + name, "every pixel that is not within 0.001 of an edge", bound_of_colors,
-                     render);
+        cases.images("shadows/" + name, "every pixel that is not within 0.001 of an edge", bound_of_colors, render);
     };
     shadows("tinted", tinted({floor_, mesh_floor, edge, two_quads}));
     shadows("tinted/on-a-solid", tinted({solid}));
@@ -450,7 +449,7 @@ void add_contact(Cases& cases) {
     // Cases that measure fail where a pixel is beyond their bound.
     const Bound fails = must_fail(5, "pixels"), is_off{Measure::worst, true, {0.01, 0.01}, "of 1"};
     const auto without = [&](const std::string& name, const Bound& bound, const Render& render) {
-        cases.images("contact/broken/" + name, "without shared planes the case fails", bound, broken(render));
+        cases.images("broken/" + name, "without shared planes the case fails", bound, broken(render));
     };
     without("invisible/on-a-floor", is_off, invisible({floor_}, Shape::planes));
     without("invisible/in-a-corner", is_off, invisible({corner}, Shape::planes));

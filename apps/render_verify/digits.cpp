@@ -212,9 +212,7 @@ void add_digits(Cases& cases) {
     using namespace digits;
     const auto add = [&](const std::string& name, const Render& render,
                          const char* exact = "the picture of the scene with all digits",
-                         const Bound& bound = no_failures("pixels")) {
-        cases.images("digits/" + name, exact, bound, render);
-    };
+                         const Bound& bound = no_failures("pixels")) { cases.images(name, exact, bound, render); };
     add("on-a-floor", rounded_scene(on_floor));
     add("solids-on-a-floor", solids_on_floor);
     add("stack", rounded_scene(stack));

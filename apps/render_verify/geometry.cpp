@@ -355,69 +355,65 @@ void add_geometry(Cases& cases) {
     const Bound none = no_failures("rays"), witnessed = no_failures("rays", needs_witness);
     const Shape planes = Shape::planes, triangles = Shape::triangles;
     const char* one_way_out = "one way out at every vertex and k/16 of every edge";
-    cases.rays<EdgesFromInside>("geometry/edges-from-inside/planes", one_way_out, none,
-                                solids<EdgesFromInside>(planes));
-    cases.rays<EdgesFromInside>("geometry/edges-from-inside/triangles", one_way_out, none,
-                                solids<EdgesFromInside>(triangles));
+    cases.rays<EdgesFromInside>("edges-from-inside/planes", one_way_out, none, solids<EdgesFromInside>(planes));
+    cases.rays<EdgesFromInside>("edges-from-inside/triangles", one_way_out, none, solids<EdgesFromInside>(triangles));
     const char* in_and_out = "as many ways in as out; one each where the line is inside";
-    cases.rays<EdgesFromOutside>("geometry/edges-from-outside/planes", in_and_out, witnessed,
-                                 solids<EdgesFromOutside>(planes));
-    cases.rays<EdgesFromOutside>("geometry/edges-from-outside/triangles", in_and_out, witnessed,
+    cases.rays<EdgesFromOutside>("edges-from-outside/planes", in_and_out, witnessed, solids<EdgesFromOutside>(planes));
+    cases.rays<EdgesFromOutside>("edges-from-outside/triangles", in_and_out, witnessed,
                                  solids<EdgesFromOutside>(triangles));
-    cases.rays<Fans>("geometry/fans", "4 to 65,536 triangles about a vertex: one way in, one way out", witnessed,
-                     plan_fans);
-    cases.rays<Slivers>("geometry/slivers",
+    cases.rays<Fans>("fans", "4 to 65,536 triangles about a vertex: one way in, one way out", witnessed, plan_fans);
+    cases.rays<Slivers>("slivers",
                         "closed meshes with triangles of aspect 2^20: as many ways in as out, one each in a box",
                         witnessed, plan_slivers);
     // Each must fail on rays that the sound tests pass, or those prove nothing.
     const Bound fails = must_fail(1, "rays");
-    cases.rays<Flawed<Flaw::contracted_products>>("geometry/broken/contracted-products",
+    cases.rays<Flawed<Flaw::contracted_products>>("broken/contracted-products",
                                                   "edge functions with contracted products leak at vertices and edges",
                                                   fails, plan_flawed<Flaw::contracted_products>);
-    cases.rays<Flawed<Flaw::inclusive_edges>>("geometry/broken/inclusive-edges", "inclusive edges are hit twice", fails,
+    cases.rays<Flawed<Flaw::inclusive_edges>>("broken/inclusive-edges", "inclusive edges are hit twice", fails,
                                               plan_flawed<Flaw::inclusive_edges>);
-    cases.rays<Flawed<Flaw::unpadded_boxes>>("geometry/broken/unpadded-boxes",
+    cases.rays<Flawed<Flaw::unpadded_boxes>>("broken/unpadded-boxes",
                                              "boxes without padding hide hits that the triangles accept", fails,
                                              plan_flawed<Flaw::unpadded_boxes>);
-    cases.rays<SignedZeros>("geometry/signed-zeros", "-0 in origin or direction gives the bits of +0", none,
+    cases.rays<SignedZeros>("signed-zeros", "-0 in origin or direction gives the bits of +0", none,
                             upright<SignedZeros>(1'000'000, 4000));
-    cases.rays<Subnormals>("geometry/subnormal-directions",
+    cases.rays<Subnormals>("subnormal-directions",
                            "components down to the least subnormal: as many ways in as out, one each inside", witnessed,
                            upright<Subnormals>(1'000'000, 4000));
-    cases.rays<AxisParallel>("geometry/axis-parallel",
+    cases.rays<AxisParallel>("axis-parallel",
                              "lines along axes meet a cube of planes iff strictly within it, to the last bit",
                              witnessed, plan_axis_parallel);
-    cases.rays<OnSlabPlanes>("geometry/origins-on-slab-planes",
+    cases.rays<OnSlabPlanes>("origins-on-slab-planes",
                              "from a face inward: in at t = 0 and out; outward or along it: nothing", none,
                              plan_slab_planes);
-    cases.rays<OriginsOnPlanes>("geometry/origins-on-faces/planes",
+    cases.rays<OriginsOnPlanes>("origins-on-faces/planes",
                                 "inward or along it: one way out, by a neighbor where that is near; outward: nothing",
                                 witnessed, solids<OriginsOnPlanes>(planes));
-    cases.rays<OriginsOnTriangles>("geometry/origins-on-faces/triangles",
+    cases.rays<OriginsOnTriangles>("origins-on-faces/triangles",
                                    "inward: one way out, not by the face left; outward: nothing", witnessed,
                                    solids_of_size(false));
-    cases.rays<OriginsOnTriangles>("geometry/origins-on-faces/tiny-triangles",
+    cases.rays<OriginsOnTriangles>("origins-on-faces/tiny-triangles",
                                    "the same on a 2^-20 solid beside a unit one: a way out more than ways in",
                                    no_failures("rays", needs_witness | float_warns), solids_of_size(true));
-    cases.rays<NotFiniteRays>("geometry/not-finite-rays", "NaN or infinity in origin or direction: a miss and no light",
-                              none, plan_twenty<NotFiniteRays>);
-    cases.rays<ExtremeRays>("geometry/extreme-rays",
+    cases.rays<NotFiniteRays>("not-finite-rays", "NaN or infinity in origin or direction: a miss and no light", none,
+                              plan_twenty<NotFiniteRays>);
+    cases.rays<ExtremeRays>("extreme-rays",
                             "subnormal numbers, zeros, no direction at all: crossings in order, to an end", none,
                             plan_twenty<ExtremeRays>);
-    cases.rays<RandomRays>("geometry/random-rays",
+    cases.rays<RandomRays>("random-rays",
                            "t, u, v and key of three crossings: those of a plain loop over all primitives", none,
                            plan_random);
-    cases.rays<FarCameras>("geometry/far-cameras",
+    cases.rays<FarCameras>("far-cameras",
                            "from 1e3 to 1e9 scene sizes away: one way in, one out, none beside the solid", witnessed,
                            upright<FarCameras>(1'000'000, 4000));
-    cases.rays<FacePlanes>("geometry/rays-in-face-planes",
+    cases.rays<FacePlanes>("rays-in-face-planes",
                            "a sheet is passed by; a cube of planes too; one of triangles is left as often as entered",
                            none, plan_face_planes);
     cases.rays<Coincident>(
-        "geometry/coincident-triangles",
+        "coincident-triangles",
         "a thousand sheets in one place: the last first, then all others in order; a thousand copies in one: one",
         witnessed, plan_coincident);
-    cases.rays<Degenerate>("geometry/degenerate-triangles",
+    cases.rays<Degenerate>("degenerate-triangles",
                            "no area, a repeated vertex, NaN, infinity: reported at load, never hit", witnessed,
                            plan_degenerate);
 }

@@ -586,42 +586,38 @@ auto by_precision(void (*in_float)(Stage&, Tally&), void (*in_double)(Stage&, Ta
 void add_metamorphic(Cases& cases) {
     using namespace metamorphic;
     const Bound pixels = no_failures("pixels", needs_witness), rays = no_failures("rays", needs_witness);
-    const auto images = [&](const std::string& name, const char* exact, const Bound& bound,
-                            const std::function<void(Stage&, Tally&)>& render) {
-        cases.images("metamorphic/" + name, exact, bound, render);
-    };
-    images("more-effects", "sums, ids and normals with any larger set of effects switched on", pixels, more_effects);
-    images("one-hash", "the plain loop's image, by every tree, instruction set, device and order",
-           no_failures("images"), by_precision(one_hash<float>, one_hash<double>));
-    images("threads-tiles-crops", "sums, ids and normals for any number of threads, lanes, tile and crop",
-           no_failures("pixels"), threads_and_tiles);
-    images("scaled-by-powers-of-two", "sums, ids and normals at 2^-40 to 2^40 times the size; Z times 2^k", pixels,
-           powers_of_two);
-    images("dyadic-translation", "hits and ids after an exact translation of up to 2^30 sizes", pixels,
-           translated(false));
-    images("dyadic-translation/images", "sums, ids, normals and Z, where M is that of a corner on the grid", pixels,
-           translated(true));
-    images("dyadic-translation/meshes", "sums, ids, normals and Z of meshes, whose frame is found where they are",
-           pixels, found_center);
-    cases.rays<Flips>("metamorphic/flips/planes", "crossings and their t for flipped axes and x, y swapped", rays,
+    cases.images("more-effects", "sums, ids and normals with any larger set of effects switched on", pixels,
+                 more_effects);
+    cases.images("one-hash", "the plain loop's image, by every tree, instruction set, device and order",
+                 no_failures("images"), by_precision(one_hash<float>, one_hash<double>));
+    cases.images("threads-tiles-crops", "sums, ids and normals for any number of threads, lanes, tile and crop",
+                 no_failures("pixels"), threads_and_tiles);
+    cases.images("scaled-by-powers-of-two", "sums, ids and normals at 2^-40 to 2^40 times the size; Z times 2^k",
+                 pixels, powers_of_two);
+    cases.images("dyadic-translation", "hits and ids after an exact translation of up to 2^30 sizes", pixels,
+                 translated(false));
+    cases.images("dyadic-translation/images", "sums, ids, normals and Z, where M is that of a corner on the grid",
+                 pixels, translated(true));
+    cases.images("dyadic-translation/meshes", "sums, ids, normals and Z of meshes, whose frame is found where they are",
+                 pixels, found_center);
+    cases.rays<Flips>("flips/planes", "crossings and their t for flipped axes and x, y swapped", rays,
                       [](Plan& plan) { plan_flips(plan, Shape::planes); });
-    cases.rays<Flips>("metamorphic/flips/triangles",
-                      "number and kind of the crossings for flipped axes and x, y swapped", rays,
+    cases.rays<Flips>("flips/triangles", "number and kind of the crossings for flipped axes and x, y swapped", rays,
                       [](Plan& plan) { plan_flips(plan, Shape::triangles); });
-    images("flips/images", "sums and Z of mirrored pixels, in scenes of planes", pixels, flipped_images);
+    cases.images("flips/images", "sums and Z of mirrored pixels, in scenes of planes", pixels, flipped_images);
     add_samples(cases);
-    images("brightness", "sums, ids and ledgers, 2^-99 times as bright to bounds of 2^100; float ends there", pixels,
-           brightness);
-    images("brightness/colors-against-lights",
-           "sums, ids and ledgers: lights times 2^k, colors times 2^-k, k to 99, while lights are normal numbers",
-           pixels, colors_against_lights);
-    images("brightness/extremes", "backgrounds of 1e-30 to 1e30; the bound, met by as many lights as you like",
-           no_failures("images"), by_precision(extreme_radiance<float>, extreme_radiance<double>));
-    images("brightness/overflow", "what exceeds the bound is an error or a flag, and never in the sums",
-           no_failures("images"), [](Stage& stage, Tally& tally) {
-               expect_refusals(stage, tally);
-               by_precision(expect_flags<float>, expect_flags<double>)(stage, tally);
-           });
+    cases.images("brightness", "sums, ids and ledgers, 2^-99 times as bright to bounds of 2^100; float ends there",
+                 pixels, brightness);
+    cases.images("brightness/colors-against-lights",
+                 "sums, ids and ledgers: lights times 2^k, colors times 2^-k, k to 99, while lights are normal numbers",
+                 pixels, colors_against_lights);
+    cases.images("brightness/extremes", "backgrounds of 1e-30 to 1e30; the bound, met by as many lights as you like",
+                 no_failures("images"), by_precision(extreme_radiance<float>, extreme_radiance<double>));
+    cases.images("brightness/overflow", "what exceeds the bound is an error or a flag, and never in the sums",
+                 no_failures("images"), [](Stage& stage, Tally& tally) {
+                     expect_refusals(stage, tally);
+                     by_precision(expect_flags<float>, expect_flags<double>)(stage, tally);
+                 });
 }
 
 }  // namespace cistula::verify

@@ -252,46 +252,40 @@ void plan_far_floor(Plan& plan) {
 
 void add_samples(Cases& cases) {
     const Bound pixels = no_failures("pixels"), witnessed = no_failures("pixels", needs_witness);
-    const auto images = [&](const std::string& name, const char* exact, const Bound& bound,
-                            const std::function<void(Stage&, Tally&)>& render) {
-        cases.images("metamorphic/" + name, exact, bound, render);
-    };
-    images("constant-scene", "the color itself, for 1 to 64 x 64 samples a pixel", pixels,
-           [](Stage& stage, Tally& tally) {
-               stage.in_double() ? constant_scene<double>(stage, tally) : constant_scene<float>(stage, tally);
-           });
-    images("half-plane", "coverage k/N: the samples of a pixel on one side of a line", witnessed, on_half_plane);
-    images("half-plane/shared-border", "samples on a border that two sheets share, each by itself: one of them has it",
-           witnessed, shared_border);
-    images("one-pixel", "1 x 1 with k x k samples: the sum of k x k pixels, a unit a number added",
-           no_failures("images", needs_witness), one_pixel);
-    images("strips", "65,536 x 1 and 1 x 65,536: every pixel on the right side of a border", pixels, strips);
-    images("fields-of-view", "coverage of a half-plane from 1e-6 to 179.999 degrees", pixels, wide_fields);
-    cases.rays<CellBorders>("metamorphic/floor-texture/cell-borders",
+    cases.images("constant-scene", "the color itself, for 1 to 64 x 64 samples a pixel", pixels,
+                 [](Stage& stage, Tally& tally) {
+                     stage.in_double() ? constant_scene<double>(stage, tally) : constant_scene<float>(stage, tally);
+                 });
+    cases.images("half-plane", "coverage k/N: the samples of a pixel on one side of a line", witnessed, on_half_plane);
+    cases.images("half-plane/shared-border",
+                 "samples on a border that two sheets share, each by itself: one of them has it", witnessed,
+                 shared_border);
+    cases.images("one-pixel", "1 x 1 with k x k samples: the sum of k x k pixels, a unit a number added",
+                 no_failures("images", needs_witness), one_pixel);
+    cases.images("strips", "65,536 x 1 and 1 x 65,536: every pixel on the right side of a border", pixels, strips);
+    cases.images("fields-of-view", "coverage of a half-plane from 1e-6 to 179.999 degrees", pixels, wide_fields);
+    cases.rays<CellBorders>("floor-texture/cell-borders",
                             "the cell on the right side of borders up to 1e9 cells out, and an ulp beside",
                             no_failures("look-ups"), without_scene("checkers", CellBorders{}));
-    cases.rays<RepeatedTexels>("metamorphic/floor-texture/repeated",
+    cases.rays<RepeatedTexels>("floor-texture/repeated",
                                "i modulo n, n to 8192, |i| + n to 2^24 in float and 2^30 in double",
                                no_failures("texels"), without_scene("rows", RepeatedTexels{0}));
-    cases.rays<RepeatedTexels>("metamorphic/floor-texture/repeated/to-1e9",
+    cases.rays<RepeatedTexels>("floor-texture/repeated/to-1e9",
                                "i modulo n, n to 8192, |i| to 1e9, where floats are 64 apart", no_failures("texels"),
                                without_scene("rows", RepeatedTexels{1'000'000'000}));
-    cases.rays<FarFloor>("metamorphic/floor-texture/far",
-                         "a floor's cells to 1e9, 32 u of its size beside borders and farther",
+    cases.rays<FarFloor>("floor-texture/far", "a floor's cells to 1e9, 32 u of its size beside borders and farther",
                          no_failures("cells", needs_witness), plan_far_floor);
     // x^(2^j) has the relative error of 2^j - 1 roundings, the product of those in n that of n - 1 in all, each u at
     // most: (n - 1) u, so under n - 1 ulps. What underflows on the way is off by half the least number once more for
     // each of up to 10 products; it is a factor below 1 of what follows. Second-order terms: n^2 u / 2, 0.03 ulps in
     // float.
-    cases.rays<IntegerPowers>("metamorphic/powers/by-squaring",
-                              "cos^n for n to 1,024; powers of 1/2, 0.5^200 among them, exactly", at_most(1, "n ulps"),
-                              without_scene("cos^n", IntegerPowers{}));
+    cases.rays<IntegerPowers>("powers/by-squaring", "cos^n for n to 1,024; powers of 1/2, 0.5^200 among them, exactly",
+                              at_most(1, "n ulps"), without_scene("cos^n", IntegerPowers{}));
     // What elementary.h states for results that are normal, as all are here; computed in double for either type.
-    cases.rays<RealPowers>("metamorphic/powers/by-logarithm",
+    cases.rays<RealPowers>("powers/by-logarithm",
                            "x^y for y in eighths to 1,024, against roots and products in double-double",
                            at_most(elementary::pow_worst_ulp, "ulps"), without_scene("cos^n", RealPowers{}));
-    cases.rays<Highlights>("metamorphic/powers/highlight",
-                           "at most 1; 0 on the far side; never more at a larger angle or exponent",
+    cases.rays<Highlights>("powers/highlight", "at most 1; 0 on the far side; never more at a larger angle or exponent",
                            no_failures("highlights"), without_scene("cos^n", Highlights{}));
 }
 

@@ -394,75 +394,71 @@ void add_mirrors(Cases& cases) {
     // The path is unfolded, so that errors of bounces add up. Half an edge is M. t has three roundings, so that the hit
     // is 3 u of at most 2 M off the wall; the closed form turns at the wall itself, which makes it twice as much; the
     // point is rounded by u M: (2 * 6 + 1) u M a bounce, or 6.5 ulps of M.
-    cases.rays<FoldedPath>("mirrors/cube-fold/planes", folded, at_most(6.5, a_bounce),
+    cases.rays<FoldedPath>("cube-fold/planes", folded, at_most(6.5, a_bounce),
                            [](Plan& plan) { plan_cubes(plan, Walls::cube_of_planes); });
     // Components of d lie in [0.33, 0.82]; all in u M. Differences to corners (up to 2 M) are off by 2, shears by 4,
     // what is sheared by 14. Weights of corners are off by 6 u, so that a point is off by 26, across the ray by 52 + 14
     // at most, and on a face at a slant of 1/2 and more by three times that: 198. t is off by 198 / 0.577 + 24, and the
     // point at t by 0.82 of that: 301. The way toward the apex is 8 u M / height, 163 of which 146 along an axis, to a
     // height of 0.0732 M over a centroid that is at most 1.49 M away. Together 646 u M, or 323 ulps.
-    cases.rays<FoldedPath>("mirrors/cube-fold/triangles", folded, at_most(323, a_bounce),
+    cases.rays<FoldedPath>("cube-fold/triangles", folded, at_most(323, a_bounce),
                            [](Plan& plan) { plan_cubes(plan, Walls::cube_of_triangles); });
     // The bound of the cube, except that the distance of the walls is 2^-8 M: 2 * 3 u * 2^-8 M off the walls. Along
     // them at most u / 2 M, for coordinates up to M / 2: 0.53 u M, or 0.27 ulps.
-    cases.rays<FoldedPath>("mirrors/parallel/planes",
+    cases.rays<FoldedPath>("parallel/planes",
                            "500 bounces between faces of two cubes: triangle wave across, straight along them",
                            at_most(0.27, a_bounce), plan_parallel_planes);
     // The bound of the cube of triangles, all in u M, for slopes of 0.3 at most and distances across of 2^-7: sheared
     // corners are off by 5, points by 26 + 5, the start by 146 along the sheet and 8 across it, which counts at the
     // slope too: 31 + 146 + 8 * 1.3, or 94 ulps.
-    cases.rays<FoldedPath>("mirrors/parallel/sheets",
+    cases.rays<FoldedPath>("parallel/sheets",
                            "500 bounces between two sheets: triangle wave across, straight along them",
                            at_most(94, a_bounce), plan_parallel_sheets);
-    cases.images("mirrors/parallel/image",
+    cases.images("parallel/image",
                  "between half mirrors a pixel is 1 - 2^-depth, its ledger 2^-depth B, its rays depth",
                  no_failures("sums"), parallel_sum);
-    cases.images("mirrors/semi-mirror-slab/0.5", "T = 1/3, depth 1,024, to the last of 62 bits", no_failures("sums"),
+    cases.images("semi-mirror-slab/0.5", "T = 1/3, depth 1,024, to the last of 62 bits", no_failures("sums"),
                  semi_mirror_of_half);
     // Term j is a product of 2 j + 2 shares, the first of which is exact: (2 j + 1) u. Over all terms that is
     // 1 + 2 R^2 / (1 - R^2) u: 9.6 u for R = .9 and 99.6 u for R = .99, half as many ulps.
     const char* sum_of_terms = "T = (1-R)/(1+R), depth 1,024, less truncation; the rest is in the ledger";
-    cases.images("mirrors/semi-mirror-slab/0.9", sum_of_terms, at_most(4.8, "ulps"), semi_mirror(0.9));
-    cases.images("mirrors/semi-mirror-slab/0.99", sum_of_terms, at_most(49.8, "ulps"), semi_mirror(0.99));
-    cases.images("mirrors/depth-cut",
-                 "cut after k terms: 0 <= T - image <= ledger, in integers; R = .5: T - image = T R^2k",
+    cases.images("semi-mirror-slab/0.9", sum_of_terms, at_most(4.8, "ulps"), semi_mirror(0.9));
+    cases.images("semi-mirror-slab/0.99", sum_of_terms, at_most(49.8, "ulps"), semi_mirror(0.99));
+    cases.images("depth-cut", "cut after k terms: 0 <= T - image <= ledger, in integers; R = .5: T - image = T R^2k",
                  no_failures("sums"), depth_cut);
-    cases.images("mirrors/furnace/halves",
+    cases.images("furnace/halves",
                  "lossless solids in a white world, kr = kt = 1/2: (1 - image) B = ledger, in integers",
                  no_failures("sums", needs_witness), furnace_of_halves);
     // Rounding at each surface: kr and kt, 1 u for both; 1 - F; and the products with the branch's weight: at most 3 u
     // of what arrives. 10 surfaces, and the ledger's product with B: 31 u, or 15.5 ulps. A contribution and a branch
     // that is not followed are off by less than a unit of the sums each, three at most for a ray.
-    cases.images("mirrors/furnace/glass",
-                 "lossless glass in a white world: image + ledger / (1 + 2^-10) = 1, less truncation",
+    cases.images("furnace/glass", "lossless glass in a white world: image + ledger / (1 + 2^-10) = 1, less truncation",
                  at_most(15.5, "ulps of 1", needs_witness), furnace_of_glass);
     cases.rays<BouncesInside>(
-        "mirrors/escapes/planes", "a bounce inside one of five solids ends on another face, at most 64 u M outside",
+        "escapes/planes", "a bounce inside one of five solids ends on another face, at most 64 u M outside",
         no_failures("bounces"),
         inside_planes(BouncesInside{Start::as_rendered}, 3000, 300));  // 20 parts of 100 bounces: 6 million
     cases.rays<BouncesInside>(
-        "mirrors/escapes/meshes",
-        "a bounce inside a torus, star or bumpy sphere ends on another triangle, inside by parity",
+        "escapes/meshes", "a bounce inside a torus, star or bumpy sphere ends on another triangle, inside by parity",
         no_failures("bounces"),
         inside_meshes(BouncesInside{Start::as_rendered}, 4060, 200));  // 10 parts of 99 bounces: 4 million
-    cases.rays<FirstLines>("mirrors/escapes/camera-in-mesh",
+    cases.rays<FirstLines>("escapes/camera-in-mesh",
                            "a line that starts inside a mesh, on no face, first meets a face from within",
                            no_failures("rays"), inside_meshes(FirstLines{}, 100000, 20000));
-    cases.rays<BouncesByEpsilon>("mirrors/broken/escapes-by-epsilon",
+    cases.rays<BouncesByEpsilon>("broken/escapes-by-epsilon",
                                  "an epsilon in the place of state lets rays out at edges, which must be caught",
                                  must_fail(1000, "bounces"), inside_planes(BouncesByEpsilon{}, 3000, 100));
-    cases.rays<BouncesInside>("mirrors/broken/escapes-without-apex",
+    cases.rays<BouncesInside>("broken/escapes-without-apex",
                               "meshes whose lines start on the face, which alone is left out, must be caught",
                               must_fail(50, "bounces"), inside_meshes(BouncesInside{Start::on_face}, 4000, 100));
-    cases.images("mirrors/depth-1024", "in opaque mirrors a pixel takes 1,024 rays, stays black, and its ledger is B",
+    cases.images("depth-1024", "in opaque mirrors a pixel takes 1,024 rays, stays black, and its ledger is B",
                  no_failures("sums"), depth_ends);
     // A Newton step takes a length 1 + e to 1 - 3/2 e^2 with a factor f of 3/2 - |d|^2 / 2: the square is off by 3 u,
     // its half by 1.5 u, f is rounded by u, the products by u. What e was does not matter: 3.5 u, or 1.75 ulps, and e^2
     // (e is under 64 u) of float.
-    cases.rays<Lengths>("mirrors/unit-length", "||d| - 1| after 1, 2, ... 1,000 reflections",
-                        at_most(Lengths::most, "ulps"), lengths(true));
-    cases.rays<Lengths>("mirrors/broken/not-renormalized",
-                        "d - 2 (d.N) N alone drifts from unit length, which must be caught",
+    cases.rays<Lengths>("unit-length", "||d| - 1| after 1, 2, ... 1,000 reflections", at_most(Lengths::most, "ulps"),
+                        lengths(true));
+    cases.rays<Lengths>("broken/not-renormalized", "d - 2 (d.N) N alone drifts from unit length, which must be caught",
                         must_fail(1000, "reflections"), lengths(false));
 }
 

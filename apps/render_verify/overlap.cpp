@@ -162,14 +162,13 @@ void add_overlap(Cases& cases) {
                                                     {"room/opaque", room_opaque},
                                                     {"room/touched", room_touched}};
     for (const auto& [name, arrange] : rows)
-        cases.images(std::string("overlap/") + name,
-                     "the picture of opaque bodies' faces as sheets, in either order of the file",
+        cases.images(name, "the picture of opaque bodies' faces as sheets, in either order of the file",
                      no_failures("pixels"), as_sheets(arrange));
-    cases.images("overlap/transparent", "two overlapping bodies look as if the earlier one ended at the later one",
+    cases.images("transparent", "two overlapping bodies look as if the earlier one ended at the later one",
                  no_failures("pixels"), later_fills);
     for (const auto& [name, arrange] : {std::pair("core", &core), std::pair("room", &room)})
-        cases.images(std::string("overlap/broken/") + name, "without the opaque body the case fails",
-                     must_fail(5, "pixels"), without_bodies(arrange));
+        cases.images(std::string("broken/") + name, "without the opaque body the case fails", must_fail(5, "pixels"),
+                     without_bodies(arrange));
 }
 
 }  // namespace cistula::verify

@@ -223,18 +223,17 @@ void add_pieces(Cases& cases) {
                                                        {"touching", touching},
                                                        {"overlapping", overlapping}};
     for (const auto& [name, make] : rows)
-        cases.images(std::string("pieces/") + name,
-                     "the picture of the pieces wound outward, holes inward, or of objects", no_failures("pixels"),
-                     wound(make));
-    cases.images("pieces/triangles-at-random", "the picture of the same mesh wound outward", no_failures("pixels"),
+        cases.images(name, "the picture of the pieces wound outward, holes inward, or of objects",
+                     no_failures("pixels"), wound(make));
+    cases.images("triangles-at-random", "the picture of the same mesh wound outward", no_failures("pixels"),
                  triangles_at_random);
-    cases.images("pieces/absorption/seen", "a white background through slabs is exp(-sigma d)", bound_of_absorption,
+    cases.images("absorption/seen", "a white background through slabs is exp(-sigma d)", bound_of_absorption,
                  absorption(false));
-    cases.images("pieces/absorption/in-shadow", "a floor under slabs is cos a exp(-sigma d)", bound_of_absorption,
+    cases.images("absorption/in-shadow", "a floor under slabs is cos a exp(-sigma d)", bound_of_absorption,
                  absorption(true));
     for (const auto& [name, make] : {std::pair("shell", &shell), std::pair("pair", &pair)})
-        cases.images(std::string("pieces/broken/") + name, "without one of the pieces the case fails",
-                     must_fail(5, "pixels"), without_the_last(make));
+        cases.images(std::string("broken/") + name, "without one of the pieces the case fails", must_fail(5, "pixels"),
+                     without_the_last(make));
 }
 
 }  // namespace cistula::verify

@@ -434,48 +434,44 @@ constexpr double rounded_once = 0.5 + 0x1p-10;
 
 void add_refraction(Cases& cases) {
     using namespace refraction;
-    cases.images("refraction/index-one", "the image without the solid, integer for integer", no_failures("pixels"),
-                 index_one);
+    cases.images("index-one", "the image without the solid, integer for integer", no_failures("pixels"), index_one);
     // Decided as the exact value of g^2 = (n - 1)(n + 1) + c^2 of the rounded direction and normal says, in steps of
     // 2^-22 of the sine over the critical angle; in double, of 2^-54 too. Zero is total.
-    cases.rays<CriticalAngle>("refraction/critical-angle",
-                              "total reflection where 113 bits say so, in steps of 2^-22 and 2^-54",
+    cases.rays<CriticalAngle>("critical-angle", "total reflection where 113 bits say so, in steps of 2^-22 and 2^-54",
                               no_failures("decisions"), plan_critical);
-    cases.rays<CriticalAngleTraced>("refraction/critical-angle/traced",
+    cases.rays<CriticalAngleTraced>("critical-angle/traced",
                                     "the ray tree mirrors or bends as 113 bits say, in steps of 2^-22",
                                     no_failures("rays", needs_witness), plan_critical_traced);
     const Bound once = at_most(rounded_once, "ulps");
-    cases.rays<FresnelNormal>("refraction/fresnel/normal-incidence",
-                              "((n - 1)/(n + 1))^2, rounded once; the direction unchanged", once,
-                              records<FresnelNormal>(1, 100000, 4000, normal_record));
-    cases.rays<FresnelEqual>("refraction/fresnel/equal-indices", "no reflection, no bend, at any angle",
-                             no_failures("rays"), any_angle<FresnelEqual>(10000));
-    cases.rays<FresnelGrazing>("refraction/fresnel/grazing",
+    cases.rays<FresnelNormal>("fresnel/normal-incidence", "((n - 1)/(n + 1))^2, rounded once; the direction unchanged",
+                              once, records<FresnelNormal>(1, 100000, 4000, normal_record));
+    cases.rays<FresnelEqual>("fresnel/equal-indices", "no reflection, no bend, at any angle", no_failures("rays"),
+                             any_angle<FresnelEqual>(10000));
+    cases.rays<FresnelGrazing>("fresnel/grazing",
                                "all is reflected at cosine 0; the share and its rounding from 2^-60 up", once,
                                records<FresnelGrazing>(2, 100000, 4000, grazing_record));
-    cases.rays<AnyAngle>("refraction/fresnel/any-angle",
-                         "Fresnel's share, rounded once; Snell's direction within 4.5 u", once,
+    cases.rays<AnyAngle>("fresnel/any-angle", "Fresnel's share, rounded once; Snell's direction within 4.5 u", once,
                          records<AnyAngle>(3, 200000, 8000, any_record));
     // Reflectance at Brewster's angle, ((n^2 - 1)/(n^2 + 1))^2 / 2. The amplitude perpendicular to the plane has the
     // derivative 2 D / (g h^2) by c, so its square changes by the share 4 c / g = 4 / n^2 of c's change; the other
     // amplitude's square has derivative 0 there. c is rounded by at most u, which is at most one ulp of the share: 4
     // ulps for n >= 1, and one rounding.
-    cases.rays<BrewsterShare>(
-        "refraction/brewster/share", "half of ((n^2 - 1)/(n^2 + 1))^2: none of the light in the plane",
-        at_most(4 + rounded_once, "ulps"), records<BrewsterShare>(4, 100000, 4000, brewster_record));
+    cases.rays<BrewsterShare>("brewster/share", "half of ((n^2 - 1)/(n^2 + 1))^2: none of the light in the plane",
+                              at_most(4 + rounded_once, "ulps"),
+                              records<BrewsterShare>(4, 100000, 4000, brewster_record));
     // Perpendicularity of the reflected and the refracted ray. The angle between them changes by 1 + c / g = 1 + 1 /
     // n^2
     // <= 2 times that of incidence, which is off by at most u: 2 u. The reflected ray is rounded by its last factor, u;
     // the other by 2 u (any-angle). 5 u.
-    cases.rays<BrewsterAngle>("refraction/brewster/right-angle", "mirrored and refracted ray at right angles",
-                              at_most(5, "u"), records<BrewsterAngle>(5, 100000, 4000, brewster_record));
-    cases.rays<Reversibility>("refraction/reversibility", "refracted back, a ray returns on itself, at the same share",
+    cases.rays<BrewsterAngle>("brewster/right-angle", "mirrored and refracted ray at right angles", at_most(5, "u"),
+                              records<BrewsterAngle>(5, 100000, 4000, brewster_record));
+    cases.rays<Reversibility>("reversibility", "refracted back, a ray returns on itself, at the same share",
                               at_most(4.5, "u x condition", needs_witness), any_angle<Reversibility>(20000));
     // Both faces have the same normal, bit for bit, so this is reversibility once more, with n < 1 on the way out and
     // the same bound. A mesh's normals come from its corners; both faces have the same one only if perpendicular to an
     // axis.
-    cases.rays<SlabParallel>("refraction/slab/parallel", "the ray leaves as it came",
-                             at_most(4.5, "u x condition", needs_witness), [](Plan& plan) {
+    cases.rays<SlabParallel>("slab/parallel", "the ray leaves as it came", at_most(4.5, "u x condition", needs_witness),
+                             [](Plan& plan) {
                                  plan_slabs<SlabParallel>(plan, Shape::planes, true);
                                  plan_slabs<SlabParallel>(plan, Shape::triangles, false);
                              });
@@ -484,8 +480,7 @@ void add_refraction(Cases& cases) {
     // itself, and there are two planes: 14. The two points: 3.5. The direction within, 2 u across (any-angle) over a
     // way of at most 2 sqrt(3) M: 7. That of the first line in the reference, s and c in double for double: 4. The
     // plane's normal and offset, rounded: 2 sqrt(3) u M each, 7. In all 36.
-    cases.rays<SlabDisplacement>("refraction/slab/displacement", "moved aside by h s (1 - c/g)",
-                                 at_most(36, "u M", needs_witness),
+    cases.rays<SlabDisplacement>("slab/displacement", "moved aside by h s (1 - c/g)", at_most(36, "u M", needs_witness),
                                  [](Plan& plan) { plan_slabs<SlabDisplacement>(plan, Shape::planes, true); });
     // In u, of the cosine of the deviation. Rounded normals change the angle between the faces by 2 u and the least
     // deviation by n cos(A/2)/c - 1 <= 1.5 of that: 3. Inside the direction is off by 2 u across, and at the exit by
@@ -493,12 +488,11 @@ void add_refraction(Cases& cases) {
     // <= 2.5 of it, 5; for its length, 3 u, by s D/(n^2 c) <= 1.2 of that, 3.5; that of the ray inside, 2.5 u, by s D/c
     // <= 2.2, 5.5; its own rounding 2: 19 u of angle, by the sine of the deviation, at most 0.77: 15. Lengths of the
     // two, 5.5 u, by its cosine, at most 0.8: 4.5. The reference and the measured product, in double: 4. In all 23.5.
-    cases.rays<PrismDeviation>("refraction/prism/minimum-deviation",
+    cases.rays<PrismDeviation>("prism/minimum-deviation",
                                "2 asin(n sin(A/2)) - A on the symmetric way, and no less beside it",
                                at_most(23.5, "u", needs_witness), plan_prisms);
     add_media(cases);
-    cases.rays<CameraInside>("refraction/camera-inside",
-                             "media, next face and next direction of a ray from outside, bit for bit",
+    cases.rays<CameraInside>("camera-inside", "media, next face and next direction of a ray from outside, bit for bit",
                              no_failures("rays", needs_witness), plan_camera_inside);
 }
 

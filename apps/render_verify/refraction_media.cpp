@@ -233,7 +233,7 @@ void plan_grazing(Plan& plan, bool are_moved) {
 void add_media(Cases& cases) {
     const Bound none = no_failures("rays"), witnessed = no_failures("rays", needs_witness);
     const auto sequence = [&](const std::string& name, const char* exact, Form form, bool are_moved) {
-        cases.rays<MediaSequence>("refraction/media/" + name, exact, none,
+        cases.rays<MediaSequence>("media/" + name, exact, none,
                                   [=](Plan& plan) { plan_bodies(plan, form, are_moved); });
     };
     sequence("planes", "the sequence of indices through nested, abutting, overlapping solids", Form::cubes, false);
@@ -243,16 +243,15 @@ void add_media(Cases& cases) {
              "the same where shared faces of solids of planes are ulps apart, or one in the other", Form::cubes, true);
     sequence("within-rounding/triangles", "the same where shared faces of meshes are ulps apart, or one in the other",
              Form::wide_boxes, true);
-    cases.rays<Octants>("refraction/media/octants", "eight cubes of one glass: never out of it and in again", none,
+    cases.rays<Octants>("media/octants", "eight cubes of one glass: never out of it and in again", none,
                         [](Plan& plan) {
                             for (const Form form : {Form::cubes, Form::wide_boxes}) plan_octants(plan, form);
                         });
-    cases.rays<Octants>("refraction/media/octants/planes-and-triangles", "the same, some of planes and some meshes",
-                        none, [](Plan& plan) { plan_octants(plan, Form::both); });
-    cases.rays<Grazing>("refraction/media/grazing",
-                        "at any slant down to 1/256 a shared face bends a line once, or mirrors it", witnessed,
-                        [](Plan& plan) { plan_grazing(plan, false); });
-    cases.rays<Grazing>("refraction/media/within-rounding/grazing",
+    cases.rays<Octants>("media/octants/planes-and-triangles", "the same, some of planes and some meshes", none,
+                        [](Plan& plan) { plan_octants(plan, Form::both); });
+    cases.rays<Grazing>("media/grazing", "at any slant down to 1/256 a shared face bends a line once, or mirrors it",
+                        witnessed, [](Plan& plan) { plan_grazing(plan, false); });
+    cases.rays<Grazing>("media/within-rounding/grazing",
                         "the same where shared faces are ulps apart, or one in the other", witnessed,
                         [](Plan& plan) { plan_grazing(plan, true); });
 }

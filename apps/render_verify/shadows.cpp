@@ -675,7 +675,7 @@ void add_shadows(Cases& cases) {
     const Bound pixels = no_failures("pixels"), lit_pixels = no_failures("pixels", needs_witness);
     const auto acne = [&](const std::string& name, const char* exact, const Bound& bound, Body body,
                           const std::vector<double>& offsets, bool far_from_the_middle) {
-        cases.rays<LitInFull>("shadows/acne/" + name, exact, bound,
+        cases.rays<LitInFull>("acne/" + name, exact, bound,
                               [=](Plan& plan) { plan_acne(plan, body, offsets, far_from_the_middle); });
     };
     // Offsets of solids in scene units, which scene coordinates take away.
@@ -693,12 +693,12 @@ void add_shadows(Cases& cases) {
     // A mesh of a dozen ulps of its coordinates.
     acne("far-from-the-middle/tiny-triangles", "the same of a mesh 1e6 radii from the middle of its scene",
          no_failures("pixels", float_warns), Body::triangles, {1e6}, true);
-    cases.rays<LitInFull>("shadows/terminator", "facets of a coarse sphere are lit by their own half-space alone",
-                          lit_pixels, plan_terminator);
+    cases.rays<LitInFull>("terminator", "facets of a coarse sphere are lit by their own half-space alone", lit_pixels,
+                          plan_terminator);
 
     const auto box = [&](const std::string& name, const char* exact, int halvings, bool tiny,
                          const std::vector<Shape>& shapes) {
-        cases.rays<FromOutside>("shadows/" + name, exact, no_failures("shadow rays", tiny ? uint32_t(float_warns) : 0),
+        cases.rays<FromOutside>(name, exact, no_failures("shadow rays", tiny ? uint32_t(float_warns) : 0),
                                 [=](Plan& plan) {
                                     for (const Shape shape : shapes) plan_boxes(plan, shape, halvings, tiny);
                                 });
@@ -710,56 +710,52 @@ void add_shadows(Cases& cases) {
         {triangles});
     // A solid of 8 to 16 ulps of its coordinates: no light in it is farther from its faces than what counts as on them.
     box("closed-box/tiny", "the same of a solid of radius 2^-20 beside a unit one", -1, true, {planes, triangles});
-    cases.images("shadows/closed-box/pixels", "every pixel of a floor around opaque solids with lights in them is 0",
+    cases.images("closed-box/pixels", "every pixel of a floor around opaque solids with lights in them is 0",
                  lit_pixels, box_pixels);
     box("light-inside/planes", "a light inside a glass solid: one face's share outside", 3, false, {planes});
     box("light-inside/triangles", "a light inside a glass mesh: one face's share outside", 3, false, {triangles});
 
     const Bound shadow_rays = no_failures("shadow rays", needs_witness);
-    cases.rays<HalfSpaces>("shadows/lights-on-solids/planes",
+    cases.rays<HalfSpaces>("lights-on-solids/planes",
                            "lights on corners, edges, faces of a solid: verdicts by half-spaces", shadow_rays,
                            [](Plan& plan) {
                                plan_lights_on(plan, Shape::planes);
                                plan_edge_lights(plan);
                            });
-    cases.rays<HalfSpaces>("shadows/lights-on-solids/triangles",
+    cases.rays<HalfSpaces>("lights-on-solids/triangles",
                            "lights on corners, edges, faces of a mesh: verdicts by half-spaces", shadow_rays,
                            [](Plan& plan) { plan_lights_on(plan, Shape::triangles); });
-    cases.rays<LightsOnStar>("shadows/lights-on-solids/star",
+    cases.rays<LightsOnStar>("lights-on-solids/star",
                              "lights on reflex and convex edges, corners and faces: the faces between, counted",
                              shadow_rays, plan_star);
-    cases.rays<HalfSpaces>("shadows/lights-in-contact",
-                           "lights on the face that two solids share: each by its own half-spaces", shadow_rays,
-                           plan_lights_in_contact);
-    cases.rays<OwnLight>("shadows/own-lights/planes",
-                         "lights on a solid leave its outside black and reach all of its inside", lit_pixels,
-                         [](Plan& plan) { plan_own_light(plan, Shape::planes); });
-    cases.rays<OwnLight>("shadows/own-lights/triangles",
-                         "lights on a mesh leave its outside black and reach all of its inside", lit_pixels,
-                         [](Plan& plan) { plan_own_light(plan, Shape::triangles); });
-    cases.rays<LightAtThePoint>("shadows/light-at-the-point",
-                                "a light at the point that is shaded, in its face: 0, never NaN", lit_pixels,
-                                plan_light_at_the_point);
+    cases.rays<HalfSpaces>("lights-in-contact", "lights on the face that two solids share: each by its own half-spaces",
+                           shadow_rays, plan_lights_in_contact);
+    cases.rays<OwnLight>("own-lights/planes", "lights on a solid leave its outside black and reach all of its inside",
+                         lit_pixels, [](Plan& plan) { plan_own_light(plan, Shape::planes); });
+    cases.rays<OwnLight>("own-lights/triangles", "lights on a mesh leave its outside black and reach all of its inside",
+                         lit_pixels, [](Plan& plan) { plan_own_light(plan, Shape::triangles); });
+    cases.rays<LightAtThePoint>("light-at-the-point", "a light at the point that is shaded, in its face: 0, never NaN",
+                                lit_pixels, plan_light_at_the_point);
     // In u, relative. The way to the light: 1 a component. Its square: 2 + 1 a product, 2 for two sums of positive
     // terms, 5; its root 2.5 + 1 = 3.5, the reciprocal 4.5; N.L = h times that: 1 + 4.5 + 1 = 6.5, the normal being
     // exact. kd N.L, C times it and I times it: 1 each where the factor is no power of two, but all are: 0. r^2: 7 + 1,
     // 1/r^2 9, the product 10. 16.5 in all; the sums' truncation 0.5 at what is tried. 17 u are 8.5 ulps of 2 u.
-    cases.rays<Falloff>("shadows/falloff", "light on a plane under a lamp is I h/(h^2+x^2)^(3/2)",
+    cases.rays<Falloff>("falloff", "light on a plane under a lamp is I h/(h^2+x^2)^(3/2)",
                         at_most(8.5, "ulps", needs_witness), plan_falloff);
-    cases.rays<ThroughSheets>("shadows/exact-product/sheets",
+    cases.rays<ThroughSheets>("exact-product/sheets",
                               "through m sheets of transmission 2^-k exactly 2^-sum, at shared edges too",
                               no_failures("shadow rays"), plan_sheets);
-    cases.rays<ThroughSolids>("shadows/exact-product/solids",
+    cases.rays<ThroughSolids>("exact-product/solids",
                               "through closed solids exactly 2^-sum over two faces each, aimed at their edges",
                               shadow_rays, plan_solids);
-    cases.images("shadows/permuted-triangles", "0 differing integers of films of meshes in another order",
+    cases.images("permuted-triangles", "0 differing integers of films of meshes in another order",
                  no_failures("integers", needs_witness), permuted(false));
-    cases.images("shadows/permuted-lights", "0 differing integers of films with their lights in another order",
+    cases.images("permuted-lights", "0 differing integers of films with their lights in another order",
                  no_failures("integers", needs_witness), permuted(true));
-    cases.rays<VisibleLightTree>("shadows/seen-lights/tree",
+    cases.rays<VisibleLightTree>("seen-lights/tree",
                                  "(t, light) of trees over seen lights, anywhere or on edges, equals a plain loop's",
                                  no_failures("rays", needs_witness), plan_visible_lights);
-    cases.images("shadows/seen-lights/pixels", "a picture of 4,096 seen lights: the glow of the nearest, every digit",
+    cases.images("seen-lights/pixels", "a picture of 4,096 seen lights: the glow of the nearest, every digit",
                  lit_pixels, visible_light_pixels);
 }
 

@@ -123,15 +123,12 @@ Render at_offset(Look look) {
 void add_size(Cases& cases) {
     using namespace size;
     const Bound warns = no_failures("pixels", float_warns);
-    const auto add = [&](const std::string& name, const char* exact, const Bound& bound, const Render& render) {
-        cases.images("size/" + name, exact, bound, render);
-    };
     constexpr PlatonicSolid tetrahedron = PlatonicSolid::tetrahedron, cube = PlatonicSolid::cube,
                             octahedron = PlatonicSolid::octahedron, dodecahedron = PlatonicSolid::dodecahedron,
                             icosahedron = PlatonicSolid::icosahedron;
     const auto floors = [&](const std::string& name, Look look, Shape shape, const Kinds& kinds) {
-        add("floor/" + name, "floors of half-size 1e3 to 1e9: the picture of one of 512", warns,
-            on_floor(look, shape, kinds));
+        cases.images("floor/" + name, "floors of half-size 1e3 to 1e9: the picture of one of 512", warns,
+                     on_floor(look, shape, kinds));
     };
     floors("shadow/planes", Look::shadow, Shape::planes, {dodecahedron, tetrahedron});
     floors("shadow/triangles", Look::shadow, Shape::triangles, {icosahedron, cube});
@@ -141,19 +138,19 @@ void add_size(Cases& cases) {
     floors("glass/planes", Look::glass, Shape::planes, {cube, octahedron});
     floors("glass/triangles", Look::glass, Shape::triangles, {cube});
     floors("texture", Look::texture, Shape::planes, {dodecahedron});
-    add("broken/float-on-a-floor-of-1e6", "without the warning: in float the shadow of a unit body is cut",
-        {Measure::failures, true, {20, 0}, "pixels"}, float_on_floor);
+    cases.images("broken/float-on-a-floor-of-1e6", "without the warning: in float the shadow of a unit body is cut",
+                 {Measure::failures, true, {20, 0}, "pixels"}, float_on_floor);
     const std::pair<const char*, Look> looks[] = {
         {"shadow", Look::shadow}, {"reflection", Look::reflection}, {"texture", Look::texture}};
     const char* as_near = "a seen light of 5e10 at 1e12: the picture with one of 5e4 at 1e6";
     for (const auto& [name, look] : looks) {
-        add(std::string("far-solid/") + name, "a solid of 1e5 at 1e7: the picture with one of 1e3 at 1e5", warns,
-            far_solid(look));
-        add(std::string("sun/") + name, as_near, warns, sun(look));
-        add(std::string("offset/") + name, "a scene at 1e7 and -1e7: the picture of the one at the origin",
-            no_failures("pixels"), at_offset(look));
+        cases.images(std::string("far-solid/") + name, "a solid of 1e5 at 1e7: the picture with one of 1e3 at 1e5",
+                     warns, far_solid(look));
+        cases.images(std::string("sun/") + name, as_near, warns, sun(look));
+        cases.images(std::string("offset/") + name, "a scene at 1e7 and -1e7: the picture of the one at the origin",
+                     no_failures("pixels"), at_offset(look));
     }
-    add("sun/seen", as_near, warns, sun(Look::shadow, true));
+    cases.images("sun/seen", as_near, warns, sun(Look::shadow, true));
 }
 
 }  // namespace cistula::verify

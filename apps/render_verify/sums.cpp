@@ -196,22 +196,21 @@ struct Loss {
 void add_sums(Cases& cases) {
     using namespace sums;
     const char* sum_of_lamps = "the light of a wall is the sum of I cos a / d^2, for radii from 1e-4 to 1e-8";
-    cases.images("sums/tiny-lamp", sum_of_lamps, bound_of_light, in_room(1));
-    cases.images("sums/tiny-lamps", sum_of_lamps, bound_of_light, in_room(16));
-    cases.images("sums/in-a-torus", "the picture, background too, of a lamp with a radius of 1e-3",
-                 at_most(0x1p-20, "of 1"), lamp_in_torus);
-    cases.images("sums/hidden-lamp", "the picture of a lamp too small to be seen", at_most(0x1p-20, "of 1"),
-                 hidden_lamp);
-    cases.images("sums/target-error", "the light of a wall at the pixel's middle, with --target-error 0.01",
+    cases.images("tiny-lamp", sum_of_lamps, bound_of_light, in_room(1));
+    cases.images("tiny-lamps", sum_of_lamps, bound_of_light, in_room(16));
+    cases.images("in-a-torus", "the picture, background too, of a lamp with a radius of 1e-3", at_most(0x1p-20, "of 1"),
+                 lamp_in_torus);
+    cases.images("hidden-lamp", "the picture of a lamp too small to be seen", at_most(0x1p-20, "of 1"), hidden_lamp);
+    cases.images("target-error", "the light of a wall at the pixel's middle, with --target-error 0.01",
                  at_most(0.01, "of 1"), with_target_error);
     Bound bound_of_sun = bound_of_light;
     bound_of_sun.flags = float_warns;
-    cases.images("sums/sun", "the light of a floor is I cos a / d^2", bound_of_sun, at_sun_distance(false));
-    cases.images("sums/sun/mirrored-background", "the light of a floor is I cos a / d^2", bound_of_sun,
+    cases.images("sun", "the light of a floor is I cos a / d^2", bound_of_sun, at_sun_distance(false));
+    cases.images("sun/mirrored-background", "the light of a floor is I cos a / d^2", bound_of_sun,
                  at_sun_distance(true));
 
     const auto ledger = [&](const std::string& name, const std::vector<Loss>& losses) {
-        cases.images("sums/ledger/" + name, "0 <= reference - image <= error.*, in every pixel and channel",
+        cases.images("ledger/" + name, "0 <= reference - image <= error.*, in every pixel and channel",
                      no_failures("sums", needs_witness), [=](Stage& stage, Tally& tally) {
                          for (const Loss& loss : losses) loss.check(stage, tally);
                      });
@@ -220,7 +219,7 @@ void add_sums(Cases& cases) {
     ledger("coarse-units", {{deep, 0, 0x1p40}, {deep, 0, 0x1p48}, {deep, 0, 0x1p56}});  // of 2^-22, 2^-14 and 2^-6
     ledger("depth", {{1, 0, {}}, {2, 0, {}}, {5, 0, {}}});
     ledger("cutoff", {{deep, 1e-3, 0x1p48}, {deep, 0.03, 0x1p48}});
-    cases.images("sums/broken/ledger", "without the ledger the case fails", must_fail(5, "sums"),
+    cases.images("broken/ledger", "without the ledger the case fails", must_fail(5, "sums"),
                  [](Stage& stage, Tally& tally) {
                      Loss{Loss::deep, 0, 0x1p48, false}.check(stage, tally);
                  });
