@@ -22,9 +22,22 @@ TrianglesObject beyond_face(const SolidObject& solid, const PlatonicShape::Face&
     return mesh;
 }
 
+TrianglesObject placed(TrianglesObject mesh, const dvec3& center, double scale, const dvec3& degrees) {
+    const Rotation rotation(degrees);
+    for (dvec3& p : mesh.vertices) p = center + rotation(scale * p);
+    return mesh;
+}
+
+SolidObject cube(const dvec3& center, double radius, const dvec3& rotation) {
+    return {.solid = PlatonicSolid::cube, .center = center, .radius = radius, .rotation = rotation};
+}
+
+using Shape = std::variant<SolidObject, TrianglesObject, MeshObject>;
+
+/// Adds a floor, walls and sheets, then groups of closed bodies, with their materials.
 class Objects : Part {
   public:
-    explicit Objects(State& state) : Part(state), materials_(state), shapes_(state) {}
+    using Part::Part;
 
     void add_surroundings() {
         if (random_.chance(0.65))
@@ -42,7 +55,7 @@ class Objects : Part {
             TrianglesObject bowl = torus(1.5, 0.6, 16, 8);
             bowl.triangles.resize(bowl.triangles.size() / 2);
             const dvec3 center = random_.in_cube(0.5);
-            add(placed(std::move(bowl), center, 1, shapes_.degrees()), true);
+            add(placed(std::move(bowl), center, 1, degrees()), true);
         } else if (sheets < 0.24) {
             TrianglesObject pane;  // a fan through what stands there
             pane.vertices = {{0, 0.1, 0}, {2, 0, -0.9}, {1.2, 0.3, 2}, {-1, 0, 2.2}, {-2.1, -0.2, 0.3}};
@@ -70,7 +83,7 @@ class Objects : Part {
             else if (theme < 8)
                 add_overlapping(center);
             else
-                add(shapes_.closed_mesh(center, random_.between(0.8, 1.1)), true);
+                add(closed_mesh(center, random_.between(0.8, 1.1)), true);
         }
     }
 
@@ -88,7 +101,7 @@ class Objects : Part {
         ObjectDescription object;
         object.name = "object " + std::to_string(scene_.objects.size());
         object.material =
-            reused_ >= 0 && !textured && random_.chance(0.2) ? reused_ : materials_.add(see_through, textured);
+            reused_ >= 0 && !textured && random_.chance(0.2) ? reused_ : add_material(see_through, textured);
         if (scene_.materials[static_cast<size_t>(object.material)].texture < 0) reused_ = object.material;
         object.shape = std::move(shape);
         scene_.objects.push_back(std::move(object));
@@ -119,7 +132,7 @@ class Objects : Part {
                 for (uint32_t z = 0; z < nz; ++z) {
                     dvec3 center = 1.3 * dvec3(x - 0.5 * (nx - 1), y - 0.5 * (ny - 1), z);
                     if (!lattice) center += random_.in_cube(0.1);
-                    const SolidObject s = shapes_.solid(center, random_.between(0.2, 0.52));
+                    const SolidObject s = solid(center, random_.between(0.2, 0.52));
                     cores_.push_back({s.center, s.radius});
                     centers_.push_back(s.center);
                     add(s, true);
@@ -131,7 +144,7 @@ class Objects : Part {
         double radius = random_.between(0.9, 1.2);
         dvec3 at = center;
         for (uint32_t i = 0; i < count; ++i) {
-            Shape shape = shapes_.closed(at, radius);
+            Shape shape = closed(at, radius);
             if (const auto* s = std::get_if<SolidObject>(&shape)) {
                 cores_.push_back({at, radius});
                 radius *= 0.95 * platonic_shape(s->solid).inradius;
@@ -147,14 +160,14 @@ class Objects : Part {
         const uint32_t count = 2 + random_.below(3);
         for (uint32_t i = 0; i < count; ++i) {
             const dvec3 at = center + random_.in_cube(0.4);
-            add(shapes_.closed(at, random_.between(0.5, 0.9)), true);
+            add(closed(at, random_.between(0.5, 0.9)), true);
         }
     }
 
     void add_touching(const dvec3& center) {
         switch (random_.below(7)) {
             case 0: {  // a row of cubes, cut along one diagonal or the other
-                const dvec3 turn = shapes_.degrees();
+                const dvec3 turn = degrees();
                 const double radius = 0.6, step = 2 * radius * platonic_shape(PlatonicSolid::cube).inradius;
                 const dvec3 along = Rotation(turn)(dvec3(step, 0, 0));
                 const uint32_t count = 2 + random_.below(2);
@@ -167,7 +180,7 @@ class Objects : Part {
             }
             case 1:
             case 2: {  // a solid and its mirror image beyond a face
-                const SolidObject s = shapes_.solid(center, 0.7);
+                const SolidObject s = solid(center, 0.7);
                 const auto& faces = platonic_shape(s.solid).faces;
                 TrianglesObject twin = beyond_face(s, faces[random_.below(static_cast<uint32_t>(faces.size()))]);
                 const bool planes = random_.chance(0.5), twin_first = random_.chance(0.5);
@@ -177,13 +190,13 @@ class Objects : Part {
                 break;
             }
             case 3: {  // two solids in the same place
-                const SolidObject s = shapes_.solid(center, 0.9);
+                const SolidObject s = solid(center, 0.9);
                 add(s, true);
                 add_of(random_.chance(0.5), s);
                 break;
             }
             case 4: {  // coplanar faces that overlap in part
-                SolidObject s = shapes_.solid(center, 0.7);
+                SolidObject s = solid(center, 0.7);
                 const auto& shape = platonic_shape(s.solid);
                 const dvec3 normal = Rotation(s.rotation)(shape.faces.back().normal);
                 cores_.push_back({s.center, s.radius});
@@ -201,7 +214,7 @@ class Objects : Part {
                 break;
             }
             default: {  // corners on the faces or corners of a surrounding solid
-                const dvec3 turn = shapes_.degrees();
+                const dvec3 turn = degrees();
                 const double half = platonic_shape(PlatonicSolid::cube).inradius;
                 const bool octahedron = random_.chance(0.5);
                 SolidObject inner = cube(center, octahedron ? half : 1, turn);
@@ -212,8 +225,135 @@ class Objects : Part {
         }
     }
 
-    Materials materials_;
-    Shapes shapes_;
+    // ---- materials
+
+    int texture() {
+        TextureDescription t;
+        t.name = "texture " + std::to_string(scene_.textures.size());
+        t.checker = {random_.color(), random_.chance(0.3) ? dvec3(0) : random_.color()};
+        t.repeat = {random_.of({1, 2, 5.5}), random_.of({1, 3, 0.7})};
+        const bool picture = random_.chance(0.5), marble = random_.chance(0.5);
+        t.bilinear = random_.chance(0.6);
+        if (picture && !files_.empty()) t.file = files_ + (marble ? "/marble.data" : "/floor.data");
+        scene_.textures.push_back(t);
+        return static_cast<int>(scene_.textures.size()) - 1;
+    }
+
+    dvec3 tint() {
+        dvec3 t = random_.color();
+        for (int c = 0; c < 3; ++c)
+            if (random_.chance(0.15)) t[c] = random_.chance(0.5) ? 0 : 1;
+        return t;
+    }
+
+    void share_out(MaterialDescription& m, bool see_through) {
+        const uint32_t kind = see_through && random_.chance(0.8) ? 3 + random_.below(6) : random_.below(9);
+        switch (kind) {
+            case 0:
+                break;  // opaque
+            case 1:
+                m.reflection = random_.between(0.1, 0.9);
+                break;
+            case 2:
+                m.reflection = 1;
+                break;
+            case 3:
+                m.transmission = 1;  // clear
+                break;
+            case 4:
+                m.transmission = 1;
+                m.tint = tint();
+                break;
+            case 5:
+                m.reflection = random_.of({0.25, 0.1, 0.3});
+                m.transmission = 1 - m.reflection;
+                m.tint = random_.chance(0.5) ? dvec3(1) : tint();
+                break;
+            case 6:
+                m.reflection = 0.3;
+                m.transmission = 0.7000005;  // a little above 1 is let pass
+                break;
+            case 7:
+                m.transmission = random_.between(0.2, 0.9);
+                m.tint = tint();
+                break;
+            default:
+                m.reflection = random_.between(0.05, 0.3);
+                m.transmission = random_.between(0.4, 0.7);
+                m.tint = tint();
+        }
+    }
+
+    /// Adds a material and returns its number; it may be required to transmit light more often than not, or to have a
+    /// texture.
+    int add_material(bool see_through, bool textured) {
+        MaterialDescription m;
+        m.name = "material " + std::to_string(scene_.materials.size());
+        m.color = random_.color();
+        m.ambient = random_.of({0, 0.3, 1, 1});
+        m.diffuse = random_.of({0, 0.5, 0.8, 1});
+        m.specular = random_.of({0, 0, 0.4, 1});
+        if (random_.chance(0.3)) m.specular_color = random_.color();
+        m.exponent = random_.of({0, 1, 2, 5, 50, 110, 1024, 1025, 0.5, 2.5, 37.3, 4000.25});
+        if (textured && random_.chance(0.6)) m.texture = texture();
+        if (palette_ != Palette::plain) share_out(m, see_through);
+        if (palette_ == Palette::everything) {
+            m.index = random_.of({1, 1, 1.000001, 1.33, 1.5, 1.5, 2.4, 0.75, 0.5});
+            m.fresnel = random_.chance(0.4);
+            const double strength = random_.of({0.2, 1, 10});
+            if (random_.chance(0.4)) m.absorption = strength * tint();
+        }
+        scene_.materials.push_back(m);
+        return static_cast<int>(scene_.materials.size()) - 1;
+    }
+
+    // ---- shapes
+
+    dvec3 degrees() {
+        const double kind = random_.unit();
+        if (kind < 0.25) return dvec3(0);
+        if (kind < 0.45) return {random_.of({0, 90, 180}), random_.of({0, 90, 270}), random_.of({0, 45, -90})};
+        return random_.in_cube(180);
+    }
+
+    SolidObject solid(const dvec3& center, double radius) {
+        const auto kind = static_cast<PlatonicSolid>(random_.below(5));
+        return {.solid = kind, .center = center, .radius = radius, .rotation = degrees()};
+    }
+
+    Shape closed_mesh(const dvec3& center, double radius) {
+        const dvec3 turn = degrees();
+        switch (random_.below(5)) {
+            case 0:
+                return placed(bumpy_sphere(static_cast<uint32_t>(random_.of({60, 200, 700, 1500}))), center, radius,
+                              turn);
+            case 1: {
+                const uint32_t around = 5 + random_.below(28);
+                return placed(torus(0.7, 0.3, around, 4 + random_.below(12)), center, radius, turn);
+            }
+            case 2:
+                return placed(star(random_.of({0.4, 0.6})), center, radius, turn);
+            case 3:
+                heavy_ = true;
+                if (!files_.empty()) {
+                    MeshObject mesh;
+                    mesh.file = files_ + "/knot.ply";
+                    mesh.center = center;
+                    mesh.scale = 0.6 * radius;
+                    mesh.rotation = turn;
+                    return mesh;
+                }
+                return placed(torus(0.6, 0.35, 40, 12), center, radius, turn);
+            default:
+                return triangulated_solid(solid(center, radius));
+        }
+    }
+
+    Shape closed(const dvec3& center, double radius) {
+        if (random_.chance(0.65)) return solid(center, radius);
+        return closed_mesh(center, radius);
+    }
+
     int reused_ = -1;           // a material without a texture
     int edge_lights_left_ = 2;  // solids that may still get edge lights
 };

@@ -65,7 +65,7 @@ struct State {
 
 /// Data that every maker of a part needs.
 class Part {
-  protected:
+  public:
     explicit Part(State& state)
         : scene_(state.scene),
           random_(state.random),
@@ -76,6 +76,7 @@ class Part {
           reach_(state.reach),
           heavy_(state.heavy) {}
 
+  protected:
     SceneDescription& scene_;
     Random& random_;
     const std::string& files_;
@@ -85,34 +86,6 @@ class Part {
     double& reach_;
     bool& heavy_;
 };
-
-/// Adds materials, and returns their numbers; a material may be required to transmit light more often than not, or to
-/// have a texture.
-class Materials : Part {
-  public:
-    explicit Materials(State& state) : Part(state) {}
-    int add(bool see_through, bool textured);
-
-  private:
-    int texture();
-    dvec3 tint();
-    void share_out(MaterialDescription& m, bool see_through);
-};
-
-using Shape = std::variant<SolidObject, TrianglesObject, MeshObject>;
-
-/// Draws random shapes.
-class Shapes : Part {
-  public:
-    explicit Shapes(State& state) : Part(state) {}
-    dvec3 degrees();
-    SolidObject solid(const dvec3& center, double radius);
-    Shape closed_mesh(const dvec3& center, double radius);
-    Shape closed(const dvec3& center, double radius);
-};
-
-SolidObject cube(const dvec3& center, double radius, const dvec3& rotation);
-TrianglesObject placed(TrianglesObject mesh, const dvec3& center, double scale, const dvec3& degrees);
 
 /// Adds a floor, walls and sheets, then groups of closed bodies.
 void add_objects(State& state);

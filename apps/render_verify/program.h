@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "apps/render_verify/case_table.h"
+#include "apps/render_verify/case.h"
 
 namespace cistula::verify {
 
 /// Runs the program. Returns the exit code; throws Error.
-int verify_program(int argc, const char* const* argv, const std::vector<CaseEntry>& cases);
+int verify_program(int argc, const char* const* argv, const std::vector<Case>& cases);
 
 }  // namespace cistula::verify

@@ -6,32 +6,25 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/render_verify/options.h"
+#include "apps/render_verify/runner.h"
 
 namespace cistula::verify {
 
-/// The devices of a run.
 struct RunContext {
+    bool quick;
     std::vector<std::string> devices;  // GPUs
     std::string driver;                // the latest CUDA version that it supports
     double seconds = 0;
 };
 
-std::string table_head(const std::vector<const CaseEntry*>& cases);
-std::string table_row(const Outcome& outcome, const std::vector<const CaseEntry*>& cases);
+std::string table_head(const std::vector<const Case*>& cases);
+std::string table_row(const Outcome& outcome, const std::vector<const Case*>& cases);
 /// The text printed at the end: the failed cases with their places, then one line of totals.
 std::string summary(const std::vector<Outcome>& outcomes);
-std::string list_text(const std::vector<CaseEntry>& cases);
+std::string list_text(const std::vector<Case>& cases);
 
-/// The measured value with its unit: "0 rays", "1.5 ulps".
-std::string measured_text(const Outcome& outcome);
-std::string bound_text(const Outcome& outcome);
-/// The reason why an outcome fails; empty if it passes.
-std::string complaint(const Outcome& outcome);
-
-nlohmann::ordered_json report_json(const std::vector<Outcome>& outcomes, const VerifyOptions& options,
-                                   const RunContext& context);
+nlohmann::ordered_json report_json(const std::vector<Outcome>& outcomes, const RunContext& context);
 /// The results as one self-contained HTML page, without scripts, for light and dark color schemes.
-std::string report_html(const std::vector<Outcome>& outcomes, const VerifyOptions& options, const RunContext& context);
+std::string report_html(const std::vector<Outcome>& outcomes, const RunContext& context);
 
 }  // namespace cistula::verify

@@ -18,52 +18,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-HostPath path_of(IntersectorKind kind) {
-    switch (kind) {
-        case IntersectorKind::embree:
-            return HostPath::embree;
-        case IntersectorKind::lanes:
-            return HostPath::lanes;
-        case IntersectorKind::bvh:
-            return HostPath::bvh;
-        default:
-            return HostPath::brute;
-    }
-}
-
-#if CISTULA_HAS_CUDA
-template <class Real>
-Tally on_device(const RayMethods<Real>& methods, const Part& part, const Setup<Real>& setup, uint64_t place) {
-    return tally_on_device(methods.device, part.functor.data(), setup, place, part.count);
-}
-template <class Real>
-std::vector<uint64_t> words_of_device(const RayMethods<Real>& methods, const Part& part, const Setup<Real>& setup,
-                                      uint64_t count) {
-    return words_on_device(methods.device, part.functor.data(), setup, count);
-}
-#else
-[[noreturn]] void no_cuda() {
-    throw std::runtime_error("this build has no CUDA backend");
-}
-template <class Real>
-Tally on_device(const RayMethods<Real>&, const Part&, const Setup<Real>&, uint64_t) {
-    no_cuda();
-}
-template <class Real>
-std::vector<uint64_t> words_of_device(const RayMethods<Real>&, const Part&, const Setup<Real>&, uint64_t) {
-    no_cuda();
-}
-#endif
-
 /// The outcomes of a case, one for each intersector, filled part by part.
 class CaseRun {
   public:
-    CaseRun(const CaseEntry& entry, const RunSettings& settings, Precision precision)
-        : entry_(entry), settings_(settings), precision_(precision) {
+    CaseRun(const Case& one, const RunSettings& settings, Precision precision)
+        : case_(one), settings_(settings), precision_(precision) {
         for (const IntersectorKind kind : settings.intersectors) {
-            if (entry.info.own_traversal && kind != IntersectorKind::brute && kind != IntersectorKind::cuda) continue;
+            if (one.own_traversal && kind != IntersectorKind::brute && kind != IntersectorKind::cuda) continue;
             Outcome outcome;
-            outcome.info = &entry.info;
+            outcome.of = &one;
             outcome.intersector = kind;
             outcome.precision = precision;
             outcomes_.push_back(outcome);
@@ -71,7 +34,7 @@ class CaseRun {
     }
 
     std::vector<Outcome> run() {
-        if (entry_.render)
+        if (case_.render)
             for (Outcome& outcome : outcomes_) guarded(outcome, [&] { run_images(outcome); });
         else if (precision_ == Precision::double_)
             run_rays<double>();
@@ -101,15 +64,15 @@ class CaseRun {
         Plan plan(settings_.quick);
         std::string problem;
         try {
-            entry_.plan(plan);
+            case_.plan(plan);
             if (plan.parts.empty()) problem = "the case has no parts";
             for (uint64_t number = 0; number < plan.parts.size() && problem.empty(); ++number) {
-                if (entry_.info.float_warns && precision_ == Precision::single_ &&
+                if (case_.is(float_warns) && precision_ == Precision::single_ &&
                     smallest_part(plan.parts[number].scene).share < least_share(Precision::single_)) {
                     for (Outcome& outcome : outcomes_) ++outcome.warned;
                     continue;
                 }
-                ReadyPart<Real> ready(plan.parts[number], number);
+                ReadyPart<Real> ready(plan.parts[number], number, settings_.lanes);
                 problem = ready.missing_warning();
                 if (problem.empty()) run_part(plan.parts[number], number, ready);
             }
@@ -129,51 +92,30 @@ class CaseRun {
 
     template <class Real>
     void run_part(const Part& part, uint64_t number, ReadyPart<Real>& ready) {
-        const RayMethods<Real>& methods = entry_.methods<Real>();
+        const RayMethods<Real>& methods = case_.methods<Real>();
         const uint64_t place = number << place_shift, plain = ready.plain_count(settings_.quick);
-        const auto needs = [&](const Outcome& outcome) {
-            PathNeeds<Real> all;
-            if (outcome.intersector == IntersectorKind::embree) all.embree = ready.embree();
-            if (outcome.intersector == IntersectorKind::lanes) all.lanes = &ready.lanes(settings_.lanes);
-            return all;
-        };
-        const auto is_left_out = [&](Outcome& outcome) {
-            if (outcome.intersector != IntersectorKind::lanes || ready.lanes(settings_.lanes).fits()) return false;
-            ++outcome.left_out;
-            return true;
-        };
-        if (!methods.words) {
-            for (Outcome& outcome : outcomes_)
-                guarded(outcome, [&] {
-                    if (is_left_out(outcome)) return;
-                    const bool brute = outcome.intersector == IntersectorKind::brute && !entry_.info.own_traversal;
-                    outcome.tally.merge(outcome.intersector == IntersectorKind::cuda
-                                            ? on_device(methods, part, ready.setup(), place)
-                                            : methods.tally(path_of(outcome.intersector), part.functor.data(),
-                                                            ready.setup(), needs(outcome), place,
-                                                            brute ? plain : part.count));
-                });
-            return;
-        }
-        std::vector<uint64_t> expected(plain), found(plain);
-        methods.words(HostPath::plain, part.functor.data(), ready.setup(), {}, 0, plain, expected.data());
+        std::vector<uint64_t> expected;
+        if (methods.words) expected = ready.words(IntersectorKind::plain, methods, plain);
         for (Outcome& outcome : outcomes_)
             guarded(outcome, [&] {
-                if (is_left_out(outcome)) return;
-                if (outcome.intersector == IntersectorKind::cuda)
-                    found = words_of_device(methods, part, ready.setup(), plain);
-                else
-                    methods.words(path_of(outcome.intersector), part.functor.data(), ready.setup(), needs(outcome), 0,
-                                  plain, found.data());
-                for (uint64_t i = 0; i < plain; ++i) {
-                    outcome.tally.place = place + i;
-                    outcome.tally.expect(found[i] == expected[i]);
+                const IntersectorKind by = outcome.intersector;
+                if (by == IntersectorKind::lanes && !ready.fits_lanes()) {
+                    ++outcome.left_out;
+                } else if (methods.words) {
+                    const std::vector<uint64_t> found = ready.words(by, methods, plain);
+                    for (uint64_t i = 0; i < plain; ++i) {
+                        outcome.tally.place = place + i;
+                        outcome.tally.expect(found[i] == expected[i]);
+                    }
+                } else {
+                    const bool brute = by == IntersectorKind::brute && !case_.own_traversal;
+                    outcome.tally.merge(ready.tally(by, methods, place, brute ? plain : part.count));
                 }
             });
     }
 
     template <class Real>
-    Film film_of(IntersectorKind kind, const SceneDescription& scene, FrameSettings settings, int frame) {
+    Film film_of(IntersectorKind kind, const SceneDescription& scene, FrameSettings settings) {
         std::shared_ptr<CompiledScene<Real>> compiled = compile_scene<Real>(scene);
         if (kind == IntersectorKind::bvh) build_primitive_tree(*compiled);
         const std::unique_ptr<Renderer> renderer = [&] {
@@ -193,7 +135,7 @@ class CaseRun {
         }();
         Film film;
         RenderProgress progress;
-        renderer->render(camera_at(scene.camera, frame), settings, film, progress);
+        renderer->render(camera_at(scene.camera, 0), settings, film, progress);
         return film;
     }
 
@@ -205,18 +147,18 @@ class CaseRun {
 
     void run_images(Outcome& outcome) {
         const IntersectorKind kind = outcome.intersector;
-        const auto film = [&](const SceneDescription& scene, const FrameSettings& settings, int frame) {
-            return precision_ == Precision::double_ ? film_of<double>(kind, scene, settings, frame)
-                                                    : film_of<float>(kind, scene, settings, frame);
+        const auto film = [&](const SceneDescription& scene, const FrameSettings& settings) {
+            return precision_ == Precision::double_ ? film_of<double>(kind, scene, settings)
+                                                    : film_of<float>(kind, scene, settings);
         };
         Stage stage(settings_.quick, precision_, intersector_name(kind), film);
         outcome.tally.place = 0;
-        entry_.render(stage, outcome.tally);
+        case_.render(stage, outcome.tally);
         outcome.warned = stage.warned();
         if (outcome.tally.worst_at != no_place) outcome.worst_label = fmt::format("try {}", outcome.tally.worst_at);
     }
 
-    const CaseEntry& entry_;
+    const Case& case_;
     const RunSettings& settings_;
     const Precision precision_;
     std::vector<Outcome> outcomes_;
@@ -230,26 +172,26 @@ const char* intersector_name(IntersectorKind kind) {
 }
 
 double Outcome::measured() const {
-    return info->bound.measure == Measure::failures ? double(tally.failures) : tally.worst;
+    return of->bound.measure == Measure::failures ? double(tally.failures) : tally.worst;
 }
 
 bool Outcome::holds() const {
     if (must_warn() && problem.empty() && tally.tried == 0) return warned > 0;
     if (must_warn() && warned == 0) return false;
-    if (!problem.empty() || tally.tried == 0 || (info->needs_witness && tally.witnesses == 0)) return false;
-    if (info->bound.must_fail) return measured() >= limit();
-    if (info->bound.measure == Measure::worst && tally.failures != 0) return false;
+    if (!problem.empty() || tally.tried == 0 || (of->is(needs_witness) && tally.witnesses == 0)) return false;
+    if (of->bound.must_fail) return measured() >= limit();
+    if (of->bound.measure == Measure::worst && tally.failures != 0) return false;
     return measured() <= limit();
 }
 
-std::vector<Outcome> run_cases(const std::vector<const CaseEntry*>& cases, const RunSettings& settings,
+std::vector<Outcome> run_cases(const std::vector<const Case*>& cases, const RunSettings& settings,
                                StepProgress& progress, const std::function<void(const Outcome&)>& done) {
     std::vector<Outcome> all;
     progress.begin("cases", static_cast<double>(cases.size() * settings.precisions.size()));
-    for (const CaseEntry* entry : cases)
+    for (const Case* one : cases)
         for (const Precision precision : settings.precisions) {
-            progress.name_part(entry->info.name);
-            for (Outcome& outcome : CaseRun(*entry, settings, precision).run()) {
+            progress.name_part(one->name);
+            for (Outcome& outcome : CaseRun(*one, settings, precision).run()) {
                 done(outcome);
                 all.push_back(std::move(outcome));
             }

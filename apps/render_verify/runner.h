@@ -6,17 +6,16 @@
 #include <vector>
 
 #include "apps/common/step_progress.h"
-#include "apps/render_verify/case_table.h"
+#include "apps/render_verify/case.h"
 #include "render/renderer.h"
 
 namespace cistula::verify {
 
-enum class IntersectorKind { embree, lanes, bvh, brute, cuda };
 const char* intersector_name(IntersectorKind kind);
 
 /// The result of one case on one intersector in one precision.
 struct Outcome {
-    const CaseInfo* info = nullptr;
+    const Case* of = nullptr;
     IntersectorKind intersector = IntersectorKind::embree;
     Precision precision = Precision::single_;
     Tally tally;
@@ -26,12 +25,12 @@ struct Outcome {
     uint64_t left_out = 0;    // parts of the case that are not traced in lanes, nor judged
     double seconds = 0;
 
-    double limit() const { return info->bound.limit[precision == Precision::double_]; }
+    double limit() const { return of->bound.limit[precision == Precision::double_]; }
     /// The value that is compared with the limit.
     double measured() const;
     bool holds() const;
     /// Whether it must warn of scenes: a `float_warns` case in float.
-    bool must_warn() const { return info->float_warns && precision == Precision::single_; }
+    bool must_warn() const { return of->is(float_warns) && precision == Precision::single_; }
 };
 
 struct RunSettings {
@@ -43,7 +42,7 @@ struct RunSettings {
 
 /// Runs cases. Calls `done` after each outcome, in the order of the cases, then precisions, then intersectors.
 /// `progress` shows the current case.
-std::vector<Outcome> run_cases(const std::vector<const CaseEntry*>& cases, const RunSettings& settings,
+std::vector<Outcome> run_cases(const std::vector<const Case*>& cases, const RunSettings& settings,
                                StepProgress& progress, const std::function<void(const Outcome&)>& done);
 
 }  // namespace cistula::verify

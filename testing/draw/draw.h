@@ -124,32 +124,21 @@ class Draw {
     /// A number of any kind: ordinary numbers, random bits, powers of two, special values.
     template <class Real>
     CISTULA_HD Real any() {
-        switch (below(5)) {
-            case 0:
-                return scaled<Real>(-4, 4);
-            case 1:
-                return scaled<Real>(-60, 60);
-            case 2:
-                return pattern<Real>();
-            case 3:
-                return power<Real>();
-            default:
-                return special<Real>();
-        }
+        const uint32_t kind = below(5);
+        if (kind == 0) return scaled<Real>(-4, 4);
+        if (kind == 1) return scaled<Real>(-60, 60);
+        if (kind == 2) return pattern<Real>();
+        if (kind == 3) return power<Real>();
+        return special<Real>();
     }
     /// A finite number of magnitude up to about 2^60, often a simple one.
     template <class Real>
     CISTULA_HD Real tame() {
-        switch (below(4)) {
-            case 0:
-                return Real(between(-8, 8)) * Real(0.125);
-            case 1:
-                return scaled<Real>(-60, 60);
-            case 2:
-                return near(Real(between(1, 4)), 2);
-            default:
-                return centered<Real>(Real(2));
-        }
+        const uint32_t kind = below(4);
+        if (kind == 0) return Real(between(-8, 8)) * Real(0.125);
+        if (kind == 1) return scaled<Real>(-60, 60);
+        if (kind == 2) return near(Real(between(1, 4)), 2);
+        return centered<Real>(Real(2));
     }
 
     template <class Real>

@@ -39,8 +39,21 @@ class Words {
 
 inline constexpr int most_words = 16;
 
-/// Runs one input of a case. A Case has `name`, `Number` (float or double), `words`, `Input`, make(Draw&) and
-/// run(Input, Words&).
+/// What every case has, beside a `name`, `Input`, make(Draw&) and run(Input, Words&).
+template <class Real, int count>
+struct CaseOf {
+    using Number = Real;                 // float or double
+    static constexpr int words = count;  // of its results
+};
+struct OneDouble {
+    double x;
+};
+template <int count>
+struct OfDouble : CaseOf<double, count> {
+    using Input = OneDouble;
+};
+
+/// Runs one input of a case.
 template <class Case>
 CISTULA_HD inline void run_case(uint64_t index, uint64_t seed, uint64_t* out) {
     Draw draw(index, seed);

@@ -165,11 +165,9 @@ CISTULA_HD inline SceneView<Real> view_of(const ConvexInput<Real>& in) {
 
 /// Case: the first two crossings of a straight ray, and the first one again with `after` just before or behind its t.
 template <class Real>
-struct ConvexCase {
+struct ConvexCase : CaseOf<Real, 7> {
     static constexpr const char* name = "convex";
-    using Number = Real;
     using Input = ConvexInput<Real>;
-    static constexpr int words = 7;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         draw_convex_input(draw, 1, in);
@@ -201,11 +199,9 @@ struct ConvexCase {
 /// Case: intervals. Their ends may be zeros of either sign: host and device test the slabs in different orders, and no
 /// caller looks at the sign.
 template <class Real>
-struct ConvexIntervalCase {
+struct ConvexIntervalCase : CaseOf<Real, 5> {
     static constexpr const char* name = "convex_interval";
-    using Number = Real;
     using Input = ConvexInput<Real>;
-    static constexpr int words = 5;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         draw_convex_input(draw, 1, in);
@@ -228,14 +224,12 @@ struct ConvexIntervalCase {
 };
 
 template <class Real>
-struct ConvexShadowCase {
+struct ConvexShadowCase : CaseOf<Real, 10> {
     static constexpr const char* name = "convex_shadow";
-    using Number = Real;
     struct Input {
         ConvexInput<Real> shape;
         ShadowInput<Real> shadow;
     };
-    static constexpr int words = 10;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         draw_convex_input(draw, 1, in.shape);

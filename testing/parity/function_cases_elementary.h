@@ -6,28 +6,15 @@
 
 namespace cistula::parity {
 
-struct OneDouble {
-    double x;
-};
-
-struct Exp2Case {
+struct Exp2Case : OfDouble<1> {
     static constexpr const char* name = "exp2";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) {
-        switch (draw.below(5)) {
-            case 0:
-                return {draw.centered(1100.0)};
-            case 1:
-                return {draw.scaled<double>(-70, -1)};
-            case 2:
-                return {0.5 * draw.between(-2200, 2200)};
-            case 3:
-                return {draw.near(0.5 * draw.between(1, 2200), 1)};
-            default:
-                return {draw.any<double>()};
-        }
+        const uint32_t kind = draw.below(5);
+        if (kind == 0) return {draw.centered(1100.0)};
+        if (kind == 1) return {draw.scaled<double>(-70, -1)};
+        if (kind == 2) return {0.5 * draw.between(-2200, 2200)};
+        if (kind == 3) return {draw.near(0.5 * draw.between(1, 2200), 1)};
+        return {draw.any<double>()};
     }
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(elementary::exp2(in.x)); }
 };
@@ -54,31 +41,23 @@ CISTULA_HD inline double positive_input(Draw& draw) {
     return x > 0 && x < RealTraits<double>::infinity ? x : 0x1p-1074;
 }
 
-struct Log2Case {
+struct Log2Case : OfDouble<1> {
     static constexpr const char* name = "log2";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) { return {logarithm_input(draw)}; }
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(elementary::log2(in.x)); }
 };
 
-struct Log2PairCase {
+struct Log2PairCase : OfDouble<2> {
     static constexpr const char* name = "log2_pair";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 2;
     CISTULA_HD static Input make(Draw& draw) { return {positive_input(draw)}; }
     CISTULA_HD static void run(const Input& in, Words& out) { out.pair(elementary::log2_pair(in.x)); }
 };
 
-struct PowCase {
+struct PowCase : CaseOf<double, 1> {
     static constexpr const char* name = "pow";
-    using Number = double;
     struct Input {
         double x, y;
     };
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         switch (draw.below(5)) {
@@ -131,47 +110,30 @@ CISTULA_HD inline double angle_input(Draw& draw) {
     }
 }
 
-struct SinCase {
+struct SinCase : OfDouble<1> {
     static constexpr const char* name = "sin";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) { return {angle_input(draw)}; }
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(elementary::sin(in.x)); }
 };
-struct CosCase {
+struct CosCase : OfDouble<1> {
     static constexpr const char* name = "cos";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) { return {angle_input(draw)}; }
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(elementary::cos(in.x)); }
 };
-struct TanCase {
+struct TanCase : OfDouble<1> {
     static constexpr const char* name = "tan";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) { return {angle_input(draw)}; }
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(elementary::tan(in.x)); }
 };
 
-struct SrgbCase {
+struct SrgbCase : OfDouble<2> {
     static constexpr const char* name = "srgb";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 2;
     CISTULA_HD static Input make(Draw& draw) {
-        switch (draw.below(4)) {
-            case 0:
-                return {draw.unit<double>()};
-            case 1:
-                return {draw.between(0, 255) / 255.0};
-            case 2:
-                return {draw.near(draw.one_in(2) ? 0.04045 : 0.0031308, 3)};
-            default:
-                return {draw.any<double>()};
-        }
+        const uint32_t kind = draw.below(4);
+        if (kind == 0) return {draw.unit<double>()};
+        if (kind == 1) return {draw.between(0, 255) / 255.0};
+        if (kind == 2) return {draw.near(draw.one_in(2) ? 0.04045 : 0.0031308, 3)};
+        return {draw.any<double>()};
     }
     CISTULA_HD static void run(const Input& in, Words& out) {
         out.real(elementary::srgb_to_linear(in.x));
@@ -180,14 +142,12 @@ struct SrgbCase {
 };
 
 template <class Real>
-struct PowerBySquaringCase {
+struct PowerBySquaringCase : CaseOf<Real, 1> {
     static constexpr const char* name = "power_by_squaring";
-    using Number = Real;
     struct Input {
         Real x;
         int n;
     };
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         in.x = draw.one_in(2) ? draw.unit<Real>() : draw.any<Real>();
@@ -197,13 +157,11 @@ struct PowerBySquaringCase {
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(elementary::power_by_squaring(in.x, in.n)); }
 };
 
-struct DoubleDoubleCase {
+struct DoubleDoubleCase : CaseOf<double, 14> {
     static constexpr const char* name = "double_double";
-    using Number = double;
     struct Input {
         DoubleDouble a, b;
     };
-    static constexpr int words = 14;
     CISTULA_HD static DoubleDouble number(Draw& draw) {
         const double high = draw.one_in(2) ? draw.scaled<double>(-4, 4) : draw.any<double>();
         return draw.one_in(4) ? DoubleDouble(high) : fast_two_sum(high, high * 0x1p-53 * draw.centered(1.0));

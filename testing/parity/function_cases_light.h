@@ -13,16 +13,14 @@
 namespace cistula::parity {
 
 template <class Real>
-struct PhongCase {
+struct PhongCase : CaseOf<Real, 3> {
     static constexpr const char* name = "phong";
-    using Number = Real;
     struct Input {
         Material<Real> material;
         Light<Real> light;
         Vec3<Real> color, normal, to_light, to_viewer;
         Real n_l, distance;
     };
-    static constexpr int words = 3;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         in.color = Vec3<Real>(Real(0.5)) + draw.in_cube<Real>(Real(0.5));
@@ -47,15 +45,13 @@ struct PhongCase {
     }
 };
 
-struct CameraCase {
+struct CameraCase : CaseOf<double, 3> {
     static constexpr const char* name = "camera_direction";
-    using Number = double;
     struct Input {
         Camera camera;
         double x, y;
         int width, height;
     };
-    static constexpr int words = 3;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         in.camera.position = Vec3<double>(0.0);
@@ -80,15 +76,13 @@ struct CameraCase {
 };
 
 template <class Real>
-struct TextureCase {
+struct TextureCase : CaseOf<Real, 3> {
     static constexpr const char* name = "texture";
-    using Number = Real;
     struct Input {
         Texture texture;
         Vec3<float> texels[16];
         Vec2<Real> uv;
     };
-    static constexpr int words = 3;
     CISTULA_HD static Real coordinate(Draw& draw, uint32_t size) {
         switch (draw.below(5)) {
             case 0:
@@ -124,15 +118,13 @@ struct TextureCase {
 
 /// Case: two spheres, often at equal distances, and a ray that passes near their outlines.
 template <class Real>
-struct VisibleLightCase {
+struct VisibleLightCase : CaseOf<Real, 2> {
     static constexpr const char* name = "seen_light";
-    using Number = Real;
     struct Input {
         VisibleLight<Real> lights[2];
         Ray<Real> ray;
         Real limit;
     };
-    static constexpr int words = 2;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         for (VisibleLight<Real>& light : in.lights) {
@@ -163,14 +155,12 @@ struct VisibleLightCase {
 
 /// Case: origins of rays that leave a triangle.
 template <class Real>
-struct ApexCase {
+struct ApexCase : CaseOf<Real, 6> {
     static constexpr const char* name = "apex";
-    using Number = Real;
     struct Input {
         Vec3<Real> corner[3];
         Real u, v, height;
     };
-    static constexpr int words = 6;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         const int size = draw.one_in(2) ? 0 : draw.between(-60, 0);

@@ -9,26 +9,22 @@ namespace cistula::parity {
 inline constexpr int reciprocal_range = 120;
 
 template <class Real>
-struct ReciprocalCase {
+struct ReciprocalCase : CaseOf<Real, 1> {
     static constexpr const char* name = "reciprocal";
-    using Number = Real;
     struct Input {
         Real x;
     };
-    static constexpr int words = 1;
     CISTULA_HD static Real size(Draw& draw) {
         constexpr int last = reciprocal_range;
-        switch (draw.below(4)) {
-            case 0:
-                return magnitude(draw.scaled<Real>(-2, 1));
-            case 1:  // around powers of two, where quotients are hardest to round
-                return draw.near(two_to<Real>(draw.between(1 - last, last - 1)), 8);
-            case 2:  // ends of the range
-                return draw.one_in(2) ? stepped(two_to<Real>(-last), draw.between(0, 3))
-                                      : stepped(two_to<Real>(last), draw.between(-3, 0));
-            default:
-                return magnitude(draw.scaled<Real>(-last, last - 1));
-        }
+        const uint32_t kind = draw.below(4);
+        if (kind == 0) return magnitude(draw.scaled<Real>(-2, 1));
+        if (kind == 1)
+            return draw.near(two_to<Real>(draw.between(1 - last, last - 1)),
+                             8);  // around powers of two, where quotients are hardest to round
+        if (kind == 2)
+            return draw.one_in(2) ? stepped(two_to<Real>(-last), draw.between(0, 3))
+                                  : stepped(two_to<Real>(last), draw.between(-3, 0));  // ends of the range
+        return magnitude(draw.scaled<Real>(-last, last - 1));
     }
     CISTULA_HD static Input make(Draw& draw) {
         const Real x = size(draw);
@@ -39,13 +35,11 @@ struct ReciprocalCase {
 
 /// Case: min_no_nan() and max_no_nan() of numbers that are not NaN and not both zero.
 template <class Real>
-struct LesserGreaterCase {
+struct LesserGreaterCase : CaseOf<Real, 2> {
     static constexpr const char* name = "lesser_greater";
-    using Number = Real;
     struct Input {
         Real a, b;
     };
-    static constexpr int words = 2;
     CISTULA_HD static Real number(Draw& draw) {
         const Real x = draw.any<Real>();
         return x == x ? x : Real(draw.between(-2, 2));

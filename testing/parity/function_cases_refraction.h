@@ -7,14 +7,12 @@
 namespace cistula::parity {
 
 template <class Real>
-struct VectorCase {
+struct VectorCase : CaseOf<Real, 13> {
     static constexpr const char* name = "vectors";
-    using Number = Real;
     struct Input {
         Vec3<Real> a, b;
         Real t;
     };
-    static constexpr int words = 13;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         in.a = draw.any_vector<Real>();
@@ -85,11 +83,9 @@ CISTULA_HD inline Arrival<Real> arrival(Draw& draw) {
 }
 
 template <class Real>
-struct RefractCase {
+struct RefractCase : CaseOf<Real, 4> {
     static constexpr const char* name = "refract";
-    using Number = Real;
     using Input = Arrival<Real>;
-    static constexpr int words = 4;
     CISTULA_HD static Input make(Draw& draw) { return arrival<Real>(draw); }
     CISTULA_HD static void run(const Input& in, Words& out) {
         const Refraction<Real> refraction = refracted(in.direction, in.normal, in.from, in.to);
@@ -99,11 +95,9 @@ struct RefractCase {
 };
 
 template <class Real>
-struct FresnelCase {
+struct FresnelCase : CaseOf<Real, 1> {
     static constexpr const char* name = "fresnel";
-    using Number = Real;
     using Input = Arrival<Real>;
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) {
         draw.bits();  // makes the inputs differ from those of the refraction case
         Input in = arrival<Real>(draw);
@@ -116,13 +110,11 @@ struct FresnelCase {
 };
 
 template <class Real>
-struct ReflectCase {
+struct ReflectCase : CaseOf<Real, 6> {
     static constexpr const char* name = "reflect";
-    using Number = Real;
     struct Input {
         Vec3<Real> direction, normal;
     };
-    static constexpr int words = 6;
     CISTULA_HD static Input make(Draw& draw) {
         const Arrival<Real> a = arrival<Real>(draw);
         Input in{a.direction, a.normal};

@@ -9,25 +9,19 @@ namespace cistula::parity {
 
 /// A number of samples of any size.
 CISTULA_HD inline uint32_t samples_input(Draw& draw) {
-    switch (draw.below(3)) {
-        case 0:
-            return uint32_t(draw.between(1, 256));
-        case 1:
-            return uint32_t(1) << draw.below(32);
-        default:
-            return uint32_t(draw.shifted(32, 63)) | 1u;
-    }
+    const uint32_t kind = draw.below(3);
+    if (kind == 0) return uint32_t(draw.between(1, 256));
+    if (kind == 1) return uint32_t(1) << draw.below(32);
+    return uint32_t(draw.shifted(32, 63)) | 1u;
 }
 
 template <class Real>
-struct ToFixedCase {
+struct ToFixedCase : CaseOf<Real, 5> {
     static constexpr const char* name = "to_fixed";
-    using Number = Real;
     struct Input {
         Real x;
         uint32_t samples;
     };
-    static constexpr int words = 5;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         in.samples = samples_input(draw);
@@ -65,15 +59,13 @@ struct ToFixedCase {
 };
 
 template <class Real>
-struct ResolveCase {
+struct ResolveCase : CaseOf<Real, 3> {
     static constexpr const char* name = "resolve";
-    using Number = Real;
     struct Input {
         int64_t sum;
         uint32_t samples;
         int shift, radiance_exponent;
     };
-    static constexpr int words = 3;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         in.samples = samples_input(draw);
@@ -98,11 +90,8 @@ struct ResolveCase {
     }
 };
 
-struct LossCase {
+struct LossCase : OfDouble<1> {
     static constexpr const char* name = "loss_of";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) {
         double x = positive_input(draw);
         if (x > 1) x = 1 / x;
@@ -112,39 +101,27 @@ struct LossCase {
 };
 
 template <class Real>
-struct TransmittanceCase {
+struct TransmittanceCase : CaseOf<Real, 1> {
     static constexpr const char* name = "share_of";
-    using Number = Real;
     struct Input {
         uint64_t loss;
     };
-    static constexpr int words = 1;
     CISTULA_HD static Input make(Draw& draw) {
         constexpr int last = Layout<Real>::bias - 1;  // the greatest loss with a transmittance above 0
         const uint64_t near = uint64_t(int64_t(draw.between(-3, 3)));
-        switch (draw.below(6)) {
-            case 0:
-                return {draw.bits()};
-            case 1:
-                return {draw.shifted(0, 63)};
-            case 2:
-                return {(uint64_t(draw.one_in(8) ? 0 : draw.between(0, last + 10)) << 52) + near};
-            case 3:
-                return {(uint64_t(2 * draw.between(0, last) + 1) << 51) + near};
-            case 4:
-                return {(uint64_t(last) << 52) + uint64_t(int64_t(draw.between(-99, 99)))};
-            default:
-                return {draw.bits() >> (sizeof(Real) == sizeof(float) ? 5 : 2)};
-        }
+        const uint32_t kind = draw.below(6);
+        if (kind == 0) return {draw.bits()};
+        if (kind == 1) return {draw.shifted(0, 63)};
+        if (kind == 2) return {(uint64_t(draw.one_in(8) ? 0 : draw.between(0, last + 10)) << 52) + near};
+        if (kind == 3) return {(uint64_t(2 * draw.between(0, last) + 1) << 51) + near};
+        if (kind == 4) return {(uint64_t(last) << 52) + uint64_t(int64_t(draw.between(-99, 99)))};
+        return {draw.bits() >> (sizeof(Real) == sizeof(float) ? 5 : 2)};
     }
     CISTULA_HD static void run(const Input& in, Words& out) { out.real(transmittance_of<Real>(in.loss)); }
 };
 
-struct AbsorptionCase {
+struct AbsorptionCase : OfDouble<2> {
     static constexpr const char* name = "absorption_loss";
-    using Number = double;
-    using Input = OneDouble;
-    static constexpr int words = 2;
     CISTULA_HD static Input make(Draw& draw) {
         switch (draw.below(5)) {
             case 0:
@@ -165,15 +142,13 @@ struct AbsorptionCase {
     }
 };
 
-struct PathSumCase {
+struct PathSumCase : CaseOf<double, 2> {
     static constexpr const char* name = "path_sum";
-    using Number = double;
     static constexpr int terms = 4;
     struct Input {
         int sign[terms];
         double sigma[terms], length[terms], farthest;
     };
-    static constexpr int words = 2;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         in.farthest = 4 + 4 * draw.unit<double>();

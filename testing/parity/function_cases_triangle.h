@@ -130,11 +130,9 @@ CISTULA_HD inline SceneView<Real> view_of(const ClusterInput<Real>& in) {
 
 /// Case: the first three crossings of a straight ray.
 template <class Real>
-struct TriangleCase {
+struct TriangleCase : CaseOf<Real, 9> {
     static constexpr const char* name = "triangle";
-    using Number = Real;
     using Input = ClusterInput<Real>;
-    static constexpr int words = 9;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         draw_cluster_input(draw, in);
@@ -201,14 +199,12 @@ CISTULA_HD inline void add_shadow(const SceneView<Real>& scene, const ShadowSum<
 }
 
 template <class Real>
-struct TriangleShadowCase {
+struct TriangleShadowCase : CaseOf<Real, 10> {
     static constexpr const char* name = "triangle_shadow";
-    using Number = Real;
     struct Input {
         ClusterInput<Real> shape;
         ShadowInput<Real> shadow;
     };
-    static constexpr int words = 10;
     CISTULA_HD static Input make(Draw& draw) {
         Input in;
         draw_cluster_input(draw, in.shape);

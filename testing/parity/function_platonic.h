@@ -17,18 +17,11 @@ struct PlatonicTables {
 /// Counts and inradius of a solid: tetrahedron, cube, octahedron, dodecahedron, icosahedron.
 CISTULA_HD inline PlatonicTables platonic_tables(uint32_t kind) {
     constexpr double root = 0x1.279a74590331cp-1, golden = 0.7946544722917661;
-    switch (kind) {
-        case 0:
-            return {4, 4, 1.0 / 3.0};
-        case 1:
-            return {8, 3, root};
-        case 2:
-            return {6, 4, root};
-        case 3:
-            return {20, 6, golden};
-        default:
-            return {12, 10, golden};
-    }
+    if (kind == 0) return {4, 4, 1.0 / 3.0};
+    if (kind == 1) return {8, 3, root};
+    if (kind == 2) return {6, 4, root};
+    if (kind == 3) return {20, 6, golden};
+    return {12, 10, golden};
 }
 
 /// Corner i of a cube, (+-1, +-1, +-1) / sqrt(3), with signs by the bits of i.
@@ -62,34 +55,20 @@ CISTULA_HD inline Vec3<double> tetrahedron_corner(uint32_t i) {
 }
 
 CISTULA_HD inline Vec3<double> platonic_corner(uint32_t kind, uint32_t i) {
-    switch (kind) {
-        case 0:
-            return tetrahedron_corner(i);
-        case 1:
-            return cube_corner(i);
-        case 2:
-            return axis_vector(i);
-        case 3:
-            return dodecahedron_corner(i);
-        default:
-            return icosahedron_corner(i);
-    }
+    if (kind == 0) return tetrahedron_corner(i);
+    if (kind == 1) return cube_corner(i);
+    if (kind == 2) return axis_vector(i);
+    if (kind == 3) return dodecahedron_corner(i);
+    return icosahedron_corner(i);
 }
 
 /// The normal of slab i: one of each two opposite corners of the dual solid.
 CISTULA_HD inline Vec3<double> platonic_normal(uint32_t kind, uint32_t i) {
-    switch (kind) {
-        case 0:
-            return -tetrahedron_corner(i);
-        case 1:
-            return axis_vector(2 * i + 1);
-        case 2:
-            return cube_corner(i);
-        case 3:
-            return icosahedron_corner(4 * (i / 2) + i % 2);
-        default:
-            return i < 4 ? cube_corner(i) : dodecahedron_corner(8 + 4 * ((i - 4) / 2) + i % 2);
-    }
+    if (kind == 0) return -tetrahedron_corner(i);
+    if (kind == 1) return axis_vector(2 * i + 1);
+    if (kind == 2) return cube_corner(i);
+    if (kind == 3) return icosahedron_corner(4 * (i / 2) + i % 2);
+    return i < 4 ? cube_corner(i) : dodecahedron_corner(8 + 4 * ((i - 4) / 2) + i % 2);
 }
 
 /// A rotation by a unit quaternion.

@@ -1,9 +1,7 @@
 // Bodies that stand on, lie on and touch one another, on grounds that are turned so that no normal is along an axis.
 #pragma once
 
-#include "apps/render_verify/case.h"
 #include "apps/render_verify/scenes.h"
-#include "apps/render_verify/stage.h"
 
 namespace cistula::verify::contact {
 
@@ -76,13 +74,11 @@ class Site {
     /// The parallelogram corner, corner + along, corner + along + across, corner + across; its uv are lengths.
     void quad(const dvec3& corner, const dvec3& along, const dvec3& across, int material) {
         sheets.push_back({corner, along, across, material});
-        TrianglesObject quad;
-        for (const dvec3& p : {corner, corner + along, corner + along + across, corner + across})
-            quad.vertices.push_back(place(p));
+        TrianglesObject sheet = parallelogram(corner, along, across);
+        for (dvec3& p : sheet.vertices) p = place(p);
         const double u = length(along), v = length(across);
-        quad.uvs = {{0, 0}, {u, 0}, {u, v}, {0, v}};
-        quad.triangles = {{0, 1, 2}, {0, 2, 3}};
-        add_object(scene, quad, material);
+        sheet.uvs = {{0, 0}, {u, 0}, {u, v}, {0, v}};
+        add_object(scene, sheet, material);
     }
     /// A parallelogram that lies on something: its front is along x across.
     void decal(const dvec3& corner, const dvec3& along, const dvec3& across, int material) {
@@ -124,30 +120,5 @@ class Site {
     dvec3 degrees_, origin_, x_, y_, z_;
     double decals_ = 0;
 };
-
-inline MaterialDescription paper(const dvec3& color) {
-    MaterialDescription material;
-    material.color = color;
-    return material;
-}
-/// A body that light passes unchanged but for a tint at each face.
-inline MaterialDescription clear(const dvec3& tint = dvec3(1)) {
-    MaterialDescription material;
-    material.transmission = 1;
-    material.tint = tint;
-    return material;
-}
-inline MaterialDescription glass(double index, const dvec3& absorption = dvec3(0)) {
-    MaterialDescription material = clear();
-    material.index = index;
-    material.fresnel = true;
-    material.absorption = absorption;
-    return material;
-}
-
-inline Film film_of(const Stage& stage, const SceneDescription& scene) {
-    const int times = stage.quick ? 1 : 4;
-    return stage.render(scene, scene.film.width * times, scene.film.height * times);
-}
 
 }  // namespace cistula::verify::contact

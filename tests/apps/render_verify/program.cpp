@@ -9,7 +9,6 @@
 #include <set>
 
 #include "apps/common/command_line.h"
-#include "apps/render_verify/host_run.h"
 #include "apps/render_verify/program.h"
 #include "apps/render_verify/scenes.h"
 #include "testing/support/gpu.h"
@@ -26,114 +25,89 @@ using Arguments = std::vector<std::string>;
 std::function<void(uint64_t i, Tally&)> each_ray;
 uint64_t ray_count = 10;
 
-template <class Self>
-struct Made {
-    static constexpr const char* exact = "what the test says";
-    static void plan(Plan& plan) {
-        SceneDescription scene = empty_scene();
-        add_object(scene, solid_object(PlatonicSolid::cube));
-        plan.add("a cube", scene, Self{}, {}, ray_count);
-    }
-    template <class Real, class Intersector>
-    void operator()(const Setup<Real>&, const Intersector&, uint64_t i, Tally& tally) const {
+struct EachRay {
+    template <class Real, class Tracer>
+    void operator()(const Setup<Real>&, const Tracer&, uint64_t i, Tally& tally) const {
         each_ray(i, tally);
     }
 };
-struct Counts : Made<Counts> {
-    static constexpr const char* name = "made/counts";
-    static constexpr Bound bound = no_failures("rays");
-};
-struct Broken : Made<Broken> {
-    static constexpr const char* name = "made/broken";
-    static constexpr Bound bound = must_fail(3, "rays");
-};
-struct Measures : Made<Measures> {
-    static constexpr const char* name = "made/measures";
-    static constexpr Bound bound = at_most(2, "ulps");
-};
-struct Witnessed : Made<Witnessed> {
-    static constexpr const char* name = "made/witnessed";
-    static constexpr Bound bound = no_failures("rays");
-    static constexpr bool needs_witness = true;
-};
 /// One ray differs when it is asked of for the third time: by the tree of our own, after the plain loop and Embree.
-struct Compared : Made<Compared> {
-    static constexpr const char* name = "made/compared";
-    static constexpr Bound bound = no_failures("rays");
-    static constexpr bool compared = true;
+struct Word {
     static inline std::atomic<int> asked = 0;
-    template <class Real, class Intersector>
-    uint64_t fingerprint(const Setup<Real>&, const Intersector&, uint64_t i) const {
+    template <class Real, class Tracer>
+    uint64_t fingerprint(const Setup<Real>&, const Tracer&, uint64_t i) const {
         return i == 7 && ++asked == 4 ? 1 : 0;
     }
 };
-/// A cube beside one that is 2^-20 of its size, and a cube alone.
-struct Warns : Made<Warns> {
-    static constexpr const char* name = "made/warns";
-    static constexpr Bound bound = no_failures("rays");
-    static constexpr bool float_warns = true;
-    static inline bool tiny = true, alone = true;
-    static void plan(Plan& plan) {
-        if (alone) Made<Warns>::plan(plan);
-        SceneDescription scene = empty_scene();
-        add_object(scene, solid_object(PlatonicSolid::cube));
-        add_object(scene, solid_object(PlatonicSolid::cube, {3, 0, 0}, tiny ? 0x1p-20 : 1));
-        plan.add("two cubes", scene, Warns{}, {}, ray_count);
-    }
-};
-struct Images {
-    static constexpr const char* name = "made/images";
-    static constexpr const char* exact = "a cube covers the middle of the picture";
-    static constexpr Bound bound = no_failures("pixels");
-    static void render(Stage& stage, Tally& tally) {
-        SceneDescription scene = empty_scene();
-        add_object(scene, solid_object(PlatonicSolid::cube));
-        const Film film = stage.render(scene, 9, 9);
-        tally.expect(film.flags == 0 && film.pixels[40].hits == 1 && film.pixels[0].hits == 0);
-    }
-};
 
+template <class Functor>
+void add_cube(Plan& plan) {
+    SceneDescription scene = empty_scene();
+    add_object(scene, solid_object(PlatonicSolid::cube));
+    plan.add("a cube", scene, Functor{}, {}, ray_count);
+}
+template <class Functor = EachRay>
+Case of_rays(const char* name, const Bound& bound, void (*plan)(Plan&) = add_cube<Functor>) {
+    Cases cases;
+    cases.rays<Functor, false>(name, "what the test says", bound, plan);
+    return cases.all[0];
+}
+Case of_images(const char* name, const char* exact, void (*render)(Stage&, Tally&)) {
+    Cases cases;
+    cases.images(name, exact, no_failures("pixels"), render);
+    return cases.all[0];
+}
+
+const Case counts = of_rays("made/counts", no_failures("rays")), broken = of_rays("made/broken", must_fail(3, "rays")),
+           measures = of_rays("made/measures", at_most(2, "ulps")),
+           witnessed = of_rays("made/witnessed", no_failures("rays", needs_witness)),
+           compared = of_rays<Word>("made/compared", no_failures("rays"));
+/// A cube beside one that is 2^-20 of its size, and a cube alone.
+bool with_tiny = true, with_alone = true;
+const Case warns = of_rays("made/warns", no_failures("rays", float_warns), [](Plan& plan) {
+    if (with_alone) add_cube<EachRay>(plan);
+    SceneDescription scene = empty_scene();
+    add_object(scene, solid_object(PlatonicSolid::cube));
+    add_object(scene, solid_object(PlatonicSolid::cube, {3, 0, 0}, with_tiny ? 0x1p-20 : 1));
+    plan.add("two cubes", scene, EachRay{}, {}, ray_count);
+});
+const Case images = of_images("made/images", "a cube covers the middle of the picture", [](Stage& stage, Tally& tally) {
+    SceneDescription scene = empty_scene();
+    add_object(scene, solid_object(PlatonicSolid::cube));
+    const Film film = stage.render(scene, 9, 9);
+    tally.expect(film.flags == 0 && film.pixels[40].hits == 1 && film.pixels[0].hits == 0);
+});
 /// Memory runs out while a case of images runs, and while one of rays is planned.
-struct Starved {
-    static constexpr const char* name = "made/starved";
-    static constexpr const char* exact = "nothing";
-    static constexpr Bound bound = no_failures("pixels");
-    static void render(Stage&, Tally&) { throw std::bad_alloc(); }
-};
-struct StarvedPlan : Made<StarvedPlan> {
-    static constexpr const char* name = "made/starved-plan";
-    static constexpr Bound bound = no_failures("rays");
-    static void plan(Plan&) { throw std::bad_alloc(); }
-};
+const Case starved = of_images("made/starved", "nothing", [](Stage&, Tally&) { throw std::bad_alloc(); });
+const Case starved_plan = of_rays("made/starved-plan", no_failures("rays"), [](Plan&) { throw std::bad_alloc(); });
 
 /// The exit code of a run over one case, and its record.
-template <class Case>
-int code_of(nlohmann::json* record = nullptr, Arguments more = {}) {
+int code_of(const Case& one, nlohmann::json* record = nullptr, Arguments more = {}) {
     const ScratchDirectory folder;
     const std::string file = folder.file("record.json");
     more.insert(more.begin(), {"render-verify", "--json", file});
     std::vector<const char*> argv;
     for (const std::string& argument : more) argv.push_back(argument.c_str());
     const int code = run_program("render-verify", "allow it more",
-                                 [&] { return verify_program(int(argv.size()), argv.data(), {entry_of<Case>()}); });
+                                 [&] { return verify_program(int(argv.size()), argv.data(), {one}); });
     if (record) *record = nlohmann::json::parse(bytes_of(file));
     return code;
 }
 
 TEST(Verify, MemoryThatRunsOutEndsTheProgramAndFailsNoCase) {
-    for (const auto run : {code_of<Starved>, code_of<StarvedPlan>}) {
+    for (const Case* one : {&starved, &starved_plan}) {
         testing::internal::CaptureStderr();
-        EXPECT_EQ(run(nullptr, {}), 1);
+        EXPECT_EQ(code_of(*one), 1);
         EXPECT_EQ(testing::internal::GetCapturedStderr(), "render-verify: out of memory; allow it more\n");
     }
 }
 
 TEST(Verify, AFailingRayIsExitCode1AndNamed) {
     each_ray = [](uint64_t, Tally& tally) { tally.expect(true); };
-    EXPECT_EQ(code_of<Counts>(), 0);
+    EXPECT_EQ(code_of(counts), 0);
     each_ray = [](uint64_t i, Tally& tally) { tally.expect(i < 6); };
     nlohmann::json record;
-    EXPECT_EQ(code_of<Counts>(&record), 1);
+    EXPECT_EQ(code_of(counts, &record), 1);
     ASSERT_EQ(record["cases"].size(), 8u);  // four intersectors, two precisions
     for (const auto& one : record["cases"]) {
         EXPECT_EQ(one["case"], "made/counts");
@@ -151,68 +125,68 @@ TEST(Verify, AFailingRayIsExitCode1AndNamed) {
 
 TEST(Verify, NothingTriedAndThrownErrorsDoNotHold) {
     each_ray = [](uint64_t, Tally&) {};
-    EXPECT_EQ(code_of<Counts>(), 1);
+    EXPECT_EQ(code_of(counts), 1);
     each_ray = [](uint64_t i, Tally& tally) {
         tally.expect(true);
         if (i == 3) throw std::runtime_error("broken <case>");
     };
     nlohmann::json record;
-    EXPECT_EQ(code_of<Counts>(&record), 1);
+    EXPECT_EQ(code_of(counts, &record), 1);
     EXPECT_EQ(record["cases"][0]["complaint"], "broken <case>");
 }
 
 TEST(Verify, FloatWarnsOfScenesWithPartsTooSmallForItAndHoldsInOthers) {
     each_ray = [](uint64_t, Tally& tally) { tally.expect(true); };
     nlohmann::json record;
-    EXPECT_EQ(code_of<Warns>(&record), 0);
+    EXPECT_EQ(code_of(warns, &record), 0);
     for (const auto& one : record["cases"]) {
         const bool in_float = one["precision"] == "float";
         EXPECT_EQ(one["tried"], in_float ? 10 : 20);
         EXPECT_EQ(one.value("scenes_warned_of", 0), in_float ? 1 : 0);
     }
     each_ray = [](uint64_t i, Tally& tally) { tally.expect(i != 3); };
-    EXPECT_EQ(code_of<Warns>(nullptr, {"--precision", "float"}), 1);  // the cube alone must hold
-    Warns::alone = false;
-    EXPECT_EQ(code_of<Warns>(nullptr, {"--precision", "float"}), 0);
-    EXPECT_EQ(code_of<Warns>(nullptr, {"--precision", "double"}), 1);
-    Warns::tiny = false;
+    EXPECT_EQ(code_of(warns, nullptr, {"--precision", "float"}), 1);  // the cube alone must hold
+    with_alone = false;
+    EXPECT_EQ(code_of(warns, nullptr, {"--precision", "float"}), 0);
+    EXPECT_EQ(code_of(warns, nullptr, {"--precision", "double"}), 1);
+    with_tiny = false;
     each_ray = [](uint64_t, Tally& tally) { tally.expect(true); };
-    EXPECT_EQ(code_of<Warns>(&record, {"--precision", "float"}), 1);
+    EXPECT_EQ(code_of(warns, &record, {"--precision", "float"}), 1);
     EXPECT_EQ(record["cases"][0]["complaint"], "float does not warn");
-    Warns::tiny = Warns::alone = true;
+    with_tiny = with_alone = true;
 }
 
 TEST(Verify, WhatIsBrokenOnPurposeMustFail) {
     each_ray = [](uint64_t i, Tally& tally) { tally.expect(i >= 3); };
-    EXPECT_EQ(code_of<Broken>(), 0);
+    EXPECT_EQ(code_of(broken), 0);
     each_ray = [](uint64_t i, Tally& tally) { tally.expect(i >= 2); };
-    EXPECT_EQ(code_of<Broken>(), 1);
+    EXPECT_EQ(code_of(broken), 1);
 }
 
 TEST(Verify, MeasuredDeviationsStandAgainstTheBound) {
     each_ray = [](uint64_t i, Tally& tally) { tally.measure(i == 4 ? 2 : 0.5); };
     nlohmann::json record;
-    EXPECT_EQ(code_of<Measures>(&record), 0);
+    EXPECT_EQ(code_of(measures, &record), 0);
     EXPECT_EQ(record["cases"][0]["worst"], 2);
     each_ray = [](uint64_t i, Tally& tally) { tally.measure(i == 4 ? 2.0000001 : 0.5); };
-    EXPECT_EQ(code_of<Measures>(), 1);
+    EXPECT_EQ(code_of(measures), 1);
     each_ray = [](uint64_t i, Tally& tally) { tally.measure(i == 4 ? NAN : 0.5); };
-    EXPECT_EQ(code_of<Measures>(&record), 1);
+    EXPECT_EQ(code_of(measures, &record), 1);
     EXPECT_EQ(record["cases"][0]["worst"], "inf");
     each_ray = [](uint64_t i, Tally& tally) { i == 4 ? tally.expect(false) : tally.measure(0); };
-    EXPECT_EQ(code_of<Measures>(), 1);
+    EXPECT_EQ(code_of(measures), 1);
 }
 
 TEST(Verify, AHazardThatIsNeverMetProvesNothing) {
     each_ray = [](uint64_t i, Tally& tally) { tally.expect(true), tally.witness(i == 9); };
-    EXPECT_EQ(code_of<Witnessed>(), 0);
+    EXPECT_EQ(code_of(witnessed), 0);
     each_ray = [](uint64_t, Tally& tally) { tally.expect(true), tally.witness(false); };
-    EXPECT_EQ(code_of<Witnessed>(), 1);
+    EXPECT_EQ(code_of(witnessed), 1);
 }
 
 TEST(Verify, IntersectorsThatDifferAreFound) {
     nlohmann::json record;
-    EXPECT_EQ(code_of<Compared>(&record, {"--precision", "double"}), 1);
+    EXPECT_EQ(code_of(compared, &record, {"--precision", "double"}), 1);
     ASSERT_EQ(record["cases"].size(), 4u);
     for (const auto& one : record["cases"]) EXPECT_EQ(one["failures"], one["intersector"] == "bvh" ? 1 : 0);
     EXPECT_EQ(record["cases"][2]["worst_at"], "a cube, ray 7");
@@ -220,7 +194,7 @@ TEST(Verify, IntersectorsThatDifferAreFound) {
 
 TEST(Verify, ImagesComeFromEveryIntersector) {
     nlohmann::json record;
-    EXPECT_EQ(code_of<Images>(&record), 0);
+    EXPECT_EQ(code_of(images, &record), 0);
     ASSERT_EQ(record["cases"].size(), 8u);
 }
 
@@ -400,10 +374,10 @@ std::multiset<std::string> documented_cases() {
 TEST(HazardPages, NamesEveryCaseAndNoOther) {
     const std::multiset<std::string> documented = documented_cases();
     std::set<std::string> existing;
-    for (const CaseEntry& entry : all_cases()) {
-        EXPECT_TRUE(existing.insert(entry.info.name).second) << entry.info.name << " exists twice";
-        EXPECT_GE(documented.count(entry.info.name), 1u) << entry.info.name << " is not in docs/cases";
-        EXPECT_EQ(entry.plan == nullptr, entry.render != nullptr) << entry.info.name;
+    for (const Case& one : all_cases()) {
+        EXPECT_TRUE(existing.insert(one.name).second) << one.name << " exists twice";
+        EXPECT_GE(documented.count(one.name), 1u) << one.name << " is not in docs/cases";
+        EXPECT_EQ(one.plan == nullptr, one.render != nullptr) << one.name;
     }
     for (const std::string& name : documented)
         EXPECT_TRUE(existing.count(name) != 0) << name << " in docs/cases is no case of render-verify";
