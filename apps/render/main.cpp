@@ -33,6 +33,7 @@
 #include "scene/compile/required_effects.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/camera_turns.h"
+#include "scene/image/exr/exr.h"
 #include "scene/readers/read_text_input.h"
 
 namespace cistula {
@@ -42,11 +43,12 @@ int threads_of(const RenderOptions& options) {
     return options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
 }
 
-/// Runs `work` with its parallelism limited to --threads.
+/// Runs `work` with its parallelism, and that of OpenEXR, limited to --threads.
 template <class Work>
 void on_threads(const RenderOptions& options, const Work& work) {
     const int threads = threads_of(options);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+    set_exr_threads(threads);
     tbb::task_arena arena(threads);
     arena.execute(work);
 }

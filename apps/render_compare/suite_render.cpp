@@ -6,7 +6,6 @@
 #include "apps/common/frame_writer.h"
 #include "apps/common/header_attributes.h"
 #include "apps/common/layer_list.h"
-#include "apps/common/target.h"
 #include "apps/common/timing.h"
 #include "cistula/transport/ray_tree.h"
 #include "scene/compile/compiled_scene.h"
@@ -59,9 +58,8 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
     picture = to_layers(film, one.channels, &clamped);
     if (clamped > 0) result.notes.push_back("clamped: " + over_largest_half(clamped));
     round_to_stored(picture);
-    picture.attributes.merge(header_attributes(prepared.scene_hash, prepared.settings, prepared.precision, camera));
-    add_film_attributes(prepared.scene.film, picture.attributes);
-    if (prepared.settings.adaptive()) add_target_attributes(target_report(film, prepared.settings), picture.attributes);
+    picture.attributes.merge(header_attributes(film, prepared.scene.film, prepared.scene_hash, prepared.settings,
+                                               prepared.precision, camera));
     result.film_hash = film_hash(film);
     return result;
 }

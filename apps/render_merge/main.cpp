@@ -130,8 +130,7 @@ void merge_frame(const MergeOptions& options, int frame) {
 void merge(MergeOptions options) {
     const std::string warning = open_config_view(options.view);
     if (!warning.empty() && !options.quiet) note(fmt::format("render-merge: warning: {}", warning));
-    const int threads = tbb::this_task_arena::max_concurrency();
-    set_exr_threads(threads, threads);
+    set_exr_threads(tbb::this_task_arena::max_concurrency());
     for (const int frame : options.frames) {
         make_directories(options.output, {frame});
         if (!options.preview.text().empty()) make_directories(options.preview, {frame});
