@@ -27,8 +27,7 @@ void render(SceneSource source, Precision precision, const char* exr, const char
 
     // Save.
     LayeredPicture picture = to_layers(film, {});
-    picture.attributes.merge(header_attributes(compiled->hash, settings, precision, camera));
-    add_film_attributes(scene.film, picture.attributes);
+    picture.attributes.merge(header_attributes(film, scene.film, compiled->hash, settings, precision, camera));
     write_exr(exr, picture);
     write_preview(png, to_color(film));
 }

@@ -21,6 +21,7 @@
 #include "base/suggest.h"
 #include "base/timing.h"
 #include "explain.h"
+#include "image/exr/exr.h"
 #include "render/layer_list.h"
 #include "render/pixel_report.h"
 #include "scene/compile/compiled_scene.h"
@@ -41,11 +42,12 @@ int threads_of(const RenderRequest& request) {
     return request.threads > 0 ? request.threads : tbb::this_task_arena::max_concurrency();
 }
 
-/// Runs `work` with its parallelism limited to --threads.
+/// Runs `work` with its parallelism, and that of OpenEXR, limited to --threads.
 template <class Work>
 void on_threads(const RenderRequest& request, const Work& work) {
     const int threads = threads_of(request);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+    set_exr_threads(threads);
     tbb::task_arena arena(threads);
     arena.execute(work);
 }
@@ -261,7 +263,8 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
                              stats.scene_hash));
         }
         FilmProgress report(request.progress, talk_of(request), progress);
-        FilmJob job{request, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames, report, precision};
+        FilmJob job{request,         scene,          stats.scene_hash, settings, outputs.image,
+                    outputs.preview, outputs.frames, report,           precision};
         job.layer_names = layer_names;
         job.snapshot_requests = &snapshot_requests;
         require_light_layers(request.channels, *job.layer_names);

@@ -9,9 +9,9 @@
 #include "image/picture/picture.h"
 #include "image/picture/picture_io.h"
 #include "image/view/picture_view.h"
+#include "options.h"
 #include "sequence/merge.h"
 #include "sequence/run_files.h"
-#include "options.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -132,8 +132,7 @@ void merge_frame(const MergeOptions& options, int frame) {
 void merge(MergeOptions options) {
     const std::string warning = open_config_view(options.request.view);
     if (!warning.empty() && !options.request.quiet) note(fmt::format("render-merge: warning: {}", warning));
-    const int threads = tbb::this_task_arena::max_concurrency();
-    set_exr_threads(threads, threads);
+    set_exr_threads(tbb::this_task_arena::max_concurrency());
     for (const int frame : options.request.frames) {
         make_directories(options.output, {frame});
         if (!options.preview.text().empty()) make_directories(options.preview, {frame});

@@ -11,6 +11,7 @@
 #include "base/default_rounding.h"
 #include "base/stages.h"
 #include "render/frame/frame_view.h"
+#include "render/frame/ray_questions.h"
 #include "render/record/film_difference.h"
 
 namespace cistula {
@@ -47,14 +48,12 @@ class CudaRenderer : public Renderer {
 
     bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
                 RenderProgress& progress) override {
+        const DefaultRounding rounding;
         notes_.clear();
         times_ = {};
         prepare_film(film, settings, *scene_, camera);
         const bool others_follow = !expected_.empty();
-        if (settings.layers.any() && path_ != DevicePath::tree) {
-            drop();
-            take_path(DevicePath::tree);
-        }
+        if (settings.layers.any()) take_tree();
         if (begun_.empty() || !same(begun_.front().camera, camera) || begun_.front().settings != settings) {
             if (!begun_.empty())
                 drop();
@@ -90,6 +89,17 @@ class CudaRenderer : public Renderer {
         }
         is_announced_ = !begun_.empty() || !expected_.empty();
         return !progress.stop;
+    }
+
+    RayHits intersect(std::span<const glm::dvec3> origins, std::span<const glm::dvec3> directions) override {
+        take_tree();
+        return ray_hits<Real>(*scene_, origins, directions,
+                              [&](auto questions, auto answers) { workers_.front()->answer(questions, answers); });
+    }
+    std::vector<glm::dvec3> transmittance(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to) override {
+        take_tree();
+        return segment_shares<Real>(*scene_, from, to,
+                                    [&](auto questions, auto shares) { workers_.front()->answer(questions, shares); });
     }
 
     void expect(const CameraFrame& camera, const FrameSettings& settings) override {
@@ -136,11 +146,17 @@ class CudaRenderer : public Renderer {
         });
     }
 
+    /// Takes the path that serves whatever is asked for.
+    void take_tree() {
+        if (path_ == DevicePath::tree) return;
+        drop();
+        take_path(DevicePath::tree);
+    }
+
     /// The plan of a frame, in parts as large as they are to be. Where others follow, so that no device waits for want
     /// of frames, a frame of one part is a single device's: to share it would take as much time of the host for each.
     FramePlan planned(const CameraFrame& camera, const FrameSettings& settings, bool others_follow) const {
         const InStage stage(Stage::plan);
-        const DefaultRounding rounding;
         FramePlan plan;
         plan.camera = camera;
         plan.settings = settings;

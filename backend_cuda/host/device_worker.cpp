@@ -231,6 +231,25 @@ bool DeviceWorker<Real>::fetch(Film& film, const std::atomic<bool>& stop) {
 }
 
 template <class Real>
+template <class Answer>
+void DeviceWorker<Real>::answer(std::span<const RayQuestion> questions, std::span<Answer> answers) {
+    use_device(device_);
+    const size_t together = std::min(questions.size(), size_t{1} << 20);
+    DeviceMemory asked, answered;
+    asked.reserve(together * sizeof(RayQuestion));
+    answered.reserve(together * sizeof(Answer));
+    for (size_t first = 0; first < questions.size(); first += together) {
+        const size_t count = std::min(together, questions.size() - first);
+        CISTULA_CUDA_CHECK(cudaMemcpyAsync(asked.as<void>(), &questions[first], count * sizeof(RayQuestion),
+                                           cudaMemcpyHostToDevice, compute_));
+        launch_queries(upload_.scene().view, asked.as<RayQuestion>(), unsigned(count), answered.as<Answer>(), compute_);
+        CISTULA_CUDA_CHECK(cudaMemcpyAsync(&answers[first], answered.as<void>(), count * sizeof(Answer),
+                                           cudaMemcpyDeviceToHost, compute_));
+    }
+    CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
+}
+
+template <class Real>
 void DeviceWorker<Real>::stop() {
     use_device(device_);
     stop_.raise(readback_.stream());
@@ -265,5 +284,9 @@ void DeviceWorker<Real>::fill_gaps(const PartSlot& slot, Film& film) {
 
 template class DeviceWorker<float>;
 template class DeviceWorker<double>;
+template void DeviceWorker<float>::answer(std::span<const RayQuestion>, std::span<RayAnswer>);
+template void DeviceWorker<float>::answer(std::span<const RayQuestion>, std::span<Vec3<double>>);
+template void DeviceWorker<double>::answer(std::span<const RayQuestion>, std::span<RayAnswer>);
+template void DeviceWorker<double>::answer(std::span<const RayQuestion>, std::span<Vec3<double>>);
 
 }  // namespace cistula

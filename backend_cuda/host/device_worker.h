@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <span>
 
 #include "backend_cuda/host/frame_plan.h"
 #include "backend_cuda/host/readback.h"
@@ -39,6 +40,10 @@ class DeviceWorker {
     /// Waits for the part that was started first and puts its pixels into the film. False once `stop` is set; the part
     /// is then still being rendered.
     bool fetch(Film& film, const std::atomic<bool>& stop);
+
+    /// Answers questions about rays or segments (ray_query.h). The path must be DevicePath::tree.
+    template <class Answer>
+    void answer(std::span<const RayQuestion> questions, std::span<Answer> answers);
 
     /// Makes all that was started end soon, without waiting. Nothing may be started until wait() returns.
     void stop();

@@ -6,7 +6,7 @@
 #include "backend_cuda/kernels/block_pixels.h"
 #include "cistula/adaptive/lattice.h"
 #include "cistula/model/constant_scene.h"
-#include "cistula/transport/pixel.h"
+#include "cistula/transport/ray_query.h"
 
 namespace cistula {
 
@@ -72,5 +72,14 @@ void launch(Sampling sampling, int mask, DevicePath path, const DeviceScene<Real
 template <class Real, int mask>
 void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
                  cudaStream_t stream);
+
+/// Enqueues the answers to questions about rays, or about segments (ray_query.h), of a scene in device memory that has
+/// its tree. Throws Error (device).
+template <class Real>
+void launch_queries(const SceneView<Real>& scene, const RayQuestion* questions, unsigned int count, RayAnswer* answers,
+                    cudaStream_t stream);
+template <class Real>
+void launch_queries(const SceneView<Real>& scene, const RayQuestion* questions, unsigned int count,
+                    Vec3<double>* shares, cudaStream_t stream);
 
 }  // namespace cistula

@@ -69,11 +69,7 @@ class EmbreeRenderer : public Renderer {
             const EmbreeIntersector<Real> intersector{view_, tree()};
             return ask(SingleQueries<Real, EmbreeIntersector<Real>>{intersector});
         }
-        const LaneScene<Real>& scene = in_lanes_->scene();
-        const auto in_lanes = [&](const auto& intersector) {
-            return ask(LaneQueries<Real, std::decay_t<decltype(intersector)>>{scene, *functions, intersector});
-        };
-        return scene.tree.empty() ? in_lanes(BruteIntersector<Real>{scene}) : in_lanes(BvhIntersector<Real>{scene});
+        return ask(LaneQueries<Real>{in_lanes_->scene(), *functions});
     }
 
     std::shared_ptr<const CompiledScene<Real>> scene_;

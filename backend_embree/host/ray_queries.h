@@ -9,6 +9,7 @@
 
 #include "backend_embree/lanes/tile_functions.h"
 #include "base/default_rounding.h"
+#include "cistula/lanes/lane_contact.h"
 #include "cistula/lanes/lane_scene.h"
 #include "cistula/transport/ray_query.h"
 
@@ -37,12 +38,12 @@ struct SingleQueries {
     }
 };
 
-/// Answers in lanes. `intersector` finds what lies around origins and traces rays that lanes cannot hold.
-template <class Real, class Intersector>
+/// Answers in lanes, but to rays that they cannot hold.
+template <class Real>
 struct LaneQueries {
     const LaneScene<Real>& scene;
     const TileFunctions& functions;
-    const Intersector& intersector;
+    const SingleIntersector<Real> single{scene};
 
     void rays(std::span<const RayQuestion> questions, std::span<RayAnswer> answers) const {
         for_each_group(questions, [&](size_t first, size_t last, Around& around) {
@@ -63,7 +64,7 @@ struct LaneQueries {
             if (std::all_of(rays, rays + count, [&](const Ray<Real>& ray) { return fits(ray); }))
                 functions.closest(&scene, rays, count, hits);
             else
-                for (int k = 0; k < count; ++k) hits[k] = intersector.closest(rays[k]);
+                for (int k = 0; k < count; ++k) hits[k] = single.closest(rays[k]);
             for (int k = 0; k < count; ++k) {
                 RayAnswer& answer = answers[of[k]] = answer_of(view(), rays[k], starts[k], hits[k]);
                 if (hits[k].found()) answer.solid = scene.numbers[answer.solid];
@@ -93,7 +94,7 @@ struct LaneQueries {
             if (std::all_of(shadows, shadows + count, fits_with_others))
                 functions.transmittance(&scene, shadows, count, found);
             else
-                for (int k = 0; k < count; ++k) found[k] = intersector.template transmittance<QueryEffects>(shadows[k]);
+                for (int k = 0; k < count; ++k) found[k] = single.template transmittance<QueryEffects>(shadows[k]);
             for (int k = 0; k < count; ++k) shares[of[k]] = Vec3<double>(found[k]);
         });
     }
@@ -109,7 +110,7 @@ struct LaneQueries {
         bool all = false;  // whether the list holds them all
 
         bool find(const Vec3<double>& of, InteriorList& to) {
-            if (of != origin) all = camera_solids(queries.view(), queries.intersector, origin = of, media);
+            if (of != origin) all = camera_solids(queries.view(), queries.single, origin = of, media);
             to = media;
             return all;
         }

@@ -174,7 +174,7 @@ WriterLimits writer_limits(Backend backend, size_t frames) {
     constexpr int few = 4;  // a frame queues twice as many blocks of lines, and others wait behind them
     const int threads = tbb::this_task_arena::max_concurrency();
     WriterLimits limits;
-    limits.exr_threads = limits.exr_threads_of_a_frame = threads;
+    limits.exr_threads_of_a_frame = threads;
     if (backend == Backend::cuda && frames > 1) {
         limits.frames = std::max(2, threads / 2);
         limits.exr_threads_of_a_frame = std::min(threads, few);

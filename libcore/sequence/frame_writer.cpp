@@ -49,9 +49,7 @@ std::string over_largest_half(uint64_t values) {
 
 FrameWriter::FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits,
                          std::atomic<bool>& stop, FrameSink written)
-    : channels_(channels), measure_(measure), limits_(limits), stop_(stop), written_(std::move(written)) {
-    set_exr_threads(limits.exr_threads, limits.exr_threads_of_a_frame);
-}
+    : channels_(channels), measure_(measure), limits_(limits), stop_(stop), written_(std::move(written)) {}
 
 FrameWriter::~FrameWriter() {
     {
@@ -192,7 +190,7 @@ void FrameWriter::write(Task& task) {
         if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
         stats.write_seconds += seconds_of([&] {
             for (const FrameFile& file : frame_files(std::move(layers), frame.split, frame.image, stats.frame))
-                write_exr(file.path, file.parts);
+                write_exr(file.path, file.parts, limits_.exr_threads_of_a_frame);
         });
     }
     stats.clamped = clamped;

@@ -40,8 +40,7 @@ struct FinishedFrame {
 struct WriterLimits {
     int frames = 1;                  // one thread each
     size_t bytes = size_t{2} << 30;  // of films
-    int exr_threads = 0;             // OpenEXR's own, shared by all frames and additional to those above
-    int exr_threads_of_a_frame = 0;  // see set_exr_threads
+    int exr_threads_of_a_frame = 0;  // OpenEXR's, additional to those above, see write_exr
 };
 
 /// What is said of values that half precision does not hold.
@@ -54,8 +53,7 @@ using FrameSink = std::function<void(const FrameStats&)>;
 class FrameWriter {
   public:
     /// `stop` is set as soon as a write fails. `written` receives the frames in the order of put(), one at a time, on
-    /// any thread; what it throws is a failed write. The hash is computed if `measure` is set. Sets
-    /// OpenEXR's threads, so no EXR file may be read or written elsewhere during the call.
+    /// any thread; what it throws is a failed write. The hash is computed if `measure` is set.
     FrameWriter(const OutputChannels& channels, bool measure, const WriterLimits& limits, std::atomic<bool>& stop,
                 FrameSink written);
     ~FrameWriter();

@@ -186,6 +186,20 @@ std::vector<EmbreeOptions> embree_options() {
 template <class Real>
 class IntersectorsTest : public testing::Test {};
 using Precisions = testing::Types<float, double>;
+/// Finds hits, but not the light that passes.
+struct WithoutShadows {
+    using Media = InteriorList;
+    using Scene = SceneView<float>;
+    template <class E>
+    Hit<float> closest(const Ray<float>&) const;
+};
+using All = Effects<all_effects>;
+static_assert(Intersects<EmbreeIntersector<double>, double, All> && Intersects<BvhIntersector<float>, float, All>);
+static_assert(!Intersects<WithoutShadows, float, All> && !FindsHits<WithoutShadows, float, InteriorList>);
+static_assert(StacksBranches<BranchStack<Branch<float>>, float, Branch<float>>);
+static_assert(!StacksBranches<BranchStack<Branch<float>>, double, Branch<double>>);
+static_assert(!ObservesLights<WithoutShadows, float, All, InteriorList>);
+
 TYPED_TEST_SUITE(IntersectorsTest, Precisions);
 
 TYPED_TEST(IntersectorsTest, AllFindTheSameBits) {

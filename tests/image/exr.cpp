@@ -19,6 +19,7 @@
 #include <random>
 
 #include "cistula/numerics/portable.h"
+#include "image/exr/exr_file.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/file_size_limit.h"
 #include "testing/support/scratch_directory.h"
@@ -167,6 +168,28 @@ TEST(Exr, Attributes) {
     EXPECT_EQ(Imf::chromaticities(file.header()).white, Imath::V2f(.3127f, .329f));
 }
 
+TEST(Exr, APictureInMemoryIsAFileAsItWouldBeRead) {
+    const ScratchDirectory scratch;
+    LayeredPicture picture = gradient(21, 13);
+    picture.attributes["owner"] = std::string("me");
+    write_exr(scratch.file("a.exr"), picture);
+    const StoredFile read = read_stored_exr(scratch.file("a.exr")), made = stored_file(picture);
+    ASSERT_EQ(read.pictures.size(), 1u);
+    ASSERT_EQ(made.pictures.size(), 1u);
+    const StoredPicture &a = made.pictures[0], &b = read.pictures[0];
+    EXPECT_EQ(a.data, b.data);
+    EXPECT_EQ(a.display, b.display);
+    ASSERT_EQ(a.channels.size(), b.channels.size());
+    for (const StoredChannel& channel : a.channels) {
+        ASSERT_NE(b.channel(channel.name), nullptr);
+        EXPECT_EQ(channel.type, b.channel(channel.name)->type);
+        if (channel.type == StoredType::float_) {
+            EXPECT_EQ(channel.values, b.channel(channel.name)->values);
+        }
+    }
+    EXPECT_EQ(a.attributes.at("owner").text, b.attributes.at("owner").text);
+}
+
 TEST(Exr, EqualPicturesAreEqualFiles) {
     const ScratchDirectory scratch;
     LayeredPicture picture = gradient(201, 133);
@@ -176,15 +199,15 @@ TEST(Exr, EqualPicturesAreEqualFiles) {
         picture.compression = compression;
         first.clear();
         for (const int threads : {1, 4, 7}) {
-            set_exr_threads(threads, threads);
+            set_exr_threads(threads);
             EXPECT_EQ(Imf::globalThreadCount(), threads);
             const std::string name = scratch.file(std::to_string(threads) + ".exr");
-            tbb::task_arena(threads).execute([&] { write_exr(name, picture); });
+            tbb::task_arena(threads).execute([&] { write_exr(name, picture, 5); });
             if (first.empty()) first = bytes_of(name);
             EXPECT_EQ(bytes_of(name), first) << threads << " threads";
         }
     }
-    set_exr_threads(0, 0);
+    set_exr_threads(0);
     sleep(1);  // a date in the header would show
     write_exr(scratch.file("later.exr"), picture);
     EXPECT_EQ(bytes_of(scratch.file("later.exr")), first);

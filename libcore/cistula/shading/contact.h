@@ -199,7 +199,7 @@ CISTULA_INLINE bool start_at_contact(const ConstantScene<Real>&, const Ray<Real,
 
 /// Replaces the meshes in a ray's media by those that it leaves more often than it enters, ahead of its start
 /// (docs/rules.md, 11, line 15). Not inlined: only rays near meshes at contacts need it.
-template <class Real, class Intersector, class Media, class Scene>
+template <class Real, class Media, FindsHits<Real, Media> Intersector, class Scene>
 CISTULA_NOINLINE void count_meshes(const Scene& scene, const Intersector& intersector, Ray<Real, Media>& ray) {
     Media ahead;
     Ray<Real, Media> probe = ray;

@@ -57,22 +57,30 @@ CISTULA_INLINE MaskOf<Real> is_nothing(const Vec3<Real>& lit) {
     return (lit.x == Real(0)) & (lit.y == Real(0)) & (lit.z == Real(0));
 }
 
-/// Callbacks of add_local_light that report what each light adds to a surface. This default ignores them.
+/// What is told of each light i at a surface: that it is behind the surface or in its plane, or what it would add
+/// without shadows, and the transmittance toward it.
+template <class O, class Real, class E, class Media>
+concept ObservesLights = requires(const O& observer, uint32_t i, const Light<ScalarOf<Real>>& light,
+                                  const LightAim<Real>& aim, const Vec3<Real>& lit,
+                                  const ShadowRay<Real, Media>& shadow, const Throughput<Real, E>& arrives) {
+    observer.behind(i, light);
+    observer.unshadowed(i, aim, lit);
+    observer.arrives(i, shadow, arrives);
+};
+
+/// Ignores what it is told.
 struct LightObserver {
-    /// Light i is behind the surface or in its plane.
     template <class Light>
     CISTULA_INLINE void behind(uint32_t, const Light&) const {}
-    /// What light i would add without shadows.
     template <class Aim, class Color>
     CISTULA_INLINE void unshadowed(uint32_t, const Aim&, const Color&) const {}
-    /// The transmittance toward light i.
     template <class Shadow, class Arrives>
     CISTULA_INLINE void arrives(uint32_t, const Shadow&, const Arrives&) const {}
 };
 
 /// Adds `weight` times the local light of a surface seen along `ray` (docs/design.md, Light), where `who` holds.
 template <class Real, class E, class Intersector, class Media, class Scene, class Sums, class Rays,
-          class Observer = LightObserver>
+          ObservesLights<Real, E, Media> Observer = LightObserver>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                     const SurfaceEvent<Real, Media>& event, const Surface<Real>& surface,
                                     const Throughput<Real, E>& weight, Sums& sums, Rays& rays,

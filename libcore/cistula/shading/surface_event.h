@@ -3,6 +3,8 @@
 // and 11), and rays that stay on the viewer's side are in the viewer's medium.
 #pragma once
 
+#include <concepts>
+
 #include "cistula/geometry/shared_plane.h"
 #include "cistula/shading/surface.h"
 
@@ -53,6 +55,12 @@ struct SurfaceEvent {
     }
 };
 
+/// An intersector as far as it finds a ray's next crossing after ray.after.
+template <class I, class Real, class Media>
+concept FindsHits = requires(const I& intersector, const Ray<Real, Media>& ray) {
+    { intersector.closest(ray) } -> std::same_as<Hit<Real>>;
+};
+
 /// The intersector for crossings that are looked for beside those that a ray meets: one that observes rays is not to
 /// notice.
 template <class Intersector>
@@ -63,7 +71,7 @@ CISTULA_INLINE const Intersector& unobserved(const Intersector& intersector) {
 /// Collects the crossings at exactly the same t, up to a sheet, and chooses what is shaded: of the solids that begin or
 /// end there the last in the file, of opaque ones that end if there are any, else of opaque ones that begin
 /// (docs/rules.md, 11, line 6). Not inlined: few events have more than one crossing.
-template <class Real, class Intersector, class Media>
+template <class Real, class Media, FindsHits<Real, Media> Intersector>
 CISTULA_NOINLINE void gather_shared(const SceneView<Real>& scene, const Intersector& intersector,
                                     const Ray<Real, Media>& ray, SurfaceEvent<Real, Media>& event) {
     Hit<Real> hits[SurfaceEvent<Real, Media>::capacity];
@@ -92,7 +100,7 @@ CISTULA_NOINLINE void gather_shared(const SceneView<Real>& scene, const Intersec
 }
 
 /// Finds the surface event at `hit`, the ray's next crossing.
-template <class E, class Real, class Intersector, class Media, class Scene>
+template <class E, class Real, class Media, FindsHits<Real, Media> Intersector, class Scene>
 CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                   const Hit<Real>& hit, SurfaceEvent<Real, Media>& event) {
     event.begin(ray, hit);

@@ -92,7 +92,7 @@ CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, d
 
 /// The meshes that contain a point, found by counting the crossings of a straight ray from outside. False if there are
 /// more than an interior list holds.
-template <class Scene, class Intersector>
+template <class Scene, FindsHits<typename Scene::Scalar, InteriorList> Intersector>
 CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
                                      InteriorList& media) {
     using Real = typename Scene::Scalar;

@@ -2,6 +2,8 @@
 // is not followed is added to the ledger.
 #pragma once
 
+#include <concepts>
+
 #include "cistula/shading/lighting.h"
 #include "cistula/transport/branch_stack.h"
 #include "cistula/transport/layered_sums.h"
@@ -13,7 +15,44 @@ inline constexpr int largest_depth = 1024;
 /// The number of branches between two checks whether the render was stopped.
 inline constexpr uint32_t turns_between_stops = 64;
 
-template <class Real, class E, class Intersector, class Stack, class Rays = PixelRays>
+/// What finds a ray's next crossing after ray.after, and the share of light that reaches a shadow ray's origin; of rays
+/// in lanes, where a mask holds.
+template <class I, class Real, class E>
+concept Intersects = requires(const I& intersector, const Ray<Real, typename I::Media>& ray,
+                              const ShadowRay<Real, typename I::Media>& shadow) {
+    typename I::Scene;
+    { intersector.template closest<E>(ray) } -> std::same_as<Hit<Real>>;
+    { intersector.template transmittance<E>(shadow) } -> std::same_as<Throughput<Real, E>>;
+}
+|| (in_lanes<Real> && requires(const I& intersector, const Ray<Real, typename I::Media>& ray,
+                               const ShadowRay<Real, typename I::Media>& shadow, const MaskOf<Real>& who) {
+    typename I::Scene;
+    { intersector.template closest<E>(ray, who) } -> std::same_as<Hit<Real>>;
+    { intersector.template transmittance<E>(shadow, who) } -> std::same_as<Throughput<Real, E>>;
+});
+
+/// What holds a tree's branches that are still to be followed, the latest first; of branches in lanes, in any order. A
+/// push that has no room and a pop that has no branch return false.
+template <class S, class Real, class Entry>
+concept StacksBranches = requires(S& stack, const Entry& pushed, Entry& popped) {
+    { stack.push(pushed) } -> std::same_as<bool>;
+    { stack.pop(popped) } -> std::same_as<bool>;
+    { stack.stopped() } -> std::same_as<bool>;  // whether the tree is to end early
+    stack.clear();
+}
+|| (in_lanes<Real> && requires(S & stack, const Entry& pushed, const MaskOf<Real>& who) { stack.push(pushed, who); });
+
+/// What is told of the first hit of a sample: a surface, or a visible light; in lanes of many, where a mask holds.
+template <class F, class Real, class E, class Scene, class Media, class... Mask>
+concept SeesFirst = requires(const F& first, const Hit<Real>& hit, const Surface<Real>& surface, const Mask&... who) {
+    first.surface(hit, surface, who...);
+}
+&&(!E::has(effect_visible_lights) ||
+   requires(const F& first, const Scene& scene, const VisibleLightHit<Real>& light, const Ray<Real, Media>& ray,
+            const Mask&... who) { first.light(scene, light, ray, who...); });
+
+template <class Real, class E, Intersects<Real, E> Intersector,
+          StacksBranches<Real, BranchOf<Real, E, typename Intersector::Media>> Stack, class Rays = PixelRays>
 class RayTree {
   public:
     using Sums = SumsOf<Real, E>;
@@ -33,9 +72,8 @@ class RayTree {
           rays_(rays),
           stack_(stack) {}
 
-    /// Traces the tree of a primary ray and adds what it sees to the sums. Reports the first hit by first.surface(hit,
-    /// surface), or by first.light(scene, hit, ray) if the ray ends on a visible light.
-    template <class First>
+    /// Traces the tree of a primary ray and adds what it sees to the sums.
+    template <SeesFirst<Real, E, Scene, Media> First>
     CISTULA_INLINE void trace(const Ray<Real, Media>& primary, const First& first) {
         Entry branch;
         branch.ray = primary;
@@ -61,7 +99,7 @@ class RayTree {
     }
 
     /// Traces a branch of a tree and all that comes from it, as trace() does.
-    template <class First>
+    template <SeesFirst<Real, E, Scene, Media> First>
     CISTULA_INLINE void trace_branch(Entry& branch, const First& first) {
         const uint32_t depth = branch.depth;
         uint32_t turns = 0;
@@ -81,9 +119,9 @@ class RayTree {
     }
 
     /// Follows branches in lanes to their surfaces, where `who` holds, and pushes their children. Branches of depth 0
-    /// report what they hit: first.surface(hit, surface, who) and first.light(scene, hit, ray, who). Returns those of
-    /// which nothing was done, since they must be traced by themselves (lane_single.h).
-    template <class First>
+    /// report what they hit. Returns those of which nothing was done, since they must be traced by themselves
+    /// (lane_single.h).
+    template <SeesFirst<Real, E, Scene, Media, MaskOf<Real>> First>
     CISTULA_INLINE MaskOf<Real> follow(Entry& branch, const MaskOf<Real>& who, const First& first) {
         SurfaceEvent<Real, Media> event;
         VisibleLightHit<Real> light;

@@ -49,9 +49,6 @@ Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, co
 /// Whether the differences are within the thresholds; without thresholds, whether the pictures are bitwise equal.
 bool passes(const Comparison& comparison, const Thresholds& thresholds);
 
-/// The file of one part that a picture would be, its channels and attributes as floats and texts.
-StoredFile stored_layers(const LayeredPicture& picture);
-
 /// The absolute differences of the chosen channels that both files have, in the parts of the first at their whole
 /// resolution, over the pixels that are compared; 0 where the mask counts none. Empty where no pixel has a partner.
 std::vector<PicturePart> difference_parts(const StoredFile& a, const StoredFile& b, const Selection& selection = {});

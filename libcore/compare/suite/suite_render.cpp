@@ -12,9 +12,9 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/precision_choice.h"
 #include "scene/compile/scene_source.h"
+#include "scene/readers/read_scene.h"
 #include "sequence/film_loop.h"
 #include "sequence/frame_writer.h"
-#include "scene/readers/read_scene.h"
 
 namespace cistula {
 namespace {
@@ -49,9 +49,8 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
     picture = to_layers(film, one.channels, &clamped);
     if (clamped > 0) result.notes.push_back("clamped: " + over_largest_half(clamped));
     round_to_stored(picture);
-    picture.attributes.merge(header_attributes(prepared.scene_hash, prepared.settings, prepared.precision, camera));
-    add_film_attributes(prepared.scene.film, picture.attributes);
-    if (prepared.settings.adaptive()) add_target_attributes(target_report(film, prepared.settings), picture.attributes);
+    picture.attributes.merge(header_attributes(film, prepared.scene.film, prepared.scene_hash, prepared.settings,
+                                               prepared.precision, camera));
     result.film_hash = film_hash(film);
     return result;
 }

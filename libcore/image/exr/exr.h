@@ -1,6 +1,7 @@
 // OpenEXR files: written with layers and atomically; read for comparisons, for --resume and as textures.
 #pragma once
 
+#include <climits>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -17,20 +18,20 @@ struct FileColors;
 inline constexpr std::string_view exr_magic = "\x76\x2f\x31\x01";
 
 /// Writes a scan line file. Equal pictures give equal files: no dates, nothing of the machine or
-/// the number of threads (see set_exr_threads). Half channels round to nearest even. Attributes: string, int, double,
-/// 16 floats -> m44f, 8 floats named "chromaticities" -> chromaticities (red, green, blue, white xy), other lengths ->
-/// floatvector, Ratio -> rational; "screenWindowWidth" -> float. Throws Error(ExitCode::file) if it cannot be written,
-/// std::invalid_argument if the picture is inconsistent or an attribute has a name that OpenEXR reserves
+/// the number of threads: those of TBB for zip and zips, for others OpenEXR's, `most_threads` at most. Half channels
+/// round to nearest even. Attributes: string, int, double, 16 floats -> m44f, 8 floats named "chromaticities" ->
+/// chromaticities (red, green, blue, white xy), other lengths -> floatvector, Ratio -> rational; "screenWindowWidth" ->
+/// float. Throws Error(ExitCode::file) if it cannot be written, std::invalid_argument if the picture is inconsistent or
+/// an attribute has a name that OpenEXR reserves
 /// ("compression", "version", ...).
-void write_exr(const std::string& path, const LayeredPicture& picture);
+void write_exr(const std::string& path, const LayeredPicture& picture, int most_threads = INT_MAX);
 
 /// Writes a file of several parts, or of one as above; their names and attributes are in their own headers.
-void write_exr(const std::string& path, const std::vector<PicturePart>& parts);
+void write_exr(const std::string& path, const std::vector<PicturePart>& parts, int most_threads = INT_MAX);
 
-/// Sets the number of OpenEXR's own threads, shared by all files of the process, and how many of them compress what one
-/// call of write_exr writes, but for zip and zips, which TBB's do. 0, the default: every caller does that by itself.
-/// Not while a file is written or read.
-void set_exr_threads(int threads, int of_a_file);
+/// Sets the number of OpenEXR's threads, which belong to the whole process: for programs, never called by libraries. 0,
+/// the default: each caller of write_exr compresses by itself. Not while a file is written or read.
+void set_exr_threads(int threads);
 
 /// Reads all channels as floats, in the order of the file (by name), with the attributes of the types that write_exr
 /// writes; float attributes become doubles. Scan line and tiled files of one part. Throws Error(ExitCode::file).

@@ -36,9 +36,6 @@
 namespace cistula {
 namespace {
 
-/// The number of OpenEXR's threads that compress one file, where it does.
-int threads_of_a_file = 0;
-
 /// A stream that reports write errors, so that a full disk is noticed: OpenEXR's destructor ignores them.
 class CheckedStream : public Imf::OStream {
   public:
@@ -220,7 +217,7 @@ bool is_zipped(const PartToWrite& part) {
     return part.picture.compression == Compression::zip || part.picture.compression == Compression::zips;
 }
 
-void write_pixels(Imf::OStream& stream, const std::vector<PartToWrite>& parts) {
+void write_pixels(Imf::OStream& stream, const std::vector<PartToWrite>& parts, int most_threads) {
     std::vector<Imf::Header> headers;
     std::vector<const LayeredPicture*> pictures;
     for (const PartToWrite& part : parts) {
@@ -231,7 +228,7 @@ void write_pixels(Imf::OStream& stream, const std::vector<PartToWrite>& parts) {
         headers.back().setType(Imf::SCANLINEIMAGE);
     }
     if (std::all_of(parts.begin(), parts.end(), is_zipped)) return write_zipped(stream, std::move(headers), pictures);
-    const int threads = std::min(Imf::globalThreadCount(), threads_of_a_file);
+    const int threads = std::min(Imf::globalThreadCount(), most_threads);
     // Whole blocks of lines of every compression, and some for each thread.
     const int most_lines = 256 * std::max(1, threads / 4);
     const auto write = [&](auto& file, const LayeredPicture& picture) {
@@ -260,14 +257,14 @@ bool lacks_chunks(int descriptor) {
     return access(name.c_str(), R_OK) == 0 && !exr_is_complete(name);
 }
 
-void write_parts(const std::string& path, const std::vector<PartToWrite>& parts) {
+void write_parts(const std::string& path, const std::vector<PartToWrite>& parts, int most_threads) {
     if (parts.empty()) throw std::invalid_argument("write_exr: a file needs a part");
     for (const PartToWrite& part : parts) check(part.picture);
     AtomicFile target(path);
     CheckedStream stream(target.descriptor(), path);
     errno = 0;
     try {
-        write_pixels(stream, parts);
+        write_pixels(stream, parts, most_threads);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& failure) {
@@ -286,19 +283,18 @@ void write_parts(const std::string& path, const std::vector<PartToWrite>& parts)
 
 }  // namespace
 
-void set_exr_threads(int threads, int of_a_file) {
+void set_exr_threads(int threads) {
     Imf::setGlobalThreadCount(threads);
-    threads_of_a_file = of_a_file;
 }
 
-void write_exr(const std::string& path, const LayeredPicture& picture) {
-    write_parts(path, {{"", picture}});
+void write_exr(const std::string& path, const LayeredPicture& picture, int most_threads) {
+    write_parts(path, {{"", picture}}, most_threads);
 }
 
-void write_exr(const std::string& path, const std::vector<PicturePart>& parts) {
+void write_exr(const std::string& path, const std::vector<PicturePart>& parts, int most_threads) {
     std::vector<PartToWrite> all;
     for (const PicturePart& part : parts) all.push_back({part.name, part.picture});
-    write_parts(path, all);
+    write_parts(path, all, most_threads);
 }
 
 }  // namespace cistula

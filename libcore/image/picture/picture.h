@@ -70,6 +70,8 @@ struct LayeredPicture {
     std::map<std::string, std::variant<std::string, int, double, std::vector<float>, Ratio>> attributes;
 };
 
+using Attributes = decltype(LayeredPicture::attributes);
+
 /// The channel of that name, or null.
 inline const LayeredPicture::Channel* channel_of(const LayeredPicture& picture, const std::string& name) {
     const auto found = std::find_if(picture.channels.begin(), picture.channels.end(),

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/pixel_rect.h"
+#include "image/picture/picture.h"
 
 namespace cistula {
 
@@ -83,6 +84,13 @@ struct StoredFile {
     std::string format;                   // "openexr", "png"
     std::vector<StoredPicture> pictures;  // parts in the order of the file; a part's levels follow each other
 };
+
+/// The file of one part that a picture in memory would be, its attributes as texts.
+StoredFile stored_file(const LayeredPicture& picture);
+
+/// The value of an attribute for people: the shortest text that reads back as the same number, so that equal texts are
+/// equal values, NaN and -0 included.
+std::string attribute_text(const Attributes::mapped_type& value);
 
 /// The name of a channel or a layer among those of all parts: PART.NAME, but NAME alone where it begins with its
 /// part's, or the part has none.

@@ -4,6 +4,7 @@
 #include <link.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <stdexcept>
@@ -14,11 +15,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A handle of the program or library that contains this code.
-void* own_handle() {
+/// The file of the program or library that contains this code; empty where it is not known.
+fs::path own_file() {
     Dl_info info = {};
-    if (dladdr(reinterpret_cast<const void*>(&reader_path), &info) != 0 && info.dli_fname)
-        if (void* const library = dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD)) return library;
+    const bool found = dladdr(reinterpret_cast<const void*>(&reader_path), &info) != 0 && info.dli_fname;
+    return found ? info.dli_fname : "";
+}
+
+/// Its handle.
+void* own_handle() {
+    if (void* const library = dlopen(own_file().c_str(), RTLD_LAZY | RTLD_NOLOAD)) return library;
     return dlopen(nullptr, RTLD_LAZY);  // the program itself
 }
 
@@ -38,16 +44,20 @@ std::vector<fs::path> library_directories() {
     return directories;
 }
 
-/// Directories relative to the running program, nearest first.
-std::vector<fs::path> directories_of_program() {
+/// Directories relative to the library that contains this code and to the running program, nearest first.
+std::vector<fs::path> directories_beside() {
+    std::vector<fs::path> directories;
     std::error_code failure;
-    const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-    if (failure) return {};
-    const fs::path directory = program.parent_path(), prefix = directory.parent_path();
-    return {directory, prefix / "lib" / "cistula", prefix / "lib"};
+    for (const fs::path& file : {own_file(), fs::read_symlink("/proc/self/exe", failure)}) {
+        const fs::path directory = file.parent_path(), prefix = directory.parent_path();
+        for (const fs::path& one : {directory, prefix / "lib" / "cistula", prefix / "lib"})
+            if (one.is_absolute() && std::find(directories.begin(), directories.end(), one) == directories.end())
+                directories.push_back(one);
+    }
+    return directories;
 }
 
-/// The program in a directory; empty where there is none. Directories relative to the working directory do not count.
+/// The program in a directory; empty where there is none.
 std::string program_in(const fs::path& directory) {
     const fs::path file = directory / CISTULA_READ_PICTURE;
     std::error_code failure;
@@ -61,7 +71,7 @@ std::string reader_path(const std::string& users) {
     for (const fs::path& directory : library_directories())
         if (const std::string found = program_in(directory); !found.empty()) return found;
     std::string places = "the library path";
-    for (const fs::path& directory : directories_of_program()) {
+    for (const fs::path& directory : directories_beside()) {
         if (const std::string found = program_in(directory); !found.empty()) return found;
         places += ", " + directory.string();
     }

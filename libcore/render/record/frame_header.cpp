@@ -1,9 +1,14 @@
 #include "render/record/frame_header.h"
 
+#include <algorithm>
 #include "base/fnv128.h"
 
 namespace cistula {
 namespace {
+
+constexpr const char* proven_truncation = "cistula:provenTruncation";
+constexpr const char* checked_pixels = "cistula:checkedPixels";
+constexpr const char* off_pixels = "cistula:offPixels";
 
 using Row = double[4];
 
@@ -79,6 +84,36 @@ void add_film_attributes(const FilmDescription& film, Attributes& attributes) {
     if (film.rate > 0) attributes["framesPerSecond"] = Ratio{film.rate, static_cast<unsigned>(film.rate_divisor)};
     if (!film.owner.empty()) attributes["owner"] = film.owner;
     if (!film.comments.empty()) attributes["comments"] = film.comments;
+}
+
+Attributes header_attributes(const Film& film, const FilmDescription& description, const std::string& scene_hash,
+                             const FrameSettings& settings, Precision precision, const CameraFrame& camera) {
+    Attributes attributes = header_attributes(scene_hash, settings, precision, camera);
+    add_film_attributes(description, attributes);
+    if (settings.adaptive()) add_target_attributes(target_report(film, settings), attributes);
+    return attributes;
+}
+
+void add_target_attributes(const TargetReport& report, Attributes& attributes) {
+    attributes[proven_truncation] = report.worst_truncation;
+    attributes[checked_pixels] = static_cast<int>(report.checked);
+    attributes[off_pixels] = static_cast<int>(report.off);
+}
+
+Attributes without_target_attributes(Attributes attributes) {
+    for (const char* result : {proven_truncation, checked_pixels, off_pixels}) attributes.erase(result);
+    return attributes;
+}
+
+void join_target_attributes(const Attributes& more, Attributes& attributes) {
+    for (auto& [name, value] : attributes) {
+        const auto other = more.find(name);
+        if (other == more.end() || other->second.index() != value.index()) continue;
+        if (name == proven_truncation)
+            value = std::max(std::get<double>(value), std::get<double>(other->second));
+        else if (name == checked_pixels || name == off_pixels)
+            value = std::get<int>(value) + std::get<int>(other->second);
+    }
 }
 
 }  // namespace cistula

@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "image/picture/picture.h"
+#include "render/record/target_report.h"
 #include "render/renderer.h"
 #include "scene/description/camera_path.h"
 
 namespace cistula {
-
-using Attributes = decltype(LayeredPicture::attributes);
 
 /// The attributes: scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera,
 /// worldToNDC, screenWindowWidth, imageCounter. docs/programs.md documents each, with those that to_layers() gives.
@@ -20,6 +19,20 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
 
 /// Adds what the scene says of the film: framesPerSecond, owner and comments, where given.
 void add_film_attributes(const FilmDescription& film, Attributes& attributes);
+
+/// All that the header of a finished frame says beside what to_layers() gives: the above, what the scene says of the
+/// film, and what is proven and estimated of a target error.
+Attributes header_attributes(const Film& film, const FilmDescription& description, const std::string& scene_hash,
+                             const FrameSettings& settings, Precision precision, const CameraFrame& camera);
+
+/// Adds what is proven and estimated of the image: provenTruncation, checkedPixels and offPixels.
+void add_target_attributes(const TargetReport& report, Attributes& attributes);
+
+/// The attributes without what add_target_attributes() adds.
+Attributes without_target_attributes(Attributes attributes);
+
+/// Adds what is proven and estimated of more pixels of a frame, where a header says that.
+void join_target_attributes(const Attributes& more, Attributes& attributes);
 
 /// Matrix from world to camera space as OpenEXR has it, left-handed (x right, y up, z ahead): 16 numbers for row
 /// vectors, p' = p M.

@@ -5,8 +5,13 @@
 
 #include <cmath>
 
+#include "backend_embree/embree/embree_renderer.h"
+#include "image/exr/exr.h"
+#include "render/frame_settings.h"
 #include "render/record/film_picture.h"
 #include "scene/description/camera_path.h"
+#include "scene/readers/read_scene.h"
+#include "testing/support/render_program.h"
 
 namespace cistula {
 namespace {
@@ -69,6 +74,25 @@ TEST(Header, NdcIsZeroAtTheUpperLeftAndOneAtTheLowerRight) {
     expect({1 + 10, 12, 3 - 5}, 1, 1, 10);
     expect({1 + 4, 6, 3 + 2}, 1, 0, 4);
     expect({1 + 1, 4, 3}, 0.75, 0.5, 2);
+}
+
+/// With a target error, too, another program writes the file that render writes.
+TEST_F(RenderProgram, FilesOfOtherProgramsHaveItsHeader) {
+    expect_done({"s.json", "-q", "-o", "a.exr", "--target-error", "0.05", "--frames", "1", "--precision", "float"});
+    const SceneDescription scene = read_scene(file("s.json"));
+    const std::shared_ptr<const CompiledScene<float>> compiled = compile_scene<float>(scene);
+    FrameSettings settings = frame_settings(scene);
+    settings.target_error = 0.05;
+    settings.depth = 1024;
+    const CameraFrame camera = camera_at(scene.camera, 1);
+    Film film;
+    RenderProgress progress;
+    ASSERT_TRUE(make_embree_renderer<float>(compiled)->render(camera, settings, film, progress));
+    LayeredPicture picture = to_layers(film, {});
+    picture.attributes.merge(header_attributes(film, scene.film, compiled->hash, settings, Precision::single_, camera));
+    ASSERT_EQ(picture.attributes.count("cistula:checkedPixels"), 1u);
+    write_exr(file("b.exr"), picture);
+    EXPECT_EQ(bytes_of(file("a.exr")), bytes_of(file("b.exr")));
 }
 
 TEST(Header, ScreenWindowIsThatOfTheFieldOfView) {

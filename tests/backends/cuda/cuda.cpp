@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <thread>
+#include <vector>
 
 #include "backend_cuda/host/cuda_renderer.h"
+#include "backend_embree/embree/embree_renderer.h"
 #include "scene/description/without_effect.h"
 #include "testing/generated_scene.h"
 #include "testing/support/contact_search.h"
@@ -100,6 +103,44 @@ TYPED_TEST(Cuda, AdaptiveFramesAreEqual) {
             }
         }
     }
+}
+
+TYPED_TEST(Cuda, RaysAreAnsweredAlike) {
+    CISTULA_NEEDS_GPU();
+    size_t met = 0, dimmed = 0;
+    for (const char* name : {"platonic", "glass", "mesh", "hard/media-meshes", "hard/lights-on-edges"}) {
+        const SceneDescription description = test::shipped_scene(name);
+        const std::shared_ptr<const CompiledScene<TypeParam>> scene = this->compiled(description);
+        const auto gpu = make_cuda_renderer<TypeParam>(scene), cpu = make_embree_renderer<TypeParam>(scene);
+        std::vector<glm::dvec3> origins, directions, ends;
+        const double size = std::ldexp(1.0, 1 - scene->scale);
+        uint32_t state = 1;
+        const auto coordinate = [&] { return std::ldexp(int32_t(state = state * 1664525u + 1013904223u), -31) * size; };
+        for (size_t i = 0; i < 50000; ++i) {
+            const glm::dvec3 from(coordinate(), coordinate(), coordinate()),
+                to(coordinate(), coordinate(), coordinate());
+            origins.push_back(scene->center + (i % 8 == 0 ? 1e3 : 0.6) * from);
+            directions.push_back(scene->center + 0.5 * to - origins.back());
+            ends.push_back(description.lights.empty() || i % 2 == 0
+                               ? origins.back() + 1.5 * directions.back()
+                               : description.lights[i % description.lights.size()].position);
+        }
+        const RayHits here = cpu->intersect(origins, directions), there = gpu->intersect(origins, directions);
+        EXPECT_EQ(there.distance, here.distance) << name;
+        EXPECT_EQ(there.object, here.object) << name;
+        EXPECT_EQ(there.material, here.material) << name;
+        EXPECT_EQ(there.face, here.face) << name;
+        EXPECT_EQ(there.crossing, here.crossing) << name;
+        EXPECT_EQ(there.point, here.point) << name;
+        EXPECT_EQ(there.normal, here.normal) << name;
+        EXPECT_EQ(there.uv, here.uv) << name;
+        const std::vector<glm::dvec3> shares = cpu->transmittance(origins, ends);
+        EXPECT_EQ(gpu->transmittance(origins, ends), shares) << name;
+        for (const int32_t object : here.object) met += object >= 0;
+        for (const glm::dvec3& share : shares) dimmed += share.x > 0 && share.x < 1;
+    }
+    EXPECT_GT(met, 50000u);
+    EXPECT_GT(dimmed, 5000u);
 }
 
 TYPED_TEST(Cuda, ScenesWithContactsAreEqualWhateverThePath) {
