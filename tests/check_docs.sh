@@ -6,7 +6,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/tree_check.sh"
 
 most_words=1200
-references='^docs/(scene|programs|rules)\.md$'  # may be longer
+references='^docs/(scene|rules)\.md$'  # may be longer
 records='^(docs/decisions/|CHANGELOG\.md$)'      # tell of what is gone, too
 foreign='^(quadmath|rtcore|embree3/rtcore|embree4/rtcore|cuda_runtime|immintrin|exp|main)\.h$'  # headers of others that comments name
 

@@ -8,8 +8,8 @@
 
 namespace cistula {
 
-/// The channels with the layers of a list of layers and groups of layers (docs/programs.md), and no others. Throws
-/// Error (usage) with the nearest name for an unknown one, but for light layers, which depend on the scene.
+/// The channels with the layers of a list of layers and groups of layers (docs/programs/layers.md), and no others.
+/// Throws Error (usage) with the nearest name for an unknown one, but for light layers, which depend on the scene.
 OutputChannels parse_layers(std::string_view text, OutputChannels channels = {});
 
 /// Throws Error (usage) for a light layer that the scene does not have, with those that it has.

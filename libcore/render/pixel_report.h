@@ -26,7 +26,7 @@ struct PixelReport {
 /// folded.
 std::string pixel_text(PixelReport report, bool verbose);
 
-/// The whole report as JSON; docs/programs.md documents the keys.
+/// The whole report as JSON; docs/programs/pixel.md documents the keys.
 std::string pixel_json(const PixelReport& report);
 
 /// The name of an enumerator.

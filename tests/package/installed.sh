@@ -12,7 +12,8 @@ for scene in "$scenes"/*.json; do
     [ -f "$(dirname "$scene")/$schema" ] || fail "$scene: there is no $schema"
 done
 pages=$(echo "$prefix"/share/doc/*/README.md)
-for page in "$pages" "${pages%README.md}"docs/*.md; do
+shopt -s globstar
+for page in "$pages" "${pages%README.md}"docs/**/*.md; do
     { grep -oE '\]\([^):]+\)' "$page" || true; } | sed -E 's/^\]\(//; s/\)$//; s/#.*//' | while read -r link; do
         [ -e "$(dirname "$page")/$link" ] || fail "$page: there is no $link"
     done

@@ -13,7 +13,8 @@
 namespace cistula {
 
 /// The attributes: scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera,
-/// worldToNDC, screenWindowWidth, imageCounter. docs/programs.md documents each, with those that to_layers() gives.
+/// worldToNDC, screenWindowWidth, imageCounter. docs/programs/headers.md documents each, with those of
+/// to_layers().
 Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera);
 

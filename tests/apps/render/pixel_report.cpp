@@ -376,7 +376,7 @@ TEST_F(PixelReports, RefuseInOneLine) {
 
 /// The sample in the documentation is what the program prints.
 TEST(PixelDocs, ShowWhatIsPrinted) {
-    const std::string docs = bytes_of(std::string(CISTULA_SOURCE_DIR) + "/docs/programs.md");
+    const std::string docs = bytes_of(std::string(CISTULA_SOURCE_DIR) + "/docs/programs/pixel.md");
     const size_t option = docs.find(" --pixel ", docs.find("$ render scenes/glass.json --pixel"));
     ASSERT_NE(option, docs.npos);
     const size_t command = docs.rfind("$ render", option);
