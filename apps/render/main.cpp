@@ -85,7 +85,7 @@ std::unique_ptr<Renderer> renderer_of(const Scene& scene, const RenderRequest& r
     stats.devices = devices.names;
     stats.driver = devices.driver;
     enter_stage(Stage::tree);
-    return make_renderer(request.backend, scene, devices.request);
+    return make_renderer(request.backend, scene, devices.options);
 }
 
 /// The names of the images and previews, and their frames.
@@ -311,7 +311,7 @@ void measure_scene(const RenderRequest& request) {
         const Precision precision = choose_precision(request, source);
         const Explanation explanation = explain_scene(std::move(source), precision);
         const auto make = [&](const SceneDescription& of) {
-            return make_renderer(request.backend, Scene(of, precision), devices.request);
+            return make_renderer(request.backend, Scene(of, precision), devices.options);
         };
         const int frame = request.frames.empty() ? 0 : request.frames.front();
         const EffectCosts costs = measure_effects(scene, explanation.effects, frame, settings, make, progress);
