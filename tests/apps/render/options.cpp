@@ -301,6 +301,7 @@ TEST(RenderOptions, Errors) {
     expect_refused({"s", "--bits", "hal"}, "--bits hal: must be float or half; did you mean 'half'?");
     expect_refused({"s", "--progress", "plane"},
                    "--progress plane: must be auto or plain or none or json or openjd; did you mean 'plain'?");
+    expect_refused({"s", "--layers", "N", "--aov", "Z"}, "--aov Z: is another name of --layers; give one of them");
     expect_refused({"s", "-q", "-v"}, "-q and -v exclude each other; give one");
     expect_refused({"s", "--frames", "9-3"}, "--frames 9-3: 9-3 runs backward; write 3-9");
     EXPECT_THROW(parse({"s", "-o"}), Error);
