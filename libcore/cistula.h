@@ -7,7 +7,8 @@
 #include "image/exr/exr.h"                  // write_exr, read_exr
 #include "image/picture/picture.h"          // ColorPicture, LayeredPicture
 #include "image/picture/picture_io.h"       // write_preview, read_texture
-#include "image/picture/stored_picture.h"   // StoredFile: pictures as they are compared
+#include "image/picture/stored_picture.h"   // StoredFile, stored_file: pictures as they are compared
+#include "image/reader/picture_reader.h"    // StoredReader
 #include "render/frame_settings.h"          // frame_settings
 #include "render/pixel_report.h"            // pixel_text, pixel_json
 #include "render/record/film.h"             // Film
