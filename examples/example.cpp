@@ -27,7 +27,7 @@ void render(SceneSource source, Precision precision, const char* exr, const char
 
     // Save.
     LayeredPicture picture = to_layers(film, {});
-    picture.attributes.merge(header_attributes(compiled->hash, settings, precision, camera));
+    picture.attributes.merge(header_attributes(compiled->hashes, settings, precision, camera));
     add_film_attributes(scene.film, picture.attributes);
     write_exr(exr, picture);
     write_preview(png, to_color(film));

@@ -23,7 +23,7 @@ class UserSignal;
 struct FilmJob {
     const FilmOptions& options;
     const SceneDescription& scene;
-    const std::string& scene_hash;
+    const FrameHashes& hashes;
     const FrameSettings& settings;
     const OutputName& output;
     const OutputName& preview;  // empty text: none

@@ -68,20 +68,22 @@ void choose_precision(RenderOptions& options, const SceneSource& source) {
 struct Prepared {
     std::unique_ptr<Renderer> renderer;
     std::shared_ptr<const LayerNames> layer_names;
+    FrameHashes hashes;
 };
 
 template <class Real>
 Prepared prepare(SceneSource source, const RenderOptions& options, std::future<ChosenDevices> choice, RunStats& stats) {
+    const StopSignal stop = source.stop;
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
-    stats.scene_hash = compiled->hash;
     stats.required_effects = compiled->effects;
     print_warnings(compiled->warnings, options);
     enter_stage(Stage::device);
     const ChosenDevices devices = choice.get();
+    stop.check();
     stats.devices = devices.names;
     stats.driver = devices.driver;
     enter_stage(Stage::tree);
-    return {make_renderer<Real>(options.backend, compiled, devices.options), compiled->layer_names};
+    return {make_renderer<Real>(options.backend, compiled, devices.options), compiled->layer_names, compiled->hashes};
 }
 
 /// The names of the images and previews, and their frames.
@@ -213,13 +215,14 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
     Outputs outputs = plan_outputs(options, scene);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
+    guard.watch(progress.stop);
 
     RunStats stats;
     stats.scene = options.scene;
     stats.threads = threads_of(options);
     on_threads(options, [&] {
         enter_stage(Stage::read);
-        SceneSource source = gather_scene(scene);
+        SceneSource source = gather_scene(scene, progress.stop);
         enter_stage(Stage::other);
         RunFiles others;
         others.reads_scene(options.scene, source.files);
@@ -233,7 +236,7 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
                                 : prepare<float>(std::move(source), options, std::move(devices), stats);
         enter_stage(Stage::other);
         Renderer& renderer = *prepared.renderer;
-        guard.watch(progress.stop);
+        stats.scene_hash = prepared.hashes.of(outputs.frames.empty() ? 0 : outputs.frames.front());
         std::optional<StatsFile> file;
         if (!options.stats.empty()) file.emplace(options.stats, settings, !stats.devices.empty());
         const auto write_stats = [&] {
@@ -253,7 +256,7 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
                              seconds(Stage::read), seconds(Stage::compile), seconds(Stage::tree), renderer.memory(),
                              stats.scene_hash));
         }
-        FilmJob job{options, scene, stats.scene_hash, settings, outputs.image, outputs.preview, outputs.frames};
+        FilmJob job{options, scene, prepared.hashes, settings, outputs.image, outputs.preview, outputs.frames};
         job.layer_names = prepared.layer_names;
         job.snapshot_signal = &*snapshot_signal;
         require_light_layers(options.channels, *job.layer_names);
@@ -290,9 +293,9 @@ void render_scene(RenderOptions options, std::string& memory_advice) {
 
 template <class Real>
 std::unique_ptr<Renderer> renderer_of(const SceneDescription& scene, const RenderOptions& options,
-                                      const CudaOptions& cuda) {
-    return make_renderer<Real>(options.backend, std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene)),
-                               cuda);
+                                      const CudaOptions& cuda, StopSignal stop) {
+    return make_renderer<Real>(options.backend,
+                               std::shared_ptr<const CompiledScene<Real>>(compile_scene<Real>(scene, stop)), cuda);
 }
 
 void measure_scene(RenderOptions options) {
@@ -303,12 +306,13 @@ void measure_scene(RenderOptions options) {
     InterruptGuard guard;
     guard.watch(progress.render.stop);
     on_threads(options, [&] {
-        SceneSource source = gather_scene(scene);
+        const StopSignal stop(progress.render.stop);
+        SceneSource source = gather_scene(scene, stop);
         choose_precision(options, source);
         const Explanation explanation = explain_scene(std::move(source), options.precision);
         const auto make = [&](const SceneDescription& of) {
-            return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options)
-                                                           : renderer_of<float>(of, options, devices.options);
+            return options.precision == Precision::double_ ? renderer_of<double>(of, options, devices.options, stop)
+                                                           : renderer_of<float>(of, options, devices.options, stop);
         };
         const int frame = options.frames.empty() ? 0 : options.frames.front();
         const EffectCosts costs = measure_effects(scene, explanation.effects, frame, settings, make, progress);
@@ -323,8 +327,15 @@ void report_pixel(const RenderOptions& options, const SceneDescription& scene, S
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
     print_warnings(compiled->warnings, options);
     const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, options.pixel.x, options.pixel.y);
-    const PixelReport report{options.pixel.x, options.pixel.y, options.precision, scene, names, settings, camera, tree,
-                             compiled->hash};
+    const PixelReport report{options.pixel.x,
+                             options.pixel.y,
+                             options.precision,
+                             scene,
+                             names,
+                             settings,
+                             camera,
+                             tree,
+                             compiled->hashes.of(camera.frame)};
     if (options.json != "-") print(pixel_text(report, options.verbose));
     if (options.json == "-")
         print(pixel_json(report));

@@ -39,8 +39,8 @@ Followed follow(const SuiteCase& one, const SceneDescription& scene, const Frame
     const CameraFrame camera = camera_at(scene.camera, frame);
     const PixelTree tree = embree_pixel_tree<Real>(compiled, camera, settings, pixel.x, pixel.y);
     Followed followed;
-    followed.text =
-        pixel_text({pixel.x, pixel.y, precision, scene, names, settings, camera, tree, compiled->hash}, false);
+    followed.text = pixel_text(
+        {pixel.x, pixel.y, precision, scene, names, settings, camera, tree, compiled->hashes.of(frame)}, false);
     OutputChannels channels;  // R G B A alone, as the case has them
     channels.half = one.channels.half;
     channels.transparent = one.channels.transparent;

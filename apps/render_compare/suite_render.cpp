@@ -25,7 +25,7 @@ struct PreparedCase {
     SceneDescription scene;
     FrameSettings settings;
     Precision precision = Precision::single_;
-    std::string scene_hash;
+    FrameHashes hashes;
     std::unique_ptr<Renderer> renderer;
 };
 
@@ -35,7 +35,7 @@ void compile(SceneSource source, PreparedCase& to, Backend backend, const CudaOp
     const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(std::move(source));
     notes.insert(notes.end(), compiled->warnings.begin(), compiled->warnings.end());
     require_light_layers(to.one.channels, *compiled->layer_names);
-    to.scene_hash = compiled->hash;
+    to.hashes = compiled->hashes;
     to.renderer = make_renderer<Real>(backend, compiled, cuda);
 }
 
@@ -59,7 +59,7 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
     picture = to_layers(film, one.channels, &clamped);
     if (clamped > 0) result.notes.push_back("clamped: " + over_largest_half(clamped));
     round_to_stored(picture);
-    picture.attributes.merge(header_attributes(prepared.scene_hash, prepared.settings, prepared.precision, camera));
+    picture.attributes.merge(header_attributes(prepared.hashes, prepared.settings, prepared.precision, camera));
     add_film_attributes(prepared.scene.film, picture.attributes);
     if (prepared.settings.adaptive()) add_target_attributes(target_report(film, prepared.settings), picture.attributes);
     result.film_hash = film_hash(film);
@@ -87,13 +87,14 @@ FrameSettings settings_of(const SuiteCase& one, const SceneDescription& scene) {
     return settings;
 }
 
-SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend backend, const CudaOptions& cuda) {
+SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend backend, const CudaOptions& cuda,
+                        StopSignal stop) {
     SuiteScene result;
     const auto prepared = std::make_shared<PreparedCase>();
     prepared->one = one;
     prepared->scene = read_scene(one.scene_path(folder));
     prepared->settings = settings_of(one, prepared->scene);
-    SceneSource source = gather_scene(prepared->scene);
+    SceneSource source = gather_scene(prepared->scene, stop);
     const PrecisionChoice choice = choose_precision(one.precision, smallest_part(source));
     for (const std::string& text : {choice.note, choice.warning})
         if (!text.empty()) result.notes.push_back(text);

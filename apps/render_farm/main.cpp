@@ -88,7 +88,7 @@ void write_job(const FarmOptions& farm) {
             ? std::optional<tbb::global_control>(std::in_place, tbb::global_control::max_allowed_parallelism,
                                                  static_cast<size_t>(options.threads))
             : std::nullopt;
-    SceneSource source = gather_scene(scene);
+    SceneSource source = gather_scene(scene, progress.render.stop);
     options.precision = choose_precision(options.wanted_precision, smallest_part(source)).precision;
     const PreparedFilm film = options.precision == Precision::double_ ? prepare_film<double>(std::move(source))
                                                                       : prepare_film<float>(std::move(source));
@@ -96,7 +96,7 @@ void write_job(const FarmOptions& farm) {
     const MeasuredFrames measured = measure_tiles(*film.renderer, scene, settings, frames, grid, progress);
 
     const OutputName none;
-    FilmJob job{options, scene, "", settings, output, none, frames};
+    FilmJob job{options, scene, FrameHashes(), settings, output, none, frames};
     job.layer_names = film.layer_names;
     FarmJob farm_job{job_name(options.scene),
                      fs::current_path().string(),

@@ -50,7 +50,7 @@ std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
     return to_floats(rows);
 }
 
-Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
+Attributes header_attributes(const FrameHashes& hashes, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera) {
     Attributes attributes = {
         {"cistula:cameraHash", camera_hash(camera.camera)},
@@ -58,7 +58,7 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
         {"cistula:depth", settings.depth},
         {"cistula:frame", camera.frame},
         {"cistula:precision", std::string(precision == Precision::double_ ? "double" : "float")},
-        {"cistula:sceneHash", scene_hash},
+        {"cistula:sceneHash", hashes.of(camera.frame)},
         {"cistula:supersample", settings.grid()},
         {"cistula:time", camera.time},
         {"cistula:version", std::string(CISTULA_VERSION)},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/description/camera_path.h"
@@ -13,9 +14,22 @@ namespace cistula {
 
 using Attributes = decltype(LayeredPicture::attributes);
 
+/// What tells scenes apart: for each frame a hash of everything that affects its image, except camera and settings.
+class FrameHashes {
+  public:
+    /// Hashes of a scene in which nothing moves: one for all frames.
+    FrameHashes(std::string still = "") : still_(std::move(still)) {}
+
+    const std::string& of([[maybe_unused]] int frame) const { return still_; }
+    bool operator==(const FrameHashes&) const = default;
+
+  private:
+    std::string still_;
+};
+
 /// The attributes: scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera,
 /// worldToNDC, screenWindowWidth, imageCounter. docs/programs.md documents each, with those that to_layers() gives.
-Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
+Attributes header_attributes(const FrameHashes& hashes, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera);
 
 /// Adds what the scene says of the film: framesPerSecond, owner and comments, where given.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cistula/transport/pixel.h"
-#include "scene/compile/hull.h"
+#include "scene/compile/compiled_scene.h"
 #include "scene/film/film.h"
 
 namespace cistula {

@@ -59,7 +59,7 @@ class FilmLoop : public RenderProgram {
     std::string film(const std::vector<int>& frames, Backend backend) {
         options_.backend = backend;
         const OutputName output(file("f.##.exr"), "-o"), none;
-        FilmJob job{options_, scene_, "hash", settings_, output, none, frames};
+        FilmJob job{options_, scene_, FrameHashes("hash"), settings_, output, none, frames};
         job.written = [this](const FrameStats& frame) { written_.push_back(frame); };
         job.look_ahead = [this](const std::vector<int>& stretch) {
             stretches_.push_back(stretch);
