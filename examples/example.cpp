@@ -29,7 +29,7 @@ int main(int argc, char** argv) try {
     // Save.
     LayeredPicture picture = to_layers(film, {});
     picture.attributes.merge(
-        header_attributes(film, description.film, scene.hash(), settings, scene.precision(), camera));
+        header_attributes(film, description.film, scene.hashes(), settings, scene.precision(), camera));
     write_exr(argv[2], picture);
     write_preview(argv[3], to_color(film));
 } catch (const Error& error) {

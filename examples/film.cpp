@@ -31,7 +31,8 @@ int main(int argc, char** argv) try {
     const Scene scene(description);
     const std::unique_ptr<Renderer> renderer = make_renderer(Backend::embree, scene, {});
     Teller teller;
-    FilmJob film{request, description, scene.hash(), settings, images, no_previews, frames, teller, scene.precision()};
+    FilmJob film{request,     description, scene.hashes(), settings,         images,
+                 no_previews, frames,      teller,         scene.precision()};
     film.layer_names = scene.layer_names();
     RenderProgress progress;  // setting progress.stop ends it after the frames in work
     RunStats stats;

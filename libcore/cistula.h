@@ -16,6 +16,7 @@
 #include "render/record/frame_header.h"     // header_attributes
 #include "render/renderer.h"                // FrameSettings, Renderer
 #include "render/scene.h"                   // Scene
+#include "scene/assets/assets.h"            // load_assets; MeshData: a mesh as arrays
 #include "scene/description/camera_path.h"  // camera_at
 #include "scene/description/description.h"  // SceneDescription
 #include "scene/readers/read_scene.h"       // read_scene

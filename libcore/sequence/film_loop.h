@@ -24,7 +24,7 @@ class SnapshotRequests;
 struct FilmJob {
     const RenderRequest& request;
     const SceneDescription& scene;
-    const std::string& scene_hash;
+    const FrameHashes& hashes;
     const FrameSettings& settings;
     const OutputName& output;
     const OutputName& preview;  // empty text: none

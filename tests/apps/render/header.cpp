@@ -97,7 +97,7 @@ TEST_F(RenderProgram, FilesOfOtherProgramsHaveItsHeader) {
 
 TEST(Header, ScreenWindowIsThatOfTheFieldOfView) {
     const Attributes attributes =
-        header_attributes("abc", FrameSettings(), Precision::single_, camera_at(camera_along_y(60), 7));
+        header_attributes(FrameHashes("abc"), FrameSettings(), Precision::single_, camera_at(camera_along_y(60), 7));
     EXPECT_NEAR(std::get<double>(attributes.at("screenWindowWidth")), 2 * std::tan(M_PI / 6), 1e-7);
     EXPECT_EQ(std::get<int>(attributes.at("imageCounter")), 7);
 }

@@ -568,7 +568,7 @@ TEST(HeaderAttributes, TellImagesApart) {
     picture.width = picture.display_width = 4;
     picture.height = picture.display_height = 2;
     picture.channels = {{"R", false, {}}, {"G", false, {}}};
-    picture.attributes = header_attributes("abc", settings, Precision::single_, camera);
+    picture.attributes = header_attributes(FrameHashes("abc"), settings, Precision::single_, camera);
     EXPECT_TRUE(is_same_image(picture, picture));
     const auto differs = [&](const std::function<void(LayeredPicture&)>& change) {
         LayeredPicture other = picture;
@@ -584,34 +584,36 @@ TEST(HeaderAttributes, TellImagesApart) {
     const auto attributes_differ = [&](const Attributes& attributes) {
         return differs([&](LayeredPicture& p) { p.attributes = attributes; });
     };
-    EXPECT_TRUE(attributes_differ(header_attributes("abd", settings, Precision::single_, camera)));
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", settings, Precision::double_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abd"), settings, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), settings, Precision::double_, camera)));
     FrameSettings other = settings;
     other.cutoff = 1e-9;
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
     other = settings;
     other.depth = 5;
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
     other = settings;
     other.supersample = 2;
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
     other = settings;
     other.target_error = 0.01;
-    const Attributes target = header_attributes("abc", other, Precision::single_, camera);
+    const Attributes target = header_attributes(FrameHashes("abc"), other, Precision::single_, camera);
     EXPECT_TRUE(attributes_differ(target));
     EXPECT_EQ(std::get<double>(target.at("cistula:targetError")), 0.01);
     EXPECT_EQ(std::get<double>(target.at("cistula:cutoff")), 0.0025);
     other.max_samples = 32;
-    EXPECT_EQ(std::get<int>(header_attributes("abc", other, Precision::single_, camera).at("cistula:maxSamples")), 32);
+    EXPECT_EQ(std::get<int>(
+                  header_attributes(FrameHashes("abc"), other, Precision::single_, camera).at("cistula:maxSamples")),
+              32);
     EXPECT_EQ(picture.attributes.count("cistula:targetError") + picture.attributes.count("cistula:maxSamples"), 0u);
     CameraFrame moved = camera;
     moved.frame = 1;
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", settings, Precision::single_, moved)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), settings, Precision::single_, moved)));
     // What does not reach the image does not reach the header.
     other = settings;
     other.tile = 64;
     other.effects = all_effects;
-    EXPECT_FALSE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    EXPECT_FALSE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
 }
 
 TEST(Progress, Texts) {
