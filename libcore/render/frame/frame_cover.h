@@ -9,7 +9,6 @@
 #include "cistula/transport/pixel.h"
 #include "render/record/film.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/hull.h"
 
 namespace cistula {
 

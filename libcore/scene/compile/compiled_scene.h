@@ -11,8 +11,6 @@
 #include "cistula/numerics/vec.h"
 #include "render/record/film_layers.h"
 #include "render/record/frame_header.h"
-#include "scene/compile/effect_reason.h"
-#include "scene/compile/hull.h"
 #include "scene/compile/scene_names.h"
 #include "scene/description/coordinate_rounding.h"
 #include "scene/description/description.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "scene/trees/embree_errors.h"
 #include "scene/trees/embree_handles.h"
 
 namespace cistula {
