@@ -203,21 +203,9 @@ class Compiler {
                 sizeof(Real) == sizeof(float)};
     }
 
-    /// The vertices of a mesh as it is rendered, which are looked at many times.
-    std::vector<dvec3> placed_points(uint32_t number) const {
-        const NormalizedMesh mesh = placed_mesh(number);
-        std::vector<dvec3> points(source_.solids[number].mesh.vertices.size());
-        tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(points.size()), 4096),
-                          [&](const auto& range) {
-                              for (uint32_t v = range.begin(); v != range.end(); ++v) points[v] = mesh.vertex(v);
-                          });
-        return points;
-    }
-
     PreparedMesh prepare(uint32_t number) {
         SourceSolid& from = source_.solids[number];
-        const std::vector<dvec3> points = placed_points(number);
-        const NormalizedMesh mesh(from.mesh, normalization_, points, false);
+        const NormalizedMesh mesh = placed_mesh(number);
         PreparedMesh prepared;
         prepared.heights =
             apex_heights(mesh, from.edges.next.empty() ? link_edges(from.mesh) : std::exchange(from.edges, {}));
