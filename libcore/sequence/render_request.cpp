@@ -248,7 +248,7 @@ std::vector<RequestKey> make_keys() {
          set_space,
          [](const Request& r) { return std::string(r.channels.space->id); }},
         choice("compression", compression_names,
-               {"--compression", "NAME", "none, rle, zips, zip, piz, or with losses dwaa, dwab"},
+               {"--compression", "NAME", fmt::format("{}; those of dwa lose some", fmt::join(compression_names, ", "))},
                of(&Request::channels, &OutputChannels::compression)),
         numeric(number("dwa_level", {0, 1000}),
                 {"--dwa-level", "L", "with dwaa and dwab: 0 to 1000, more is smaller; 45", not_of_suite,

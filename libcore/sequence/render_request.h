@@ -48,7 +48,7 @@ struct RenderRequest {
 struct KeyWords {
     std::string_view option;       // names on the command line, that of messages last
     std::string_view shape;        // of its value in --help; empty: it has none
-    std::string_view help;         // with the default at its end
+    std::string help;              // with the default at its end
     bool in_suite = false;         // whether a suite.json may have it
     std::string_view attribute{};  // of EXR headers, that tells it
     std::string_view needs{};      // the key that it says something of
