@@ -10,11 +10,11 @@
 
 #include "apps/render_verify/called_intersector.h"
 #include "apps/render_verify/device_run.h"
+#include "render/record/film.h"
+#include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/smallest_part.h"
 #include "scene/description/description.h"
-#include "render/record/film.h"
-#include "render/renderer.h"
 
 namespace cistula::verify {
 

@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "backend_embree/embree/embree_intersector.h"
-#include "cistula/traversal/brute.h"
 #include "base/default_rounding.h"
+#include "cistula/traversal/brute.h"
 
 namespace cistula::verify {
 namespace {

@@ -9,15 +9,15 @@
 #include <stdexcept>
 
 #include "base/option_text.h"
-#include "sequence/frame_list.h"
-#include "render/layer_list.h"
+#include "base/suggest.h"
 #include "cistula/model/effects.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
-#include "base/suggest.h"
 #include "render/frame_settings.h"
+#include "render/layer_list.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
+#include "sequence/frame_list.h"
 
 namespace cistula {
 namespace {

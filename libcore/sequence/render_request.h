@@ -8,14 +8,14 @@
 #include <string_view>
 #include <vector>
 
-#include "sequence/backends.h"
-#include "render/picture_size.h"
-#include "sequence/film_events.h"
-#include "render/record/film_picture.h"
-#include "render/renderer.h"
-#include "render/record/split_picture.h"
 #include "image/view/picture_view.h"
+#include "render/picture_size.h"
+#include "render/record/film_picture.h"
+#include "render/record/split_picture.h"
+#include "render/renderer.h"
 #include "scene/readers/scene_keys.h"
+#include "sequence/backends.h"
+#include "sequence/film_events.h"
 
 namespace cistula {
 

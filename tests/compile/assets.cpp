@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/compile/compiled_scene.h"
 #include "image/reader/picture_reader.h"
+#include "scene/compile/compiled_scene.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/description/description.h"
 #include "image/picture/picture.h"
+#include "scene/description/description.h"
 #include "scene/readers/polygon_mesh.h"
 
 namespace cistula {

@@ -89,7 +89,8 @@ TEST_F(RenderProgram, FilesOfOtherProgramsHaveItsHeader) {
     RenderProgress progress;
     ASSERT_TRUE(make_embree_renderer<float>(compiled)->render(camera, settings, film, progress));
     LayeredPicture picture = to_layers(film, {});
-    picture.attributes.merge(header_attributes(film, scene.film, compiled->hash, settings, Precision::single_, camera));
+    picture.attributes.merge(
+        header_attributes(film, scene.film, compiled->hashes, settings, Precision::single_, camera));
     ASSERT_EQ(picture.attributes.count("cistula:checkedPixels"), 1u);
     write_exr(file("b.exr"), picture);
     EXPECT_EQ(bytes_of(file("a.exr")), bytes_of(file("b.exr")));

@@ -217,7 +217,8 @@ TEST(RequestKeys, HeadersTellThoseThatHaveAnAttribute) {
         film.full_width = film.full_height = film.rect.width = film.rect.height = 1;
         film.pixels.assign(1);
         Attributes attributes = to_layers(film, request.channels).attributes;
-        attributes.merge(header_attributes("abc", settings, *request.precision, camera_at(scene.camera, 0)));
+        attributes.merge(
+            header_attributes(FrameHashes("abc"), settings, *request.precision, camera_at(scene.camera, 0)));
         for (const RequestKey& key : request_keys()) {
             if (key.attribute.empty() || !key.given(request)) continue;
             const auto found = attributes.find(std::string(key.attribute));
