@@ -7,7 +7,8 @@
 #include "image/exr/exr.h"                  // write_exr, read_exr
 #include "image/picture/picture.h"          // ColorPicture, LayeredPicture
 #include "image/picture/picture_io.h"       // write_preview, read_texture
-#include "image/picture/stored_picture.h"   // StoredFile: pictures as they are compared
+#include "image/picture/stored_picture.h"   // StoredFile, stored_file: pictures as they are compared
+#include "image/reader/picture_reader.h"    // StoredReader
 #include "render/frame_settings.h"          // frame_settings
 #include "render/pixel_report.h"            // pixel_text, pixel_json
 #include "render/record/film.h"             // Film
@@ -15,6 +16,7 @@
 #include "render/record/frame_header.h"     // header_attributes
 #include "render/renderer.h"                // FrameSettings, Renderer
 #include "render/scene.h"                   // Scene
+#include "scene/assets/assets.h"            // load_assets; MeshData: a mesh as arrays
 #include "scene/description/camera_path.h"  // camera_at
 #include "scene/description/description.h"  // SceneDescription
 #include "scene/readers/read_scene.h"       // read_scene

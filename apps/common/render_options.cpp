@@ -72,10 +72,10 @@ void declare_render_options(CLI::App& app, RenderCommand& command) {
             name, [&command, action] { command.action = action; }, description);
     };
     // Its name in earlier versions: not in --help.
-    add_option(app, "--aov", "LIST", "as --layers",
-               [&command](const std::string& text) { request_key("layers").set(command, text); })
-        ->group("")
-        ->excludes(app.get_option("--layers"));
+    add_option(app, "--aov", "LIST", "as --layers", [&command](const std::string& text) {
+        if (!command.layers.empty()) fail_usage("is another name of --layers; give one of them");
+        request_key("layers").set(command, text);
+    })->group("");
     add_valued_flag(
         app, "--explain", "needs",
         "print the effects the scene calls for and why; renders nothing. --explain=measure: and what each costs",

@@ -9,8 +9,8 @@
 #include "render/picture_size.h"
 #include "render/record/film_picture.h"
 #include "render/renderer.h"
-#include "sequence/render_request.h"
 #include "sequence/frame_list.h"
+#include "sequence/render_request.h"
 
 namespace CLI {
 class App;

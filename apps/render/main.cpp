@@ -77,15 +77,15 @@ void tell_of(const Scene& scene, const RenderRequest& request) {
 
 /// A renderer on the devices that are being made ready.
 std::unique_ptr<Renderer> renderer_of(const Scene& scene, const RenderRequest& request,
-                                      std::future<ChosenDevices> choice, RunStats& stats) {
-    stats.scene_hash = scene.hash();
+                                      std::future<ChosenDevices> choice, StopSignal stop, RunStats& stats) {
     stats.required_effects = scene.effects();
     enter_stage(Stage::device);
     const ChosenDevices devices = choice.get();
+    stop.check();
     stats.devices = devices.names;
     stats.driver = devices.driver;
     enter_stage(Stage::tree);
-    return make_renderer(request.backend, scene, devices.request);
+    return make_renderer(request.backend, scene, devices.options);
 }
 
 /// The names of the images and previews, and their frames.
@@ -219,6 +219,7 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
     Outputs outputs = plan_outputs(request, scene);
     RenderProgress progress;  // must outlive the guard
     InterruptGuard guard;
+    guard.watch(progress.stop);
 
     RunStats stats;
     stats.scene = request.scene;
@@ -226,7 +227,7 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
     stats.threads = threads_of(request);
     on_threads(request, [&] {
         enter_stage(Stage::read);
-        SceneSource source = gather_scene(scene);
+        SceneSource source = gather_scene(scene, progress.stop);
         enter_stage(Stage::other);
         RunFiles others;
         others.reads_scene(request.scene, source.files);
@@ -237,12 +238,13 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
         std::optional<Scene> compiled(std::in_place, std::move(source), request.precision);
         tell_of(*compiled, request);
         const Precision precision = stats.precision = compiled->precision();
-        std::unique_ptr<Renderer> made = renderer_of(*compiled, request, std::move(devices), stats);
+        std::unique_ptr<Renderer> made = renderer_of(*compiled, request, std::move(devices), progress.stop, stats);
         Renderer& renderer = *made;
         const std::shared_ptr<const LayerNames> layer_names = compiled->layer_names();
+        const FrameHashes hashes = compiled->hashes();
         compiled.reset();  // the renderer keeps what it needs
         enter_stage(Stage::other);
-        guard.watch(progress.stop);
+        stats.scene_hash = hashes.of(outputs.frames.empty() ? 0 : outputs.frames.front());
         std::optional<StatsFile> file;
         if (!request.stats.empty()) file.emplace(request.stats, settings, !stats.devices.empty());
         const auto write_stats = [&] {
@@ -263,8 +265,8 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
                              stats.scene_hash));
         }
         FilmProgress report(request.progress, talk_of(request), progress);
-        FilmJob job{request,         scene,          stats.scene_hash, settings, outputs.image,
-                    outputs.preview, outputs.frames, report,           precision};
+        FilmJob job{request,         scene,          hashes, settings, outputs.image,
+                    outputs.preview, outputs.frames, report, precision};
         job.layer_names = layer_names;
         job.snapshot_requests = &snapshot_requests;
         require_light_layers(request.channels, *job.layer_names);
@@ -307,11 +309,12 @@ void measure_scene(const RenderRequest& request) {
     InterruptGuard guard;
     guard.watch(progress.render.stop);
     on_threads(request, [&] {
-        SceneSource source = gather_scene(scene);
+        const StopSignal stop(progress.render.stop);
+        SceneSource source = gather_scene(scene, stop);
         const Precision precision = choose_precision(request, source);
         const Explanation explanation = explain_scene(std::move(source), precision);
         const auto make = [&](const SceneDescription& of) {
-            return make_renderer(request.backend, Scene(of, precision), devices.request);
+            return make_renderer(request.backend, Scene(of, precision, stop), devices.options);
         };
         const int frame = request.frames.empty() ? 0 : request.frames.front();
         const EffectCosts costs = measure_effects(scene, explanation.effects, frame, settings, make, progress);
@@ -325,8 +328,16 @@ void report_pixel(const RenderCommand& request, const SceneDescription& descript
     tell_of(scene, request);
     PixelTree tree = make_embree_renderer(scene)->pixel_tree(camera, settings, request.pixel.x, request.pixel.y);
     const std::string flaws = describe_flags(tree.film.flags, description);
-    const PixelReport report{request.pixel.x, request.pixel.y, scene.precision(), description.source, scene.names(),
-                             settings,        camera,          std::move(tree),   scene.hash(),       flaws};
+    const PixelReport report{request.pixel.x,
+                             request.pixel.y,
+                             scene.precision(),
+                             description.source,
+                             scene.names(),
+                             settings,
+                             camera,
+                             std::move(tree),
+                             scene.hashes().of(camera.frame),
+                             flaws};
     if (request.json != "-") print(pixel_text(report, request.verbose));
     if (request.json == "-")
         print(pixel_json(report));

@@ -11,9 +11,9 @@
 #include "apps/common/command_line.h"
 #include "apps/common/render_options.h"
 #include "base/suggest.h"
-#include "sequence/run_files.h"
 #include "scene/compile/scene_source.h"
 #include "scene/readers/read_scene.h"
+#include "sequence/run_files.h"
 
 namespace cistula {
 namespace {

@@ -11,7 +11,7 @@ namespace cistula {
 struct SuiteOptions : SuiteRunSettings {
     bool help = false, list = false, quiet = false;
     std::string folder;
-    RenderRequest request;  // backend and devices
+    RenderRequest request;          // backend and devices
     std::string junit, json, html;  // files; empty: none
 };
 

@@ -77,14 +77,14 @@ void write_job(const FarmOptions& farm) {
             ? std::optional<tbb::global_control>(std::in_place, tbb::global_control::max_allowed_parallelism,
                                                  static_cast<size_t>(request.threads))
             : std::nullopt;
-    const Scene compiled(scene, request.precision);
+    const Scene compiled(scene, request.precision, progress.render.stop);
     require_light_layers(request.channels, *compiled.layer_names());
     const std::unique_ptr<Renderer> renderer = make_embree_renderer(compiled);
     const MeasuredFrames measured = measure_tiles(*renderer, scene, settings, frames, grid, progress);
 
     const OutputName none;
     FilmEvents nothing;
-    FilmJob job{request, scene, "", settings, output, none, frames, nothing, compiled.precision()};
+    FilmJob job{request, scene, FrameHashes(), settings, output, none, frames, nothing, compiled.precision()};
     job.layer_names = compiled.layer_names();
     FarmJob farm_job{job_name(request.scene),
                      fs::current_path().string(),

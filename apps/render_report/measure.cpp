@@ -50,7 +50,7 @@ void measure_scene(const std::string& file, const MeasureSettings& settings, Ste
     scene.base.depth = description.depth;
     find_shares(description, scene);
     Frames frames(description, settings.machine, scene.width, scene.height, progress);
-    scene.hash = frames.renderers.single()->hash;
+    scene.hash = frames.renderers.single()->hashes.of(frames.camera.frame);
     scene.effects = names_of_effects(frames.renderers.single()->effects);
     measure_stages(frames, settings, scene);
     measure_levels(frames, settings, scene);

@@ -10,11 +10,11 @@
 
 #include "apps/render_verify/called_intersector.h"
 #include "apps/render_verify/device_run.h"
+#include "render/record/film.h"
+#include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/smallest_part.h"
 #include "scene/description/description.h"
-#include "render/record/film.h"
-#include "render/renderer.h"
 
 namespace cistula::verify {
 
@@ -155,6 +155,10 @@ class Stage {
     uint64_t warned_ = 0;
 };
 
+/// What a case of rays does to plan them, and one of images to judge them.
+using MakePlan = std::function<void(Plan&)>;
+using Render = std::function<void(Stage&, Tally&)>;
+
 /// The functor of a case of rays in one precision: rays [first, last) into a tally, or one word for each.
 template <class Real>
 struct RayMethods {
@@ -168,9 +172,9 @@ struct RayMethods {
 struct Case {
     std::string name, exact;
     Bound bound;
-    std::function<void(Plan&)> plan;             // of rays
-    std::function<void(Stage&, Tally&)> render;  // of images
-    bool own_traversal = false;                  // asks no intersector: runs once on the host and once on the device
+    MakePlan plan;               // of rays
+    Render render;               // of images
+    bool own_traversal = false;  // asks no intersector: runs once on the host and once on the device
     RayMethods<float> in_float;
     RayMethods<double> in_double;
 
@@ -215,14 +219,13 @@ class Cases {
     std::vector<Case> all;
 
     /// A case of images: render(stage, tally) is called with the renderer of every intersector.
-    void images(const std::string& name, const char* exact, const Bound& bound,
-                std::function<void(Stage&, Tally&)> render) {
+    void images(const std::string& name, const char* exact, const Bound& bound, Render render) {
         all.push_back({group + name, exact, bound, {}, std::move(render)});
     }
     /// A case of rays: plan(plan) adds parts with functors of this type (device_run.h says what these are), which are
     /// run for i in [0, count) on every intersector. device_cases.cu lists all types but those of tests.
     template <class Functor, bool on_devices = true>
-    void rays(const std::string& name, const char* exact, const Bound& bound, std::function<void(Plan&)> plan) {
+    void rays(const std::string& name, const char* exact, const Bound& bound, MakePlan plan) {
         Case& one = all.emplace_back(Case{group + name, exact, bound, std::move(plan), {}});
         one.own_traversal = AsksNothing<Functor>;
         one.in_float = methods_of<Functor, float, on_devices>();

@@ -102,8 +102,6 @@ MaterialDescription wood() {
     return paper({0.8, 0.6, 0.3});
 }
 
-using Render = std::function<void(Stage&, Tally&)>;
-
 // ---- bodies that bend light by next to nothing: the picture is that of the paper alone. At each face a new line
 // starts all the same, so that one that starts on the wrong side of a contact is seen.
 

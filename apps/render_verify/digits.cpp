@@ -107,8 +107,6 @@ Writing with_all_digits(Writing writing) {
     return writing;
 }
 
-using Render = std::function<void(Stage&, Tally&)>;
-
 /// `rounds_rest`: the light and the camera, too.
 Render rounded_scene(Build build, bool rounds_rest = false) {
     return [=](Stage& stage, Tally& tally) {

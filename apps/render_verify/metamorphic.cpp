@@ -9,13 +9,13 @@
 #include <random>
 #include <utility>
 
-#include "sequence/backends.h"
 #include "apps/render_verify/metamorphic/rays.h"
 #include "apps/render_verify/metamorphic/scenes.h"
 #include "backend_embree/embree/embree_renderer.h"
-#include "cistula/numerics/fixed_sum.h"
 #include "base/error.h"
+#include "cistula/numerics/fixed_sum.h"
 #include "render/record/film_difference.h"
+#include "sequence/backends.h"
 #include "testing/reference_renderers.h"
 
 namespace cistula::verify {

@@ -75,6 +75,7 @@ void constant_scene(Stage& stage, Tally& tally) {
         }
     }
 }
+
 /// Calls `visit` for the sample positions of a pixel.
 template <class Visit>
 void for_each_sample(int width, int height, int k, int x, int y, const Visit& visit) {
@@ -94,16 +95,14 @@ void on_half_plane(Stage& stage, Tally& tally) {
         // Halves: no sample is nearer than 1/15 of a step, and rounding of corners and rays is below 1/1000 of one.
         line.c = between(-5 * width * k, 5 * width * k) / 2 + 0.5;
         const Film film = stage.render(half_plane(line, width * k, false), frame_of(width, height, k));
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) {
-                uint32_t inside = 0;
-                for_each_sample(width, height, k, x, y,
-                                [&](int across, int down) { inside += line.left_of(across, down); });
-                const size_t i = size_t(y * width + x);
-                tally.place = place_of(n, 0, i);
-                tally.expect(film.flags == 0 && film.pixels[i].hits == inside);
-                tally.witness(inside > 0 && inside < uint32_t(k * k));
-            }
+        for_each_pixel(film, [&](size_t i, int x, int y) {
+            uint32_t inside = 0;
+            for_each_sample(width, height, k, x, y,
+                            [&](int across, int down) { inside += line.left_of(across, down); });
+            tally.place = place_of(n, 0, i);
+            tally.expect(film.flags == 0 && film.pixels[i].hits == inside);
+            tally.witness(inside > 0 && inside < uint32_t(k * k));
+        });
     }
 }
 void shared_border(Stage& stage, Tally& tally) {
@@ -120,18 +119,16 @@ void shared_border(Stage& stage, Tally& tally) {
         const FrameSettings settings = frame_of(width, height, k);
         const Film left = stage.render(half_plane(line, width * k, false), settings);
         const Film right = stage.render(half_plane(line, width * k, true), settings);
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) {
-                const size_t i = size_t(y * width + x);
-                tally.place = place_of(n, 0, i);
-                tally.expect(left.flags == 0 && right.flags == 0 &&
-                             left.pixels[i].hits + right.pixels[i].hits == uint32_t(k * k));
-                for_each_sample(width, height, k, x, y, [&](int across, int down) {
-                    tally.witness(line.a * across + line.b * down == line.c);
-                });
-            }
+        for_each_pixel(left, [&](size_t i, int x, int y) {
+            tally.place = place_of(n, 0, i);
+            tally.expect(left.flags == 0 && right.flags == 0 &&
+                         left.pixels[i].hits + right.pixels[i].hits == uint32_t(k * k));
+            for_each_sample(width, height, k, x, y,
+                            [&](int across, int down) { tally.witness(line.a * across + line.b * down == line.c); });
+        });
     }
 }
+
 // ---- pictures of one pixel, strips of 65,536 pixels, fields of view from almost 0 to almost 180 degrees
 
 /// A picture of one pixel with k x k samples takes the same rays as one of k x k pixels. The sums have fewer bits for
@@ -153,15 +150,13 @@ void one_pixel(Stage& stage, Tally& tally) {
                 // Each pixel's own rounding down counts as a number of one ray.
                 for (int c = 0; c < 3; ++c) sums[c] += other.radiance[c] >> shift;
             }
-            PixelRecord middle = pixel;  // compared except for its sums
-            middle.hits = chosen.hits;
-            middle.rays = chosen.rays;
+            PixelRecord middle = chosen;  // what is no sum must be that of the pixel in the middle
+            middle.id = pixel.id;
+            middle.z = pixel.z;
             bool holds = one.flags == 0 && many.flags == 0 && pixel.hits == hits && pixel.rays == rays;
             for (int c = 0; c < 3; ++c) {
                 holds &= magnitude(sums[c] - pixel.radiance[c]) <= int64_t(3 * rays);
-                middle.radiance[c] = chosen.radiance[c];
-                middle.pruned[c] = chosen.pruned[c];
-                middle.cut[c] = chosen.cut[c];
+                middle.normal[c] = pixel.normal[c];
             }
             tally.expect(holds && same_pixel(middle, chosen));
             tally.witness(k > 1 && pixel.hits > 0);
@@ -208,15 +203,14 @@ void wide_fields(Stage& stage, Tally& tally) {
             scene.camera.field_of_view = degrees;
             scene.camera.position.z = half_width / std::tan(degrees * (pi / 360));
             const Film film = stage.render(scene, frame_of(width, height));
-            for (int y = 0; y < height; ++y)
-                for (int x = 0; x < width; ++x) {
-                    // Lines go by even numbers, samples have odd ones: the nearest are 2^-12 of the picture off, so
-                    // that a tangent off by 2^-10 shows; 20 roundings of 2^-24, of numbers up to 3, do not.
-                    const bool inside = line.left_of(2 * x + 1 - width, 2 * y + 1 - height);
-                    const PixelRecord& pixel = film.pixels[size_t(y * width + x)];
-                    tally.place = place_of(field, number, size_t(y * width + x));
-                    tally.expect(film.flags == 0 && pixel.hits == (inside ? 1u : 0u) && (pixel.id == 1) == inside);
-                }
+            // Lines go by even numbers, samples have odd ones: the nearest are 2^-12 of the picture off, so that a
+            // tangent off by 2^-10 shows; 20 roundings of 2^-24, of numbers up to 3, do not.
+            for_each_pixel(film, [&](size_t i, int x, int y) {
+                const bool inside = line.left_of(2 * x + 1 - width, 2 * y + 1 - height);
+                const PixelRecord& pixel = film.pixels[i];
+                tally.place = place_of(field, number, i);
+                tally.expect(film.flags == 0 && pixel.hits == (inside ? 1u : 0u) && (pixel.id == 1) == inside);
+            });
             ++number;
         }
         ++field;

@@ -92,7 +92,7 @@ void room_touched(Arrangement& to, Draw& draw) {
     if (draw.one_in(2)) to.hidden.push_back({box({-6, -6, 6}, {6, 6, 7}), to.second});
 }
 
-std::function<void(Stage&, Tally&)> as_sheets(Arrange arrange) {
+Render as_sheets(Arrange arrange) {
     return [=](Stage& stage, Tally& tally) {
         for (uint64_t i = 0; i < scenes(stage); ++i) {
             Draw draw(i, 52);
@@ -107,7 +107,7 @@ std::function<void(Stage&, Tally&)> as_sheets(Arrange arrange) {
         }
     };
 }
-std::function<void(Stage&, Tally&)> without_bodies(Arrange arrange) {
+Render without_bodies(Arrange arrange) {
     return [=](Stage& stage, Tally& tally) {
         Draw draw(0, 52);
         Arrangement arrangement;

@@ -7,8 +7,8 @@
 
 #include "apps/render_verify/case.h"
 #include "cistula/model/effects.h"
-#include "scene/description/camera_path.h"
 #include "render/record/film_picture.h"
+#include "scene/description/camera_path.h"
 
 namespace cistula::verify {
 

@@ -98,7 +98,7 @@ SceneDescription wound_as_it_comes(const Pieces& pieces, uint64_t inward, Draw& 
     return scene;
 }
 
-std::function<void(Stage&, Tally&)> wound(MakePieces make) {
+Render wound(MakePieces make) {
     return [=](Stage& stage, Tally& tally) {
         for (uint64_t i = 0; i < scenes(stage, 8, 1); ++i) {
             Draw draw(i, 53);
@@ -124,7 +124,7 @@ void triangles_at_random(Stage& stage, Tally& tally) {
         expect_same_picture(stage, tally, written(wound_as_it_comes(one, 0, draw), writing), expected, i);
     }
 }
-std::function<void(Stage&, Tally&)> without_the_last(MakePieces make) {
+Render without_the_last(MakePieces make) {
     return [=](Stage& stage, Tally& tally) {
         Draw draw(0, 53);
         Pieces pieces = make(draw);
@@ -194,7 +194,7 @@ double light_through(const SceneDescription& scene, const Slabs& slabs, const dv
 // u. Each is rounded to 2^-32 (rules 6).
 constexpr Bound bound_of_absorption = at_most(0x1p-14, 0x1p-28, "of 1");
 
-std::function<void(Stage&, Tally&)> absorption(bool in_shadow) {
+Render absorption(bool in_shadow) {
     return [=](Stage& stage, Tally& tally) {
         for (uint64_t i = 0; i < scenes(stage); ++i) {
             Draw draw(i, 53);

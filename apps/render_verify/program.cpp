@@ -7,13 +7,13 @@
 #include <chrono>
 
 #include "apps/common/command_line.h"
-#include "sequence/run_files.h"
 #include "apps/common/step_progress.h"
 #include "apps/render_verify/report.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/suggest.h"
 #include "sequence/backends.h"
+#include "sequence/run_files.h"
 
 namespace cistula::verify {
 namespace {

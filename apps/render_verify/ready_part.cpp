@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "backend_embree/embree/embree_intersector.h"
-#include "cistula/traversal/brute.h"
 #include "base/default_rounding.h"
+#include "cistula/traversal/brute.h"
 
 namespace cistula::verify {
 namespace {
@@ -111,7 +111,7 @@ Tally ReadyPart<Real>::tally(IntersectorKind by, const RayMethods<Real>& methods
         all = tbb::parallel_reduce(
             blocks(count), Tally(),
             [&](const auto& range, Tally tally) {
-                use_default_rounding();
+                const DefaultRounding rounding;
                 methods.tally(functor, setup_, intersector, range.begin(), range.end(), place, tally);
                 return tally;
             },
@@ -132,7 +132,7 @@ std::vector<uint64_t> ReadyPart<Real>::words(IntersectorKind by, const RayMethod
     std::vector<uint64_t> words(count);
     with_intersector(by, [&](const CalledIntersector<Real>& intersector) {
         tbb::parallel_for(blocks(count), [&](const auto& range) {
-            use_default_rounding();
+            const DefaultRounding rounding;
             methods.words(functor, setup_, intersector, range.begin(), range.end(), words.data());
         });
     });

@@ -7,7 +7,6 @@ namespace size {
 namespace {
 
 using Kinds = std::vector<PlatonicSolid>;
-using Render = std::function<void(Stage&, Tally&)>;
 
 /// What a view shows beside the body's shadow.
 enum class Look { shadow, reflection, mirror, glass, texture };

@@ -54,7 +54,7 @@ struct Room {
 // lamp that is 1/4 away or more changes by less than 2^11 u of itself. Sums have 2^-24 of it.
 constexpr Bound bound_of_light = at_most(0x1p-13, 0x1p-24, "of the light");
 
-std::function<void(Stage&, Tally&)> in_room(int lamps) {
+Render in_room(int lamps) {
     return [=](Stage& stage, Tally& tally) {
         for (uint64_t i = 0; i < scenes(stage); ++i) {
             Draw draw(i, 55);
@@ -112,7 +112,7 @@ void with_target_error(Stage& stage, Tally& tally) {
 }
 
 /// A sun at its distance in meters, seen, with its falloff: on a floor of ten meters, and in mirrors.
-std::function<void(Stage&, Tally&)> at_sun_distance(bool mirrors) {
+Render at_sun_distance(bool mirrors) {
     return [=](Stage& stage, Tally& tally) {
         for (uint64_t i = 0; i < scenes(stage, 6, 1); ++i) {
             Draw draw(i, 55);

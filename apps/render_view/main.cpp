@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include "apps/common/command_line.h"
-#include "sequence/render_request.h"
 #include "base/file_bytes.h"
 #include "image/picture/picture_io.h"
-#include "sequence/output_name.h"
 #include "layer_choice.h"
 #include "options.h"
+#include "sequence/output_name.h"
+#include "sequence/render_request.h"
 #include "sheet.h"
 
 namespace cistula {

@@ -1,6 +1,6 @@
 #include "backend_embree/embree/embree_device.h"
 
-#include "scene/trees/embree_errors.h"
+#include "scene/trees/embree_handles.h"
 
 namespace cistula {
 

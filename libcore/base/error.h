@@ -1,6 +1,7 @@
 // Errors that a user can act on. Programs print them as one line on standard error and return the exit code.
 #pragma once
 
+#include <atomic>
 #include <stdexcept>
 #include <string_view>
 
@@ -28,6 +29,22 @@ class Error : public std::runtime_error {
 
   private:
     ExitCode code_;
+};
+
+/// A flag by which any thread stops long work, which looks at it every few milliseconds. Without a flag nothing stops.
+class StopSignal {
+  public:
+    StopSignal() = default;
+    StopSignal(const std::atomic<bool>& flag) : flag_(&flag) {}
+
+    bool is_given() const { return flag_ && *flag_; }
+    /// Throws Error (interrupted) if the signal is given.
+    void check() const {
+        if (is_given()) throw Error(ExitCode::interrupted, "interrupted; nothing was written");
+    }
+
+  private:
+    const std::atomic<bool>* flag_ = nullptr;
 };
 
 }  // namespace cistula

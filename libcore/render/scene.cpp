@@ -11,8 +11,8 @@ Scene::Scene(SceneSource source, const std::optional<Precision>& wanted)
         compile<float>(std::move(source));
 }
 
-Scene::Scene(const SceneDescription& description, const std::optional<Precision>& wanted)
-    : Scene(gather_scene(description), wanted) {}
+Scene::Scene(const SceneDescription& description, const std::optional<Precision>& wanted, StopSignal stop)
+    : Scene(gather_scene(description, stop), wanted) {}
 
 template <class Real>
 void Scene::compile(SceneSource source) {

@@ -22,7 +22,8 @@ class Scene {
     /// Compiles in the wanted precision; without one, in float unless a part of the scene is too small for it. The
     /// description that the source is of must outlive the call. Throws Error with the place.
     explicit Scene(SceneSource source, const std::optional<Precision>& wanted = {});
-    explicit Scene(const SceneDescription& description, const std::optional<Precision>& wanted = {});
+    explicit Scene(const SceneDescription& description, const std::optional<Precision>& wanted = {},
+                   StopSignal stop = {});
 
     /// Calls a function with the std::shared_ptr<const CompiledScene<Real>> of the precision.
     template <class Function>
@@ -37,8 +38,9 @@ class Scene {
     const std::vector<std::string>& warnings() const { return warnings_; }
     const SceneNames& names() const { return names_; }
 
-    const std::string& hash() const {
-        return visit([](const auto& scene) -> const std::string& { return scene->hash; });
+    /// What tells it from other scenes.
+    const FrameHashes& hashes() const {
+        return visit([](const auto& scene) -> const FrameHashes& { return scene->hashes; });
     }
     /// Mask of the effects that the scene requires.
     uint32_t effects() const {

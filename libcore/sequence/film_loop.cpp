@@ -160,7 +160,7 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
 }  // namespace
 
 Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
-    Attributes attributes = header_attributes(job.scene_hash, job.settings, job.precision, camera);
+    Attributes attributes = header_attributes(job.hashes, job.settings, job.precision, camera);
     add_film_attributes(job.scene.film, attributes);
     return attributes;
 }

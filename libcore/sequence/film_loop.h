@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "render/renderer.h"
+#include "scene/description/description.h"
+#include "sequence/film_events.h"
 #include "sequence/frame_list.h"
 #include "sequence/frame_writer.h"
 #include "sequence/output_name.h"
-#include "sequence/stats.h"
-#include "scene/description/description.h"
-#include "sequence/film_events.h"
 #include "sequence/render_request.h"
+#include "sequence/stats.h"
 
 namespace cistula {
 
@@ -24,7 +24,7 @@ class SnapshotRequests;
 struct FilmJob {
     const RenderRequest& request;
     const SceneDescription& scene;
-    const std::string& scene_hash;
+    const FrameHashes& hashes;
     const FrameSettings& settings;
     const OutputName& output;
     const OutputName& preview;  // empty text: none

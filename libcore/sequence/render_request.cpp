@@ -9,15 +9,15 @@
 #include <stdexcept>
 
 #include "base/option_text.h"
-#include "sequence/frame_list.h"
-#include "render/layer_list.h"
+#include "base/suggest.h"
 #include "cistula/model/effects.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
-#include "base/suggest.h"
 #include "render/frame_settings.h"
+#include "render/layer_list.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
+#include "sequence/frame_list.h"
 
 namespace cistula {
 namespace {
@@ -248,7 +248,7 @@ std::vector<RequestKey> make_keys() {
          set_space,
          [](const Request& r) { return std::string(r.channels.space->id); }},
         choice("compression", compression_names,
-               {"--compression", "NAME", "none, rle, zips, zip, piz, or with losses dwaa, dwab"},
+               {"--compression", "NAME", fmt::format("{}; those of dwa lose some", fmt::join(compression_names, ", "))},
                of(&Request::channels, &OutputChannels::compression)),
         numeric(number("dwa_level", {0, 1000}),
                 {"--dwa-level", "L", "with dwaa and dwab: 0 to 1000, more is smaller; 45", not_of_suite,

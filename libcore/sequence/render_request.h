@@ -8,14 +8,14 @@
 #include <string_view>
 #include <vector>
 
-#include "sequence/backends.h"
-#include "render/picture_size.h"
-#include "sequence/film_events.h"
-#include "render/record/film_picture.h"
-#include "render/renderer.h"
-#include "render/record/split_picture.h"
 #include "image/view/picture_view.h"
+#include "render/picture_size.h"
+#include "render/record/film_picture.h"
+#include "render/record/split_picture.h"
+#include "render/renderer.h"
 #include "scene/readers/scene_keys.h"
+#include "sequence/backends.h"
+#include "sequence/film_events.h"
 
 namespace cistula {
 
@@ -48,7 +48,7 @@ struct RenderRequest {
 struct KeyWords {
     std::string_view option;       // names on the command line, that of messages last
     std::string_view shape;        // of its value in --help; empty: it has none
-    std::string_view help;         // with the default at its end
+    std::string help;              // with the default at its end
     bool in_suite = false;         // whether a suite.json may have it
     std::string_view attribute{};  // of EXR headers, that tells it
     std::string_view needs{};      // the key that it says something of

@@ -53,7 +53,7 @@ void Snapshots::write() {
             if (camera) part = tiles_.copy();
         }
         if (!camera) return job_.events.remark("no snapshot: no frame is in work");
-        if (job_.options.backend == Backend::cuda)
+        if (job_.request.backend == Backend::cuda)
             return job_.events.remark(fmt::format(
                 "no snapshot: frame {} is on a GPU, which gives its pixels back when all are done", camera->frame));
         if (!part || part->fraction == 0)
@@ -69,12 +69,12 @@ void Snapshots::write(const CameraFrame& camera, PartialFilm part) {
     if (file_kind(path) == FileKind::raw) {
         write_raw_picture(path, to_color(part.film));
     } else {
-        LayeredPicture picture = to_layers(part.film, job_.options.channels);
+        LayeredPicture picture = to_layers(part.film, job_.request.channels);
         clear_others(picture, part.done);
         picture.attributes.merge(attributes_of(job_, camera));
         picture.attributes[snapshot_attribute] = part.fraction;
         set_container_flag(picture);
-        if (job_.options.split == Split::parts)
+        if (job_.request.split == Split::parts)
             write_exr(path, split_by_layer(std::move(picture), Split::parts));
         else
             write_exr(path, picture);

@@ -12,8 +12,8 @@
 #include "render/renderer.h"
 #include "render/target.h"
 #include "sequence/backends.h"
-#include "sequence/render_request.h"
 #include "sequence/frame_list.h"
+#include "sequence/render_request.h"
 
 namespace cistula {
 

@@ -53,7 +53,7 @@ TEST(ControlRegister, IsAsItWasAndChangesNothing) {
     };
     const auto embree = make_embree_renderer<float>(scene);
     const std::function<std::string()> calls[] = {
-        [&] { return compile_scene<float>(description)->hash; },
+        [&] { return compile_scene<float>(description)->hashes.of(0); },
         [&] { return rendered(*make_embree_renderer<float>(scene), settings); },
         [&] { return rendered(*make_embree_renderer<float>(scene, {.always_tree = true}), settings); },
         [&] { return rendered(*make_host_renderer<float>(scene, HostIntersector::bvh), settings); },

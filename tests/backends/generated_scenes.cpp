@@ -107,7 +107,7 @@ class Coverage {
         look_at_places(scene, *compiled);
         for (const std::string& feature : here_) ++scenes_[feature];
         required_ |= compiled->effects;
-        hashes_.insert(compiled->hash);
+        hashes_.insert(compiled->hashes.of(0));
     }
 
     void expect(const std::string& feature, int least) const {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/compile/compiled_scene.h"
 #include "image/reader/picture_reader.h"
+#include "scene/compile/compiled_scene.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
 
@@ -15,10 +15,11 @@ namespace {
 
 using samples::expect_error;
 
-/// An open box with a quad for its floor, as an OBJ and as arrays.
-const std::string obj =
-    "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 1 3\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.25\n"
-    "f 1/1 2/2 3/3 4/4\nf 1/1 2/2 5/5\nf 2/2 3/3 5/5\nf 3/3 4/4 5/5\n";
+/// A pyramid without one side, as a PLY and as arrays.
+const std::string ply =
+    "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nproperty float s\n"
+    "property float t\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0 0 0\n2 0 0 1 0\n2 2 0 1 1\n0 2 0 0 1\n1 1 3 0.5 0.25\n4 0 1 2 3\n3 0 1 4\n3 1 2 4\n3 2 3 4\n";
 
 MeshData arrays() {
     PolygonMesh mesh;
@@ -29,8 +30,8 @@ MeshData arrays() {
     return {{mesh}, {}, {}};
 }
 
-const std::vector<uint8_t> texels = {255, 0, 0, 255, 10, 200, 30, 255, 0, 0, 7, 255, 128, 128, 128, 0,
-                                     1,   2, 3, 4,   5,  6,   7,  8};
+const std::vector<uint8_t> texels = {255, 0,   0,   255, 10, 200, 30, 255, 0, 0, 7, 255,
+                                     128, 128, 128, 0,   1,  2,   3,  4,   5, 6, 7, 8};
 
 TexelArray texel_array() {
     return {3, 2, 4, texels};
@@ -61,10 +62,10 @@ SceneDescription scene_of(const MeshObject& mesh, const TextureDescription& text
 class Assets : public testing::Test {
   protected:
     Assets() {
-        put_bytes(scratch_.file("a.obj"), obj);
+        put_bytes(scratch_.file("a.ply"), ply);
         const std::string head("\3\0\0\0\2\0\0\0", 8);
         put_bytes(scratch_.file("a.data"), head + std::string(texels.begin(), texels.end()));
-        mesh_file.file = scratch_.file("a.obj");
+        mesh_file.file = scratch_.file("a.ply");
         texture_file.file = scratch_.file("a.data");
         mesh_arrays.data = shared(arrays());
         texture_array.texels = shared(texel_array());
@@ -80,7 +81,7 @@ class Assets : public testing::Test {
 TEST_F(Assets, ArraysGiveTheBitsOfFiles) {
     const auto from_files = compile_scene<double>(scene_of(mesh_file, texture_file));
     const auto from_arrays = compile_scene<double>(scene_of(mesh_arrays, texture_array));
-    EXPECT_EQ(from_arrays->hash, from_files->hash);
+    EXPECT_EQ(from_arrays->hashes.of(0), from_files->hashes.of(0));
     EXPECT_EQ(from_arrays->texels, from_files->texels);
     EXPECT_EQ(from_files->texels.size(), 6u);
     EXPECT_EQ(from_arrays->uvs, from_files->uvs);
@@ -106,7 +107,7 @@ TEST_F(Assets, AFileIsReadOnceHoweverManyNameIt) {
     EXPECT_EQ(compiled->textures.size(), 2u);
     EXPECT_EQ(compiled->texels.size(), 6u) << "both textures have the same texels";
     scene.textures[1].texels = texture_array.texels;
-    EXPECT_EQ(compile_scene<float>(scene)->hash, compiled->hash);
+    EXPECT_EQ(compile_scene<float>(scene)->hashes.of(0), compiled->hashes.of(0));
 }
 
 TEST_F(Assets, WrongArraysNameThePlace) {

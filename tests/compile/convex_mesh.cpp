@@ -313,10 +313,10 @@ TEST(ConvexMeshHash, IsThatOfTheMeshInBothPrecisions) {
     for (dvec3& p : mesh.vertices) p = dvec3(Vec3<float>(p));
     test::add_object(scene, mesh, 0);
     test::add_solid(scene, PlatonicSolid::cube, {4, 0, 0});
-    const std::string hash = compile_scene<float>(scene)->hash;
-    EXPECT_EQ(compile_scene<double>(scene)->hash, hash);
+    const std::string hash = compile_scene<float>(scene)->hashes.of(0);
+    EXPECT_EQ(compile_scene<double>(scene)->hashes.of(0), hash);
     std::get<TrianglesObject>(scene.objects[0].shape).keep_triangles = true;
-    EXPECT_NE(compile_scene<float>(scene)->hash, hash);
+    EXPECT_NE(compile_scene<float>(scene)->hashes.of(0), hash);
 }
 
 }  // namespace

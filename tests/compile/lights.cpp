@@ -100,7 +100,7 @@ TYPED_TEST(CompileLights, HiddenOnesLightTheSameAndAreNoSphere) {
     EXPECT_EQ(hidden->scale, 0);  // the square alone is in the scene
     EXPECT_LT(seen->scale, 0);
     EXPECT_LT(hidden->radiance_exponent, 4);  // no glow is in the bound
-    EXPECT_NE(seen->hash, hidden->hash);
+    EXPECT_NE(seen->hashes.of(0), hidden->hashes.of(0));
     // In one frame, they light alike.
     scene.frame = FrameOfReference{{0, 0, 0}, -4, 1e7};
     const auto hidden_there = compile_scene<TypeParam>(scene);

@@ -114,8 +114,8 @@ TEST(SceneSyntax, AnyObjectMayHoldAComment) {
 
 TEST(SceneSyntax, CommentsLeaveTheHash) {
     const std::string scene = R"("objects": [{"solid": "cube", "material": "m"}], "materials": {"m": {}}})";
-    EXPECT_EQ(compile_scene<float>(json_scene("{\"$comment\": \"a cube\", " + scene))->hash,
-              compile_scene<float>(json_scene("{" + scene))->hash);
+    EXPECT_EQ(compile_scene<float>(json_scene("{\"$comment\": \"a cube\", " + scene))->hashes.of(0),
+              compile_scene<float>(json_scene("{" + scene))->hashes.of(0));
 }
 
 TEST(SceneSyntax, DeepNestingIsRefusedWithItsPlace) {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "sequence/render_request.h"
 #include "compare/metrics/compare.h"
 #include "render/picture_size.h"
 #include "render/record/film_picture.h"
 #include "sequence/backends.h"
 #include "sequence/frame_list.h"
+#include "sequence/render_request.h"
 
 namespace cistula {
 

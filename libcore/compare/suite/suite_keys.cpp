@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "sequence/render_request.h"
 #include "cistula/model/lattice_settings.h"
 #include "render/picture_size.h"
 #include "sequence/frame_list.h"
+#include "sequence/render_request.h"
 
 namespace cistula {
 namespace {

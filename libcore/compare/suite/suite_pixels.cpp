@@ -46,7 +46,7 @@ Followed follow_pixel(const SuiteCase& one, const SceneDescription& scene, Frame
     followed.picture = to_layers(tree.film, channels);
     round_to_stored(followed.picture);
     followed.text = pixel_text({pixel.x, pixel.y, precision, scene.source, compiled.names(), settings, camera,
-                                std::move(tree), compiled.hash(), ""},
+                                std::move(tree), compiled.hashes().of(frame), ""},
                                false);
     return followed;
 }

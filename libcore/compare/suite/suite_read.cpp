@@ -9,8 +9,8 @@
 #include "compare/suite/suite_keys.h"
 #include "image/color/color_space.h"
 #include "render/layer_list.h"
-#include "sequence/output_name.h"
 #include "scene/readers/json_reader.h"
+#include "sequence/output_name.h"
 
 namespace cistula {
 namespace {

@@ -25,7 +25,7 @@ struct PreparedCase {
     SceneDescription scene;
     FrameSettings settings;
     Precision precision = Precision::single_;
-    std::string scene_hash;
+    FrameHashes hashes;
     std::unique_ptr<Renderer> renderer;
 };
 
@@ -49,8 +49,8 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
     picture = to_layers(film, one.channels, &clamped);
     if (clamped > 0) result.notes.push_back("clamped: " + over_largest_half(clamped));
     round_to_stored(picture);
-    picture.attributes.merge(header_attributes(film, prepared.scene.film, prepared.scene_hash, prepared.settings,
-                                               prepared.precision, camera));
+    picture.attributes.merge(
+        header_attributes(film, prepared.scene.film, prepared.hashes, prepared.settings, prepared.precision, camera));
     result.film_hash = film_hash(film);
     return result;
 }
@@ -65,18 +65,19 @@ FrameSettings settings_of(const SuiteCase& one, const SceneDescription& scene) {
     }
 }
 
-SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend backend, const CudaOptions& cuda) {
+SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend backend, const CudaOptions& cuda,
+                        StopSignal stop) {
     SuiteScene result;
     const auto prepared = std::make_shared<PreparedCase>();
     prepared->one = one;
     prepared->scene = read_scene(one.scene_path(folder));
     prepared->settings = settings_of(one, prepared->scene);
-    const Scene scene(prepared->scene, one.precision);
+    const Scene scene(prepared->scene, one.precision, stop);
     if (!scene.precision_note().empty()) result.notes.push_back(scene.precision_note());
     result.notes.insert(result.notes.end(), scene.warnings().begin(), scene.warnings().end());
     require_light_layers(one.channels, *scene.layer_names());
     result.precision = prepared->precision = scene.precision();
-    prepared->scene_hash = scene.hash();
+    prepared->hashes = scene.hashes();
     prepared->renderer = make_renderer(backend, scene, cuda);
     result.render = [prepared](int frame, RenderProgress& progress) {
         return render_prepared(*prepared, frame, progress);

@@ -27,7 +27,8 @@ struct SuiteScene {
 };
 
 /// Reads and compiles the scene of a case. Throws Error.
-SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend backend, const CudaOptions& cuda);
+SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend backend, const CudaOptions& cuda,
+                        StopSignal stop = {});
 
 /// The settings of a case's frames. Throws Error (usage) if its crop leaves the frame.
 FrameSettings settings_of(const SuiteCase& one, const SceneDescription& scene);

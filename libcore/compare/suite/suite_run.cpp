@@ -118,7 +118,7 @@ class CaseQueue {
         std::unique_lock<std::mutex> device(device_, std::defer_lock);
         if (backend == Backend::cuda) device.lock();  // its memory is for one scene at a time
         try {
-            const SuiteScene scene = prepare_case(one, suite_.folder, backend, on.devices.options);
+            const SuiteScene scene = prepare_case(one, suite_.folder, backend, on.devices.options, progress_.stop);
             for (size_t i = 0; i < results.size(); ++i) {
                 results[i].precision = scene.precision;
                 results[i].notes = scene.notes;

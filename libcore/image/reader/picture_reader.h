@@ -63,7 +63,7 @@ class TextureReader : public GuardedReader {
     /// are an error. Throws Error(ExitCode::file) with the path, and std::bad_alloc.
     ColorPicture read(const std::string& path, ClampedTexels* clamped, std::string_view encoding = {});
 
-    /// The same of an array. Throws Error(ExitCode::usage).
+    /// A texture of an array, in the same way. Throws Error(ExitCode::usage).
     ColorPicture decode(const TexelArray& array, ClampedTexels* clamped, std::string_view encoding = {});
 };
 

@@ -8,7 +8,7 @@
 
 #include "cistula/transport/pixel.h"
 #include "render/record/film.h"
-#include "scene/compile/hull.h"
+#include "scene/compile/compiled_scene.h"
 
 namespace cistula {
 

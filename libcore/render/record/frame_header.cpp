@@ -55,7 +55,7 @@ std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
     return to_floats(rows);
 }
 
-Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
+Attributes header_attributes(const FrameHashes& hashes, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera) {
     Attributes attributes = {
         {"cistula:cameraHash", camera_hash(camera.camera)},
@@ -63,7 +63,7 @@ Attributes header_attributes(const std::string& scene_hash, const FrameSettings&
         {"cistula:depth", settings.depth},
         {"cistula:frame", camera.frame},
         {"cistula:precision", std::string(precision_name(precision))},
-        {"cistula:sceneHash", scene_hash},
+        {"cistula:sceneHash", hashes.of(camera.frame)},
         {"cistula:supersample", settings.grid()},
         {"cistula:time", camera.time},
         {"cistula:version", std::string(CISTULA_VERSION)},
@@ -86,9 +86,9 @@ void add_film_attributes(const FilmDescription& film, Attributes& attributes) {
     if (!film.comments.empty()) attributes["comments"] = film.comments;
 }
 
-Attributes header_attributes(const Film& film, const FilmDescription& description, const std::string& scene_hash,
+Attributes header_attributes(const Film& film, const FilmDescription& description, const FrameHashes& hashes,
                              const FrameSettings& settings, Precision precision, const CameraFrame& camera) {
-    Attributes attributes = header_attributes(scene_hash, settings, precision, camera);
+    Attributes attributes = header_attributes(hashes, settings, precision, camera);
     add_film_attributes(description, attributes);
     if (settings.adaptive()) add_target_attributes(target_report(film, settings), attributes);
     return attributes;

@@ -8,14 +8,14 @@
 #include "image/picture/picture.h"
 #include "render/record/target_report.h"
 #include "render/renderer.h"
+#include "scene/compile/scene_names.h"
 #include "scene/description/camera_path.h"
 
 namespace cistula {
 
 /// The attributes: scene hash, camera hash, version, precision, depth, cutoff, supersample, frame, time, worldToCamera,
-/// worldToNDC, screenWindowWidth, imageCounter. docs/programs/headers.md documents each, with those of
-/// to_layers().
-Attributes header_attributes(const std::string& scene_hash, const FrameSettings& settings, Precision precision,
+/// worldToNDC, screenWindowWidth, imageCounter. docs/programs/headers.md documents each, with those of to_layers().
+Attributes header_attributes(const FrameHashes& hashes, const FrameSettings& settings, Precision precision,
                              const CameraFrame& camera);
 
 /// Adds what the scene says of the film: framesPerSecond, owner and comments, where given.
@@ -23,7 +23,7 @@ void add_film_attributes(const FilmDescription& film, Attributes& attributes);
 
 /// All that the header of a finished frame says beside what to_layers() gives: the above, what the scene says of the
 /// film, and what is proven and estimated of a target error.
-Attributes header_attributes(const Film& film, const FilmDescription& description, const std::string& scene_hash,
+Attributes header_attributes(const Film& film, const FilmDescription& description, const FrameHashes& hashes,
                              const FrameSettings& settings, Precision precision, const CameraFrame& camera);
 
 /// Adds what is proven and estimated of the image: provenTruncation, checkedPixels and offPixels.

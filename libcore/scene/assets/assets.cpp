@@ -20,6 +20,7 @@ auto at_place(const SceneDescription& scene, const std::string& place, const Rea
     try {
         return read();
     } catch (const Error& error) {
+        if (error.code() == ExitCode::interrupted) throw;
         throw scene_error(scene, place, error.what(), error.code());
     }
 }
@@ -65,7 +66,8 @@ ColorPicture checker_picture(const TextureDescription& texture) {
 
 class AssetLoader {
   public:
-    explicit AssetLoader(const SceneDescription& scene) : scene_(scene), reader_(limits_of(scene)) {}
+    AssetLoader(const SceneDescription& scene, StopSignal stop)
+        : scene_(scene), stop_(stop), reader_(limits_of(scene)) {}
 
     SceneAssets load() {
         for (const TextureDescription& texture : scene_.textures)
@@ -99,6 +101,7 @@ class AssetLoader {
         }
         std::shared_ptr<const MeshData>& read = meshes_[std::filesystem::path(mesh->file).lexically_normal()];
         if (!read) {
+            stop_.check();
             read = std::make_shared<const MeshData>(read_mesh(mesh->file));
             check_mesh(*read);
             assets_.files.insert(assets_.files.end(), read->files.begin(), read->files.end());
@@ -122,9 +125,10 @@ class AssetLoader {
         if (!is_finite(texture.repeat.x) || !is_finite(texture.repeat.y))
             throw Error(ExitCode::usage, "the repeat must be finite");
         if (texture.is_checker()) return std::make_shared<const ColorPicture>(checker_picture(texture));
-        std::shared_ptr<const ColorPicture>& read = pictures_[{texture.file, texture.texels.get(), texture.colorspace,
-                                                               texture.strict}];
+        std::shared_ptr<const ColorPicture>& read =
+            pictures_[{texture.file, texture.texels.get(), texture.colorspace, texture.strict}];
         if (read) return read;
+        stop_.check();
         ClampedTexels found;
         ClampedTexels* clamped = texture.strict ? nullptr : &found;
         read = std::make_shared<const ColorPicture>(texture.texels
@@ -138,6 +142,7 @@ class AssetLoader {
     }
 
     const SceneDescription& scene_;
+    const StopSignal stop_;
     TextureReader reader_;
     SceneAssets assets_;
     std::map<std::string, std::shared_ptr<const MeshData>> meshes_;  // by file
@@ -147,8 +152,8 @@ class AssetLoader {
 
 }  // namespace
 
-SceneAssets load_assets(const SceneDescription& scene) {
-    return AssetLoader(scene).load();
+SceneAssets load_assets(const SceneDescription& scene, StopSignal stop) {
+    return AssetLoader(scene, stop).load();
 }
 
 Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text,

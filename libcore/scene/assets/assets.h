@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/description/description.h"
 #include "image/picture/picture.h"
+#include "scene/description/description.h"
 #include "scene/readers/polygon_mesh.h"
 
 namespace cistula {
@@ -23,8 +23,8 @@ struct SceneAssets {
 /// Resolves the meshes and textures of a scene, whether they are files, which are read once each however many objects
 /// name them, or arrays that the description holds. Textures other than .data are read by a child process, the program
 /// cistula-read-picture, which must be found (scene/image/reader/reader_process.h), one after another, so that no more
-/// than their limit is in memory. Throws Error with the place.
-SceneAssets load_assets(const SceneDescription& scene);
+/// than their limit is in memory. Throws Error with the place, and (interrupted).
+SceneAssets load_assets(const SceneDescription& scene, StopSignal stop = {});
 
 /// An error with its place: "scene.json: /objects/2: TEXT".
 Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text,

@@ -60,14 +60,14 @@ GroupBox halve(Tree& tree, const std::vector<GroupBox>& boxes, uint32_t begin, u
 
 }  // namespace
 
-Groups group_triangles(const NormalizedMesh& mesh) {
+Groups group_triangles(const NormalizedMesh& mesh, StopSignal stop) {
     std::vector<RTCBuildPrimitive> primitives(mesh.size());
     for_each_parallel(mesh.size(), [&](uint32_t t) {
         Box box;
         for (const auto& corner : mesh.triangle(t)) box.add(corner);
         primitives[t] = padded_primitive(box, 0, t);
     });
-    return group_neighbors(primitives);
+    return group_neighbors(primitives, stop);
 }
 
 Tree group_tree(const NormalizedMesh& mesh, const Groups& groups) {

@@ -8,7 +8,7 @@
 
 namespace cistula {
 
-Groups group_triangles(const NormalizedMesh& mesh);
+Groups group_triangles(const NormalizedMesh& mesh, StopSignal stop = {});
 
 /// A tree over the groups' boxes, for queries during compilation; its items are group numbers.
 Tree group_tree(const NormalizedMesh& mesh, const Groups& groups);

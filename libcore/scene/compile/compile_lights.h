@@ -7,6 +7,7 @@
 
 #include "cistula/model/scene_view.h"
 #include "scene/compile/clusters.h"
+#include "scene/compile/compiled_scene.h"
 #include "scene/compile/contact_moves.h"
 #include "scene/compile/placed_bodies.h"
 
@@ -69,5 +70,14 @@ bool near_triangle(const std::array<glm::dvec3, 3>& corner, const glm::dvec3& p,
 /// Which light lies on a face of which object, in words for explain_effects; empty if none does.
 std::string light_on_face(const SceneSource& source, const std::vector<NormalizedLight>& lights,
                           const LightFaces& faces);
+
+/// Bound on the rounding in all tests of a light or a ray's line, in units of M.
+inline constexpr double light_slack = 0x1p-14;
+
+/// Sets light_reach, light_square and lights_apart of every solid's first group. A solid without visible lights on its
+/// edges gets radius 0. All reaches are infinite if any light lies on no solid or if there are too many solids to test.
+/// `owners`: for each visible light the convex solid on whose edges it lies, or no_solid.
+template <class Real>
+void reach_edge_lights(CompiledScene<Real>& scene, const std::vector<uint32_t>& owners);
 
 }  // namespace cistula

@@ -22,12 +22,11 @@
 #include "scene/compile/compile_materials.h"
 #include "scene/compile/compile_solids.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/edge_light_reach.h"
 #include "scene/compile/radiance_bound.h"
 #include "scene/compile/required_effects.h"
 #include "scene/compile/scene_hash.h"
 #include "scene/compile/shared_planes.h"
-#include "scene/trees/light_tree.h"
+#include "scene/trees/tree_build.h"
 
 namespace cistula {
 namespace {
@@ -97,7 +96,7 @@ class Compiler {
         find_touching_solids();
         find_isolated_solids();
         explain();
-        scene_.hash = hash_.hex();
+        scene_.hashes = FrameHashes(hash_.hex());
         return std::make_unique<CompiledScene<Real>>(std::move(scene_));
     }
 
@@ -210,9 +209,10 @@ class Compiler {
         PreparedMesh prepared;
         prepared.heights =
             apex_heights(mesh, from.edges.next.empty() ? link_edges(from.mesh) : std::exchange(from.edges, {}));
-        prepared.groups = group_triangles(mesh);
+        source_.stop.check();
+        prepared.groups = group_triangles(mesh, source_.stop);
         prepared.tree = group_tree(mesh, prepared.groups);
-        prepared.faults = check_apexes(mesh, prepared.groups, prepared.tree, prepared.heights);
+        prepared.faults = check_apexes(mesh, prepared.groups, prepared.tree, prepared.heights, source_.stop);
         prepared.box = tbb::parallel_reduce(
             tbb::blocked_range<uint32_t>(0, mesh.size(), 4096), Box(),
             [&](const auto& range, Box box) {
@@ -247,6 +247,7 @@ class Compiler {
                         if (is_mesh(i)) prepared[i - first] = prepare(i);
                     });
                 });
+            source_.stop.check();
             for (uint32_t i = first; i < end; ++i)
                 if (is_mesh(i)) compile_mesh(i, std::move(prepared[i - first]));
         }
@@ -328,7 +329,10 @@ class Compiler {
     void hash_mesh(uint32_t number) {
         const MeshSource& mesh = source_.solids[number].mesh;
         hash_.add(number);
-        for (const dvec3& p : mesh.vertices) hash_.add(normalization_.point(p));
+        for (size_t v = 0; v < mesh.vertices.size(); ++v) {
+            if (v % 65536 == 0) source_.stop.check();
+            hash_.add(normalization_.point(mesh.vertices[v]));
+        }
         hash_.add_bytes(mesh.triangles.data(), mesh.triangles.size_bytes());
         if (source_.solids[number].keep_triangles) hash_.add(1u);
         if (source_.materials[source_.solids[number].material].texture < 0) return;
@@ -504,8 +508,8 @@ class Compiler {
 }  // namespace
 
 template <class Real>
-std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description) {
-    return compile_scene<Real>(gather_scene(description));
+std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description, StopSignal stop) {
+    return compile_scene<Real>(gather_scene(description, stop));
 }
 
 template <class Real>
@@ -513,8 +517,8 @@ std::unique_ptr<CompiledScene<Real>> compile_scene(SceneSource source) {
     return in_default_rounding([&] { return Compiler<Real>(std::move(source)).compile(); });
 }
 
-template std::unique_ptr<CompiledScene<float>> compile_scene(const SceneDescription&);
-template std::unique_ptr<CompiledScene<double>> compile_scene(const SceneDescription&);
+template std::unique_ptr<CompiledScene<float>> compile_scene(const SceneDescription&, StopSignal);
+template std::unique_ptr<CompiledScene<double>> compile_scene(const SceneDescription&, StopSignal);
 template std::unique_ptr<CompiledScene<float>> compile_scene(SceneSource);
 template std::unique_ptr<CompiledScene<double>> compile_scene(SceneSource);
 

@@ -1,18 +1,35 @@
 // Compiles a description into the flat arrays that the shading code reads.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "cistula/model/scene_view.h"
-#include "scene/compile/effect_reason.h"
-#include "scene/compile/hull.h"
+#include "cistula/numerics/vec.h"
+#include "render/record/film_layers.h"
+#include "render/record/frame_header.h"
 #include "scene/compile/scene_names.h"
 #include "scene/description/coordinate_rounding.h"
 #include "scene/description/description.h"
 
 namespace cistula {
+
+/// All points within distance `reach` of the convex hull of `points`, in the frame of reference.
+struct Hull {
+    std::vector<Vec3<double>> points;
+    double reach = 0;
+};
+
+/// Whether a scene needs one effect. `because` names the material, object or light that requires it, or says that none
+/// does.
+struct EffectReason {
+    uint32_t effect = 0;  // one bit of Effect
+    bool needed = false;
+    std::string because;
+};
 
 /// A scene in its frame of reference, in one precision. Owns the arrays that view() points to; immutable once compiled.
 template <class Real>
@@ -45,8 +62,8 @@ struct CompiledScene {
     int radiance_exponent = 0;                 // radiances are those of the scene * 2^-radiance_exponent
     uint32_t effects = 0;                      // exactly those that the scene requires (effects.h)
     std::vector<EffectReason> effect_reasons;  // one per effect: needed or not, and because of what
-    std::string hash;  // of everything that affects the image except camera and settings; equal in both precisions
-    std::vector<std::string> solid_names;  // a name per solid, for messages and the id layer
+    FrameHashes hashes;                        // equal in both precisions
+    std::vector<std::string> solid_names;      // a name per solid, for messages and the id layer
     std::shared_ptr<const LayerNames> layer_names = std::make_shared<const LayerNames>();
     std::vector<std::string> warnings;  // degenerate triangles left out, open meshes taken as sheets, ...
 
@@ -54,9 +71,9 @@ struct CompiledScene {
     size_t memory() const;  // bytes of all arrays
 };
 
-/// Loads a description's assets and compiles it. Throws Error with the place.
+/// Loads a description's assets and compiles it. Throws Error with the place, and (interrupted).
 template <class Real>
-std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description);
+std::unique_ptr<CompiledScene<Real>> compile_scene(const SceneDescription& description, StopSignal stop = {});
 
 /// The tree over primitives that bvh.h traverses (Embree's builder). quality: 0 quick, 1 the builder's best.
 struct PrimitiveTree {

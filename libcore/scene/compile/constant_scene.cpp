@@ -2,7 +2,6 @@
 
 #include "base/default_rounding.h"
 #include "scene/compile/scene_copies.h"
-#include "scene/compile/shadow_plan.h"
 
 namespace cistula {
 namespace {

@@ -30,4 +30,10 @@ std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& scene
 template <class Real>
 bool fits_constant_scene(const SceneView<Real>& scene);
 
+/// Fills `plan` for a view readable here that belongs to a ConstantScene. Conservative: it leaves out no primitive that
+/// a shadow ray's test could accept, and marks no light as lying beyond a solid that a ray from inside could reach
+/// unhindered.
+template <class Real>
+void plan_shadows(const SceneView<Real>& scene, ShadowPlan& plan);
+
 }  // namespace cistula

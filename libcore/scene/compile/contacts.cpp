@@ -13,7 +13,7 @@
 #include "cistula/geometry/ray.h"
 #include "scene/compile/contact_moves.h"
 #include "scene/compile/plane_sets.h"
-#include "scene/description/weld.h"
+#include "scene/description/mesh_source.h"
 
 namespace cistula {
 namespace {

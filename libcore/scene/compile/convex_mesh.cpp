@@ -6,7 +6,7 @@
 #include "cistula/geometry/ray.h"
 #include "cistula/lights/edge_lights.h"
 #include "scene/compile/normalized_mesh.h"
-#include "scene/description/weld.h"
+#include "scene/description/mesh_source.h"
 
 namespace cistula {
 namespace {

@@ -1,4 +1,3 @@
-#include "scene/compile/doubled_triangles.h"
 
 #include <algorithm>
 #include <tuple>

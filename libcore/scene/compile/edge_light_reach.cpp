@@ -1,4 +1,4 @@
-#include "scene/compile/edge_light_reach.h"
+#include "scene/compile/compile_lights.h"
 
 #include <algorithm>
 #include <cmath>

@@ -62,14 +62,12 @@ Mask passes_through(const Vectors& from, const Vectors& to, const Vectors& q0, c
     return ((a >= zero) & (b >= zero) & (c >= zero)) | ((a <= zero) & (b <= zero) & (c <= zero));
 }
 
-/// Some triangles as they lie to another, the base of tetrahedra.
-struct PlacedBlock {
-    PlacedBlock(const std::array<dvec3, 3>& base, const dvec3& unit_normal, const LaneVectors<Numbers> (&at)[3],
-                int number)
-        : count(number) {
+/// Corners of some triangles as they lie to another triangle, the base of tetrahedra.
+struct PlacedCorners {
+    /// `used`: the lanes that hold a triangle.
+    PlacedCorners(const std::array<dvec3, 3>& base, const dvec3& unit_normal, const LaneVectors<Numbers> (&at)[3],
+                  uint32_t used) {
         for (int k = 0; k < 3; ++k) corner[k] = at[k].all();
-        normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-        middle = (corner[0] + corner[1] + corner[2]) / Numbers(3);
         const Vectors b[3] = {spread<Numbers>(base[0]), spread<Numbers>(base[1]), spread<Numbers>(base[2])};
         for (Mask& one : touched) one = Mask(false);
         Mask above(false), below(false);
@@ -85,17 +83,28 @@ struct PlacedBlock {
             above |= own & (over > Numbers(0));
             below |= own & (over < Numbers(0));
         }
-        for (int i = 0; i < 3; ++i) base_volume[i] = dot(b[i] - corner[0], normal);
-        const Mask used = Mask::first(count);
-        rises[0] = (below & used).bits();
-        rises[1] = (above & used).bits();
+        rises[0] = below.bits() & used;
+        rises[1] = above.bits() & used;
     }
 
-    int count;          // of lanes in use
     uint32_t rises[2];  // lanes with a corner over the base, on each side of it
-    Vectors corner[3], normal, middle;
-    Mask touched[3];         // by a corner of the triangle: each corner of the base
-    Mask off_side[3][3];     // each corner of the triangle is at neither end of the base's edge opposite corner i
+    Vectors corner[3];
+    Mask touched[3];      // by a corner of the triangle: each corner of the base
+    Mask off_side[3][3];  // each corner of the triangle is at neither end of the base's edge opposite corner i
+};
+
+/// What the exact test needs, of the first `count` lanes.
+struct PlacedBlock : PlacedCorners {
+    PlacedBlock(const std::array<dvec3, 3>& base, const dvec3& unit_normal, const LaneVectors<Numbers> (&at)[3],
+                int number)
+        : PlacedCorners(base, unit_normal, at, (1u << number) - 1), count(number) {
+        normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+        middle = (corner[0] + corner[1] + corner[2]) / Numbers(3);
+        for (int i = 0; i < 3; ++i) base_volume[i] = dot(spread<Numbers>(base[size_t(i)]) - corner[0], normal);
+    }
+
+    int count;
+    Vectors normal, middle;
     Numbers base_volume[3];  // of each corner of the base, over the triangle
 };
 
@@ -104,6 +113,24 @@ class ApexView {
   public:
     ApexView(const std::array<dvec3, 3>& base, const dvec3& unit_normal)
         : corner_(base), centroid_((base[0] + base[1] + base[2]) / 3.0), up_(unit_normal) {}
+
+    /// Which of some triangles lie beyond one of the tetrahedron's sides, but for corners at the ends of its edge: they
+    /// do not intersect the tetrahedron, nor any that is lower.
+    uint32_t parted_from(const PlacedCorners& q, float height) {
+        set_height(height);
+        const Numbers zero(0);
+        const Vectors apex = spread<Numbers>(apex_);
+        const Vectors from_apex[3] = {q.corner[0] - apex, q.corner[1] - apex, q.corner[2] - apex};
+        Mask parted(false);
+        for (int i = 0; i < 3; ++i) {
+            if (within_[i] == 0) continue;
+            const Vectors outward = spread<Numbers>(within_[i] > 0 ? -side_[i] : side_[i]);
+            Mask beyond(true);
+            for (int k = 0; k < 3; ++k) beyond &= (!q.off_side[k][i]) | (dot(from_apex[k], outward) > zero);
+            parted |= beyond;
+        }
+        return parted.bits();
+    }
 
     /// Which of some triangles intersect the tetrahedron of that height other than through its base, of those that rise
     /// over it.
@@ -232,17 +259,14 @@ class ApexCheck {
     }
 
     /// Places the triangles around one: all of them, or the first so many. Returns whether these are all.
-    bool place_near(uint32_t t, const std::array<dvec3, 3>& corner, const dvec3& unit_normal, size_t most) {
-        Box box = box_of(corner);
-        const double h = max_or_second(heights_.side[0][t], heights_.side[1][t]);
-        box.low -= dvec3{h};
-        box.high += dvec3{h};
+    bool place_near(uint32_t t, const Box& reach, const std::array<dvec3, 3>& corner, const dvec3& unit_normal,
+                    size_t most) {
         near_.clear();
         LaneVectors<Numbers> at[3] = {};
         size_t found = 0;
         bool all = true;
         for (const NeighborBlock& block : around_)
-            for_each_lane(meet(box, block), [&](int from) {
+            for_each_lane(meet(reach, block), [&](int from) {
                 if (block.number[from] == t) return;
                 if (found == most) {
                     all = false;
@@ -256,9 +280,37 @@ class ApexCheck {
         return all && all_around_;
     }
 
+    /// Whether all triangles around one lie beyond a side of its tetrahedra, as they do in most places of most meshes,
+    /// and could be looked at for that cost.
+    bool is_free(uint32_t t, const Box& reach, const std::array<dvec3, 3>& corner, const dvec3& unit_normal,
+                 size_t most_cost) const {
+        if (!all_around_) return false;
+        ApexView view[2] = {{corner, -unit_normal}, {corner, unit_normal}};
+        size_t cost[2] = {0, 0};
+        for (const NeighborBlock& block : around_) {
+            uint32_t near = meet(reach, block).bits();
+            for (int lane = 0; lane < width; ++lane)
+                if (block.number[lane] == t) near &= ~(1u << lane);
+            if (near == 0) continue;
+            const PlacedCorners q(corner, unit_normal, block.corner, near);
+            for (size_t side = 0; side < 2; ++side) {
+                const float height = heights_.side[side][t];
+                const uint32_t rising = height > 0 ? q.rises[side] : 0;
+                cost[side] += size_t(std::popcount(near)) + cost_of_test * size_t(std::popcount(rising));
+                if (rising != 0 && (rising & ~view[side].parted_from(q, height)) != 0) return false;
+            }
+        }
+        return cost[0] <= most_cost && cost[1] <= most_cost;
+    }
+
     void check_triangle(uint32_t t, const std::array<dvec3, 3>& corner, const dvec3& unit_normal, size_t most_cost,
                         ApexFaults& faults) {
-        const bool all_placed = place_near(t, corner, unit_normal, most_cost);
+        Box reach = box_of(corner);
+        const double h = max_or_second(heights_.side[0][t], heights_.side[1][t]);
+        reach.low -= dvec3{h};
+        reach.high += dvec3{h};
+        if (is_free(t, reach, corner, unit_normal, most_cost)) return;
+        const bool all_placed = place_near(t, reach, corner, unit_normal, most_cost);
         for (int side = 0; side < 2; ++side) {
             ApexView view(corner, side ? unit_normal : -unit_normal);
             Lowering at{heights_.side[side][t]};
@@ -333,7 +385,8 @@ class ApexCheck {
 
 }  // namespace
 
-ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights) {
+ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights,
+                        StopSignal stop) {
     // First every side may take an equal share of the work. Groups that need more, if they are few, share as much
     // again.
     const size_t most_work = 800 * std::max<size_t>(mesh.size(), 100'000);
@@ -341,13 +394,13 @@ ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const 
     const ApexLimits first_limits{equal_share, equal_share};
     const ApexHeights initial = heights;
     std::vector<ApexFaults> faults(groups.size());
-    const auto check = [&](const auto& range, const ApexLimits& limits, const auto& group_at) {
+    const auto check = [&](uint32_t first, uint32_t end, const ApexLimits& limits) {
+        stop.check();
         ApexCheck checker(mesh, groups, tree, heights);
-        for (uint32_t i = range.begin(); i != range.end(); ++i)
-            faults[group_at(i)] = checker.check(group_at(i), limits);
+        for (uint32_t g = first; g != end; ++g) faults[g] = checker.check(g, limits);
     };
     tbb::parallel_for(tbb::blocked_range<uint32_t>(0, groups.size(), 64),
-                      [&](const auto& range) { check(range, first_limits, [](uint32_t i) { return i; }); });
+                      [&](const auto& range) { check(range.begin(), range.end(), first_limits); });
 
     std::vector<uint32_t> rest;
     size_t sides = 0;
@@ -363,8 +416,7 @@ ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const 
                 for (int side = 0; side < 2; ++side)
                     heights.side[side][groups.order[i]] = initial.side[side][groups.order[i]];
         const ApexLimits limits{4 * share, share};
-        tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(rest.size()), 1),
-                          [&](const auto& range) { check(range, limits, [&](uint32_t i) { return rest[i]; }); });
+        tbb::parallel_for(size_t(0), rest.size(), [&](size_t i) { check(rest[i], rest[i] + 1, limits); });
     }
     ApexFaults sum;
     for (const ApexFaults& f : faults) {

@@ -32,7 +32,8 @@ struct ApexFaults {
 
 /// Halves heights until no other triangle of the mesh intersects the tetrahedra over a triangle: neither the edges to
 /// the apex nor the sides between them. A triangle that still intersects at the lowest height passes through the base
-/// itself and is ignored. The work is bounded, however tangled the mesh is (decision 0034).
-ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights);
+/// itself and is ignored. The work is bounded, however tangled the mesh is (decision 0034). Throws Error (interrupted).
+ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights,
+                        StopSignal stop = {});
 
 }  // namespace cistula

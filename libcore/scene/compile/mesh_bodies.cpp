@@ -1,4 +1,4 @@
-#include "scene/compile/mesh_bodies.h"
+#include "scene/compile/piece_nesting.h"
 
 #include "cistula/numerics/vec.h"
 #include "scene/trees/tree_build.h"

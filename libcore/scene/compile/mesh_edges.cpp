@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "cistula/numerics/vec.h"
-#include "scene/description/weld.h"
+#include "scene/description/mesh_source.h"
 
 namespace cistula {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "cistula/numerics/vec.h"
-#include "scene/compile/doubled_triangles.h"
 #include "scene/compile/edge_pairs.h"
-#include "scene/compile/mesh_bodies.h"
-#include "scene/description/weld.h"
+#include "scene/compile/mesh_edges.h"
+#include "scene/compile/piece_nesting.h"
+#include "scene/description/mesh_source.h"
 
 namespace cistula {
 namespace {
@@ -36,17 +36,19 @@ struct Shell {
 
 class PieceSearch {
   public:
-    explicit PieceSearch(const MeshSource& mesh) : mesh_(mesh), welded_(weld(mesh.vertices)) {}
+    PieceSearch(const MeshSource& mesh, StopSignal stop) : mesh_(mesh), stop_(stop), welded_(weld(mesh.vertices)) {}
 
     MeshPieces run() {
         bool sheet_found = false;
         MeshPieces sheet;
         for (const bool with_slivers : {false, true}) {
+            stop_.check();
             const Selection all = select(with_slivers);
             if (with_slivers && all.source.size() == sliverless_) break;  // none would seal anything
             if (!with_slivers) sliverless_ = all.source.size();
             MeshPieces found;
             if (try_to_close(all, AtCrowdedEdges::none, found)) return found;
+            stop_.check();
             const std::vector<uint8_t> apart = closed_apart(all);
             const bool any_apart = std::find(apart.begin(), apart.end(), 1) != apart.end();
             if (any_apart && try_to_close(without_doubles(all, apart), AtCrowdedEdges::pairs, found)) return found;
@@ -149,13 +151,16 @@ class PieceSearch {
     bool try_to_close(const Selection& selection, AtCrowdedEdges crowded, MeshPieces& found) const {
         found = {};
         found.faults = selection.faults;
+        stop_.check();
         EdgePairs pairs = pair_edges(mesh_.vertices, selection.corners, crowded);
         found.faults.open_edges = pairs.open;
         found.faults.crowded_edges = pairs.crowded;
         if (!pairs.complete() || selection.source.empty()) return false;
+        stop_.check();
         Shell surface = surface_of(selection, pairs.mate);
         found.faults.one_sided = surface.one_sided;
         if (surface.one_sided) return false;
+        stop_.check();
         measure(selection, surface, found.faults);
         drop_copies(selection, surface, found.faults);
         for (const uint32_t t : pairs.tied)
@@ -165,6 +170,7 @@ class PieceSearch {
             }
         if (surface.pieces.empty()) return false;
         found.closed = true;
+        stop_.check();
         arrange_bodies(selection, surface, found);
         if (crowded == AtCrowdedEdges::none && selection.source.size() == mesh_.triangles.size())
             found.edges.next = std::move(pairs.mate);
@@ -293,7 +299,7 @@ class PieceSearch {
     void arrange_bodies(const Selection& selection, Shell& surface, MeshPieces& found) const {
         std::vector<TriangleCorners> outward(selection.source.size());
         for (uint32_t t = 0; t < outward.size(); ++t) outward[t] = corners(selection, surface, t);
-        found.faults.passing = nest_pieces(mesh_.vertices, outward, surface.pieces);
+        found.faults.passing = nest_pieces(mesh_.vertices, outward, surface.pieces, stop_);
         outward = {};
         for (const MeshPiece& piece : surface.pieces) {
             if (piece.depth != 0) continue;
@@ -319,6 +325,7 @@ class PieceSearch {
     }
 
     const MeshSource& mesh_;
+    const StopSignal stop_;
     const std::vector<uint32_t> welded_;
     size_t sliverless_ = 0;
 };
@@ -352,8 +359,8 @@ std::string MeshFaults::why_not_closed() const {
     return one_sided ? "its two sides are one, as a Klein bottle's" : "no volume";
 }
 
-MeshPieces find_pieces(const MeshSource& mesh) {
-    return PieceSearch(mesh).run();
+MeshPieces find_pieces(const MeshSource& mesh, StopSignal stop) {
+    return PieceSearch(mesh, stop).run();
 }
 
 }  // namespace cistula

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "scene/compile/mesh_edges.h"
 #include "scene/description/mesh_source.h"
 
@@ -40,7 +41,8 @@ struct MeshPieces {
     MeshFaults faults;
 };
 
-/// Finds what a mesh encloses. Never throws for broken meshes; vertices of triangles must be in range.
-MeshPieces find_pieces(const MeshSource& mesh);
+/// Finds what a mesh encloses. Never throws for broken meshes; vertices of triangles must be in range. Throws Error
+/// (interrupted).
+MeshPieces find_pieces(const MeshSource& mesh, StopSignal stop = {});
 
 }  // namespace cistula

@@ -39,7 +39,7 @@ void erase_empty(std::vector<MeshGroup>& groups) {
 
 /// Leaves out of each of some groups the triangles that are not in `kept`, which numbers those of all, one after
 /// another. Where none are left, the first group has the count.
-void keep_in_each(const std::vector<MeshGroup*>& groups, const std::vector<uint32_t>& kept) {
+void keep_in_each(const std::vector<MeshGroup*>& groups, const std::vector<uint32_t>& kept, StopSignal stop) {
     uint32_t first = 0;
     auto next = kept.begin();
     for (MeshGroup* group : groups) {
@@ -59,12 +59,12 @@ void keep_in_each(const std::vector<MeshGroup*>& groups, const std::vector<uint3
         mesh.owned_triangles.resize(left);
         (left > 0 ? mesh : groups.front()->part.mesh).doubled_polygons += count - left;  // which the warning counts
         mesh.view_owned();
-        group->pieces = find_pieces(mesh);
+        group->pieces = find_pieces(mesh, stop);
     }
 }
 
 /// Joins the open groups of one material into the first of them if that closes them.
-void join_open_groups(std::vector<MeshGroup>& groups, bool one_material) {
+void join_open_groups(std::vector<MeshGroup>& groups, bool one_material, StopSignal stop) {
     std::vector<uint8_t> seen(groups.size(), 0);
     for (size_t i = 0; i < groups.size(); ++i) {
         std::vector<MeshGroup*> open;
@@ -78,9 +78,9 @@ void join_open_groups(std::vector<MeshGroup>& groups, bool one_material) {
         }
         if (open.size() < 2) continue;
         MeshSource joined = joined_mesh(meshes);
-        MeshPieces pieces = find_pieces(joined);
+        MeshPieces pieces = find_pieces(joined, stop);
         if (!pieces.closed) {
-            keep_in_each(open, pieces.source);
+            keep_in_each(open, pieces.source, stop);
             continue;
         }
         for (MeshGroup* group : open) group->part.mesh = MeshSource();
@@ -91,9 +91,9 @@ void join_open_groups(std::vector<MeshGroup>& groups, bool one_material) {
 }
 
 /// Joins a closed group to another as a hole in it. False if it does not lie in that one's inside.
-bool join_hole(MeshGroup& outer, MeshGroup& hole) {
+bool join_hole(MeshGroup& outer, MeshGroup& hole, StopSignal stop) {
     MeshSource joined = joined_mesh({&outer.part.mesh, &hole.part.mesh});
-    MeshPieces pieces = find_pieces(joined);
+    MeshPieces pieces = find_pieces(joined, stop);
     const size_t before = outer.pieces.source.size();
     if (!pieces.closed || pieces.source.size() != before + hole.pieces.source.size()) return false;
     for (size_t t = 0; t < hole.pieces.turned.size(); ++t)
@@ -105,7 +105,7 @@ bool join_hole(MeshGroup& outer, MeshGroup& hole) {
 }
 
 /// Joins closed groups that are wound inward to the least group that they lie in.
-void join_holes(std::vector<MeshGroup>& groups, bool one_material) {
+void join_holes(std::vector<MeshGroup>& groups, bool one_material, StopSignal stop) {
     const auto is_inward = [](const MeshGroup& group) { return group.pieces.closed && group.pieces.volume < 0; };
     for (MeshGroup& hole : groups) {
         if (!is_inward(hole)) continue;
@@ -116,7 +116,7 @@ void join_holes(std::vector<MeshGroup>& groups, bool one_material) {
         std::stable_sort(outer.begin(), outer.end(),
                          [](const MeshGroup* a, const MeshGroup* b) { return a->pieces.volume < b->pieces.volume; });
         for (MeshGroup* other : outer)
-            if (join_hole(*other, hole)) break;
+            if (join_hole(*other, hole, stop)) break;
     }
     erase_empty(groups);
 }
@@ -168,15 +168,15 @@ MeshSource part_of(const MeshSource& mesh, const std::vector<TriangleCorners>& t
 
 }  // namespace
 
-std::vector<MeshGroup> join_groups(std::vector<MeshPart> parts, bool one_material) {
+std::vector<MeshGroup> join_groups(std::vector<MeshPart> parts, bool one_material, StopSignal stop) {
     std::vector<MeshGroup> groups;
     for (MeshPart& part : parts) {
-        MeshPieces pieces = find_pieces(part.mesh);
+        MeshPieces pieces = find_pieces(part.mesh, stop);
         groups.push_back({std::move(part), std::move(pieces)});
     }
     if (groups.size() > 1) {
-        join_open_groups(groups, one_material);
-        join_holes(groups, one_material);
+        join_open_groups(groups, one_material, stop);
+        join_holes(groups, one_material, stop);
     }
     return groups;
 }

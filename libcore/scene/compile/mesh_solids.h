@@ -17,7 +17,7 @@ struct MeshGroup {
 /// its material that is not, is joined to it as a hole. Of one material, those that are open are joined if that closes
 /// them; else what an earlier one has, too, is left out. one_material: all of the groups have one, whatever the file
 /// says.
-std::vector<MeshGroup> join_groups(std::vector<MeshPart> parts, bool one_material);
+std::vector<MeshGroup> join_groups(std::vector<MeshPart> parts, bool one_material, StopSignal stop);
 
 /// Adds the solids of a mesh, which is `solid.mesh`, and warnings about it.
 void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces);

@@ -135,8 +135,9 @@ class RayTree {
 
 class Nesting {
   public:
-    Nesting(std::span<const dvec3> vertices, std::span<const TriangleCorners> triangles, std::vector<MeshPiece>& pieces)
-        : vertices_(vertices), triangles_(triangles), pieces_(pieces) {
+    Nesting(std::span<const dvec3> vertices, std::span<const TriangleCorners> triangles, std::vector<MeshPiece>& pieces,
+            StopSignal stop)
+        : vertices_(vertices), triangles_(triangles), pieces_(pieces), stop_(stop) {
         for (const MeshPiece& piece : pieces)
             for (const dvec3& end : {piece.box.low, piece.box.high}) box_.add(end);
         size_ = largest_component(box_.high - box_.low);
@@ -150,6 +151,7 @@ class Nesting {
         const auto for_each_piece = [&](const auto& body) {
             tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(pieces_.size())),
                               [&](const auto& range) {
+                                  stop_.check();
                                   for (uint32_t i = range.begin(); i != range.end(); ++i)
                                       if (!candidates_[i].empty()) body(i);
                               });
@@ -219,6 +221,7 @@ class Nesting {
                 }
         });
         tbb::parallel_for(uint32_t(0), static_cast<uint32_t>(pieces_.size()), [&](uint32_t i) {
+            stop_.check();
             if (wanted[i]) trees_[i] = std::make_unique<RayTree>(points_, triangles_, pieces_[i].triangles);
         });
     }
@@ -332,6 +335,7 @@ class Nesting {
     std::span<const dvec3> vertices_;
     std::span<const TriangleCorners> triangles_;
     std::vector<MeshPiece>& pieces_;
+    const StopSignal stop_;
     Box box_;
     double size_ = 0;
     std::vector<std::vector<uint32_t>> candidates_;
@@ -342,8 +346,8 @@ class Nesting {
 }  // namespace
 
 uint32_t nest_pieces(std::span<const dvec3> vertices, std::span<const TriangleCorners> triangles,
-                     std::vector<MeshPiece>& pieces) {
-    return pieces.size() < 2 ? 0 : Nesting(vertices, triangles, pieces).run();
+                     std::vector<MeshPiece>& pieces, StopSignal stop) {
+    return pieces.size() < 2 ? 0 : Nesting(vertices, triangles, pieces, stop).run();
 }
 
 }  // namespace cistula

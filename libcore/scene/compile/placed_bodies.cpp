@@ -42,6 +42,7 @@ PlacedBodies::PlacedBodies(const SceneSource& source) : normalization(find_norma
     sizes.resize(count);
     std::vector<std::optional<ConvexSolid>> by_planes(count);
     tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+        source.stop.check();
         const SourceSolid& solid = source.solids[i];
         if (solid.platonic)
             by_planes[i] = convex_solid(*solid.platonic, i, normalization);
@@ -51,9 +52,11 @@ PlacedBodies::PlacedBodies(const SceneSource& source) : normalization(find_norma
     std::vector<ConvexSolid> platonic;
     for (std::optional<ConvexSolid>& solid : by_planes)
         if (solid) platonic.push_back(std::move(*solid));
+    source.stop.check();
     contacts = find_contacts(source, normalization, platonic, sizes);
     move_vertices(platonic, contacts);
     tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+        source.stop.check();
         if (!source.solids[i].platonic) by_planes[i] = convex_mesh(source, i, normalization, contacts);
     });
     for (ConvexSolid& solid : platonic) by_planes[solid.solid] = std::move(solid);

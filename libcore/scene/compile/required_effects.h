@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cistula/model/effects.h"
-#include "scene/compile/effect_reason.h"
+#include "scene/compile/compiled_scene.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/description.h"
 

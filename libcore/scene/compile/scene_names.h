@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/compile/scene_source.h"
@@ -18,6 +19,19 @@ struct SceneNames {
     std::vector<Named> materials;       // as CompiledScene::materials
     std::vector<Named> lights;          // as CompiledScene::lights
     std::vector<Named> visible_lights;  // as CompiledScene::visible_lights
+};
+
+/// What tells scenes apart: for each frame a hash of everything that affects its image, except camera and settings.
+class FrameHashes {
+  public:
+    /// Hashes of a scene in which nothing moves: one for all frames.
+    FrameHashes(std::string still = "") : still_(std::move(still)) {}
+
+    const std::string& of([[maybe_unused]] int frame) const { return still_; }
+    bool operator==(const FrameHashes&) const = default;
+
+  private:
+    std::string still_;
 };
 
 /// The names of what layers tell apart, by the numbers of the compiled scene.

@@ -9,6 +9,7 @@
 #include "scene/compile/mesh_solids.h"
 #include "scene/compile/placed_bodies.h"
 #include "scene/description/platonic.h"
+#include "scene/readers/scene_keys.h"
 
 namespace cistula {
 namespace {
@@ -17,51 +18,49 @@ using glm::dvec3;
 
 constexpr size_t most_lights = 1'000'000;  // with those on edges; a short file can ask for any number of these
 
-bool finite_and_not_negative(const dvec3& v) {
-    return is_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
-}
-bool is_share(double a) {
-    return a >= 0 && a <= 1;
-}
-bool finite_and_not_negative(double a) {
-    return is_finite(a) && a >= 0;
-}
+/// Throws for numbers that their keys do not allow; `what` begins the message: "material glass: ".
+class FieldCheck {
+  public:
+    FieldCheck(const SceneDescription& scene, std::string place, const KeyTable& table, std::string what = "")
+        : scene_(scene), place_(std::move(place)), table_(table), what_(std::move(what)) {}
+
+    template <class Field>
+    void operator()(std::string_view name, const Field& field) const {
+        const Key& key = *table_.find(name);
+        if (!allows(key, field)) refuse(std::string(name) + ": expected " + expected_text(key));
+    }
+    /// Throws unless the text is empty.
+    void refuse(const std::string& text) const {
+        if (!text.empty()) throw scene_error(scene_, place_, what_ + text);
+    }
+
+  private:
+    const SceneDescription& scene_;
+    const std::string place_;
+    const KeyTable& table_;
+    const std::string what_;
+};
 
 void check_material(const SceneDescription& scene, const MaterialDescription& m, const std::string& place) {
-    const auto refuse = [&](const std::string& text) {
-        throw scene_error(scene, place, "material " + m.name + " " + text);
-    };
-    if (!finite_and_not_negative(m.color)) refuse("has a color that is negative or not finite");
-    if (!finite_and_not_negative(m.specular_color)) refuse("has a specular color that is negative or not finite");
-    if (!finite_and_not_negative(m.tint) || !is_share(m.tint.x) || !is_share(m.tint.y) || !is_share(m.tint.z))
-        refuse("has a tint outside [0, 1]");
-    if (!finite_and_not_negative(m.absorption)) refuse("has an absorption that is negative or not finite");
-    if (!finite_and_not_negative(m.ambient) || !finite_and_not_negative(m.diffuse) ||
-        !finite_and_not_negative(m.specular) || !finite_and_not_negative(m.exponent))
-        refuse("has a Phong coefficient or exponent that is negative or not finite");
-    if (!is_share(m.reflection) || !is_share(m.transmission) || !(m.reflection + m.transmission <= 1 + 1e-6))
-        refuse("has kr + kt above 1, or one of them outside [0, 1]; their sum must be at most 1");
-    if (!(m.index > 0) || !is_finite(m.index)) refuse("has an index of refraction that is not above 0");
+    const FieldCheck check(scene, place, material_keys, "material " + m.name + ": ");
+    material_fields(m, check);
+    check.refuse(shares_fault(m));
     if (m.texture < -1 || m.texture >= static_cast<int>(scene.textures.size()))
-        refuse("names a texture that does not exist");
+        check.refuse("names a texture that does not exist");
 }
 
-void check_light(const SceneDescription& scene, const dvec3& color, const std::optional<dvec3>& glow, double radius,
-                 bool falloff, const std::string& place) {
-    if (!finite_and_not_negative(color) || !finite_and_not_negative(glow.value_or(dvec3{0})))
-        throw scene_error(scene, place, "a light's color and glow must be finite and not negative");
-    if (!finite_and_not_negative(radius)) throw scene_error(scene, place, "a light's radius must not be negative");
-    if (falloff && !(radius > 0))
-        throw scene_error(scene, place, "a light with falloff needs a radius above 0, where the falloff is clamped");
+template <class Light>
+void check_light(const SceneDescription& scene, const Light& light, const KeyTable& table, const std::string& place) {
+    const FieldCheck check(scene, place, table);
+    light_fields(light, check);
+    check.refuse(falloff_fault(light.falloff, light.radius));
 }
 
 void check_platonic(const SceneDescription& scene, const SolidObject& solid, const std::string& place) {
-    if (!is_finite(solid.center) || !is_finite(solid.rotation))
-        throw scene_error(scene, place, "the center and the rotation must be finite");
-    if (!(solid.radius > 0) || !is_finite(solid.radius)) throw scene_error(scene, place, "the radius must be above 0");
+    solid_fields(solid, FieldCheck(scene, place, solid_keys));
     const EdgeLights& lights = solid.edge_lights;
     if (lights.count < 0) throw scene_error(scene, place, "the number of lights on an edge must not be negative");
-    if (lights.count > 0) check_light(scene, lights.color, lights.glow, lights.radius, lights.falloff, place);
+    if (lights.count > 0) check_light(scene, lights, edge_lights_keys, place);
 }
 
 /// `name`, or one after a place in the file, "object3", if that is empty.
@@ -83,11 +82,10 @@ void make_name_own(MaterialDescription& material, const ObjectDescription& objec
 void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshObject& mesh, const MeshData& data,
               MaterialNames& names) {
     const SceneDescription& scene = *source.description;
-    if (!is_finite(mesh.center) || !is_finite(mesh.rotation) || !is_finite(mesh.scale) || mesh.scale == 0)
-        throw scene_error(scene, object.place, "the center and rotation must be finite, the scale finite and not 0");
+    mesh_fields(mesh, FieldCheck(scene, object.place, mesh_keys));
     for (const std::string& warning : data.warnings)
         source.warnings.push_back(scene_error(scene, object.place, warning).what());
-    std::vector<MeshGroup> groups = join_groups(placed_parts(data, mesh), object.material >= 0);
+    std::vector<MeshGroup> groups = join_groups(placed_parts(data, mesh), object.material >= 0, source.stop);
     if (groups.empty()) throw scene_error(scene, object.place, "there are no triangles; give at least one");
     for (auto& [part, pieces] : groups) {
         SourceSolid solid;
@@ -104,8 +102,8 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
             make_name_own(source.materials.back(), object, mesh.file, names);
         } else {
             throw scene_error(scene, object.place,
-                              "the mesh brings no material of its own" +
-                                  (mesh.data ? "" : " (" + mesh.file + ")") + "; name one with \"material\"");
+                              "the mesh brings no material of its own" + (mesh.data ? "" : " (" + mesh.file + ")") +
+                                  "; name one with \"material\"");
         }
         add_mesh_solids(source, std::move(solid), std::move(pieces));
     }
@@ -133,19 +131,21 @@ std::string name_of(const SourceSolid& solid) {
 
 namespace {
 
-SceneSource gathered_scene(const SceneDescription& description, SceneAssets assets) {
+SceneSource gathered_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop) {
     SceneSource source;
     source.description = &description;
+    source.stop = stop;
     source.materials = description.materials;
     source.files = std::move(assets.files);
     source.pictures = std::move(assets.pictures);
     for (size_t i = 0; i < description.materials.size(); ++i)
         check_material(description, description.materials[i], "/materials/" + std::to_string(i));
-    if (!finite_and_not_negative(description.ambient) || !finite_and_not_negative(description.background))
-        throw scene_error(description, "", "the ambient and background colors must be finite and not negative");
+    const FieldCheck check_scene(description, "", scene_keys);
+    check_scene("ambient", description.ambient);
+    check_scene("background", description.background);
     for (const LightDescription& light : description.lights) {
-        if (!is_finite(light.position)) throw scene_error(description, light.place, "the position must be finite");
-        check_light(description, light.color, light.glow, light.radius, light.falloff, light.place);
+        FieldCheck(description, light.place, light_keys)("position", light.position);
+        check_light(description, light, light_keys, light.place);
     }
 
     MaterialNames material_names;
@@ -155,7 +155,8 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
         if (object.material >= static_cast<int>(description.materials.size()))
             throw scene_error(description, object.place, "names a material that does not exist");
         if (const auto* mesh = std::get_if<MeshObject>(&object.shape)) {
-            std::shared_ptr<const MeshData>& data = assets.meshes[static_cast<size_t>(&object - description.objects.data())];
+            std::shared_ptr<const MeshData>& data =
+                assets.meshes[static_cast<size_t>(&object - description.objects.data())];
             add_mesh(source, object, *mesh, *data, material_names);
             data.reset();
             continue;
@@ -181,7 +182,7 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
             solid.mesh.uvs = triangles.uvs;
             solid.mesh.rounding = coordinate_rounding(triangles.vertices);
             solid.keep_triangles = triangles.keep_triangles;
-            MeshPieces pieces = find_pieces(solid.mesh);
+            MeshPieces pieces = find_pieces(solid.mesh, stop);
             add_mesh_solids(source, std::move(solid), std::move(pieces));
             continue;
         }
@@ -207,8 +208,8 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
 
 }  // namespace
 
-SceneSource gather_scene(const SceneDescription& description, SceneAssets assets) {
-    return in_default_rounding([&] { return gathered_scene(description, std::move(assets)); });
+SceneSource gather_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop) {
+    return in_default_rounding([&] { return gathered_scene(description, std::move(assets), stop); });
 }
 
 }  // namespace cistula

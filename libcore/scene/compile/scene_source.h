@@ -34,25 +34,26 @@ struct PlacedBodies;
 
 struct SceneSource {
     const SceneDescription* description = nullptr;
-    std::vector<MaterialDescription> materials;  // those of the description, then those from mesh files
-    std::vector<SourceSolid> solids;             // in file order
+    std::vector<MaterialDescription> materials;                 // those of the description, then those from mesh files
+    std::vector<SourceSolid> solids;                            // in file order
     std::vector<std::shared_ptr<const ColorPicture>> pictures;  // as SceneAssets has them
     std::vector<std::string> warnings;                          // of meshes and textures
     std::vector<std::string> files;                             // as SceneAssets has them
-    std::shared_ptr<const PlacedBodies> bodies;  // the solids in the scene's frame (placed_bodies.h)
+    StopSignal stop;                                            // ends what is done with it by Error (interrupted)
+    std::shared_ptr<const PlacedBodies> bodies;                 // the solids in the scene's frame (placed_bodies.h)
 };
 
 /// Checks every number that affects the compiled scene, and places the meshes. The assets are the description's, which
 /// must outlive the result. Throws Error with the place.
-SceneSource gather_scene(const SceneDescription& description, SceneAssets assets);
-inline SceneSource gather_scene(const SceneDescription& description) {
-    return gather_scene(description, load_assets(description));
+SceneSource gather_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop = {});
+inline SceneSource gather_scene(const SceneDescription& description, StopSignal stop = {}) {
+    return gather_scene(description, load_assets(description, stop), stop);
 }
 
 template <class Real>
 struct CompiledScene;
 
-/// Compiles a description whose assets are at hand. Throws Error with the place.
+/// Compiles a description whose assets are at hand. Throws Error with the place, and (interrupted).
 template <class Real>
 std::unique_ptr<CompiledScene<Real>> compile_scene(SceneSource source);
 }  // namespace cistula

@@ -1,4 +1,4 @@
-#include "scene/compile/shadow_plan.h"
+#include "scene/compile/constant_scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -88,7 +88,7 @@ struct TrianglesObject {
 struct MeshObject {
     std::string file;                      // PLY or OBJ
     std::shared_ptr<const MeshData> data;  // instead of the file, of a program that has none
-    glm::dvec3 center{0};  // translation, applied last
+    glm::dvec3 center{0};                  // translation, applied last
     double scale = 1;
     glm::dvec3 rotation{0};
     bool keep_triangles = false;

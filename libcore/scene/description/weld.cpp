@@ -1,4 +1,4 @@
-#include "scene/description/weld.h"
+#include "scene/description/mesh_source.h"
 
 #include <tbb/parallel_sort.h>
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "scene/description/weld.h"
+#include "scene/description/mesh_source.h"
 #include "scene/readers/polygon.h"
 
 namespace cistula {

@@ -88,8 +88,7 @@ MeshPart part_of(const PolygonMesh& from, const MeshObject& object) {
     mesh.rounding = placed_rounding(from.vertices, object);
     const Rotation rotation(object.rotation);
     mesh.owned_vertices.reserve(from.vertices.size());
-    for (const dvec3& p : from.vertices)
-        mesh.owned_vertices.push_back(object.center + rotation(object.scale * p));
+    for (const dvec3& p : from.vertices) mesh.owned_vertices.push_back(object.center + rotation(object.scale * p));
     const std::vector<bool> doubled = doubled_polygons(mesh.owned_vertices, from);
     mesh.owned_triangles.reserve(from.size());
     for (size_t i = 0; i < from.size(); ++i) {

@@ -22,7 +22,8 @@ struct PolygonMesh {
     std::vector<glm::dvec2> uvs;    // one per vertex, or none; in MeshData, v counts from the top of the picture
     std::vector<uint32_t> corners;  // of all polygons
     std::vector<size_t> ends;       // of each polygon, in `corners`; none: triangles
-    /// Of the readers: one per corner, or none: they replace `uvs`. Those of the last corners may lack, and are 0.
+    /// One per corner, or none, of the readers alone: they replace `uvs`. Those of the last corners may lack, and are
+    /// 0.
     std::vector<glm::dvec2> corner_uvs;
 
     size_t size() const { return ends.empty() ? corners.size() / 3 : ends.size(); }

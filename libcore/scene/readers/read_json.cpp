@@ -128,23 +128,10 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
 MaterialDescription read_material(const JsonValue& value, const NameIndices& textures) {
     MaterialDescription material;
     JsonObject keys(value, material_keys);
-    keys.read("color", material.color);
     if (keys.has("texture")) material.texture = index_of_name(keys.at("texture"), textures, "texture");
-    keys.read("ambient", material.ambient);
-    keys.read("diffuse", material.diffuse);
-    keys.read("specular", material.specular);
-    keys.read("specular_color", material.specular_color);
-    keys.read("exponent", material.exponent);
-    keys.read("reflection", material.reflection);
-    keys.read("transmission", material.transmission);
-    keys.read("tint", material.tint);
-    keys.read("index", material.index);
-    keys.read("absorption", material.absorption);
-    keys.read("fresnel", material.fresnel);
+    material_fields(material, [&](std::string_view key, auto& field) { keys.read(key, field); });
     keys.finish();
-    const double shares = material.reflection + material.transmission;
-    if (shares > 1 + share_slack)
-        value.fail(fmt::format("reflection + transmission is {}; expected at most 1", number_text(shares)));
+    if (const std::string fault = shares_fault(material); !fault.empty()) value.fail(fault);
     return material;
 }
 
@@ -152,15 +139,12 @@ LightDescription read_light(const JsonValue& value) {
     LightDescription light;
     JsonObject keys(value, light_keys);
     keys.read("position", light.position);
-    keys.read("color", light.color);
-    keys.read("glow", light.glow);
-    keys.read("radius", light.radius);
-    keys.read("visible", light.visible);
+    light_fields(light, [&](std::string_view key, auto& field) { keys.read(key, field); });
     light.falloff = keys.read_choice("falloff") == 1;
     read_light_group(keys, light.group);
     keys.finish();
-    if (light.falloff && light.radius == 0)
-        keys.fail("falloff", "inverse-square needs a 'radius' above 0, within which it stays constant");
+    if (const std::string fault = falloff_fault(light.falloff, light.radius); !fault.empty())
+        keys.fail("falloff", fault);
     light.place = value.place();
     return light;
 }

@@ -32,15 +32,12 @@ EdgeLights read_edge_lights(const JsonValue& value) {
     EdgeLights lights;
     JsonObject keys(value, edge_lights_keys);
     keys.read("count", lights.count);
-    keys.read("color", lights.color);
-    keys.read("glow", lights.glow);
-    keys.read("radius", lights.radius);
-    keys.read("visible", lights.visible);
+    light_fields(lights, [&](std::string_view key, auto& field) { keys.read(key, field); });
     lights.falloff = keys.read_choice("falloff") == 1;
     read_light_group(keys, lights.group);
     keys.finish();
-    if (lights.falloff && lights.radius == 0)
-        keys.fail("falloff", "inverse-square needs a 'radius' above 0, within which it stays constant");
+    if (const std::string fault = falloff_fault(lights.falloff, lights.radius); !fault.empty())
+        keys.fail("falloff", fault);
     return lights;
 }
 
@@ -49,9 +46,7 @@ void read_solid(const JsonValue& value, const ObjectContext& context, ObjectDesc
     JsonObject keys(value, solid_keys);
     read_common(keys, context, object);
     solid.solid = static_cast<PlatonicSolid>(keys.read_choice("solid"));
-    keys.read("center", solid.center);
-    keys.read("radius", solid.radius);
-    keys.read("rotate", solid.rotation);
+    solid_fields(solid, [&](std::string_view key, auto& field) { keys.read(key, field); });
     if (keys.has("edge_lights")) solid.edge_lights = read_edge_lights(keys.at("edge_lights"));
     keys.finish();
     refuse_texture(keys, context, object, "a solid has no uv for it; use triangles with 'uvs' or a mesh");
@@ -121,10 +116,7 @@ void read_mesh(const JsonValue& value, const ObjectContext& context, ObjectDescr
     read_common(keys, context, object);
     keys.read("mesh", mesh.file);
     mesh.file = file_beside_scene(mesh.file, context.base_dir);
-    keys.read("center", mesh.center);
-    keys.read("scale", mesh.scale);
-    keys.read("rotate", mesh.rotation);
-    keys.read("keep_triangles", mesh.keep_triangles);
+    mesh_fields(mesh, [&](std::string_view key, auto& field) { keys.read(key, field); });
     keys.finish();
     object.shape = mesh;
 }

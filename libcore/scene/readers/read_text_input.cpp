@@ -121,10 +121,8 @@ void read_solid(TextTokens& tokens, const InputSolid& input, SceneDescription& s
     solid.radius = tokens.number(name + " radius", range_of(solid_keys, "radius"));
     material.reflection = tokens.number(name + " reflection", range_of(material_keys, "reflection"));
     material.transmission = tokens.number(name + " transmission", range_of(material_keys, "transmission"));
-    const double shares = material.reflection + material.transmission;
-    if (shares > 1 + share_slack)
-        tokens.fail(tokens.line(),
-                    fmt::format("{} reflection + transmission is {}; expected at most 1", name, number_text(shares)));
+    if (const std::string fault = shares_fault(material); !fault.empty())
+        tokens.fail(tokens.line(), fmt::format("{} {}", name, fault));
     if (tokens.one_more_on_line()) {
         const int count = tokens.whole(name + " lights on each edge", range_of(edge_lights_keys, "count"));
         solid.edge_lights = edge_lights(count, input.edge * solid.radius);

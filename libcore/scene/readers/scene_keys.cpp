@@ -219,6 +219,24 @@ std::vector<std::string_view> KeyTable::names() const {
     return list;
 }
 
+bool allows(const Key& key, double value) {
+    return key.range.contains(value);
+}
+
+bool allows(const Key& key, const glm::dvec3& value) {
+    return allows(key, value.x) && allows(key, value.y) && allows(key, value.z);
+}
+
+std::string shares_fault(const MaterialDescription& material) {
+    constexpr double slack = 1e-6;  // as decimals have
+    const double shares = material.reflection + material.transmission;
+    return shares <= 1 + slack ? "" : "reflection + transmission is " + number_text(shares) + "; expected at most 1";
+}
+
+std::string falloff_fault(bool falloff, double radius) {
+    return falloff && !(radius > 0) ? "inverse-square needs a 'radius' above 0, within which it stays constant" : "";
+}
+
 std::string number_text(double value) {
     std::string digits = fmt::format("{}", value);
     if (const size_t plus = digits.find("e+"); plus != std::string::npos) digits.erase(plus + 1, 1);

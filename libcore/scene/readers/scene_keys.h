@@ -1,11 +1,16 @@
-// Tables of all keys of a JSON scene. The reader takes names, ranges and choices from them, and a test compares
-// docs/scene.schema.json and docs/scene.md with them.
+// Tables of all keys of a JSON scene, and the fields that they are about. The reader takes names, ranges and choices
+// from them, the compiler what it allows, and a test compares docs/scene.schema.json and docs/scene.md with them.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "scene/description/description.h"
 
 namespace cistula {
 
@@ -54,8 +59,62 @@ extern const KeyTable scene_keys, film_keys, camera_keys, path_keys, cylindrical
     texture_checker_keys, material_keys, solid_keys, edge_lights_keys, quad_keys, triangles_keys, triangle_list_keys,
     mesh_keys, light_keys, frame_keys;
 
-/// How much shares may add up to beyond 1, as decimals do.
-inline constexpr double share_slack = 1e-6;
+/// Calls visit(key, field) for each field of a material that stands under a key of its own, in the order of these.
+template <class Material, class Visit>
+void material_fields(Material& m, const Visit& visit) {
+    visit("color", m.color);
+    visit("ambient", m.ambient);
+    visit("diffuse", m.diffuse);
+    visit("specular", m.specular);
+    visit("specular_color", m.specular_color);
+    visit("exponent", m.exponent);
+    visit("reflection", m.reflection);
+    visit("transmission", m.transmission);
+    visit("tint", m.tint);
+    visit("index", m.index);
+    visit("absorption", m.absorption);
+    visit("fresnel", m.fresnel);
+}
+
+/// Calls visit(key, field) for each field of a light, or of the lights on edges.
+template <class Light, class Visit>
+void light_fields(Light& light, const Visit& visit) {
+    visit("color", light.color);
+    visit("glow", light.glow);
+    visit("radius", light.radius);
+    visit("visible", light.visible);
+}
+
+/// Calls visit(key, field) for each field of a Platonic solid.
+template <class Platonic, class Visit>
+void solid_fields(Platonic& solid, const Visit& visit) {
+    visit("center", solid.center);
+    visit("radius", solid.radius);
+    visit("rotate", solid.rotation);
+}
+
+/// Calls visit(key, field) for each field of a mesh.
+template <class Mesh, class Visit>
+void mesh_fields(Mesh& mesh, const Visit& visit) {
+    visit("center", mesh.center);
+    visit("scale", mesh.scale);
+    visit("rotate", mesh.rotation);
+    visit("keep_triangles", mesh.keep_triangles);
+}
+
+/// Whether a value may stand under a key.
+bool allows(const Key& key, double value);
+bool allows(const Key& key, const glm::dvec3& value);
+inline bool allows(const Key& key, const std::optional<glm::dvec3>& value) {
+    return !value || allows(key, *value);
+}
+inline bool allows(const Key&, bool) {
+    return true;
+}
+
+/// What is wrong with a material's shares together, or with a light's falloff; empty: nothing.
+std::string shares_fault(const MaterialDescription& material);
+std::string falloff_fault(bool falloff, double radius);
 
 /// A key that every object of a scene may have besides those of its table: a string or an array of strings, ignored.
 inline constexpr std::string_view comment_key = "$comment";

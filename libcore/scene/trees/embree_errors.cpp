@@ -1,4 +1,4 @@
-#include "scene/trees/embree_errors.h"
+#include "scene/trees/embree_handles.h"
 
 #include <new>
 #include <stdexcept>

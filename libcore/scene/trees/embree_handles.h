@@ -7,6 +7,7 @@
 #include <embree4/rtcore.h>
 #else
 #include <embree3/rtcore.h>
+#include <string>
 #endif
 
 namespace cistula {
@@ -21,5 +22,12 @@ using DevicePointer = std::unique_ptr<RTCDeviceTy, ReleaseEmbree>;
 using ScenePointer = std::unique_ptr<RTCSceneTy, ReleaseEmbree>;
 using GeometryPointer = std::unique_ptr<RTCGeometryTy, ReleaseEmbree>;
 using BvhPointer = std::unique_ptr<RTCBVHTy, ReleaseEmbree>;
+
+/// Makes a device. Throws as check_embree() does.
+DevicePointer make_embree_device(const std::string& config);
+
+/// Throws if anything has failed on this thread since the last call: std::bad_alloc, Error (device) with the name of
+/// the operation, `doing`, or std::runtime_error for what is not Embree's own, as a thread that cannot be started.
+void check_embree(RTCDevice device, const std::string& doing);
 
 }  // namespace cistula

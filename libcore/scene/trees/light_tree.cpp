@@ -1,4 +1,4 @@
-#include "scene/trees/light_tree.h"
+#include "scene/trees/tree_build.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "scene/trees/embree_errors.h"
+#include "scene/trees/embree_handles.h"
 
 namespace cistula {
 namespace {
@@ -18,8 +18,10 @@ RTCDevice builder_device() {
     return device;
 }
 
-void* run_builder(RTCBuildArguments& arguments, RTCDevice device) {
+void* run_builder(RTCBuildArguments& arguments, RTCDevice device, StopSignal stop = {}) {
     void* root = rtcBuildBVH(&arguments);
+    if (stop.is_given()) rtcGetDeviceError(device);  // that it was stopped
+    stop.check();
     check_embree(device, "building a tree");
     if (!root) throw Error(ExitCode::device, "Embree: building a tree failed");
     return root;
@@ -39,6 +41,7 @@ float rounded_up(double x) {
 struct GroupLeaves {
     const RTCBuildPrimitive* begin;  // start of the array, which the builder partitions in place
     std::vector<uint64_t> leaves;    // first << 32 | count
+    StopSignal stop;
     std::atomic<uint32_t> leaf_count{0};
 };
 
@@ -52,6 +55,12 @@ void* group_leaf(RTCThreadLocalAllocator, const RTCBuildPrimitive* primitives, s
     auto& leaves = *static_cast<GroupLeaves*>(user);
     leaves.leaves[leaves.leaf_count.fetch_add(1)] = uint64_t(primitives - leaves.begin) << 32 | count;
     return user;
+}
+
+/// Throws when it is to stop, which the builder makes an error of: it does not look at what is returned.
+bool group_progress(void* user, double) {
+    static_cast<GroupLeaves*>(user)->stop.check();
+    return true;
 }
 
 // ---- trees
@@ -148,7 +157,7 @@ QueryBox::QueryBox(const Box& box) {
         low[axis] = rounded_up(box.low[axis]), high[axis] = rounded_down(box.high[axis]);
 }
 
-Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives) {
+Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives, StopSignal stop) {
     Groups groups;
     if (primitives.empty()) return groups;
     if (primitives.size() <= group_size) {  // the builder makes one leaf of so few, in ten times the time
@@ -157,7 +166,7 @@ Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives) {
         groups.first = {0, static_cast<uint32_t>(primitives.size())};
         return groups;
     }
-    GroupLeaves leaves{primitives.data(), std::vector<uint64_t>(primitives.size()), {}};
+    GroupLeaves leaves{primitives.data(), std::vector<uint64_t>(primitives.size()), stop, {}};
     const RTCDevice device = builder_device();
     const BvhPointer bvh(rtcNewBVH(device));
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
@@ -172,8 +181,9 @@ Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives) {
     arguments.setNodeChildren = group_children;
     arguments.setNodeBounds = group_bounds;
     arguments.createLeaf = group_leaf;
+    arguments.buildProgress = group_progress;
     arguments.userPtr = &leaves;
-    run_builder(arguments, device);
+    run_builder(arguments, device, stop);
 
     // Threads finish leaves in any order; sorted by position in the array they are in tree order, neighbors together.
     leaves.leaves.resize(leaves.leaf_count);

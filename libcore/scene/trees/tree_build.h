@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/box.h"
+#include "base/error.h"
 #include "cistula/model/scene_view.h"
 #include "scene/trees/embree_handles.h"
 
@@ -19,7 +20,7 @@ struct Groups {
     uint32_t size() const { return first.empty() ? 0 : static_cast<uint32_t>(first.size()) - 1; }
 };
 /// Groups of neighboring primitives, deterministic. Reorders `primitives`.
-Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives);
+Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives, StopSignal stop = {});
 
 struct Tree {
     std::vector<TreeNode> nodes;
@@ -71,5 +72,8 @@ void for_each_in_box(const Tree& tree, const Box& box, const Visit& visit) {
         return false;
     });
 }
+
+/// The light tree with the nodes of `binary` collapsed; item i of `binary` is light i.
+std::vector<LightNode> light_tree(const Tree& binary);
 
 }  // namespace cistula

@@ -61,7 +61,7 @@ class FilmLoop : public RenderProgram {
         const OutputName output(file("f.##.exr"), "-o"), none;
         RenderProgress progress;
         FilmProgress report(ProgressStyle::none, talk_, progress);
-        FilmJob job{options_, scene_, "hash", settings_, output, none, frames, report};
+        FilmJob job{options_, scene_, FrameHashes("hash"), settings_, output, none, frames, report};
         job.written = [this](const FrameStats& frame) { written_.push_back(frame); };
         job.look_ahead = [this](const std::vector<int>& stretch) {
             stretches_.push_back(stretch);

@@ -89,7 +89,8 @@ TEST_F(RenderProgram, FilesOfOtherProgramsHaveItsHeader) {
     RenderProgress progress;
     ASSERT_TRUE(make_embree_renderer<float>(compiled)->render(camera, settings, film, progress));
     LayeredPicture picture = to_layers(film, {});
-    picture.attributes.merge(header_attributes(film, scene.film, compiled->hash, settings, Precision::single_, camera));
+    picture.attributes.merge(
+        header_attributes(film, scene.film, compiled->hashes, settings, Precision::single_, camera));
     ASSERT_EQ(picture.attributes.count("cistula:checkedPixels"), 1u);
     write_exr(file("b.exr"), picture);
     EXPECT_EQ(bytes_of(file("a.exr")), bytes_of(file("b.exr")));
@@ -97,7 +98,7 @@ TEST_F(RenderProgram, FilesOfOtherProgramsHaveItsHeader) {
 
 TEST(Header, ScreenWindowIsThatOfTheFieldOfView) {
     const Attributes attributes =
-        header_attributes("abc", FrameSettings(), Precision::single_, camera_at(camera_along_y(60), 7));
+        header_attributes(FrameHashes("abc"), FrameSettings(), Precision::single_, camera_at(camera_along_y(60), 7));
     EXPECT_NEAR(std::get<double>(attributes.at("screenWindowWidth")), 2 * std::tan(M_PI / 6), 1e-7);
     EXPECT_EQ(std::get<int>(attributes.at("imageCounter")), 7);
 }

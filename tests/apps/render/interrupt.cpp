@@ -8,6 +8,10 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "scene/description/mesh_source.h"
+#include "testing/generated_mesh.h"
+#include "testing/support/render_program.h"
+
 namespace cistula {
 namespace {
 
@@ -111,6 +115,40 @@ TEST(InterruptDeathTest, TheOldDispositionComesBack) {
             report(false);
         },
         testing::KilledBySignal(SIGTERM), "");
+}
+
+/// A mesh of many triangles, as a binary PLY.
+std::string ply_of(const TrianglesObject& mesh) {
+    std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
+                        "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                        std::to_string(mesh.triangles.size()) +
+                        "\nproperty list uchar uint vertex_indices\nend_header\n";
+    const auto add = [&](const auto& numbers) {
+        bytes.append(reinterpret_cast<const char*>(&numbers), sizeof numbers);
+    };
+    for (const glm::dvec3& vertex : mesh.vertices) add(vertex);
+    for (const TriangleCorners& corners : mesh.triangles) {
+        bytes += '\3';
+        add(corners);
+    }
+    return bytes;
+}
+
+TEST_F(RenderProgram, InterruptionsEndTheCompilationOfALargeMesh) {
+    put_bytes(file("m.ply"), ply_of(bumpy_sphere(330'000)));
+    put_bytes(file("m.json"), R"({"materials": {"m": {"reflection": 0.2}}, "lights": [{"position": [3, -4, 5]}],
+        "objects": [{"mesh": "m.ply", "material": "m", "keep_triangles": true}]})");
+    for (const int number : {SIGINT, SIGTERM}) {
+        RunningProgram running(program_, {"m.json", "-o", "m.exr", "--stats", "m.stats"}, file(""));
+        // It says why it takes double, and compiles.
+        ASSERT_TRUE(
+            running.wait_until([&] { return running.error_so_far().find("double: ") != std::string::npos; }, 60));
+        running.send(number);
+        const ProgramResult result = running.wait();
+        EXPECT_EQ(result.code, 130) << result.error;
+        EXPECT_TRUE(result.error.ends_with("render: interrupted; nothing was written\n")) << result.error;
+        EXPECT_FALSE(exists("m.exr") || exists("m.stats") || has_part_files());
+    }
 }
 
 }  // namespace

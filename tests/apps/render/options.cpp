@@ -217,7 +217,8 @@ TEST(RequestKeys, HeadersTellThoseThatHaveAnAttribute) {
         film.full_width = film.full_height = film.rect.width = film.rect.height = 1;
         film.pixels.assign(1);
         Attributes attributes = to_layers(film, request.channels).attributes;
-        attributes.merge(header_attributes("abc", settings, *request.precision, camera_at(scene.camera, 0)));
+        attributes.merge(
+            header_attributes(FrameHashes("abc"), settings, *request.precision, camera_at(scene.camera, 0)));
         for (const RequestKey& key : request_keys()) {
             if (key.attribute.empty() || !key.given(request)) continue;
             const auto found = attributes.find(std::string(key.attribute));
@@ -302,6 +303,7 @@ TEST(RenderOptions, Errors) {
     expect_refused({"s", "--bits", "hal"}, "--bits hal: must be float or half; did you mean 'half'?");
     expect_refused({"s", "--progress", "plane"},
                    "--progress plane: must be auto or plain or none or json or openjd; did you mean 'plain'?");
+    expect_refused({"s", "--layers", "N", "--aov", "Z"}, "--aov Z: is another name of --layers; give one of them");
     expect_refused({"s", "-q", "-v"}, "-q and -v exclude each other; give one");
     expect_refused({"s", "--frames", "9-3"}, "--frames 9-3: 9-3 runs backward; write 3-9");
     EXPECT_THROW(parse({"s", "-o"}), Error);
@@ -568,7 +570,7 @@ TEST(HeaderAttributes, TellImagesApart) {
     picture.width = picture.display_width = 4;
     picture.height = picture.display_height = 2;
     picture.channels = {{"R", false, {}}, {"G", false, {}}};
-    picture.attributes = header_attributes("abc", settings, Precision::single_, camera);
+    picture.attributes = header_attributes(FrameHashes("abc"), settings, Precision::single_, camera);
     EXPECT_TRUE(is_same_image(picture, picture));
     const auto differs = [&](const std::function<void(LayeredPicture&)>& change) {
         LayeredPicture other = picture;
@@ -584,34 +586,36 @@ TEST(HeaderAttributes, TellImagesApart) {
     const auto attributes_differ = [&](const Attributes& attributes) {
         return differs([&](LayeredPicture& p) { p.attributes = attributes; });
     };
-    EXPECT_TRUE(attributes_differ(header_attributes("abd", settings, Precision::single_, camera)));
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", settings, Precision::double_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abd"), settings, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), settings, Precision::double_, camera)));
     FrameSettings other = settings;
     other.cutoff = 1e-9;
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
     other = settings;
     other.depth = 5;
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
     other = settings;
     other.supersample = 2;
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
     other = settings;
     other.target_error = 0.01;
-    const Attributes target = header_attributes("abc", other, Precision::single_, camera);
+    const Attributes target = header_attributes(FrameHashes("abc"), other, Precision::single_, camera);
     EXPECT_TRUE(attributes_differ(target));
     EXPECT_EQ(std::get<double>(target.at("cistula:targetError")), 0.01);
     EXPECT_EQ(std::get<double>(target.at("cistula:cutoff")), 0.0025);
     other.max_samples = 32;
-    EXPECT_EQ(std::get<int>(header_attributes("abc", other, Precision::single_, camera).at("cistula:maxSamples")), 32);
+    EXPECT_EQ(std::get<int>(
+                  header_attributes(FrameHashes("abc"), other, Precision::single_, camera).at("cistula:maxSamples")),
+              32);
     EXPECT_EQ(picture.attributes.count("cistula:targetError") + picture.attributes.count("cistula:maxSamples"), 0u);
     CameraFrame moved = camera;
     moved.frame = 1;
-    EXPECT_TRUE(attributes_differ(header_attributes("abc", settings, Precision::single_, moved)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), settings, Precision::single_, moved)));
     // What does not reach the image does not reach the header.
     other = settings;
     other.tile = 64;
     other.effects = all_effects;
-    EXPECT_FALSE(attributes_differ(header_attributes("abc", other, Precision::single_, camera)));
+    EXPECT_FALSE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
 }
 
 TEST(Progress, Texts) {

@@ -10,8 +10,8 @@
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_keys.h"
 #include "image/color/color_space.h"
-#include "sequence/frame_list.h"
 #include "scene/readers/json_reader.h"
+#include "sequence/frame_list.h"
 #include "testing/support/schema_keys.h"
 #include "testing/support/scratch_directory.h"
 
