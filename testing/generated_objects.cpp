@@ -4,7 +4,7 @@
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
-#include "scene/readers/quad.h"
+#include "scene/readers/meshes/quad.h"
 #include "testing/generated_mesh.h"
 #include "testing/generated_parts.h"
 

@@ -9,7 +9,7 @@
 
 #include "apps/common/step_progress.h"
 #include "render/renderer.h"
-#include "scene/compile/required_effects.h"
+#include "scene/compile/materials/required_effects.h"
 #include "scene/description/description.h"
 
 namespace cistula {

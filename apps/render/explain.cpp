@@ -6,7 +6,7 @@
 #include <bit>
 
 #include "base/shown_text.h"
-#include "scene/compile/overlaps.h"
+#include "scene/compile/contacts/overlaps.h"
 
 namespace cistula {
 namespace {

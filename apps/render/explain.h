@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "effect_costs.h"
-#include "scene/compile/required_effects.h"
+#include "scene/compile/materials/required_effects.h"
 #include "sequence/backends.h"
 
 namespace cistula {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/required_effects.h"
+#include "scene/compile/materials/required_effects.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::report {

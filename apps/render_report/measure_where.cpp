@@ -12,7 +12,7 @@
 #include "measure.h"
 #include "render/header_attributes.h"
 #include "render/record/film_picture.h"
-#include "scene/compile/required_effects.h"
+#include "scene/compile/materials/required_effects.h"
 #include "small_frame.h"
 
 namespace cistula::report {

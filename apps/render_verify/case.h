@@ -13,7 +13,7 @@
 #include "render/record/film.h"
 #include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/smallest_part.h"
+#include "scene/compile/solids/smallest_part.h"
 #include "scene/description/description.h"
 
 namespace cistula::verify {

@@ -9,7 +9,7 @@
 #include "cistula/geometry/ray.h"
 #include "cistula/model/pixel_record.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/overlaps.h"
+#include "scene/compile/contacts/overlaps.h"
 
 namespace cistula {
 namespace {

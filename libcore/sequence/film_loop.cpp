@@ -20,7 +20,7 @@
 #include "cistula/geometry/ray.h"
 #include "cistula/model/pixel_record.h"
 #include "image/exr/exr.h"
-#include "scene/compile/overlaps.h"
+#include "scene/compile/contacts/overlaps.h"
 #include "sequence/frame_list.h"
 #include "sequence/snapshots.h"
 

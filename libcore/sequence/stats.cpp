@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "base/stages.h"
-#include "scene/compile/required_effects.h"
+#include "scene/compile/materials/required_effects.h"
 #include "sequence/run_context.h"
 
 namespace cistula {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/readers/mesh_file.h"
+#include "scene/readers/meshes/mesh_file.h"
 #include "scene/readers/read_scene.h"
 #include "testing/support/expect_error.h"
 

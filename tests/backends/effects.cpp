@@ -7,7 +7,7 @@
 #include <set>
 
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/required_effects.h"
+#include "scene/compile/materials/required_effects.h"
 #include "scene/description/without_effect.h"
 #include "testing/generated_scene.h"
 #include "testing/support/golden.h"

@@ -1,6 +1,6 @@
 // Which faces touch, whatever digits a file has and whatever the precision, and what is moved for it (docs/rules.md,
 // 11).
-#include "scene/compile/contacts.h"
+#include "scene/compile/contacts/contacts.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <random>
 #include <set>
 
-#include "scene/compile/placed_bodies.h"
-#include "scene/compile/smallest_part.h"
+#include "scene/compile/solids/placed_bodies.h"
+#include "scene/compile/solids/smallest_part.h"
 #include "scene/description/rotation.h"
 #include "testing/support/scene.h"
 #include "testing/support/scene_samples.h"

@@ -1,12 +1,12 @@
 // Which closed meshes are given by planes, and which planes (docs/rules.md, 3).
-#include "scene/compile/convex_mesh.h"
+#include "scene/compile/meshes/convex_mesh.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/compile/solid_planes.h"
+#include "scene/compile/solids/solid_planes.h"
 #include "testing/generated_mesh.h"
 #include "testing/support/scene.h"
 

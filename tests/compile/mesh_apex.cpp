@@ -1,10 +1,10 @@
-#include "scene/compile/mesh_apex.h"
+#include "scene/compile/meshes/mesh_apex.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "scene/compile/clusters.h"
+#include "scene/compile/meshes/clusters.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {

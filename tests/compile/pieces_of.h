@@ -1,7 +1,7 @@
 // What a list of triangles encloses.
 #pragma once
 
-#include "scene/compile/mesh_pieces.h"
+#include "scene/compile/meshes/mesh_pieces.h"
 #include "scene/description/description.h"
 
 namespace cistula {

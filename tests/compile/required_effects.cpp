@@ -1,4 +1,4 @@
-#include "scene/compile/required_effects.h"
+#include "scene/compile/materials/required_effects.h"
 
 #include <gtest/gtest.h>
 

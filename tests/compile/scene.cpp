@@ -265,9 +265,7 @@ TYPED_TEST(CompileScene, APinnedBoundIsTakenUnlessTooSmall) {
 
 TEST(CompileScenePrecision, BoundsBeyondFloatAreRefusedThere) {
     SceneDescription scene = empty_scene();
-    scene.materials[0].color = glm::dvec3{8};
-    scene.ambient = glm::dvec3{0x1p98};
-    add_object(scene, square());
+    scene.background = glm::dvec3{0x1p101};
     expect_error([&] { compile_scene<float>(scene); }, ExitCode::usage, "radiance bound");
     EXPECT_EQ(compile_scene<double>(scene)->radiance_exponent, 102);
 }

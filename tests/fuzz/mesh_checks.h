@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "checks.h"
-#include "scene/compile/mesh_pieces.h"
-#include "scene/readers/mesh_file.h"
+#include "scene/compile/meshes/mesh_pieces.h"
+#include "scene/readers/meshes/mesh_file.h"
 
 namespace cistula::fuzz {
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "scene/compile/compiled_scene.h"
-#include "scene/readers/mesh_file.h"
-#include "scene/readers/polygon.h"
+#include "scene/readers/meshes/mesh_file.h"
+#include "scene/readers/meshes/polygon.h"
 #include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"

@@ -1,4 +1,4 @@
-#include "scene/readers/mesh_file.h"
+#include "scene/readers/meshes/mesh_file.h"
 
 #include <numeric>
 #include <set>
@@ -8,8 +8,8 @@
 
 #include "cistula/model/effects.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/mesh_pieces.h"
-#include "scene/readers/polygon.h"
+#include "scene/compile/meshes/mesh_pieces.h"
+#include "scene/readers/meshes/polygon.h"
 #include "testing/generated_mesh.h"
 #include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"

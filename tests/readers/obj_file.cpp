@@ -1,4 +1,4 @@
-#include "scene/readers/obj_file.h"
+#include "scene/readers/meshes/obj_file.h"
 
 #include <map>
 
@@ -6,8 +6,8 @@
 
 #include "base/shown_text.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/readers/mesh_file.h"
-#include "scene/readers/mesh_text.h"
+#include "scene/readers/meshes/mesh_file.h"
+#include "scene/readers/meshes/mesh_text.h"
 #include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"

@@ -5,8 +5,8 @@
 
 #include "base/box.h"
 #include "cistula/geometry/shared_plane.h"
-#include "scene/compile/compile_lights.h"
-#include "scene/compile/solid_planes.h"
+#include "scene/compile/lights/compile_lights.h"
+#include "scene/compile/solids/solid_planes.h"
 
 namespace cistula {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "cistula/numerics/vec.h"
 #include "image/reader/picture_reader.h"
-#include "scene/readers/mesh_file.h"
+#include "scene/readers/meshes/mesh_file.h"
 
 namespace cistula {
 namespace {

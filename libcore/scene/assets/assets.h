@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "image/picture/picture.h"
 #include "scene/description/description.h"
-#include "scene/readers/polygon_mesh.h"
+#include "scene/readers/meshes/polygon_mesh.h"
 
 namespace cistula {
 
@@ -22,7 +22,7 @@ struct SceneAssets {
 
 /// Resolves the meshes and textures of a scene, whether they are files, which are read once each however many objects
 /// name them, or arrays that the description holds. Textures other than .data are read by a child process, the program
-/// cistula-read-picture, which must be found (scene/image/reader/reader_process.h), one after another, so that no more
+/// cistula-read-picture, which must be found (image/reader/reader_process.h), one after another, so that no more
 /// than their limit is in memory. Throws Error with the place, and (interrupted).
 SceneAssets load_assets(const SceneDescription& scene, StopSignal stop = {});
 

@@ -9,8 +9,6 @@
 #include "base/error.h"
 #include "cistula/model/scene_view.h"
 #include "cistula/numerics/vec.h"
-#include "render/record/film_layers.h"
-#include "render/record/frame_header.h"
 #include "scene/compile/scene_names.h"
 #include "scene/description/coordinate_rounding.h"
 #include "scene/description/description.h"

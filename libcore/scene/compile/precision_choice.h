@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "scene/compile/smallest_part.h"
+#include "scene/compile/solids/smallest_part.h"
 
 namespace cistula {
 

@@ -6,8 +6,8 @@
 
 #include "base/default_rounding.h"
 #include "cistula/numerics/vec.h"
-#include "scene/compile/mesh_solids.h"
-#include "scene/compile/placed_bodies.h"
+#include "scene/compile/meshes/mesh_solids.h"
+#include "scene/compile/solids/placed_bodies.h"
 #include "scene/description/platonic.h"
 #include "scene/readers/scene_keys.h"
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "scene/assets/assets.h"
-#include "scene/compile/mesh_edges.h"
+#include "scene/compile/meshes/mesh_edges.h"
 #include "scene/description/description.h"
 #include "scene/description/mesh_source.h"
 

@@ -35,7 +35,7 @@ struct MaterialDescription {
     bool fresnel = false;
 };
 
-struct MeshData;    // readers/polygon_mesh.h
+struct MeshData;    // readers/meshes/polygon_mesh.h
 struct TexelArray;  // image/reader/picture_reader.h
 
 /// A file, an array instead, or a checkerboard where there is neither.

@@ -5,7 +5,7 @@
 
 #include "base/suggest.h"
 #include "scene/readers/json_reader.h"
-#include "scene/readers/quad.h"
+#include "scene/readers/meshes/quad.h"
 #include "scene/readers/read_json.h"
 
 namespace cistula {

@@ -6,7 +6,7 @@
 
 #include "base/decimal.h"
 #include "base/shown_text.h"
-#include "scene/readers/quad.h"
+#include "scene/readers/meshes/quad.h"
 #include "scene/readers/read_json.h"
 #include "scene/readers/scene_keys.h"
 #include "scene/readers/text_tokens.h"

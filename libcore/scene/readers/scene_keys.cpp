@@ -1,5 +1,6 @@
 #include "scene/readers/scene_keys.h"
 
+#include <limits>
 #include <fmt/format.h>
 
 #include "image/color/color_encoding.h"
@@ -220,7 +221,11 @@ std::vector<std::string_view> KeyTable::names() const {
 }
 
 bool allows(const Key& key, double value) {
-    return key.range.contains(value);
+    Range range = key.range;
+    if (range.high == most) range.high = std::numeric_limits<double>::max();
+    if (range.low == -most) range.low = std::numeric_limits<double>::lowest();
+    if (range.low == least_length) range.low = std::numeric_limits<double>::denorm_min();
+    return range.contains(value);
 }
 
 bool allows(const Key& key, const glm::dvec3& value) {

@@ -102,7 +102,8 @@ void mesh_fields(Mesh& mesh, const Visit& visit) {
     visit("keep_triangles", mesh.keep_triangles);
 }
 
-/// Whether a value may stand under a key.
+/// Whether a program may give a value for a key: where files have numbers to 1e30, any finite one; where they have
+/// lengths from 1e-30 on, any above 0.
 bool allows(const Key& key, double value);
 bool allows(const Key& key, const glm::dvec3& value);
 inline bool allows(const Key& key, const std::optional<glm::dvec3>& value) {

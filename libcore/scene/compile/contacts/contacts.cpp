@@ -1,0 +1,512 @@
+#include "scene/compile/contacts/contacts.h"
+
+#include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <set>
+#include <unordered_map>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include "cistula/geometry/ray.h"
+#include "scene/compile/contacts/contact_moves.h"
+#include "scene/compile/contacts/plane_sets.h"
+#include "scene/description/mesh_source.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+constexpr uint32_t no_body = 0xffffffffu;
+
+class ContactSearch {
+  public:
+    ContactSearch(const SceneSource& source, const SceneNormalization& normalization,
+                  const std::vector<ConvexSolid>& platonic, const std::vector<MeshSize>& sizes)
+        : source_(source),
+          normalization_(normalization),
+          platonic_(platonic),
+          sizes_(sizes),
+          range_(source, normalization),
+          rounding_(4 * RealTraits<double>::unit * normalization.extent),
+          exact_(4 * rounding_) {}
+
+    Contacts run() {
+        contacts_.solids.resize(source_.solids.size());
+        body_of_.assign(source_.solids.size(), no_body);
+        find_bodies();
+        if (bodies_.empty()) return std::move(contacts_);
+        move_into_contact();
+        bind_what_coincides();
+        return std::move(contacts_);
+    }
+
+  private:
+    struct Pair {
+        double distance;
+        uint32_t first, second;
+    };
+    static constexpr double reach = 4;  // of 2^-20 M: faces that come as near know of one another's planes
+
+    // ---- bodies and faces
+
+    void find_bodies() {
+        const auto count = uint32_t(source_.solids.size());
+        std::vector<const ConvexSolid*> planes(count, nullptr);
+        size_t next_platonic = 0;
+        for (uint32_t i = 0; i < count; ++i)
+            if (source_.solids[i].platonic) planes[i] = &platonic_[next_platonic++];
+        std::vector<Box> boxes(count);
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            boxes[i] = planes[i] ? planes[i]->box : sizes_[i].box;
+            contacts_.solids[i].reach = reach_of(i);
+        });
+        for (const SolidContacts& solid : contacts_.solids) range_.near = max_or_second(solid.reach.own, range_.near);
+        const NearSolids near(boxes, pad());
+        std::vector<uint8_t> wanted(count);
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            wanted[i] = !boxes[i].empty() && (near.meets_another(boxes[i], i) || may_overlap_itself(i));
+        });
+        std::vector<uint32_t> numbers;
+        for (uint32_t i = 0; i < count; ++i)
+            if (wanted[i]) body_of_[i] = uint32_t(numbers.size()), numbers.push_back(i);
+        bodies_.resize(numbers.size());
+        tbb::parallel_for(size_t(0), numbers.size(),
+                          [&](size_t b) { bodies_[b] = body_of(numbers[b], planes[numbers[b]], near); });
+    }
+
+    /// Runs add(first, end, found) for parts of a number of things on all threads, and returns what each part found, in
+    /// order.
+    template <class Found, class Add>
+    static std::vector<Found> find_in_parts(size_t count, const Add& add) {
+        constexpr size_t part = 256;
+        std::vector<Found> found((count + part - 1) / part);
+        tbb::parallel_for(size_t(0), found.size(),
+                          [&](size_t i) { add(part * i, std::min(part * (i + 1), count), found[i]); });
+        return found;
+    }
+
+    /// Makes faces of the parts of bodies that come near others; `joined`: of triangles that lie in one plane together.
+    void find_faces(bool joined) {
+        faces_.clear();
+        const auto add_faces = [&](size_t first, size_t end, std::vector<FlatFace>& faces) {
+            for (size_t b = first; b < end; ++b)
+                if (const ContactBody& body = bodies_[b]; body.planes)
+                    add_platonic_faces(body, *source_.solids[body.solid].platonic, faces);
+                else if (joined)
+                    add_mesh_faces(body, body.near, body.reach.own, faces);
+                else
+                    add_triangles(body, body.near, faces);
+        };
+        for (std::vector<FlatFace>& faces : find_in_parts<std::vector<FlatFace>>(bodies_.size(), add_faces))
+            std::move(faces.begin(), faces.end(), std::back_inserter(faces_));
+    }
+
+    /// Moves what touches, but for the digits of a file, into one plane.
+    void move_into_contact() {
+        find_faces(true);
+        PlaneSets sets(faces_, bodies_, body_of_, range_, 0);
+        find_pairs(sets);
+        join_pairs(sets);
+        move_bodies(sets);
+    }
+
+    /// Finds the planes of what now lies in one plane, to within rounding: the faces that were moved, and those that
+    /// coincided from the start and could not be moved, as of two equal curved meshes, each of whose vertices lies in
+    /// many planes.
+    void bind_what_coincides() {
+        find_faces(false);
+        pairs_.clear();
+        reaching_.clear();
+        find_flat_sheets();
+        PlaneSets sets(faces_, bodies_, body_of_, range_, exact_);
+        find_pairs(sets);
+        join_pairs(sets);
+        list_planes();
+    }
+
+    /// By how much boxes of what is compared are grown.
+    double pad() const { return 0.5 * range_.near; }
+
+    ContactReach reach_of(uint32_t number) const {
+        const SourceSolid& solid = source_.solids[number];
+        ContactReach reach;
+        reach.given = range_.given;
+        reach.rounding = solid.mesh.rounding;
+        double thickness = solid.closed ? 3 * solid.thickness * normalization_.factor : sizes_[number].half_width;
+        if (const SolidObject* platonic = solid.platonic) {
+            thickness = platonic_shape(platonic->solid).inradius * platonic->radius * normalization_.factor;
+            for (int axis = 0; axis < 3; ++axis)
+                reach.rounding.half_unit[axis] = half_unit_of(platonic->center[axis]) + half_unit_of(platonic->radius);
+        }
+        reach.rounding.half_unit *= normalization_.factor;
+        reach.most = 0x1p-10 * thickness;
+        reach.own = range_.tolerance(2 * length(reach.rounding.half_unit), reach.most);
+        return reach;
+    }
+
+    bool may_overlap_itself(uint32_t solid) const {
+        const SourceSolid& from = source_.solids[solid];
+        return !from.closed && from.mesh.triangles.size() <= most_with_own;
+    }
+
+    ContactBody body_of(uint32_t number, const ConvexSolid* planes, const NearSolids& near) const {
+        const SourceSolid& from = source_.solids[number];
+        ContactBody body;
+        body.solid = number;
+        body.closed = from.closed;
+        body.reach = contacts_.solids[number].reach;
+        body.planes = planes;
+        if (planes) {
+            body.points = planes->vertices;
+            body.facets = triangulated(platonic_shape(from.platonic->solid));
+        } else {
+            body.points.reserve(from.mesh.vertices.size());
+            for (const dvec3& p : from.mesh.vertices) body.points.push_back(normalization_.point(p));
+            body.facets.assign(from.mesh.triangles.begin(), from.mesh.triangles.end());
+        }
+        body.welded = weld(body.points);
+        if (planes) return body;
+        const bool all = may_overlap_itself(number);
+        const auto find_near = [&](size_t first, size_t end, std::vector<uint32_t>& found) {
+            for (auto t = uint32_t(first); t < end; ++t) {
+                Box box;
+                for (const uint32_t corner : body.facets[t]) box.add(body.points[corner]);
+                if (all || near.meets_another(box, number)) found.push_back(t);
+            }
+        };
+        for (const auto& found : find_in_parts<std::vector<uint32_t>>(body.facets.size(), find_near))
+            body.near.insert(body.near.end(), found.begin(), found.end());
+        return body;
+    }
+
+    /// Finds the sheets that may overlap themselves and lie in one plane.
+    void find_flat_sheets() {
+        is_flat_.assign(bodies_.size(), false);
+        std::vector<const FlatFace*> largest(bodies_.size(), nullptr);
+        for (const FlatFace& face : faces_) {
+            const FlatFace*& known = largest[body_of_[face.solid]];
+            if (!known || face.area > known->area) known = &face;
+        }
+        for (size_t b = 0; b < bodies_.size(); ++b) is_flat_[b] = largest[b] && may_overlap_itself(bodies_[b].solid);
+        for (const FlatFace& face : faces_) {
+            const FlatFace& plane = *largest[body_of_[face.solid]];
+            if (farthest_from(plane.normal, plane.offset, body(face), face) > exact_)
+                is_flat_[body_of_[face.solid]] = false;
+        }
+    }
+
+    // ---- pairs and sets
+
+    const ContactBody& body(const FlatFace& face) const { return bodies_[body_of_[face.solid]]; }
+
+    /// What comes near one another of the faces of a part.
+    struct FoundPairs {
+        std::vector<Pair> touching, near;
+        std::vector<std::pair<uint32_t, uint32_t>> reaching;
+    };
+
+    void find_pairs(const PlaneSets& sets) {
+        std::vector<RTCBuildPrimitive> primitives;
+        for (uint32_t i = 0; i < faces_.size(); ++i) primitives.push_back(padded_primitive(faces_[i].box, pad(), i));
+        const Tree tree = build_tree(primitives, 0);
+        std::atomic<size_t> tried{0};
+        const auto find = [&](size_t first, size_t end, FoundPairs& found) {
+            for (auto i = uint32_t(first); i < end && tried <= most_near_pairs; ++i)
+                tried +=
+                    for_each_near(tree, i, [&](uint32_t j, bool one_solid) { compare(i, j, one_solid, sets, found); });
+        };
+        for (const FoundPairs& found : find_in_parts<FoundPairs>(faces_.size(), find)) {
+            pairs_.insert(pairs_.end(), found.touching.begin(), found.touching.end());
+            reaching_.insert(reaching_.end(), found.reaching.begin(), found.reaching.end());
+            for (const Pair& near : found.near)
+                add_near(faces_[near.first], faces_[near.second], near.distance, contacts_.near);
+        }
+        if (tried > most_near_pairs) refuse_crowd(tree);
+    }
+
+    /// Calls visit(j, one_solid) for the later faces that come near a face, at most one more than may be in all.
+    /// Returns their number.
+    template <class Visit>
+    size_t for_each_near(const Tree& tree, uint32_t i, const Visit& visit) const {
+        size_t count = 0;
+        any_in_box(tree, padded(faces_[i].box, pad()), [&](uint32_t j) {
+            if (j <= i || !touch(faces_[i].box, faces_[j].box, pad())) return false;
+            const bool one_solid = faces_[i].solid == faces_[j].solid;
+            if (one_solid && !may_overlap_itself(faces_[i].solid)) return false;
+            if (++count > most_near_pairs) return true;
+            visit(j, one_solid);
+            return false;
+        });
+        return count;
+    }
+
+    [[noreturn]] void refuse_crowd(const Tree& tree) const {
+        size_t tried = 0;
+        uint32_t i = 0;
+        while ((tried += for_each_near(tree, i, [](uint32_t, bool) {})) <= most_near_pairs) ++i;
+        throw scene_error(*source_.description, source_.solids[faces_[i].solid].place,
+                          "more than " + std::to_string(most_near_pairs / 1'000'000) +
+                              " million pairs of faces come near one another, as where many objects are in one "
+                              "place; leave out those that are there several times");
+    }
+
+    void compare(uint32_t i, uint32_t j, bool one_solid, const PlaneSets& sets, FoundPairs& found) const {
+        const FlatFace &a = faces_[i], &b = faces_[j];
+        if (one_solid && sets.exact() && !is_flat_[body_of_[a.solid]] && !overlapping(i, j)) return;
+        if (touch(a.box, b.box, reach * tau())) found.reaching.push_back({i, j});
+        const auto& [large, small] = sets.is_larger(i, j) ? std::pair(i, j) : std::pair(j, i);
+        const double distance =
+            farthest_from(faces_[large].normal, faces_[large].offset, body(faces_[small]), faces_[small]);
+        const double tolerance = sets.tolerance(faces_[large], faces_[small]);
+        if (distance <= tolerance && touch(a.box, b.box, tolerance))
+            found.touching.push_back({distance, i, j});
+        else if (!sets.exact() && distance <= range_.near && !range_.given && touch(a.box, b.box, distance) &&
+                 !one_solid && magnitude(dot(a.normal, b.normal)) > 0.5)
+            found.near.push_back({distance, i, j});
+    }
+
+    double tau() const { return 0x1p-20 * normalization_.extent; }
+
+    void add_near(const FlatFace& a, const FlatFace& b, double gap, std::vector<NearPair>& to) {
+        const uint32_t first = std::min(a.solid, b.solid), second = std::max(a.solid, b.solid);
+        const bool by_size = 1.1 * gap > min_or_second(body(a).reach.most, body(b).reach.most);
+        const auto known =
+            near_solids_.try_emplace((uint64_t(first) << 32 | second) << 1 | (&to == &contacts_.near), to.size());
+        if (known.second)
+            to.push_back({{first, second}, gap, by_size});
+        else if (NearPair& pair = to[known.first->second]; gap < pair.gap)
+            pair = {{first, second}, gap, by_size};
+    }
+
+    void join_pairs(PlaneSets& sets) {
+        tbb::parallel_sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+            if (a.distance != b.distance) return a.distance < b.distance;
+            return a.first != b.first ? a.first < b.first : a.second < b.second;
+        });
+        for (const Pair& pair : pairs_)
+            if (!sets.join(pair.first, pair.second) && !sets.exact())
+                add_near(faces_[pair.first], faces_[pair.second], pair.distance, contacts_.apart);
+        bind_sets(sets);
+    }
+
+    /// Gives each set that is a contact a plane, and its faces the plane's number.
+    void bind_sets(PlaneSets& sets) {
+        equations_.clear(), areas_.clear(), middles_.clear();
+        plane_.assign(faces_.size(), no_plane);
+        std::vector<bool> wanted(faces_.size(), false);
+        for (const Pair& pair : pairs_)
+            if (sets.root(pair.first) == sets.root(pair.second) &&
+                (faces_[pair.first].solid != faces_[pair.second].solid || overlapping(pair.first, pair.second)))
+                wanted[sets.root(pair.first)] = true;
+        for (uint32_t i = 0; i < faces_.size(); ++i)
+            if (may_overlap_itself(faces_[i].solid) && faces_[i].parts.size() > 1 && overlapping(i, i))
+                wanted[sets.root(i)] = true;
+        for (uint32_t i = 0; i < faces_.size(); ++i) {
+            if (sets.root(i) != i || !wanted[i]) continue;
+            const PlaneSets::Set& set = sets.set(i);
+            const FlatFace& largest = faces_[set.largest];
+            for (const uint32_t member : set.members) plane_[member] = uint32_t(equations_.size());
+            equations_.push_back({largest.normal, largest.offset});
+            areas_.push_back(largest.area);
+            middles_.push_back(largest.middle);
+        }
+    }
+
+    /// Whether triangles of two faces overlap, or of one face.
+    bool overlapping(uint32_t a, uint32_t b) const {
+        const auto first = triangles_of(a), second = triangles_of(b);
+        for (size_t i = 0; i < first.size(); ++i)
+            for (size_t j = 0; j < second.size(); ++j)
+                if ((a != b || i != j) && overlap(first[i], second[j], reach * tau())) return true;
+        return false;
+    }
+
+    std::vector<std::array<dvec3, 3>> triangles_of(uint32_t number) const {
+        const FlatFace& face = faces_[number];
+        const ContactBody& of = body(face);
+        std::vector<std::array<dvec3, 3>> triangles;
+        if (source_.solids[face.solid].platonic) {
+            for (size_t i = 1; i + 1 < face.corners.size(); ++i)
+                triangles.push_back(
+                    {of.points[face.corners[0]], of.points[face.corners[i]], of.points[face.corners[i + 1]]});
+        } else {
+            for (const uint32_t t : face.parts) triangles.push_back(points_of(of, t));
+        }
+        return triangles;
+    }
+
+    // ---- moves
+
+    void move_bodies(PlaneSets& sets) {
+        std::vector<std::vector<BoundFace>> bound(bodies_.size());
+        for (uint32_t i = 0; i < faces_.size(); ++i)
+            if (plane_[i] != no_plane) bound[body_of_[faces_[i].solid]].push_back({&faces_[i], plane_[i]});
+        std::vector<std::vector<BoundFace>> left(bodies_.size());
+        std::vector<double> farthest(bodies_.size(), 0);
+        tbb::parallel_for(size_t(0), bodies_.size(), [&](size_t b) {
+            if (bound[b].empty()) return;
+            ContactBody& body = bodies_[b];
+            const std::vector<dvec3> given = body.points;
+            left[b] = move_into_planes(body, bound[b], equations_, areas_, rounding_);
+            for (size_t i = 0; i < given.size(); ++i)
+                if (body.welded[i] != no_vertex)
+                    farthest[b] = max_or_second(length(body.points[i] - given[i]), farthest[b]);
+        });
+        for (size_t b = 0; b < bodies_.size(); ++b) {
+            ContactBody& body = bodies_[b];
+            for (const BoundFace& face : left[b]) leave(face, sets);
+            if (!(farthest[b] > 0)) continue;
+            body.moved = true;
+            contacts_.solids[body.solid].points = body.points;
+            if (farthest[b] > contacts_.farthest_move)
+                contacts_.farthest_move = farthest[b], contacts_.moved = body.solid;
+        }
+    }
+
+    /// Takes a face out of its plane.
+    void leave(const BoundFace& left, PlaneSets& sets) {
+        const auto face = uint32_t(left.face - faces_.data());
+        plane_[face] = no_plane;
+        const FlatFace& other = faces_[sets.set(sets.root(face)).largest];
+        if (other.solid != left.face->solid)
+            add_near(*left.face, other, farthest_from(other.normal, other.offset, body(*left.face), *left.face),
+                     contacts_.apart);
+    }
+
+    // ---- results
+
+    void list_planes() {
+        std::vector<uint32_t> number(equations_.size(), no_plane);
+        std::vector<uint32_t> first(equations_.size(), no_body);
+        std::vector<bool> needed(equations_.size(), false);
+        for (uint32_t i = 0; i < faces_.size(); ++i) {
+            const uint32_t plane = plane_[i];
+            if (plane == no_plane) continue;
+            if (first[plane] == no_body) first[plane] = i;
+            needed[plane] =
+                needed[plane] || faces_[first[plane]].solid != faces_[i].solid || may_overlap_itself(faces_[i].solid);
+        }
+        for (uint32_t i = 0; i < faces_.size(); ++i) {
+            const uint32_t plane = plane_[i];
+            if (plane == no_plane || !needed[plane]) {
+                plane_[i] = no_plane;
+                continue;
+            }
+            if (number[plane] == no_plane) {
+                number[plane] = uint32_t(contacts_.planes.size());
+                contacts_.planes.push_back({equations_[plane].normal, middles_[plane], {}});
+            }
+            plane_[i] = number[plane];
+            SolidContacts& solid = contacts_.solids[faces_[i].solid];
+            for (const uint32_t part : faces_[i].parts) solid.parts.push_back({part, plane_[i]});
+            solid.near.push_back(plane_[i]);
+            std::vector<dvec3>& corners = contacts_.planes[plane_[i]].corners;
+            for (const uint32_t corner : faces_[i].corners) corners.push_back(body(faces_[i]).points[corner]);
+        }
+        list_near();
+        forget_joined();
+        for (const Pair& pair : pairs_) contacts_.pairs += in_contact(pair);
+        const auto earliest = std::min_element(pairs_.begin(), pairs_.end(),
+                                               [&](const Pair& a, const Pair& b) { return order_of(a) < order_of(b); });
+        if (earliest != pairs_.end() && in_contact(*earliest)) {
+            contacts_.first[0] = faces_[earliest->first].solid;
+            contacts_.first[1] = faces_[earliest->second].solid;
+        }
+    }
+
+    /// Takes out of the pairs that could not be moved into one plane those that lie in one all the same.
+    void forget_joined() {
+        if (contacts_.apart.empty()) return;
+        std::set<std::pair<uint32_t, uint32_t>> joined;
+        for (const Pair& pair : pairs_)
+            if (in_contact(pair)) joined.insert(std::minmax(faces_[pair.first].solid, faces_[pair.second].solid));
+        std::erase_if(contacts_.apart, [&](const NearPair& pair) {
+            return joined.count({pair.solids[0], pair.solids[1]}) != 0;
+        });
+    }
+
+    bool in_contact(const Pair& pair) const {
+        return plane_[pair.first] != no_plane && plane_[pair.first] == plane_[pair.second];
+    }
+    /// Pairs of two solids first, by their faces; those that are not in contact last.
+    std::tuple<bool, bool, uint32_t, uint32_t> order_of(const Pair& pair) const {
+        return {!in_contact(pair), faces_[pair.first].solid == faces_[pair.second].solid, pair.first, pair.second};
+    }
+
+    void list_near() {
+        for (const auto& [i, j] : reaching_) {
+            if (plane_[i] != no_plane) contacts_.solids[faces_[j].solid].near.push_back(plane_[i]);
+            if (plane_[j] != no_plane) contacts_.solids[faces_[i].solid].near.push_back(plane_[j]);
+        }
+        for (SolidContacts& solid : contacts_.solids) {
+            std::sort(solid.near.begin(), solid.near.end());
+            solid.near.erase(std::unique(solid.near.begin(), solid.near.end()), solid.near.end());
+            std::sort(solid.parts.begin(), solid.parts.end(),
+                      [](const PartOnPlane& a, const PartOnPlane& b) { return a.part < b.part; });
+        }
+    }
+
+    const SceneSource& source_;
+    const SceneNormalization& normalization_;
+    const std::vector<ConvexSolid>& platonic_;
+    const std::vector<MeshSize>& sizes_;
+    ContactRange range_;
+    const double rounding_;  // what lies as near to a plane lies in it
+    const double exact_;     // how near to its plane what was moved into it lies
+    Contacts contacts_;
+    std::vector<uint32_t> body_of_;  // of each solid, or no_body
+    std::vector<ContactBody> bodies_;
+    std::vector<FlatFace> faces_;
+    std::vector<bool> is_flat_;  // of each body: a sheet in one plane
+    std::vector<Pair> pairs_;
+    std::vector<std::pair<uint32_t, uint32_t>> reaching_;
+    std::unordered_map<uint64_t, size_t> near_solids_;
+    std::vector<uint32_t> plane_;  // of each face
+    std::vector<PlaneEquation> equations_;
+    std::vector<double> areas_;  // of the largest face on each plane
+    std::vector<dvec3> middles_;
+};
+
+}  // namespace
+
+uint32_t Contacts::plane_of(uint32_t solid, uint32_t part) const {
+    const std::vector<PartOnPlane>& parts = solids[solid].parts;
+    const auto found = std::lower_bound(parts.begin(), parts.end(), part,
+                                        [](const PartOnPlane& a, uint32_t wanted) { return a.part < wanted; });
+    return found != parts.end() && found->part == part ? found->plane : no_plane;
+}
+
+std::vector<std::string> contact_warnings(const SceneSource& source, const SceneNormalization& normalization,
+                                          const Contacts& contacts) {
+    std::vector<std::string> warnings;
+    const auto add = [&](const std::vector<const NearPair*>& pairs, const std::string& rest) {
+        const SourceSolid &first = source.solids[pairs[0]->solids[0]], &second = source.solids[pairs[0]->solids[1]];
+        const size_t others = pairs.size() - 1;
+        warnings.push_back(second.place + ": " + name_of(second) + " and " + first.place + ": " + name_of(first) +
+                           " have faces that " + rest +
+                           (others == 0 ? "" : fmt::format(" (and so for {} other pairs of objects)", others)));
+    };
+    std::vector<const NearPair*> near, apart;
+    for (const NearPair& pair : contacts.near)
+        if (!pair.by_size) near.push_back(&pair);
+    for (const NearPair& pair : contacts.apart) apart.push_back(&pair);
+    if (!near.empty()) {
+        const double gap = near[0]->gap / normalization.factor;
+        add(near, fmt::format("are {:.2g} apart and do not touch; \"contact\": {:.2g} joins them", gap, 1.1 * gap));
+    }
+    if (!apart.empty())
+        add(apart,
+            "touch but cannot be moved into one plane: rays may go wrong there; give more digits, or move them apart");
+    return warnings;
+}
+
+Contacts find_contacts(const SceneSource& source, const SceneNormalization& normalization,
+                       const std::vector<ConvexSolid>& platonic, const std::vector<MeshSize>& sizes) {
+    return ContactSearch(source, normalization, platonic, sizes).run();
+}
+
+}  // namespace cistula

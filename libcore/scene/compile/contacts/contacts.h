@@ -1,0 +1,68 @@
+// Which faces of a scene's bodies touch, decided once, in double, whatever the precision: what touches is moved into
+// one plane (docs/rules.md, 11, LOAD). Private to libcore/scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/compile/contacts/flat_faces.h"
+#include "scene/compile/meshes/mesh_size.h"
+
+namespace cistula {
+
+/// The plane that faces of touching bodies share, in the frame.
+struct ContactPlane {
+    glm::dvec3 normal;                // unit: that of the largest face
+    glm::dvec3 middle;                // a point on it: the middle of that face
+    std::vector<glm::dvec3> corners;  // of all faces on it, as moved
+};
+
+/// A part of a solid's surface on a contact plane: a triangle of a mesh, or 2 slab + side of a Platonic solid.
+struct PartOnPlane {
+    uint32_t part, plane;
+};
+
+/// What contacts do to a solid.
+struct SolidContacts {
+    std::vector<glm::dvec3> points;  // its vertices in the frame, if some were moved; else none
+    std::vector<PartOnPlane> parts;  // ascending
+    std::vector<uint32_t> near;      // the planes of its faces and of faces that come near them, ascending
+    ContactReach reach;
+};
+
+/// Two solids with faces that nearly touch.
+struct NearPair {
+    uint32_t solids[2];
+    double gap;    // the largest distance of the smaller face's corners from the larger one's plane, in the frame
+    bool by_size;  // no "contact" joins them: one of them is too thin
+};
+
+/// The solids of a scene in its frame: which faces touch, and where their vertices then lie.
+struct Contacts {
+    std::vector<ContactPlane> planes;
+    std::vector<SolidContacts> solids;
+    uint32_t first[2] = {0, 0};   // the two solids with faces in one plane that come first; equal: one sheet
+    size_t pairs = 0;             // of faces that touch
+    std::vector<NearPair> near;   // the first one for each two solids; none where the scene gives "contact"
+    std::vector<NearPair> apart;  // two solids with faces that touch but cannot be moved into one plane
+    double farthest_move = 0;     // of a vertex, in the frame
+    uint32_t moved = 0;           // the solid of that vertex
+
+    /// The contact plane of a part of a solid, or no_plane.
+    uint32_t plane_of(uint32_t solid, uint32_t part) const;
+};
+
+/// The most pairs of faces of different objects, or of one open sheet, that may come near one another. Memory and time
+/// grow with them: many objects in one place have as many as the square of their number.
+inline constexpr size_t most_near_pairs = 16'000'000;
+
+/// Finds the contacts of a scene. `platonic`: the planes of its Platonic solids, in order; `sizes`: of each solid's
+/// mesh. Throws Error for more than most_near_pairs.
+Contacts find_contacts(const SceneSource& source, const SceneNormalization& normalization,
+                       const std::vector<ConvexSolid>& platonic, const std::vector<MeshSize>& sizes);
+
+/// The warnings of contacts, each with the place of an object.
+std::vector<std::string> contact_warnings(const SceneSource& source, const SceneNormalization& normalization,
+                                          const Contacts& contacts);
+
+}  // namespace cistula

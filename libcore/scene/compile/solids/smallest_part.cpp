@@ -1,0 +1,140 @@
+#include "scene/compile/solids/smallest_part.h"
+
+#include <algorithm>
+
+#include "scene/compile/lights/compile_lights.h"
+#include "scene/compile/solids/placed_bodies.h"
+#include "scene/description/platonic.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec3;
+
+bool apart(const Box& a, const Box& b, double range) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (a.low[axis] > b.high[axis] + range || b.low[axis] > a.high[axis] + range) return true;
+    return false;
+}
+
+class SmallestPartSearch {
+  public:
+    explicit SmallestPartSearch(const SceneSource& source)
+        : source_(source),
+          bodies_(*source.bodies),
+          normalization_(bodies_.normalization),
+          extent_(normalization_.extent),
+          range_(least_share(Precision::single_) * extent_) {}
+
+    SmallestPart run() {
+        add_solids();
+        add_lights();
+        add_gaps();
+        return smallest_;
+    }
+
+  private:
+    template <class What>
+    void add(double size, const What& what) {
+        if (!(size / extent_ < smallest_.share)) return;
+        smallest_ = {size / extent_, what()};
+    }
+    static std::string name(const SourceSolid& solid) {
+        return solid.name.empty() ? solid.place : solid.place + ": " + solid.name;
+    }
+
+    void add_solids() {
+        for (uint32_t i = 0; i < source_.solids.size(); ++i) {
+            const SourceSolid& solid = source_.solids[i];
+            if (!solid.platonic) {
+                add_mesh(i);
+                continue;
+            }
+            const double radius = solid.platonic->radius * normalization_.factor;
+            add(platonic_shape(solid.platonic->solid).inradius * radius,
+                [&] { return name(solid) + ": its inradius"; });
+        }
+    }
+
+    void add_mesh(uint32_t number) {
+        const SourceSolid& solid = source_.solids[number];
+        const MaterialDescription& material = source_.materials[solid.material];
+        const MeshSize& size = bodies_.sizes[number];
+        if (size.triangles == 0) return;
+        if (solid.closed)
+            add(solid.thickness * normalization_.factor, [&] { return name(solid) + ": its thickness"; });
+        else
+            add(size.half_width, [&] { return name(solid) + ": its half width"; });
+        if (!(material.reflection > 0 || material.transmission > 0)) return;
+        if (!(size.least_height / extent_ < smallest_.share) || has_planes(number)) return;
+        add(size.least_height, [&] { return name(solid) + ": the least height of its triangles"; });
+    }
+
+    bool has_planes(uint32_t number) const {
+        const auto found = std::lower_bound(bodies_.convex.begin(), bodies_.convex.end(), number,
+                                            [](const ConvexSolid& a, uint32_t wanted) { return a.solid < wanted; });
+        return found != bodies_.convex.end() && found->solid == number;
+    }
+
+    /// Adds a light's distance from a solid's face unless it lies on that.
+    void add_distance(double distance, uint32_t solid, const NormalizedLight& light) {
+        if (distance > tolerance(solid, light))
+            add(distance,
+                [&] { return light.place + ": a light's distance from a face of " + source_.solids[solid].place; });
+    }
+    double tolerance(uint32_t solid, const NormalizedLight& light) const {
+        return largest_tolerance(bodies_.contacts.solids[solid].reach, light);
+    }
+
+    void add_lights() {
+        for (const NormalizedLight& light : normalize_lights(source_, normalization_, bodies_.convex)) {
+            if (light.shown) add(light.radius, [&] { return light.place + ": a light's radius"; });
+            if (!light.lights()) continue;
+            const Box at{light.position, light.position};
+            for (const ConvexSolid& solid : bodies_.convex) {
+                if (apart(at, solid.box, range_)) continue;
+                double beyond = -INFINITY;
+                for (const PlanePair& plane : solid.planes) {
+                    beyond = max_or_second(dot(plane.normal, light.position) - plane.high, beyond);
+                    beyond = max_or_second(plane.low - dot(plane.normal, light.position), beyond);
+                }
+                add_distance(magnitude(beyond), solid.solid, light);
+            }
+            for (uint32_t i = 0; i < source_.solids.size(); ++i) {
+                if (source_.solids[i].platonic || has_planes(i) || apart(at, bodies_.sizes[i].box, range_)) continue;
+                add_distance(distance_to_triangles(source_.solids[i].mesh, normalization_, light.position,
+                                                   tolerance(i, light), range_),
+                             i, light);
+            }
+        }
+    }
+
+    /// Adds gaps that float would close (docs/rules.md, 11, A10).
+    void add_gaps() {
+        for (const auto* pairs : {&bodies_.contacts.near, &bodies_.contacts.apart})
+            for (const NearPair& pair : *pairs)
+                if (pair.gap <= 0x1p-20 * extent_)
+                    add(max_or_second(pair.gap, least_share(Precision::double_) * extent_), [&] {
+                        return name(source_.solids[pair.solids[1]]) + ": its distance from " +
+                               source_.solids[pair.solids[0]].place;
+                    });
+    }
+
+    const SceneSource& source_;
+    const PlacedBodies& bodies_;
+    const SceneNormalization& normalization_;
+    const double extent_, range_;
+    SmallestPart smallest_;
+};
+
+}  // namespace
+
+SmallestPart smallest_part(const SceneSource& source) {
+    return SmallestPartSearch(source).run();
+}
+
+SmallestPart smallest_part(const SceneDescription& description) {
+    return smallest_part(gather_scene(description));
+}
+
+}  // namespace cistula

@@ -1,0 +1,217 @@
+#include "scene/readers/meshes/obj_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/decimal.h"
+#include "base/error.h"
+#include "base/suggest.h"
+#include "scene/readers/meshes/mesh_text.h"
+#include "scene/readers/meshes/mtl_file.h"
+
+namespace cistula {
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+constexpr uint32_t no_uv = std::numeric_limits<uint32_t>::max();
+
+/// Faces of one object, group and material.
+struct Group {
+    std::string name, material;
+    std::vector<uint32_t> vertices, uvs;  // numbers of each corner's, from 0
+    std::vector<size_t> ends;             // of each face, in these
+    bool has_uvs = false;
+};
+
+/// The largest index from 1 that faces have named, and where: what it names may come later.
+struct LargestIndex {
+    uint64_t index = 0;
+    int line = 0;
+};
+
+class ObjReader {
+  public:
+    ObjReader(std::string_view text, const std::string& label, const ObjSurroundings& surroundings,
+              std::vector<std::string>& warnings)
+        : lines_(text), label_(label), surroundings_(surroundings), warnings_(warnings) {}
+
+    std::vector<PolygonMesh> read() {
+        while (lines_.next()) read_statement(lines_.words()[0]);
+        check_largest(largest_vertex_, positions_.size(), "vertex");
+        check_largest(largest_uv_, uvs_.size(), "texture coordinate");
+        read_libraries();
+        std::vector<PolygonMesh> meshes;
+        for (Group& group : groups_) meshes.push_back(mesh_of(group));
+        warn();
+        return meshes;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const { fail_at(lines_.line(), what); }
+    [[noreturn]] void fail_at(int line, const std::string& what) const {
+        throw Error(ExitCode::file, fmt::format("{}:{}: {}", label_, line, what));
+    }
+
+    void read_statement(std::string_view key) {
+        constexpr std::string_view unused[] = {"vp", "p", "l"};
+        if (key == "v") {
+            positions_.push_back({number(1), number(2), number(3)});
+            for (size_t i = 4; i < lines_.words().size(); ++i) number(i);  // a weight, a color
+        } else if (key == "vt") {
+            uvs_.push_back({number(1), lines_.words().size() > 2 ? number(2) : 0});
+            if (!std::isfinite(uvs_.back().x) || !std::isfinite(uvs_.back().y))
+                fail("a texture coordinate is not finite");
+        } else if (key == "f") {
+            read_face();
+        } else if (key == "o" || key == "g") {
+            change(name_, utf8_name(lines_.rest(1)));
+            starts_with_name_ = true;
+        } else if (key == "usemtl") {
+            change(material_, utf8_name(lines_.rest(1)));
+        } else if (key == "mtllib") {
+            library_lines_.emplace_back(lines_.rest(1));
+        } else if (std::find(std::begin(unused), std::end(unused), key) == std::end(unused)) {
+            const bool is_flat = key == "s" && (lines_.rest(1) == "off" || lines_.rest(1) == "0");
+            if (!is_flat) library_.ignored.add(key);
+        }
+    }
+
+    /// Word `i` as a number.
+    double number(size_t i) const {
+        const auto& words = lines_.words();
+        if (i >= words.size()) fail(fmt::format("{} needs more numbers than {}", words[0], i - 1));
+        const auto value = decimal<double>(words[i]);
+        if (!value) fail(fmt::format("expected a number, found {}", quoted(words[i])));
+        return *value;
+    }
+
+    void change(std::string& current, std::string to) {
+        if (current == to) return;
+        current = std::move(to);
+        in_group_ = false;
+    }
+
+    void read_face() {
+        const auto& words = lines_.words();
+        if (words.size() < 4) fail(fmt::format("a face needs at least 3 corners, found {}", words.size() - 1));
+        if (!in_group_) {
+            groups_.push_back({starts_with_name_ && !name_.empty() ? name_ : material_, material_, {}, {}, {}});
+            in_group_ = true;
+            starts_with_name_ = false;
+        }
+        Group& group = groups_.back();
+        for (size_t i = 1; i < words.size(); ++i) read_corner(words[i], group);
+        group.ends.push_back(group.vertices.size());
+    }
+
+    /// Reads "v", "v/t", "v//n" or "v/t/n".
+    void read_corner(std::string_view word, Group& group) {
+        const size_t slash = std::min(word.find('/'), word.size());
+        const size_t second = slash == word.size() ? slash : std::min(word.find('/', slash + 1), word.size());
+        group.vertices.push_back(index(word.substr(0, slash), positions_.size(), largest_vertex_, "vertex"));
+        const std::string_view uv = slash == word.size() ? "" : word.substr(slash + 1, second - slash - 1);
+        group.uvs.push_back(uv.empty() ? no_uv : index(uv, uvs_.size(), largest_uv_, "texture coordinate"));
+        group.has_uvs |= !uv.empty();
+        const std::string_view normal = second < word.size() ? word.substr(second + 1) : "";
+        if (!normal.empty() && !decimal<int64_t>(normal))
+            fail("expected the number of a normal, found " + quoted(normal));
+    }
+
+    /// An index from 0, of one from 1, or from -1 backward.
+    uint32_t index(std::string_view word, size_t count, LargestIndex& largest, std::string_view what) const {
+        const auto number = decimal<int64_t>(word);
+        if (!number || *number == 0)
+            fail(fmt::format("expected the number of a {}, from 1 or from -1 backward, found {}", what, quoted(word)));
+        const auto size = static_cast<int64_t>(count);
+        if (*number < -size) fail(fmt::format("a face names {} {}, but only {} came before", what, *number, size));
+        if (*number < 0) return static_cast<uint32_t>(size + *number);
+        const auto from_one = static_cast<uint64_t>(*number);
+        if (from_one > largest.index) largest = {from_one, lines_.line()};
+        return static_cast<uint32_t>(from_one - 1);
+    }
+
+    void check_largest(const LargestIndex& largest, size_t count, std::string_view what) const {
+        if (largest.index > count)
+            fail_at(largest.line, fmt::format("a face names {} {}, but there are {}", what, largest.index, count));
+    }
+
+    /// A library's name may have blanks, or the line several names.
+    void read_libraries() {
+        std::vector<std::string_view> names;
+        for (const std::string& line : library_lines_) {
+            names = {line};
+            if (!surroundings_.has(line)) split_words(line, names);
+            for (const std::string_view name : names) read_library(std::string(name));
+        }
+        const std::string& other = surroundings_.default_library;
+        if (!missing_libraries_.empty() && surroundings_.has(other)) read_library(other);
+    }
+
+    void read_library(const std::string& name) {
+        if (!seen_libraries_.insert(name).second) return;
+        if (!surroundings_.has(name)) return missing_libraries_.add(name);
+        const std::string text = utf8_of(surroundings_.bytes(name));
+        const std::string folder = name.substr(0, name.find_last_of("/\\") + 1);
+        read_mtl(
+            text, surroundings_.label(name), [&](const std::string& map) { return surroundings_.has(folder + map); },
+            library_);
+    }
+
+    PolygonMesh mesh_of(Group& group) {
+        PolygonMesh mesh;
+        mesh.name = group.name;
+        if (!group.material.empty()) {
+            const auto known = library_.materials.find(group.material);
+            if (known == library_.materials.end()) missing_materials_.add(group.material);
+            mesh.material = known == library_.materials.end() ? default_obj_material(group.material) : known->second;
+        }
+        mesh.vertices.reserve(group.vertices.size());
+        for (const uint32_t v : group.vertices) mesh.vertices.push_back(positions_[v]);
+        if (group.has_uvs)
+            for (const uint32_t t : group.uvs) mesh.uvs.push_back(t == no_uv ? dvec2{0} : uvs_[t]);
+        mesh.corners = std::move(group.vertices);
+        for (uint32_t i = 0; i < mesh.corners.size(); ++i) mesh.corners[i] = i;
+        mesh.ends = std::move(group.ends);
+        return mesh;
+    }
+
+    void warn() {
+        const auto add = [this](const char* what, const NameList& names) {
+            if (!names.empty()) warnings_.push_back(fmt::format("{}: {}: {}", label_, what, names.text()));
+        };
+        if (!library_.ignored.empty()) warnings_.push_back(ignored_warning(label_, library_.ignored));
+        add("there are no such material libraries", missing_libraries_);
+        add("there are no files of these maps", library_.missing_maps);
+        add("no library has these materials", missing_materials_);
+    }
+
+    MeshTextLines lines_;
+    const std::string& label_;
+    const ObjSurroundings& surroundings_;
+    std::vector<std::string>& warnings_;
+    std::vector<dvec3> positions_;
+    std::vector<dvec2> uvs_;
+    LargestIndex largest_vertex_, largest_uv_;
+    std::string name_, material_;  // of the faces that follow
+    bool in_group_ = false, starts_with_name_ = false;
+    std::vector<Group> groups_;
+    std::vector<std::string> library_lines_;
+    std::set<std::string> seen_libraries_;
+    MaterialLibrary library_;
+    NameList missing_libraries_, missing_materials_;
+};
+
+}  // namespace
+
+std::vector<PolygonMesh> read_obj(std::string_view text, const std::string& label, const ObjSurroundings& surroundings,
+                                  std::vector<std::string>& warnings) {
+    return ObjReader(text, label, surroundings, warnings).read();
+}
+
+}  // namespace cistula
