@@ -21,8 +21,6 @@ inline void check(const SceneDescription& scene, const SceneSource& source) {
     for (const MaterialDescription& m : source.materials) {
         if (m.fresnel || m.absorption != glm::dvec3(0) || m.tint != glm::dvec3(1) || m.specular_color != glm::dvec3(1))
             refuse("material " + m.name + " must have white tint and highlights, no absorption and no fresnel");
-        if (m.texture >= 0 && !scene.textures[static_cast<size_t>(m.texture)].file.empty())
-            refuse("material " + m.name + " has a texture from a file; it must be a checker");
     }
     for (const LightDescription& light : scene.lights)
         if (light.falloff || light.radius > 0) refuse("a light falls off or is seen; it must do neither");
@@ -69,6 +67,10 @@ inline void append_triangles(const SceneDescription& scene, const MeshSource& me
 
 /// Throws Error (usage) for what the course work's algorithm does not do.
 inline OwnedScene make_scene(const SceneDescription& scene) {
+    for (const TextureDescription& texture : scene.textures)
+        if (!texture.file.empty() || texture.texels)
+            throw Error(ExitCode::usage,
+                        scene.source + ": is more than the baseline renders: textures must be checkers");
     const SceneSource source = gather_scene(scene);
     check(scene, source);
     OwnedScene owned;

@@ -5,6 +5,7 @@
 #include <span>
 #include <tuple>
 
+#include "base/default_rounding.h"
 #include "cistula/numerics/vec.h"
 #include "image/reader/picture_reader.h"
 #include "scene/readers/meshes/mesh_file.h"
@@ -153,7 +154,7 @@ class AssetLoader {
 }  // namespace
 
 SceneAssets load_assets(const SceneDescription& scene, StopSignal stop) {
-    return AssetLoader(scene, stop).load();
+    return in_default_rounding([&] { return AssetLoader(scene, stop).load(); });
 }
 
 Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text,

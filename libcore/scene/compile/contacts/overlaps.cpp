@@ -14,9 +14,9 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int lines_across = 8;         // in either direction
-constexpr size_t most_pairs = 100'000;  // whose common boxes are looked through
-constexpr double least_length = 64;     // u M: of a line's part in both bodies; those that touch may differ by less
+constexpr int lines_across = 8;              // in either direction
+constexpr size_t most_near_pairs = 100'000;  // whose common boxes are looked through
+constexpr double least_length = 64;  // u M: of a line's part in both bodies; those that touch may differ by less
 
 template <class Real>
 class OverlapSearch {
@@ -72,7 +72,7 @@ class OverlapSearch {
                     common.high[axis] = min_or_second(a.high[axis], b.high[axis]);
                     meets &= common.high[axis] - common.low[axis] > least_;
                 }
-                if (meets && ++pairs <= most_pairs) visit(bodies_[i].solid, bodies_[j].solid, common);
+                if (meets && ++pairs <= most_near_pairs) visit(bodies_[i].solid, bodies_[j].solid, common);
             }
     }
 

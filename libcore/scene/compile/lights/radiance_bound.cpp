@@ -15,7 +15,7 @@ dvec3 largest_of(const dvec3& a, const dvec3& b) {
     return {max_or_second(a.x, b.x), max_or_second(a.y, b.y), max_or_second(a.z, b.z)};
 }
 
-std::string number_text(double value, int digits = 6) {
+std::string digits_text(double value, int digits = 6) {
     std::ostringstream stream;
     stream << std::setprecision(digits) << value;
     return stream.str();
@@ -65,11 +65,11 @@ Error too_near(const SceneSource& source, const NormalizedLight& light, const In
     const double radius = incoming.nearest * square_root(brightest / limit) * unit_length;
     return scene_error(*source.description, light.place,
                        its(light, "its", "the edge lights'") + std::string(" radius of ") +
-                           number_text(light.radius * unit_length) + " lets " + source.solids[solid].place +
-                           " be lit as brightly as " + number_text(brightest) +
+                           digits_text(light.radius * unit_length) + " lets " + source.solids[solid].place +
+                           " be lit as brightly as " + digits_text(brightest) +
                            ", and sums that hold this are too coarse for the rest, which is no brighter than " +
-                           number_text(limit / largest_contrast) + "; give a radius of " +
-                           number_text(1.05 * radius, 2) + " or more, or move it off the surface");
+                           digits_text(limit / largest_contrast) + "; give a radius of " +
+                           digits_text(1.05 * radius, 2) + " or more, or move it off the surface");
 }
 
 /// Brings a visible light's radiance down to the limit if it is its color, and refuses it if it was given.
@@ -79,15 +79,15 @@ void limit_glow(const SceneSource& source, NormalizedLight& light, double limit,
     const std::string remedy = ", or 'visible': false";
     if (light.glow_given)
         throw scene_error(*source.description, light.place,
-                          its(light, "its", "the edge lights'") + std::string(" glow of ") + number_text(glow) +
+                          its(light, "its", "the edge lights'") + std::string(" glow of ") + digits_text(glow) +
                               " is so much brighter than all that lights shine on, " +
-                              number_text(limit / largest_contrast) +
+                              digits_text(limit / largest_contrast) +
                               " at most, that sums that hold both are too coarse; give a glow of " +
-                              number_text(0.95 * limit, 2) + " or less" + remedy);
+                              digits_text(0.95 * limit, 2) + " or less" + remedy);
     light.radiance *= limit / glow;
     const std::string warning = light.place + ": " + its(light, "it is", "its edge lights are") +
-                                " shown with a glow of " + number_text(largest_component(light.radiance), 2) +
-                                " instead of the color's " + number_text(glow) +
+                                " shown with a glow of " + digits_text(largest_component(light.radiance), 2) +
+                                " instead of the color's " + digits_text(glow) +
                                 ", beside which sums would be too coarse for all else; give a glow" + remedy;
     if (warnings.empty() || warnings.back() != warning) warnings.push_back(warning);
 }
@@ -136,8 +136,8 @@ RadianceScale radiance_scale(const SceneDescription& scene, const dvec3& bound, 
         used = dvec3{*scene.frame->bound};
         if (!(used.x >= largest_component(bound)) || !is_finite(used.x))
             throw scene_error(scene, "/frame/bound",
-                              "is " + number_text(used.x) + ", but the scene's radiance can reach " +
-                                  number_text(largest_component(bound)) + "; give that or more");
+                              "is " + digits_text(used.x) + ", but the scene's radiance can reach " +
+                                  digits_text(largest_component(bound)) + "; give that or more");
     }
     used *= bound_slack;
     const double largest = largest_component(used);
@@ -145,7 +145,7 @@ RadianceScale radiance_scale(const SceneDescription& scene, const dvec3& bound, 
     if (!(largest <= limit) || !is_finite(used))
         throw scene_error(
             scene, "",
-            "the radiance bound is " + number_text(largest) + ", above 2^" +
+            "the radiance bound is " + digits_text(largest) + ", above 2^" +
                 (single_precision ? "100, what single precision can take; use --precision double or dimmer lights"
                                   : "127, what an image can hold; use dimmer lights"));
     if (largest > 0) {
