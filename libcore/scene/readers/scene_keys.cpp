@@ -1,7 +1,7 @@
 #include "scene/readers/scene_keys.h"
 
-#include <limits>
 #include <fmt/format.h>
+#include <limits>
 
 #include "image/color/color_encoding.h"
 
