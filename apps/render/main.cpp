@@ -69,10 +69,13 @@ Precision choose_precision(const RenderRequest& request, const SceneSource& sour
     return choice.precision;
 }
 
-/// Says what the compilation of a scene found, and keeps its precision.
-void tell_of(const Scene& scene, const RenderRequest& request) {
+/// Compiles, having said why in double where the scene decides that, and says what it found.
+Scene compiled(SceneSource source, const RenderRequest& request) {
+    PrecisionChoice choice = choose_precision(request.precision, smallest_part(source));
+    if (!choice.note.empty() && !request.quiet) note(fmt::format("render: {}", choice.note));
+    Scene scene(std::move(source), std::move(choice));
     print_warnings(scene.warnings(), request);
-    if (!scene.precision_note().empty() && !request.quiet) note(fmt::format("render: {}", scene.precision_note()));
+    return scene;
 }
 
 /// A renderer on the devices that are being made ready.
@@ -235,14 +238,13 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
         const std::vector<std::string> read = source.files;
         prepare_files(request, scene, others, read, outputs);
         enter_stage(Stage::compile);
-        std::optional<Scene> compiled(std::in_place, std::move(source), request.precision);
-        tell_of(*compiled, request);
-        const Precision precision = stats.precision = compiled->precision();
-        std::unique_ptr<Renderer> made = renderer_of(*compiled, request, std::move(devices), progress.stop, stats);
+        std::optional<Scene> made_scene = compiled(std::move(source), request);
+        const Precision precision = stats.precision = made_scene->precision();
+        std::unique_ptr<Renderer> made = renderer_of(*made_scene, request, std::move(devices), progress.stop, stats);
         Renderer& renderer = *made;
-        const std::shared_ptr<const LayerNames> layer_names = compiled->layer_names();
-        const FrameHashes hashes = compiled->hashes();
-        compiled.reset();  // the renderer keeps what it needs
+        const std::shared_ptr<const LayerNames> layer_names = made_scene->layer_names();
+        const FrameHashes hashes = made_scene->hashes();
+        made_scene.reset();  // the renderer keeps what it needs
         enter_stage(Stage::other);
         stats.scene_hash = hashes.of(outputs.frames.empty() ? 0 : outputs.frames.front());
         std::optional<StatsFile> file;
@@ -324,8 +326,7 @@ void measure_scene(const RenderRequest& request) {
 
 void report_pixel(const RenderCommand& request, const SceneDescription& description, SceneSource source,
                   const FrameSettings& settings, const CameraFrame& camera) {
-    const Scene scene(std::move(source), request.precision);
-    tell_of(scene, request);
+    const Scene scene = compiled(std::move(source), request);
     PixelTree tree = make_embree_renderer(scene)->pixel_tree(camera, settings, request.pixel.x, request.pixel.y);
     const std::string flaws = describe_flags(tree.film.flags, description);
     const PixelReport report{request.pixel.x,

@@ -2,8 +2,12 @@
 
 namespace cistula {
 
-Scene::Scene(SceneSource source, const std::optional<Precision>& wanted)
-    : choice_(choose_precision(wanted, smallest_part(source))), names_(name_scene(source)) {
+Scene::Scene(SceneSource source, const std::optional<Precision>& wanted) {
+    PrecisionChoice choice = choose_precision(wanted, smallest_part(source));
+    *this = Scene(std::move(source), std::move(choice));
+}
+
+Scene::Scene(SceneSource source, PrecisionChoice choice) : choice_(std::move(choice)), names_(name_scene(source)) {
     if (!choice_.warning.empty()) warnings_.push_back(choice_.warning);
     if (choice_.precision == Precision::double_)
         compile<double>(std::move(source));

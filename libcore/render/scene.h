@@ -22,6 +22,8 @@ class Scene {
     /// Compiles in the wanted precision; without one, in float unless a part of the scene is too small for it. The
     /// description that the source is of must outlive the call. Throws Error with the place.
     explicit Scene(SceneSource source, const std::optional<Precision>& wanted = {});
+    /// Compiles as was chosen.
+    Scene(SceneSource source, PrecisionChoice choice);
     explicit Scene(const SceneDescription& description, const std::optional<Precision>& wanted = {},
                    StopSignal stop = {});
 
