@@ -60,7 +60,7 @@ fuzz: ## search for inputs that break a reader: TARGET=ply SECONDS=60 (the targe
 	$(call setup,packages.txt tests/lint-packages.txt)
 	tests/fuzz/search $(SECONDS) build/fuzz $(TARGET)
 
-lint: ## check the format of all sources, and libcore/scene, apps/common and apps/render by clang-tidy
+lint: ## check the format of all sources, and libcore, apps/common and apps/render by clang-tidy
 	$(call setup,packages.txt tests/lint-packages.txt)
 	$(call configure,clang)
 	tests/lint build/clang
