@@ -1,5 +1,7 @@
 #include "testing/generated_mesh.h"
 
+#include <cmath>
+
 #include "cistula/numerics/trigonometry.h"
 #include "cistula/numerics/vec.h"
 #include "scene/compile/scene_normalization.h"
@@ -79,6 +81,25 @@ TrianglesObject torus(double radius, double tube, uint32_t around, uint32_t acro
         for (uint32_t j = 0; j < around; ++j)
             add_quad(object.triangles, at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
     return object;
+}
+
+TrianglesObject prism(uint32_t sides, double low, double high, double height) {
+    TrianglesObject mesh;
+    for (const bool up : {false, true})
+        for (uint32_t i = 0; i < sides; ++i) {
+            const double angle = 6.283185307179586 * i / sides, radius = up ? high : low;
+            mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), up ? height : -height});
+        }
+    for (uint32_t i = 0; i < sides; ++i) {
+        const uint32_t a = i, b = (i + 1) % sides;
+        mesh.triangles.push_back({a, b, sides + b});
+        mesh.triangles.push_back({a, sides + b, sides + a});
+    }
+    for (uint32_t i = 1; i + 1 < sides; ++i) {
+        mesh.triangles.push_back({0, i + 1, i});
+        mesh.triangles.push_back({sides, sides + i, sides + i + 1});
+    }
+    return mesh;
 }
 
 TrianglesObject star(double inner, double outer) {

@@ -17,6 +17,10 @@ TrianglesObject torus(double radius, double tube, uint32_t around, uint32_t acro
 /// A closed star: a spike over every face of an icosahedron, so that edges between spikes are reflex.
 TrianglesObject star(double inner = 0.5, double outer = 1);
 
+/// What stands over a polygon with `sides` corners on a circle: from z = -height with radius `low` to z = height with
+/// radius `high`.
+TrianglesObject prism(uint32_t sides, double low = 1, double high = 1, double height = 1);
+
 /// Random open triangles in [-1, 1]^3, with corners within `size` / 4 of a random point along each axis; determined by
 /// the seed.
 TrianglesObject triangle_soup(uint32_t triangles, double size, uint64_t seed);

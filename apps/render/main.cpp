@@ -52,31 +52,52 @@ void on_threads(const RenderRequest& request, const Work& work) {
     arena.execute(work);
 }
 
-Talk talk_of(const RenderRequest& request) {
-    return request.quiet ? Talk::errors : request.verbose ? Talk::much : Talk::some;
-}
-
 void print_warnings(const std::vector<std::string>& warnings, const RenderRequest& request) {
     if (request.quiet) return;
     for (const std::string& warning : warnings) note(fmt::format("render: warning: {}", warning));
 }
 
 /// The precision of the frames, which is said where the scene decides it.
-Precision choose_precision(const RenderRequest& request, const SceneSource& source) {
+PrecisionChoice precision_of(const RenderRequest& request, const SceneSource& source) {
     const PrecisionChoice choice = choose_precision(request.precision, smallest_part(source));
-    if (!choice.warning.empty()) print_warnings({choice.warning}, request);
     if (!choice.note.empty() && !request.quiet) note(fmt::format("render: {}", choice.note));
+    return choice;
+}
+
+/// The precision, of which is warned here where no compilation will.
+Precision warned_precision_of(const RenderRequest& request, const SceneSource& source) {
+    const PrecisionChoice choice = precision_of(request, source);
+    if (!choice.warning.empty()) print_warnings({choice.warning}, request);
     return choice.precision;
 }
 
-/// Compiles, having said why in double where the scene decides that, and says what it found.
+/// Compiles, and says what it found.
 Scene compiled(SceneSource source, const RenderRequest& request) {
-    PrecisionChoice choice = choose_precision(request.precision, smallest_part(source));
-    if (!choice.note.empty() && !request.quiet) note(fmt::format("render: {}", choice.note));
+    PrecisionChoice choice = precision_of(request, source);
     Scene scene(std::move(source), std::move(choice));
     print_warnings(scene.warnings(), request);
     return scene;
 }
+
+/// Tells a film's progress, and writes its frames down for --stats.
+class ToldFilm : public FilmProgress {
+  public:
+    ToldFilm(const RenderRequest& request, const RenderProgress& progress, StatsFile* stats)
+        : FilmProgress(request.progress,
+                       request.quiet     ? Talk::errors
+                       : request.verbose ? Talk::much
+                                         : Talk::some,
+                       progress),
+          stats_(stats) {}
+
+    void written(const FrameStats& frame) override {
+        if (stats_) stats_->add(frame);
+        FilmProgress::written(frame);
+    }
+
+  private:
+    StatsFile* const stats_;  // null: nobody asked
+};
 
 /// A renderer on the devices that are being made ready.
 std::unique_ptr<Renderer> renderer_of(const Scene& scene, const RenderRequest& request,
@@ -211,7 +232,7 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
     enter_stage(Stage::other);
     if (explain) {
         SceneSource source = gather_scene(scene);
-        const Precision precision = choose_precision(request, source);
+        const Precision precision = warned_precision_of(request, source);
         return print(explain_table(scene.source, explain_scene(std::move(source), precision), request.backend));
     }
 
@@ -266,7 +287,7 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
                              seconds(Stage::read), seconds(Stage::compile), seconds(Stage::tree), renderer.memory(),
                              stats.scene_hash));
         }
-        FilmProgress report(request.progress, talk_of(request), progress);
+        ToldFilm report(request, progress, file ? &*file : nullptr);
         FilmJob job{request,         scene,          hashes, settings, outputs.image,
                     outputs.preview, outputs.frames, report, precision};
         job.layer_names = layer_names;
@@ -278,7 +299,6 @@ void render_scene(RenderCommand request, std::string& memory_advice) {
             require_different_files(others, outputs.image, outputs.preview,
                                     frames_from(outputs.frames, 0, stretch_length), outputs.layers);
         }
-        if (file) job.written = [&](const FrameStats& frame) { file->add(frame); };
         job.look_ahead = [&](const std::vector<int>& frames) {
             return look_ahead(outputs, request, scene, others, frames);
         };
@@ -313,7 +333,7 @@ void measure_scene(const RenderRequest& request) {
     on_threads(request, [&] {
         const StopSignal stop(progress.render.stop);
         SceneSource source = gather_scene(scene, stop);
-        const Precision precision = choose_precision(request, source);
+        const Precision precision = warned_precision_of(request, source);
         const Explanation explanation = explain_scene(std::move(source), precision);
         const auto make = [&](const SceneDescription& of) {
             return make_renderer(request.backend, Scene(of, precision, stop), devices.options);

@@ -10,8 +10,8 @@
 #include "image.h"
 #include "image/exr/exr.h"
 #include "measure.h"
-#include "render/header_attributes.h"
 #include "render/record/film_picture.h"
+#include "render/record/frame_header.h"
 #include "scene/compile/materials/required_effects.h"
 #include "small_frame.h"
 

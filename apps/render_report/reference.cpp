@@ -13,7 +13,7 @@
 #include "base/machine.h"
 #include "base/suggest.h"
 #include "base/timing.h"
-#include "render/header_attributes.h"
+#include "render/record/frame_header.h"
 
 namespace cistula::report {
 namespace {

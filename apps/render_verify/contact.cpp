@@ -384,37 +384,34 @@ Render broken(const Render& render) {
 
 void add_contact(Cases& cases) {
     using namespace contact;
+    using Rows = std::vector<std::tuple<const char*, Arrangements, Shape>>;
     const auto add_all = [&](const std::string& prefix, const char* exact, const Bound& bound, const auto& make,
-                             const std::vector<std::tuple<const char*, Arrangements, Shape>>& rows) {
+                             const Rows& rows) {
         for (const auto& [name, arrangements, shape] : rows)
             cases.images(prefix + name, exact, bound, make(arrangements, shape));
     };
+    const auto bodies_and = [](const Rows& meshes) {
+        Rows rows = {{"on-a-floor", {floor_}, Shape::planes},
+                     {"on-a-tessellated-floor", {mesh_floor}, Shape::planes},
+                     {"on-a-solid", {solid}, Shape::planes},
+                     {"side-by-side", {sides}, Shape::planes},
+                     {"over-the-edge", {edge, two_quads}, Shape::planes},
+                     {"in-a-corner", {corner}, Shape::planes},
+                     {"along-an-edge", {along_edge, vertex}, Shape::planes},
+                     {"stack", {stack}, Shape::planes}};
+        rows.insert(rows.end(), meshes.begin(), meshes.end());
+        return rows;
+    };
     add_all("invisible/", "the colors of the paper alone", bound_of_displaced, invisible,
-            {{"on-a-floor", {floor_}, Shape::planes},
-             {"on-a-tessellated-floor", {mesh_floor}, Shape::planes},
-             {"on-a-solid", {solid}, Shape::planes},
-             {"side-by-side", {sides}, Shape::planes},
-             {"over-the-edge", {edge, two_quads}, Shape::planes},
-             {"in-a-corner", {corner}, Shape::planes},
-             {"along-an-edge", {along_edge, vertex}, Shape::planes},
-             {"stack", {stack}, Shape::planes},
-             {"convex-meshes", {floor_, corner, stack}, Shape::convex_mesh},
-             {"meshes", {floor_, mesh_floor, edge}, Shape::triangles},
-             {"meshes/side-by-side", {sides, corner, stack}, Shape::triangles}});
+            bodies_and({{"convex-meshes", {floor_, corner, stack}, Shape::convex_mesh},
+                        {"meshes", {floor_, mesh_floor, edge}, Shape::triangles},
+                        {"meshes/side-by-side", {sides, corner, stack}, Shape::triangles}}));
     cases.images("invisible/solids", "the colors of the paper alone, under every face of the Platonic solids",
                  bound_of_displaced, invisible_solids);
     add_all("apart/", "the picture of the bodies 2^-12 larger, with some of them within others", no_failures("pixels"),
             apart,
-            {{"on-a-floor", {floor_}, Shape::planes},
-             {"on-a-tessellated-floor", {mesh_floor}, Shape::planes},
-             {"on-a-solid", {solid}, Shape::planes},
-             {"side-by-side", {sides}, Shape::planes},
-             {"over-the-edge", {edge, two_quads}, Shape::planes},
-             {"in-a-corner", {corner}, Shape::planes},
-             {"along-an-edge", {along_edge, vertex}, Shape::planes},
-             {"stack", {stack}, Shape::planes},
-             {"convex-meshes", {floor_, sides, corner}, Shape::convex_mesh},
-             {"meshes", {floor_, mesh_floor, edge, sides}, Shape::triangles}});
+            bodies_and({{"convex-meshes", {floor_, sides, corner}, Shape::convex_mesh},
+                        {"meshes", {floor_, mesh_floor, edge, sides}, Shape::triangles}}));
     cases.images("optical", "Fresnel products of a glass cube on a floor, in every pixel", no_failures("pixels"),
                  optical);
 

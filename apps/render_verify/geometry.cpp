@@ -191,24 +191,13 @@ TrianglesObject grid_box(const std::vector<double>& cuts) {
     return mesh;
 }
 
-/// A prism about a line through the origin with `sides` long thin faces.
-TrianglesObject needle(uint32_t sides, double radius, const glm::dvec3& rotation, const glm::dvec3& center) {
+/// A prism with seven long thin faces, turned about the origin.
+TrianglesObject needle(const glm::dvec3& rotation) {
+    const double radius = 0x1p-20;
+    TrianglesObject mesh = prism(7, radius, radius);
+    mesh.keep_triangles = true;
     const Rotation turned(rotation);
-    TrianglesObject mesh{.keep_triangles = true};
-    for (const double z : {-1.0, 1.0})
-        for (uint32_t i = 0; i < sides; ++i) {
-            const double angle = 6.283185307179586 * i / sides;
-            mesh.vertices.push_back(center + turned(glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), z)));
-        }
-    for (uint32_t i = 0; i < sides; ++i) {
-        const uint32_t a = i, b = (i + 1) % sides;
-        mesh.triangles.push_back({a, b, sides + b});
-        mesh.triangles.push_back({a, sides + b, sides + a});
-    }
-    for (uint32_t i = 1; i + 1 < sides; ++i) {
-        mesh.triangles.push_back({0, i + 1, i});
-        mesh.triangles.push_back({sides, sides + i, sides + i + 1});
-    }
+    for (glm::dvec3& vertex : mesh.vertices) vertex = glm::dvec3(0) + turned(vertex);
     return mesh;
 }
 
@@ -229,8 +218,7 @@ void plan_slivers(Plan& plan) {
     };
     const double thin = 2 * 0x1p-20;
     add("box with strips", grid_box({-1, -0.5, -0.5 + thin, 0, thin, 0.3, 0.3 + thin, 1}), true);
-    for (const glm::dvec3& turn : turns)
-        add(turn == glm::dvec3(0) ? "needle" : "needle, turned", needle(7, 0x1p-20, turn, glm::dvec3(0)), false);
+    for (const glm::dvec3& turn : turns) add(turn == glm::dvec3(0) ? "needle" : "needle, turned", needle(turn), false);
 }
 
 void plan_coincident(Plan& plan) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/shown_text.h"
 #include "cistula/geometry/ray.h"
 #include "cistula/model/pixel_record.h"
@@ -12,6 +13,19 @@
 #include "scene/compile/contacts/overlaps.h"
 
 namespace cistula {
+
+RayHits Renderer::intersect(std::span<const glm::dvec3>, std::span<const glm::dvec3>) {
+    throw Error(ExitCode::usage, intersector() + ": this renderer tells nothing of rays");
+}
+
+std::vector<glm::dvec3> Renderer::transmittance(std::span<const glm::dvec3>, std::span<const glm::dvec3>) {
+    throw Error(ExitCode::usage, intersector() + ": this renderer tells nothing of rays");
+}
+
+PixelTree Renderer::pixel_tree(const CameraFrame&, const FrameSettings&, int, int) {
+    throw Error(ExitCode::usage, intersector() + ": the trees of pixels are told by the renderer of the CPU");
+}
+
 namespace {
 
 /// Whether a pixel shows more objects than its table holds; the tables of this film and the next are then larger. One

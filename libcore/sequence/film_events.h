@@ -32,7 +32,7 @@ class FilmEvents {
     virtual void begin_frame(int /*frame*/, size_t /*index*/, size_t /*count*/, uint64_t /*pixels*/) {}
     /// A frame's last ray. Its stats lack what depends on its files.
     virtual void end_frame(const FrameStats&) {}
-    /// A frame whose files are whole.
+    /// A frame whose files are whole, in the film's order. What it throws is a failed write.
     virtual void written(const FrameStats&) {}
     /// A file with the part of a frame that is done, `fraction` of its pixels.
     virtual void snapshot(int /*frame*/, const std::string& /*file*/, double /*fraction*/) {}

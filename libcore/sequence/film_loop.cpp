@@ -196,7 +196,6 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
     FrameWriter writer(request.channels, !request.stats.empty(), writer_limits(request.backend, job.frames.size()),
                        progress.stop, [&](const FrameStats& frame) {
                            stats.totals.add(frame);
-                           if (job.written) job.written(frame);
                            job.events.written(frame);
                        });
     size_t rendered = 0;

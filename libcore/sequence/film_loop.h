@@ -32,8 +32,6 @@ struct FilmJob {
     FilmEvents& events;
     Precision precision = Precision::single_;
     std::shared_ptr<const LayerNames> layer_names = std::make_shared<const LayerNames>();
-    /// Called for each frame whose files are whole, in the film's order, on any thread, one at a time.
-    FrameSink written = {};
     /// Called with the frames that are next, and the one before them, in stretches of the length below. Returns a
     /// warning or nothing, and throws for what keeps them from being rendered or written. The first stretch is the
     /// caller's.

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "image/view/picture_view.h"
-#include "render/header_attributes.h"
 #include "render/record/film.h"
 #include "render/record/film_picture.h"
+#include "render/record/frame_header.h"
 #include "render/record/split_picture.h"
 #include "sequence/output_name.h"
 #include "sequence/stats.h"

@@ -7,8 +7,9 @@
 
 #include "base/error.h"
 #include "image/exr/exr.h"
-#include "render/header_attributes.h"
+#include "image/picture/stored_picture.h"
 #include "render/picture_size.h"
+#include "render/record/frame_header.h"
 #include "sequence/snapshots.h"
 
 namespace cistula {

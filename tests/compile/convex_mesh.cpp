@@ -27,27 +27,6 @@ TrianglesObject cube() {
     return free_mesh(PlatonicSolid::cube, std::sqrt(3.0));
 }
 
-/// What stands over a polygon with `sides` corners on a circle: from z = -height with radius `low` to z = height with
-/// radius `high`.
-TrianglesObject prism(uint32_t sides, double low = 1, double high = 1, double height = 1) {
-    TrianglesObject mesh;
-    for (const bool up : {false, true})
-        for (uint32_t i = 0; i < sides; ++i) {
-            const double angle = 6.283185307179586 * i / sides, radius = up ? high : low;
-            mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), up ? height : -height});
-        }
-    for (uint32_t i = 0; i < sides; ++i) {
-        const uint32_t a = i, b = (i + 1) % sides;
-        mesh.triangles.push_back({a, b, sides + b});
-        mesh.triangles.push_back({a, sides + b, sides + a});
-    }
-    for (uint32_t i = 1; i + 1 < sides; ++i) {
-        mesh.triangles.push_back({0, i + 1, i});
-        mesh.triangles.push_back({sides, sides + i, sides + i + 1});
-    }
-    return mesh;
-}
-
 /// A roof 2 wide, 2 long and `height` high: its two slopes meet at its ridge.
 TrianglesObject wedge(double height) {
     TrianglesObject mesh;

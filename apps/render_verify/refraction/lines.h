@@ -321,10 +321,11 @@ template <class Real>
 struct SlabRay {
     Lines<Real> lines;
     Vec3<double> normal, to;  // outward at the face of entry; direction after the cube
-    bool through;             // entered one face and left by the opposite one
 };
+/// False for a ray that does not leave by the opposite face, and is no witness.
 template <class Real, class Tracer>
-CISTULA_HD inline void pass_slab(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, SlabRay<Real>& ray) {
+CISTULA_HD inline bool pass_slab(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, SlabRay<Real>& ray,
+                                 Tally& tally) {
     Draw draw = setup.draw(i);
     const uint32_t face = draw.below(6);
     const Vec3<double> middle = setup.points[6];
@@ -338,8 +339,11 @@ CISTULA_HD inline void pass_slab(const Setup<Real>& setup, const Tracer& interse
     trace(setup, intersector, ray_from(Vec3<Real>(target - way * (setup.numbers[1] * 0.5)), Vec3<Real>(way)),
           ray.lines);
     const Lines<Real>& lines = ray.lines;
-    ray.through = lines.whole() && lines.count == 3 && lines.first[1].found() &&
-                  magnitude(dot(normal_at(setup.scene, lines.first[1]), Vec3<Real>(ray.normal))) > Real(0.5);
+    tally.expect(lines.flags == 0 && lines.count >= 3);
+    const bool through = lines.whole() && lines.count == 3 && lines.first[1].found() &&
+                         magnitude(dot(normal_at(setup.scene, lines.first[1]), Vec3<Real>(ray.normal))) > Real(0.5);
+    if (through) tally.witness(true);
+    return through;
 }
 
 /// The direction after a slab equals that before.
@@ -347,10 +351,7 @@ struct SlabParallel {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         SlabRay<Real> ray;
-        pass_slab(setup, intersector, i, ray);
-        tally.expect(ray.lines.flags == 0 && ray.lines.count >= 3);
-        if (!ray.through) return;  // left by a side
-        tally.witness(true);
+        if (!pass_slab(setup, intersector, i, ray, tally)) return;
         const Condition condition = condition_of(ray.to, ray.normal, 1, setup.numbers[0]);
         const Vec3<double> off = Vec3<double>(ray.lines.direction[2]) - ray.to;
         tally.measure(length(off) / (double(RealTraits<Real>::unit) * condition.value));
@@ -363,10 +364,7 @@ struct SlabDisplacement {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         SlabRay<Real> ray;
-        pass_slab(setup, intersector, i, ray);
-        tally.expect(ray.lines.flags == 0 && ray.lines.count >= 3);
-        if (!ray.through) return;
-        tally.witness(true);
+        if (!pass_slab(setup, intersector, i, ray, tally)) return;
         const double n = setup.numbers[0], c = -dot(ray.to, ray.normal), thickness = 2 * setup.numbers[1];
         const Vec3<double> tangent = ray.to + c * ray.normal;
         const double g = square_root((n - 1) * (n + 1) + c * c), expected = thickness * length(tangent) * (1 - c / g);

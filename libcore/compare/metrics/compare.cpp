@@ -16,7 +16,7 @@
 #include "compare/metrics/picture_pairs.h"
 #include "compare/metrics/ssim.h"
 #include "image/picture/picture.h"
-#include "render/header_attributes.h"
+#include "render/record/frame_header.h"
 
 namespace cistula {
 namespace {

@@ -3,15 +3,9 @@
 #include <fmt/format.h>
 
 #include "base/timing.h"
-#include "cistula/transport/ray_tree.h"
 #include "image/picture/picture_hash.h"
-#include "render/frame_settings.h"
-#include "render/header_attributes.h"
 #include "render/layer_list.h"
-#include "render/target.h"
-#include "scene/compile/compiled_scene.h"
-#include "scene/compile/precision_choice.h"
-#include "scene/compile/scene_source.h"
+#include "render/record/frame_header.h"
 #include "scene/readers/read_scene.h"
 #include "sequence/film_loop.h"
 #include "sequence/frame_writer.h"

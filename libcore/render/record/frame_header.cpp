@@ -1,6 +1,8 @@
 #include "render/record/frame_header.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include "base/fnv128.h"
 
 namespace cistula {
@@ -114,6 +116,20 @@ void join_target_attributes(const Attributes& more, Attributes& attributes) {
         else if (name == checked_pixels || name == off_pixels)
             value = std::get<int>(value) + std::get<int>(other->second);
     }
+}
+
+bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected) {
+    const auto windows = [](const LayeredPicture& p) {
+        return std::array{p.width, p.height, p.x, p.y, p.display_width, p.display_height};
+    };
+    const auto channels = [](const LayeredPicture& p) {
+        std::map<std::string, bool> names;
+        for (const LayeredPicture::Channel& channel : p.channels) names[channel.name] = channel.half;
+        return names;
+    };
+    return windows(picture) == windows(expected) && picture.compression == expected.compression &&
+           channels(picture) == channels(expected) &&
+           without_target_attributes(picture.attributes) == expected.attributes;
 }
 
 }  // namespace cistula

@@ -44,4 +44,8 @@ std::vector<float> world_to_camera(const Camera& camera);
 /// 1 - 1 / distance.
 std::vector<float> world_to_ndc(const Camera& camera, int width, int height);
 
+/// Whether `picture` is the image that the attributes, windows, channels and compression of `expected` describe. The
+/// values of `expected` are ignored, and so is what add_target_attributes() added to the picture.
+bool is_same_image(const LayeredPicture& picture, const LayeredPicture& expected);
+
 }  // namespace cistula

@@ -48,6 +48,20 @@ class FakeRenderer : public Renderer {
     int stop_at = -1;
 };
 
+/// Says what `render` says, and keeps what is told of written frames.
+class Report : public FilmProgress {
+  public:
+    Report(Talk talk, const RenderProgress& progress, std::vector<FrameStats>& frames)
+        : FilmProgress(ProgressStyle::none, talk, progress), frames_(frames) {}
+    void written(const FrameStats& frame) override {
+        frames_.push_back(frame);
+        FilmProgress::written(frame);
+    }
+
+  private:
+    std::vector<FrameStats>& frames_;
+};
+
 class FilmLoop : public RenderProgram {
   protected:
     FilmLoop() : scene_(read_scene(file("s.json"))) {
@@ -60,9 +74,8 @@ class FilmLoop : public RenderProgram {
         options_.backend = backend;
         const OutputName output(file("f.##.exr"), "-o"), none;
         RenderProgress progress;
-        FilmProgress report(ProgressStyle::none, talk_, progress);
+        Report report(talk_, progress, written_);
         FilmJob job{options_, scene_, FrameHashes("hash"), settings_, output, none, frames, report};
-        job.written = [this](const FrameStats& frame) { written_.push_back(frame); };
         job.look_ahead = [this](const std::vector<int>& stretch) {
             stretches_.push_back(stretch);
             return warning_;
