@@ -141,17 +141,19 @@ void FrameWriter::work() {
             write(task);
         } catch (...) {
             failure = std::current_exception();
-            stop_ = true;
         }
         Film film = std::move(task.frame.film);
         lock.lock();
-        if (!failure)
-            done_.emplace(task.index, std::move(task.frame.stats));
-        else if (!failure_)
-            failure_ = failure;
-        pass_on();
         bytes_ -= task.bytes;
-        if (bytes_ + (spares_.size() + 1) * task.bytes <= limits_.bytes) spares_.push_back(std::move(film));
+        try {
+            if (failure) std::rethrow_exception(failure);
+            done_.emplace(task.index, std::move(task.frame.stats));
+            if (bytes_ + (spares_.size() + 1) * task.bytes <= limits_.bytes) spares_.push_back(std::move(film));
+        } catch (...) {
+            if (!failure_) failure_ = std::current_exception();
+            stop_ = true;
+        }
+        pass_on();
         --in_work_;
         ++idle_;
         changed_.notify_all();

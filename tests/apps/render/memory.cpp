@@ -34,10 +34,11 @@ class RenderMemory : public RenderProgram {
 
     enum class End { rendered, told, by_signal };
 
-    /// How a film of three frames ends.
+    /// How a film of three frames ends. What the film before it left goes first: a run that a signal ended leaves
+    /// ".f.0.exr.0.part".
     End end_of_film(const std::function<void()>& prepare) const {
         for (const std::string& name : folder_.names())
-            if (name.starts_with("f.")) std::filesystem::remove(file(name));
+            if (name.starts_with("f.") || name.starts_with(".f.")) std::filesystem::remove(file(name));
         const ProgramResult result = run_with({"s.json", "-q", "--threads", "4", "-o", "f.#.exr", "--preview",
                                                "f.#.png", "--layers", "error,id", "--stats", "f.json"},
                                               prepare);
