@@ -97,7 +97,9 @@ class ToldSequence : public SequenceProgress {
         const SequenceTotals& totals = stats.totals;
         if (done < frames || totals.frames == 0) return;
         if (request_.verbose)
-            note(fmt::format("render: effects: {}", fmt::join(names_of_effects(stats.effects), ", ")));
+            note(fmt::format("render: hits by {}{}; effects: {}", stats.intersector,
+                             stats.lanes > 1 ? fmt::format(" of {} rays", stats.lanes) : "",
+                             fmt::join(names_of_effects(stats.effects), ", ")));
         if (request_.quiet) return;
         const std::string what =
             totals.frames == 1 ? totals.first_file : fmt::format("{}: {} frames", stats.images, totals.frames);

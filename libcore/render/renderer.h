@@ -110,7 +110,7 @@ class Renderer {
     /// The maximum number of rays that the last render traced at once.
     virtual int lanes() const { return 1; }
 
-    /// The name of the intersector: "embree", "bvh", "brute" or "cuda".
+    /// What found the last render's hits: "lanes", "embree", "bvh", "brute" or "cuda".
     virtual std::string intersector() const = 0;
 
     /// Times of the last frame for backends with devices of their own; zeros for others.
