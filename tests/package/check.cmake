@@ -61,6 +61,26 @@ foreach(scene scene double)
     endforeach()
 endforeach()
 
+# Its neighbours: frames that are there are kept, folders are compared, and a pixel's trees are those of render.
+file(MAKE_DIRECTORY "${work}/films")
+foreach(folder a b)
+    run("${work}/example/film" "${work}/scene.json" "${work}/films/${folder}/f.#.exr" 0-1)
+endforeach()
+run("${work}/example/film" "${work}/scene.json" "${work}/films/a/f.#.exr" 0-2)
+if(NOT output MATCHES "f.0.exr: kept\n.*f.1.exr: kept\n.*f.2.exr: [0-9.]+ s\n")
+    message(FATAL_ERROR "the example of a film does not keep what is there: ${output}")
+endif()
+run("${work}/example/compare_folders" "${work}/films/a" "${work}/films/b" 0)
+if(NOT output MATCHES "f.1.exr: passes, largest difference 0, 0 of [0-9]+ values differ\n")
+    message(FATAL_ERROR "the example of two folders: ${output}")
+endif()
+run("${work}/example/pixel" "${work}/scene.json" 4 3)
+set(trees "${output}")
+run("${prefix}/bin/render" "${work}/scene.json" --pixel 4,3 --json -)
+if(NOT trees STREQUAL output)
+    message(FATAL_ERROR "the example of a pixel: ${trees}")
+endif()
+
 include("${source}/suite.cmake")
 
 # With the module for pictures, where the package has it: also from a program that was installed elsewhere, and from the installed
