@@ -60,7 +60,9 @@ template <class Real>
 struct Hit {
     Real t = RealTraits<Real>::infinity;
     KeyOf<Real> key = KeyFormat<Real>::none;
-    Real u = 0, v = 0;           // triangles: weights of the second and third corner
+    // triangles: weights of the second and third corner
+    Real u = 0;
+    Real v = 0;
     IndexOf<Real> slot = 0;      // triangles: 8 cluster + lane
     MaskOf<Real> enters = true;  // triangles: against the normal; the sign of det, not of a rounded dot product
     /// The smallest t of mesh crossings that were refused because they come from the wrong side (triangle.h).

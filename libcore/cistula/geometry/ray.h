@@ -88,7 +88,8 @@ struct InteriorList {
 /// The interior list of scenes whose closed solids are all convex and do not touch, so that a ray is inside at most
 /// one. Its state lets a ray enter only from outside and leave only from inside.
 struct SingleInterior {
-    static constexpr bool contacts = false, meshes = false;
+    static constexpr bool contacts = false;
+    static constexpr bool meshes = false;
 
     uint32_t solid = no_solid;
 

@@ -73,8 +73,9 @@ struct HalfSpace {
 /// The part of a line inside a convex solid, if the ray enters it.
 template <class Real>
 struct EntryBeside {
-    Real enter = 0, leave = 0;  // enter < 0: the ray is inside from its start on
-    uint32_t face = no_face;    // the face by which it enters, or no_face if it does not
+    Real enter = 0;  // less than 0: the ray is inside from its start on
+    Real leave = 0;
+    uint32_t face = no_face;  // the face by which it enters, or no_face if it does not
 };
 
 /// How far in front of a face a start may be computed that lies on it, in units of s u M.
@@ -90,13 +91,15 @@ CISTULA_NOINLINE EntryBeside<Real> entry_beside(const SceneView<Real>& scene, ui
     const Solid& solid = scene.solids[index];
     EntryBeside<Real> entry{-RealTraits<Real>::infinity, RealTraits<Real>::infinity, no_face};
     Real farthest = -RealTraits<Real>::infinity;
-    uint32_t entered_before = no_face, entered = no_face;
+    uint32_t entered_before = no_face;
+    uint32_t entered = no_face;
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         Slab<Real> slab = scene.slabs[solid.first_slab + i];
         for (uint32_t side = 0; side < 2; ++side) {
             if (side == 0 && slab.low == -RealTraits<Real>::infinity) continue;
             const HalfSpace<Real> half = HalfSpace<Real>::of(slab, side);
-            const Real slope = dot(half.normal, direction), out = half.outside(origin);
+            const Real slope = dot(half.normal, direction);
+            const Real out = half.outside(origin);
             if (2 * i + side == own_face) {
                 if (slope > Real(0)) return {};
             } else {

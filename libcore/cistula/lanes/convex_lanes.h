@@ -8,13 +8,16 @@
 namespace cistula::convex_lanes {
 
 /// What is asked of a line: the face by which it enters; that by which a ray inside leaves, but for one.
-inline constexpr int entering = 1, inside = 2;
+inline constexpr int entering = 1;
+inline constexpr int inside = 2;
 
 /// Where lines enter and leave a solid, with the first faces that have these times.
 template <class Real>
 struct SolidCrossing {
-    Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
-    IndexOf<Real> enter_face = 0, leave_face = 0;
+    Real enter = -RealTraits<Real>::infinity;
+    Real leave = RealTraits<Real>::infinity;
+    IndexOf<Real> enter_face = 0;
+    IndexOf<Real> leave_face = 0;
 
     /// Takes the crossings of slab i, whose leaving face is `leaving`; `skipped` is not left by.
     template <int asked>
@@ -45,8 +48,10 @@ CISTULA_INLINE SolidCrossing<Real> cross_all(const Scene& scene, const Solid& so
         if constexpr (careful) {
             cross_slab(normal, Real(slab.low), Real(slab.high), origin, direction, in, out);
         } else {
-            const Real no = dot(normal, origin), inverse = reciprocal(slope);
-            const Real at_low = (slab.low - no) * inverse, at_high = (slab.high - no) * inverse;
+            const Real no = dot(normal, origin);
+            const Real inverse = reciprocal(slope);
+            const Real at_low = (slab.low - no) * inverse;
+            const Real at_high = (slab.high - no) * inverse;
             in = min_no_nan(at_low, at_high);
             out = max_no_nan(at_low, at_high);
             least = min_or_second(magnitude(slope), least);

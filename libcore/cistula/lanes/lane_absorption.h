@@ -28,7 +28,8 @@ struct Absorption<true, Lanes<T, n>> {
                                const MaskOf<Real>& active) {
         if (!scene.absorbing.any) return;
         for_each_lane(active, [&](int lane) {
-            const InteriorSet from = before.of(lane), to = beyond.of(lane);
+            const InteriorSet from = before.of(lane);
+            const InteriorSet to = beyond.of(lane);
             clear(lane);
             of[lane].add_all(scene, from.among([&](uint32_t i) { return !to.contains(i); }), t[lane], 1);
             of[lane].add_all(scene, to.among([&](uint32_t i) { return !from.contains(i); }), t[lane], -1);

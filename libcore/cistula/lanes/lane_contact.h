@@ -62,7 +62,8 @@ CISTULA_INLINE auto bodies_at_start(const LaneScene<T>& scene, const Ray<Lanes<T
 /// EntryBeside in lanes, of rays that enter.
 template <class Real>
 struct LaneEntries {
-    Real enter = 0, leave = 0;
+    Real enter = 0;
+    Real leave = 0;
     IndexOf<Real> face = 0;
     MaskOf<Real> found = false;
 };
@@ -272,8 +273,10 @@ CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T,
         using Real = Lanes<T, n>;
         using Index = IndexOf<Real>;
         if (scene.shared_planes.empty()) return;
-        const Index solids = key_solid(event.hit.key), own = planes_of<Real>(scene, solids, key_face(event.hit.key));
-        const Vec3<Real> toward = beyond ? -normal : normal, met = along(parent.origin, event.hit.t, parent.direction);
+        const Index solids = key_solid(event.hit.key);
+        const Index own = planes_of<Real>(scene, solids, key_face(event.hit.key));
+        const Vec3<Real> toward = beyond ? -normal : normal;
+        const Vec3<Real> met = along(parent.origin, event.hit.t, parent.direction);
         Vec3<Real> start = origin;
         LaneMedia<Real> around = media;
         for_each_value(active & (own != Index(ScalarOf<Index>(no_plane))), own, [&](uint32_t number, const auto& same) {

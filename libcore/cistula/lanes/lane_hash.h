@@ -57,12 +57,13 @@ struct HashingLanes {
     template <class E>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray, const Mask& active) const {
         const Hit<Real> hit = inner.template closest<E>(ray, active);
-        const Mask starts_on_face = ray.from_solid != int(no_solid), found = hit.found();
+        const Mask starts_on_face = ray.from_solid != int(no_solid);
+        const Mask found = hit.found();
         const Mask counts = active & hash.counts;
         if (!any(counts)) return hit;
         const Index from = select(starts_on_face, own_numbers(ray.from_solid), Index(int(no_solid)));
-        const Index solid = own_numbers(key_solid(hit.key)),
-                    place = select(is_kind(hit.key, CrossingKind::sheet), solid ^ Index(0xffffff), solid);
+        const Index solid = own_numbers(key_solid(hit.key));
+        const Index place = select(is_kind(hit.key, CrossingKind::sheet), solid ^ Index(0xffffff), solid);
         const Index kind = hit.key >> LaneKey::kind_bit;
         const Index miss(ScalarOf<Index>(~0u));
         hash.add(select(found, key_face(hit.key), miss), select(found, kind << 24 | place, miss),

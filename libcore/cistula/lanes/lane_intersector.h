@@ -109,8 +109,8 @@ struct LaneIntersector {
         Mask inside = false;
         if constexpr (E::has(effect_insides)) inside = active & ray.media.contains(index);
         const Mask near = free & (!inside) & !misses_bounds(next.sphere, ray.origin, ray.direction, best.t);
-        const Mask on_plane = is_beside<E>(index, beside),
-                   outside = near & (!on_plane) & (ray.from_solid != int(index));
+        const Mask on_plane = is_beside<E>(index, beside);
+        const Mask outside = near & (!on_plane) & (ray.from_solid != int(index));
         if (any(inside | outside)) {
             const Index left = faces_left<E>(scene, index, ray, inside & on_plane);
             closest_in_solid(next, ray, left, inside, outside, best);
@@ -188,7 +188,8 @@ struct LaneIntersector {
         const Ray<Real, Media>& ray = shadow.ray;
         const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[place];
         const uint32_t index = next.index;
-        Mask inside = false, outside = true;
+        Mask inside = false;
+        Mask outside = true;
         if constexpr (E::has(effect_insides)) {
             const Mask contains = ray.media.contains(index);
             inside = active & contains;
@@ -231,14 +232,15 @@ struct LaneIntersector {
                                            Hit<Real>& best) const {
         const auto& cluster = scene.clusters[index];
         const bool is_mesh = scene.meshes.has(cluster.solid);
-        for_each_crossing(
-            cluster, triangle_ray, active, [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
-                const uint32_t triangle = cluster.triangle[lane], slot = index * uint32_t(cluster_lanes) + lane;
-                if (is_mesh)
-                    closest_mesh_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
-                else
-                    closest_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
-            });
+        for_each_crossing(cluster, triangle_ray, active,
+                          [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
+                              const uint32_t triangle = cluster.triangle[lane];
+                              const uint32_t slot = index * uint32_t(cluster_lanes) + lane;
+                              if (is_mesh)
+                                  closest_mesh_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
+                              else
+                                  closest_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
+                          });
     }
 
     template <class E>

@@ -75,7 +75,8 @@ CISTULA_INLINE void light_sides(const Scene& scene, uint32_t index, const Shadow
     inside = outside = false;
     if constexpr (E::has(effect_lights_on_faces)) {
         if (shadow.light->incident_count == 0) return;
-        uint32_t in = 0, out = 0;
+        uint32_t in = 0;
+        uint32_t out = 0;
         for_each_lane(active, [&](int lane) {
             const LightSide side = light_on_convex(scene, *shadow.light, index, lane_of(shadow.ray.origin, lane));
             in |= uint32_t(side == LightSide::inside) << lane;

@@ -15,8 +15,10 @@ CISTULA_INLINE Lanes<int64_t, n> integers_of(const Lanes<double, n>& a) {
     } else {
         const native::Longs bits = (native::Longs)a.v;
         // The significand, shifted by the exponent; shifts by 64 and more give 0.
-        const native::Longs exponent = bits >> 52, whole = (bits & ((int64_t(1) << 52) - 1)) | int64_t(1) << 52;
-        const native::Longs left = exponent - 1075, right = 1075 - exponent;
+        const native::Longs exponent = bits >> 52;
+        const native::Longs whole = (bits & ((int64_t(1) << 52) - 1)) | int64_t(1) << 52;
+        const native::Longs left = exponent - 1075;
+        const native::Longs right = 1075 - exponent;
         const native::Longs floor = native::shifted_left(whole, left) | native::shifted_right(whole, right);
         if constexpr (!above) return Lanes<int64_t, n>(floor);
         using Integers = Lanes<int64_t, n>;
@@ -34,8 +36,10 @@ struct alignas(32) SumRow {
 /// Adds numbers of four lanes to the rows of these lanes.
 template <class Index>
 CISTULA_INLINE void add_to_rows(SumRow* rows, const Index* numbers, __m256i a, __m256i b, __m256i c, __m256i d) {
-    const __m256i ab_even = _mm256_unpacklo_epi64(a, b), ab_odd = _mm256_unpackhi_epi64(a, b),
-                  cd_even = _mm256_unpacklo_epi64(c, d), cd_odd = _mm256_unpackhi_epi64(c, d);
+    const __m256i ab_even = _mm256_unpacklo_epi64(a, b);
+    const __m256i ab_odd = _mm256_unpackhi_epi64(a, b);
+    const __m256i cd_even = _mm256_unpacklo_epi64(c, d);
+    const __m256i cd_odd = _mm256_unpackhi_epi64(c, d);
     const __m256i of[4] = {
         _mm256_permute2x128_si256(ab_even, cd_even, 0x20), _mm256_permute2x128_si256(ab_odd, cd_odd, 0x20),
         _mm256_permute2x128_si256(ab_even, cd_even, 0x31), _mm256_permute2x128_si256(ab_odd, cd_odd, 0x31)};

@@ -162,7 +162,8 @@ CISTULA_INLINE IndexOf<Lanes<T, n>> repeated(const Lanes<T, n>& i, uint32_t size
 template <class T, int n>
 CISTULA_INLINE Vec3<Lanes<T, n>> texel_at(const Vec3<float>* texels, const Texture& texture, const Lanes<T, n>& i,
                                           const Lanes<T, n>& j) {
-    const auto row = repeated(j, texture.height), column = repeated(i, texture.width);
+    const auto row = repeated(j, texture.height);
+    const auto column = repeated(i, texture.width);
     return vectors_at<3>(&texels->x, row * IndexOf<Lanes<T, n>>(int(texture.width)) + column);
 }
 
@@ -172,12 +173,14 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
                                 const MaskOf<Lanes<T, n>>& active, Surface<Lanes<T, n>>& s) {
     using Real = Lanes<T, n>;
     using Index = IndexOf<Real>;
-    const Index solids = key_solid(hit.key), faces = key_face(hit.key);
+    const Index solids = key_solid(hit.key);
+    const Index faces = key_face(hit.key);
     s.point = s.viewer_side = along(ray.origin, hit.t, ray.direction);
     s.viewer_media = ray.media;
     s.material.all = scene.materials.data;
     s.material.number = s.material.integer_exponent = 0;  // read in all lanes
-    Index first_slab = 0, is_convex = 0;
+    Index first_slab = 0;
+    Index is_convex = 0;
     const auto take_all = [&](const Solid& solid, const auto& take) {
         const Material<T>& material = scene.materials[solid.material];
         s.material.template take_all<E>(take, scene.tables, material);
@@ -203,7 +206,8 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
     if (any(convex)) {
         const Vec3<Real> normal = vectors_at<sizeof(Slab<T>) / sizeof(T)>(&scene.slabs.data->normal.x,
                                                                           masked(convex, first_slab + (faces >> 1)));
-        const MaskOf<Real> high = (faces & 1) != 0, outward = (high & hit.enters) | !(high | hit.enters);
+        const MaskOf<Real> high = (faces & 1) != 0;
+        const MaskOf<Real> outward = (high & hit.enters) | !(high | hit.enters);
         assign_where(convex, s.normal, select(outward, normal, -normal));
     }
     if constexpr (E::triangles) {

@@ -26,11 +26,14 @@ template <int n>
 CISTULA_INLINE Lanes<int64_t, n> absorption_loss(const Lanes<double, n>& sigma_length) {
     using Wide = Lanes<double, n>;
     using Loss = Lanes<int64_t, n>;
-    constexpr double log2_e_hi = 0x1.71547652b82fep+0, log2_e_lo = 0x1.777d0ffda0d24p-56;
+    constexpr double log2_e_hi = 0x1.71547652b82fep+0;
+    constexpr double log2_e_lo = 0x1.777d0ffda0d24p-56;
     const DoubleDoubleOf<Wide> product = two_product(sigma_length, Wide(log2_e_hi));
     const DoubleDoubleOf<Wide> log = fast_two_sum(product.high, fused(sigma_length, Wide(log2_e_lo), product.low));
-    const auto none = sigma_length <= Wide(0.0), part = log.high < Wide(1024.0);
-    const Wide high = select(part, log.high, Wide(0.0)) * Wide(0x1p52), whole = floor_of(high);
+    const auto none = sigma_length <= Wide(0.0);
+    const auto part = log.high < Wide(1024.0);
+    const Wide high = select(part, log.high, Wide(0.0)) * Wide(0x1p52);
+    const Wide whole = floor_of(high);
     const Wide rest = floor_of((high - whole) + (select(part, log.low, Wide(0.0)) * Wide(0x1p52) + Wide(0.5)));
     const Loss loss = select(part, integers_of<false>(whole) + whole_of(rest), Loss(int64_t{loss_of_all}));
     return select(none, Loss(int64_t{0}), loss);

@@ -68,7 +68,8 @@ CISTULA_INLINE void closest_mesh_crossing(const Scene& scene, const MaskOf<Real>
     using Mask = MaskOf<Real>;
     const Real t = crossing_time(scene, triangle, c.t, ray);
     const Mask starts_there = (ray.from_solid == int(solid)) & (ray.from_face == int(triangle));
-    const Mask enters = c.enters(), is_inside = ray.media.contains(solid);
+    const Mask enters = c.enters();
+    const Mask is_inside = ray.media.contains(solid);
     const Mask wrong = (ray.after.t <= Real(-1)) & ((enters & is_inside) | !(enters | is_inside));
     const Mask meets = active & (t >= Real(0)) & !starts_there;
     assign_where(meets & wrong, best.wrong_side_t, min_no_nan(t, best.wrong_side_t));

@@ -38,7 +38,8 @@ class LayeredLaneSums : public LaneSums<Real> {
     CISTULA_INLINE void end(const Mask& active) {
         Base::end(active);
         if (plan_->path < 0 && plan_->light < 0) return;
-        const uint32_t glows = glows_.bits(), mirrored = mirrored_.bits();
+        const uint32_t glows = glows_.bits();
+        const uint32_t mirrored = mirrored_.bits();
         const auto way = [&](int lane, PathLayer own) {
             return at_first_ ? own : (mirrored >> lane & 1u) != 0 ? PathLayer::reflection : PathLayer::transmission;
         };
@@ -109,7 +110,9 @@ class LayeredLaneSums : public LaneSums<Real> {
     const LayerPlan* plan_ = nullptr;
     const Span<uint32_t>* groups_ = nullptr;
     bool at_first_ = false;  // the primary rays are under way
-    Mask mirrored_ = false, ends_ = false, glows_ = false;
+    Mask mirrored_ = false;
+    Mask ends_ = false;
+    Mask glows_ = false;
     Integers lights_[3], diffuse_[3];  // of point lights; their diffuse parts, at the first surface
 };
 

@@ -58,7 +58,8 @@ struct CachedTransmittance {
 /// The loss of the Beer-Lambert transmittance exp(-sigma_length), rounded to nearest. Negative arguments count as 0;
 /// arguments from 4096 ln 2 = 2839.13 on, and NaN, saturate.
 CISTULA_HD inline uint64_t absorption_loss(double sigma_length) {
-    constexpr double log2_e_hi = 0x1.71547652b82fep+0, log2_e_lo = 0x1.777d0ffda0d24p-56;
+    constexpr double log2_e_hi = 0x1.71547652b82fep+0;
+    constexpr double log2_e_lo = 0x1.777d0ffda0d24p-56;
     if (sigma_length <= 0) return 0;
     const DoubleDouble product = two_product(sigma_length, log2_e_hi);
     return loss_of_logarithm(fast_two_sum(product.high, fused(sigma_length, log2_e_lo, product.low)));

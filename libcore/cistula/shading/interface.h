@@ -57,8 +57,8 @@ CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& s
         if (any(split.bends)) {
             const Refraction<Real> refraction = refracted<Real>(direction, normal, from, to);
             assign_where(split.bends, split.through, refraction.direction);
-            const MaskOf<Real> total = split.bends & refraction.total,
-                               part = split.bends & (!refraction.total) & fresnel;
+            const MaskOf<Real> total = split.bends & refraction.total;
+            const MaskOf<Real> part = split.bends & (!refraction.total) & fresnel;
             assign_where(total, split.reflection, both);
             assign_where(total, split.filter, Filter(Real(0)));
             assign_where(part, split.reflection, both * refraction.reflectance);

@@ -57,7 +57,8 @@ struct ShadowSum {
     /// extents, is in no mesh, and lengths count up to there.
     template <class Real>
     CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real distance, Real t, int sign, Real extent) {
-        const Real farthest = 4 * extent, remaining = min_or_second(distance, farthest) - t;
+        const Real farthest = 4 * extent;
+        const Real remaining = min_or_second(distance, farthest) - t;
         for (int c = 0; c < channels; ++c)
             path[c].add(sign, double(material.absorption[c]), double(remaining), double(farthest));
     }

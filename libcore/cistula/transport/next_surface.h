@@ -77,7 +77,8 @@ class NextSurface {
                                      VisibleLightHit<Real>& visible, MaskOf<Real>& single) {
         Absorption<E::has(effect_absorption), Real> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t, active);
-        MaskOf<Real> met = false, left = active;
+        MaskOf<Real> met = false;
+        MaskOf<Real> left = active;
         SurfaceEvent<Real, Media> later;
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray, left);
@@ -96,7 +97,8 @@ class NextSurface {
             single |= strays;
             left = left & !strays;
             if (any(left & !next.fits)) sums_.flag(flag_media_overflow);
-            const MaskOf<Real> passes = left & invisible(branch.ray, next), stops = left & !passes;
+            const MaskOf<Real> passes = left & invisible(branch.ray, next);
+            const MaskOf<Real> stops = left & !passes;
             absorption.dim(scene_, branch.ray.media, next.hit.t, branch.weight, stops);
             if (crossings > 0) event.take_where(stops, next);
             met |= stops;
@@ -179,7 +181,8 @@ class NextSurface {
     /// The visible lights that rays in lanes meet before `hit`.
     CISTULA_INLINE VisibleLightHit<Real> light_before(const Hit<Real>& hit, Entry& branch,
                                                       const MaskOf<Real>& active) const {
-        MaskOf<Real> asked = active, goes_on = false;
+        MaskOf<Real> asked = active;
+        MaskOf<Real> goes_on = false;
         if constexpr (lines_go_on<E>) {
             asked = active & !branch.no_light_ahead;
             if (int(branch.depth) + 1 < depth_) goes_on = hit.found() & transmits(scene_, key_solid(hit.key));

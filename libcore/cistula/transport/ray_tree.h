@@ -187,13 +187,14 @@ class RayTree {
         const MaskOf<Real> sheet = is_kind(event.hit.key, CrossingKind::sheet);
         const InterfaceSplit<Real, Weight> split = split_at<Real, E>(
             scene_, material_of(scene_, s), branch.ray.direction, s.normal, branch.ray.media, event.beyond, sheet);
-        const Weight mirrored = branch.weight * split.reflection, through = branch.weight * split.filter;
+        const Weight mirrored = branch.weight * split.reflection;
+        const Weight through = branch.weight * split.filter;
         // Sums over channels, so that the lighter child has at most half the weight of its parent.
-        const Real mirrored_size = total(mirrored),
-                   through_size = E::has(effect_transmission) ? total(through) : Real(0);
+        const Real mirrored_size = total(mirrored);
+        const Real through_size = E::has(effect_transmission) ? total(through) : Real(0);
         if constexpr (in_lanes<Real>) {
-            const MaskOf<Real> reflects = active & (mirrored_size > Real(0)),
-                               passes = active & (through_size > Real(0));
+            const MaskOf<Real> reflects = active & (mirrored_size > Real(0));
+            const MaskOf<Real> passes = active & (through_size > Real(0));
             if (int(branch.depth) + 1 >= depth_) {
                 sums_.cut(mirrored, reflects);
                 if constexpr (E::has(effect_transmission)) sums_.cut(through, passes);
