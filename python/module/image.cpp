@@ -186,7 +186,26 @@ void bind_image(nb::module_& m) {
         .def_prop_ro(
             "rays", [](const Image& image) { return image.film.rays.total(); }, "Rays of all kinds that were traced.")
         .def_prop_ro(
+            "ray_counts",
+            [](const Image& image) {
+                const RayCounts& rays = image.film.rays;
+                return std::map<std::string, uint64_t>{{"primary", rays.primary},
+                                                       {"reflected", rays.reflected},
+                                                       {"transmitted", rays.transmitted},
+                                                       {"shadow", rays.shadow}};
+            },
+            "Rays that were traced, by kind.")
+        .def_prop_ro(
             "seconds", [](const Image& image) { return image.seconds; }, "How long it rendered.")
+        .def_prop_ro(
+            "times",
+            [](const Image& image) {
+                const RenderTimes& times = image.times;
+                if (times.kernel <= 0 && times.transfer <= 0) return std::map<std::string, double>{};
+                return std::map<std::string, double>{{"kernel", times.kernel}, {"transfer", times.transfer}};
+            },
+            "On GPUs the parts of `seconds`: \"kernel\", computing pixels, and \"transfer\", from then until the image is "
+            "there.")
         .def_prop_ro("target", target_of, nb::sig("def target(self) -> dict[str, int | float | bool] | None"),
                      "With a target error what is proven and estimated of it, in pixels; else None.")
         .def_prop_ro(

@@ -11,7 +11,10 @@
 #include <mutex>
 #include <thread>
 
+#include "base/machine.h"
 #include "base/suggest.h"
+#include "sequence/backends.h"
+#include "sequence/run_context.h"
 
 namespace cistula::python {
 namespace {
@@ -142,6 +145,20 @@ NB_MODULE(_core, m) {
         "backends",
         [] { return std::vector<std::string>(backend_names, backend_names + (has_cuda_backend() ? 2 : 1)); },
         "The backends of this build.");
+    m.def(
+        "run_context",
+        [](const Keywords& keywords) {
+            const RenderRequest request = request_of(keywords, {"backend", "device"});
+            const ChosenDevices devices = choose_devices(request.backend, request.devices);
+            auto context = run_context("cistula");
+            if (!devices.names.empty()) {
+                context["devices"] = devices.names;
+                context["driver"] = devices.driver;
+                context["gpu_driver"] = gpu_driver_version();
+            }
+            return context.dump(-1, ' ', false, decltype(context)::error_handler_t::replace);
+        },
+        "keywords"_a, "The JSON that records begin with: date, machine, build, and the GPUs that are chosen.");
     bind_image(m);
     bind_pixel(m);
     bind_scene(m);

@@ -55,6 +55,7 @@ class Frames {
                 FrameSettings settings = settings_;
                 if (state.stop) return;
                 image->seconds = seconds_of([&] { render_frame(renderer, camera, settings, image->film, state); });
+                image->times = renderer.times();
             });
         };
         run_interruptibly(state.stop, work, [&] {
