@@ -5,8 +5,8 @@
 #include "render/record/film_difference.h"
 #include "render/record/film_picture.h"
 #include "scene/description/camera_path.h"
-#include "testing/reference_renderers.h"
 #include "testing/support/scene.h"
+#include "verify/reference_renderers.h"
 
 namespace cistula::test {
 
