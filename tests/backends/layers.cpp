@@ -3,8 +3,8 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/description/camera_path.h"
-#include "testing/support/film_layers.h"
 #include "testing/support/golden.h"
+#include "testing/support/pictures/film_layers.h"
 #include "testing/support/scene.h"
 #include "testing/support/shipped_scenes.h"
 #include "verify/reference_renderers.h"

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "cistula/transport/ray_tree.h"
-#include "testing/support/ideal_contact.h"
+#include "testing/support/contacts/ideal_contact.h"
 
 namespace cistula::test {
 

@@ -2,7 +2,7 @@
 // on solids, with decals.
 #pragma once
 
-#include "testing/support/ideal_contact.h"
+#include "testing/support/contacts/ideal_contact.h"
 
 namespace cistula::test {
 
