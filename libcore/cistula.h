@@ -25,10 +25,10 @@
 #include "backend_cuda/host/cuda_renderer.h"        // make_cuda_renderer
 #include "backend_embree/embree/embree_renderer.h"  // make_embree_renderer
 
-// cistula::sequence: films
-#include "sequence/backends.h"   // make_renderer
-#include "sequence/film_loop.h"  // render_film
-#include "sequence/merge.h"      // tiles put together
+// cistula::sequence: image sequences
+#include "sequence/backends.h"         // make_renderer
+#include "sequence/merge.h"            // tiles put together
+#include "sequence/render_sequence.h"  // render_sequence
 
 // cistula::compare: pictures and suites
 #include "compare/metrics/compare.h"  // compare_files

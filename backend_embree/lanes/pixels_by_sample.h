@@ -29,7 +29,10 @@ class PixelsBySample {
         const size_t together = adaptive ? most_pixels : std::max<size_t>(most_samples / grid_samples(), 1);
         for (first_ = 0; first_ < pixels_.size() && !stop; first_ += together) {
             count_ = std::min(pixels_.size() - first_, together);
-            adaptive ? render_adaptively(stop, rays, flags) : render_grid(stop, rays, flags);
+            if (adaptive)
+                render_adaptively(stop, rays, flags);
+            else
+                render_grid(stop, rays, flags);
         }
         pixels_.clear();
     }

@@ -15,7 +15,7 @@
 #include "render/renderer.h"
 #include "scene/readers/scene_keys.h"
 #include "sequence/backends.h"
-#include "sequence/film_events.h"
+#include "sequence/sequence_events.h"
 
 namespace cistula {
 

@@ -152,10 +152,10 @@ TYPED_TEST(LanesTest, LossesAreThoseOfNumbersUpToWhereNothingPasses) {
         }
         add_loss(LaneMask<8, n>(true), absorption_loss(depths), sums);
         const uint32_t mask = uint32_t(this->draw_.below(1u << n));
-        const auto who = widened(MaskOf<Real>::of_bits(mask));
+        const auto active = widened(MaskOf<Real>::of_bits(mask));
         for (int term = 0; term < 6; ++term) {
             const uint64_t loss = this->draw_.one_in(4) ? largest_loss : this->draw_.shifted(0, 63);
-            add_loss(who, loss, sums);
+            add_loss(active, loss, sums);
             for (int i = 0; i < n; ++i) add_loss((mask >> i & 1u) != 0, loss, expected[i]);
         }
         const Real shares = uncached_transmittance<TypeParam>(sums);

@@ -77,9 +77,13 @@ struct EntryBeside {
     uint32_t face = no_face;    // the face by which it enters, or no_face if it does not
 };
 
+/// How far in front of a face a start may be computed that lies on it, in units of s u M.
+template <class Real>
+inline constexpr Real start_margin = 16;
+
 /// Where a ray that starts on a shared plane enters a convex solid that has `own_face` on it and is not around the ray
 /// (docs/rules.md, 11, line 14). The rounding of the start lets no face decide by itself: the own face never counts,
-/// and a face within 16 s u M of the start is not passed outward. Not inlined, so its arguments are by value.
+/// and a face within start_margin s u M of the start is not passed outward. Not inlined, so its arguments are by value.
 template <class Real>
 CISTULA_NOINLINE EntryBeside<Real> entry_beside(const SceneView<Real>& scene, uint32_t index, uint32_t own_face,
                                                 Vec3<Real> origin, Vec3<Real> direction, Real slack) {
@@ -96,15 +100,22 @@ CISTULA_NOINLINE EntryBeside<Real> entry_beside(const SceneView<Real>& scene, ui
             if (2 * i + side == own_face) {
                 if (slope > Real(0)) return {};
             } else {
-                if (out >= Real(-16) * slack && !(slope < Real(0))) return {};
-                if (slope < Real(0) && out > farthest) farthest = out, entered_before = 2 * i + side;
+                const bool leaves_at_start = out >= -start_margin<Real> * slack && !(slope < Real(0));
+                if (leaves_at_start) return {};
+                if (slope < Real(0) && out > farthest) {
+                    farthest = out;
+                    entered_before = 2 * i + side;
+                }
             }
         }
         if (own_face == 2 * i) slab.low = -RealTraits<Real>::infinity;
         if (own_face == 2 * i + 1) slab.high = RealTraits<Real>::infinity;
         Real enter, leave;
         cross_slab(slab.normal, slab.low, slab.high, origin, direction, enter, leave);
-        if (enter > entry.enter) entry.enter = enter, entered = leaving_face(i, dot(slab.normal, direction)) ^ 1u;
+        if (enter > entry.enter) {
+            entry.enter = enter;
+            entered = leaving_face(i, dot(slab.normal, direction)) ^ 1u;
+        }
         entry.leave = min_no_nan(leave, entry.leave);
     }
     if (!(entry.enter <= entry.leave && entry.leave > Real(0))) return {};

@@ -303,14 +303,14 @@ CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t triangle, Real ow
     return own;
 }
 
-/// Takes accepted crossings, where `who` holds, as `best` if they are the rays' next.
+/// Takes accepted crossings, where `active` holds, as `best` if they are the rays' next.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE void closest_crossing(const Scene& scene, const MaskOf<Real>& who, uint32_t solid, uint32_t triangle,
+CISTULA_INLINE void closest_crossing(const Scene& scene, const MaskOf<Real>& active, uint32_t solid, uint32_t triangle,
                                      uint32_t slot, const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray,
                                      Hit<Real>& best) {
     const MaskOf<Real> own = ray.from_solid == solid;
     const Real t = crossing_time(scene, triangle, c.t, ray);
-    const MaskOf<Real> meets = who & (t >= Real(0)) & !(own & (ray.from_face == triangle));
+    const MaskOf<Real> meets = active & (t >= Real(0)) & !(own & (ray.from_face == triangle));
     if (!any(meets)) return;
     CrossingKind kind = CrossingKind::sheet;
     if constexpr (Media::meshes) {

@@ -12,7 +12,7 @@ inline constexpr int entering = 1, inside = 2;
 
 /// Where lines enter and leave a solid, with the first faces that have these times.
 template <class Real>
-struct Line {
+struct SolidCrossing {
     Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
     IndexOf<Real> enter_face = 0, leave_face = 0;
 
@@ -34,9 +34,9 @@ struct Line {
 
 /// Computed as if no slab were parallel to a line, and again with the test for that if one was.
 template <class Real, bool careful, int asked, class Scene>
-CISTULA_INLINE Line<Real> cross_all(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
-                                    const Vec3<Real>& direction, const IndexOf<Real>& skipped, Real& least) {
-    Line<Real> line;
+CISTULA_INLINE SolidCrossing<Real> cross_all(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
+                                             const Vec3<Real>& direction, const IndexOf<Real>& skipped, Real& least) {
+    SolidCrossing<Real> crossing;
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         const Slab<ScalarOf<Real>>& slab = scene.slabs.data[solid.first_slab + i];
         const Vec3<Real> normal = spread<Real>(slab.normal);
@@ -53,18 +53,18 @@ CISTULA_INLINE Line<Real> cross_all(const Scene& scene, const Solid& solid, cons
         }
         IndexOf<Real> leaving;
         if constexpr (asked != 0) leaving = IndexOf<Real>(int(2 * i)) - minus_one_where(slope > Real(0));
-        line.template take<asked>(in, out, leaving, skipped);
+        crossing.template take<asked>(in, out, leaving, skipped);
     }
-    line.enter_face = line.enter_face ^ 1;
-    return line;
+    crossing.enter_face = crossing.enter_face ^ 1;
+    return crossing;
 }
 
 template <class Real, int asked, class Scene>
-CISTULA_INLINE Line<Real> cross(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
-                                const Vec3<Real>& direction, const IndexOf<Real>& skipped) {
+CISTULA_INLINE SolidCrossing<Real> cross(const Scene& scene, const Solid& solid, const Vec3<Real>& origin,
+                                         const Vec3<Real>& direction, const IndexOf<Real>& skipped) {
     Real least(1);
-    const Line<Real> line = cross_all<Real, false, asked>(scene, solid, origin, direction, skipped, least);
-    if (!any(least < least_slope<ScalarOf<Real>>)) return line;
+    const SolidCrossing<Real> crossing = cross_all<Real, false, asked>(scene, solid, origin, direction, skipped, least);
+    if (!any(least < least_slope<ScalarOf<Real>>)) return crossing;
     return cross_all<Real, true, asked>(scene, solid, origin, direction, skipped, least);
 }
 

@@ -47,8 +47,8 @@ CISTULA_INLINE MaskOf<Real> near_edges(const Scene& scene, const Solid& solid, S
 /// Rays that may meet a visible light between `from` and `to`.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE MaskOf<Real> may_hit_visible_lights(const Scene& scene, const Ray<Real, Media>& ray,
-                                                   const MaskOf<Real>& who, const Real& from, const Real& to) {
-    if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return who;
+                                                   const MaskOf<Real>& active, const Real& from, const Real& to) {
+    if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return active;
     MaskOf<Real> may = false;
     for (const IndexedSolid<ScalarOf<Real>>& entry : scene.convex_copies) {
         const SlabGroup<ScalarOf<Real>>& group = scene.slab_groups[entry.solid.first_group];
@@ -56,23 +56,23 @@ CISTULA_INLINE MaskOf<Real> may_hit_visible_lights(const Scene& scene, const Ray
         const Real ahead = dot(to_center, ray.direction), rest = dot(to_center, to_center) - group.light_square;
         const Real nearest = clamped(ahead, from, to);
         const MaskOf<Real> passes = rest > nearest * (Real(2) * ahead - nearest);
-        const MaskOf<Real> left = who & !may & !passes;
+        const MaskOf<Real> left = active & !may & !passes;
         if (any(left))
             may |= left & near_edges(scene, entry.solid, group.light_reach, ray.origin, ray.direction, from, to);
     }
     return may;
 }
 
-/// The nearest visible light at or after ray.after and before the limit, where `who` holds.
+/// The nearest visible light at or after ray.after and before the limit, where `active` holds.
 template <class T, int n, class Media, class Scene>
 CISTULA_INLINE VisibleLightHit<Lanes<T, n>> closest_visible_light(const Scene& scene,
                                                                   const Ray<Lanes<T, n>, Media>& ray,
                                                                   const Lanes<T, n>& limit,
-                                                                  const MaskOf<Lanes<T, n>>& who) {
+                                                                  const MaskOf<Lanes<T, n>>& active) {
     using Real = Lanes<T, n>;
     VisibleLightHit<Real> best;
     best.t = limit;
-    MaskOf<Real> asked = who & is_finite(ray);
+    MaskOf<Real> asked = active & is_finite(ray);
     if (scene.visible_light_tree.empty()) {
         best.t = select(asked, limit, Real(-1));
         for (uint32_t i = 0; i < scene.visible_lights.size; ++i) intersect_visible_light(scene, i, ray, best);

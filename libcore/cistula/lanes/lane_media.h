@@ -66,7 +66,9 @@ struct LaneMedia {
         return fits | !(enters | leaves);
     }
 
-    CISTULA_INLINE void take_where(const Mask& who, const LaneMedia& other) { assign_where(who, bits, other.bits); }
+    CISTULA_INLINE void take_where(const Mask& active, const LaneMedia& other) {
+        assign_where(active, bits, other.bits);
+    }
     CISTULA_INLINE InteriorSet of(int lane) const { return {uint32_t(bits[lane]), named}; }
 
   private:

@@ -12,13 +12,13 @@ inline constexpr uint64_t loss_of_all = (uint64_t{1} << 62) - 1;
 
 /// Adds losses up to loss_of_all where the mask holds.
 template <int n>
-CISTULA_INLINE void add_loss(const LaneMask<8, n>& who, const Lanes<int64_t, n>& added, Lanes<int64_t, n>& sum) {
-    const Lanes<int64_t, n> all(int64_t{loss_of_all}), more = sum + masked(who, added);
+CISTULA_INLINE void add_loss(const LaneMask<8, n>& active, const Lanes<int64_t, n>& added, Lanes<int64_t, n>& sum) {
+    const Lanes<int64_t, n> all(int64_t{loss_of_all}), more = sum + masked(active, added);
     sum = select(more < all, more, all);
 }
 template <int n>
-CISTULA_INLINE void add_loss(const LaneMask<8, n>& who, uint64_t added, Lanes<int64_t, n>& sum) {
-    if (added != 0) add_loss(who, Lanes<int64_t, n>(int64_t(min_or_second(added, loss_of_all))), sum);
+CISTULA_INLINE void add_loss(const LaneMask<8, n>& active, uint64_t added, Lanes<int64_t, n>& sum) {
+    if (added != 0) add_loss(active, Lanes<int64_t, n>(int64_t(min_or_second(added, loss_of_all))), sum);
 }
 
 /// absorption_loss(), up to loss_of_all.

@@ -120,10 +120,10 @@ CISTULA_INLINE Lanes<T, n> tree_near(const Lanes<T, n>& t) {
                          Lanes<T, n>(T(0)));
 }
 
-/// Calls visit(item, rays) for the items whose boxes the rays of `who` may meet up to far(), nearer boxes first.
+/// Calls visit(item, rays) for the items whose boxes the rays of `active` may meet up to far(), nearer boxes first.
 template <class Real, class Far, class Visit>
 CISTULA_INLINE void traverse_tree(const Span<TreeNode>& nodes, const Span<uint32_t>& items, const LaneBoxRay<Real>& ray,
-                                  const MaskOf<Real>& who, const Far& far, const Visit& visit) {
+                                  const MaskOf<Real>& active, const Far& far, const Visit& visit) {
     using Mask = MaskOf<Real>;
     using Boxes = LaneBoxRay<Real>;
     constexpr int lanes = LaneTraits<Real>::lanes;
@@ -136,7 +136,7 @@ CISTULA_INLINE void traverse_tree(const Span<TreeNode>& nodes, const Span<uint32
     int depth = 0;
     if (nodes.empty()) return;
     int32_t node = 0;
-    uint32_t rays = who.bits();
+    uint32_t rays = active.bits();
     for (;;) {
         const TreeNode& n = nodes[uint32_t(node)];
         typename Boxes::Entered entered;

@@ -16,9 +16,9 @@ CISTULA_INLINE uint64_t saturating_add(uint64_t a, uint64_t b) {
     return sum < a ? largest_loss : sum;
 }
 
-/// Adds a loss to a sum, if `who`. (In lanes: lane_transmittance.h.)
-CISTULA_INLINE void add_loss(bool who, uint64_t added, uint64_t& sum) {
-    assign_where(who, sum, saturating_add(sum, added));
+/// Adds a loss to a sum, if `active`. (In lanes: lane_transmittance.h.)
+CISTULA_INLINE void add_loss(bool active, uint64_t added, uint64_t& sum) {
+    assign_where(active, sum, saturating_add(sum, added));
 }
 
 /// Converts a logarithm >= 0 to Q11.52, rounded to nearest with halves up. Values of 4096 and more, and NaN, saturate.

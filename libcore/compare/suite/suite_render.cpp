@@ -7,8 +7,8 @@
 #include "render/layer_list.h"
 #include "render/record/frame_header.h"
 #include "scene/readers/read_scene.h"
-#include "sequence/film_loop.h"
 #include "sequence/frame_writer.h"
+#include "sequence/sequence_loop.h"
 
 namespace cistula {
 namespace {

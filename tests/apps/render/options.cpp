@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "apps/common/film_progress.h"
+#include "apps/common/sequence_progress.h"
 #include "apps/common/step_progress.h"
 #include "apps/render/explain.h"
 #include "cistula/transport/ray_tree.h"
@@ -25,7 +25,7 @@
 #include "render/record/film_difference.h"
 #include "render/record/frame_header.h"
 #include "scene/readers/json_reader.h"
-#include "sequence/film_loop.h"
+#include "sequence/sequence_loop.h"
 #include "sequence/stats.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scene.h"
@@ -716,7 +716,7 @@ TEST(Stats, LedgerTotalsAreInTheScenesUnits) {
 }
 
 TEST(Stats, OfWhatTheDepthTookTheWorstFrameIsSaidOnce) {
-    FilmTotals totals;
+    SequenceTotals totals;
     FrameStats frame;
     frame.file = "a.exr";
     frame.depth_loss = {0.0078125, 0.5, 0.5};  // just under what is seen
@@ -731,7 +731,7 @@ TEST(Stats, OfWhatTheDepthTookTheWorstFrameIsSaidOnce) {
     EXPECT_EQ(describe_depth_loss(totals, "a.#.exr", 4),
               "a.#.exr: in 2 of 3 frames, most in frame 7: depth 4 may have taken up to 1 from a pixel and 0.15 in the "
               "mean, where the picture's mean is 0.5: see --depth and --layers error");
-    FilmTotals black;
+    SequenceTotals black;
     frame.depth_loss = {0.01, 0.1, 0};
     black.add(frame);
     EXPECT_NE(describe_depth_loss(black, "a.exr", 4), "");

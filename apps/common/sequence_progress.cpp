@@ -1,4 +1,4 @@
-#include "apps/common/film_progress.h"
+#include "apps/common/sequence_progress.h"
 
 #include <fmt/format.h>
 
@@ -56,22 +56,25 @@ std::string progress_line(const ProgressState& state) {
 }
 
 // Records are printed however little the program says.
-FilmProgress::FilmProgress(ProgressStyle style, Talk talk, const RenderProgress& progress)
+SequenceProgress::SequenceProgress(ProgressStyle style, Talk talk, const RenderProgress& progress)
     : style_(talk == Talk::errors && !is_for_programs(style) ? ProgressStyle::none : style),
       talk_(talk),
       progress_(progress),
       line_(style_, [this](int columns) { return text(columns); }) {}
 
-void FilmProgress::begin(size_t frames) {
-    line_.update([&] { count_ = frames; });
+void SequenceProgress::begin(size_t frames) {
+    line_.update([&] {
+        count_ = frames;
+        start_ = Clock::now();
+    });
     record({"begin"});
 }
 
-void FilmProgress::kept(int frame, const std::string& file) {
+void SequenceProgress::kept(int frame, const std::string& file) {
     record({"kept", frame, file});
 }
 
-void FilmProgress::begin_frame(int frame, size_t index, size_t count, uint64_t pixels) {
+void SequenceProgress::begin_frame(int frame, size_t index, size_t count, uint64_t pixels) {
     line_.update([&] {
         frame_ = frame;
         index_ = index;
@@ -83,7 +86,7 @@ void FilmProgress::begin_frame(int frame, size_t index, size_t count, uint64_t p
     record({"frame", frame});
 }
 
-void FilmProgress::end_frame(const FrameStats& frame) {
+void SequenceProgress::end_frame(const FrameStats& frame) {
     line_.milestone(progress_line(state()));
     line_.record(state_record(style_, state()));
     line_.update([&] { in_frame_ = false; });
@@ -93,41 +96,41 @@ void FilmProgress::end_frame(const FrameStats& frame) {
                         format_rate(static_cast<double>(frame.rays.total()) / frame.render_seconds)));
 }
 
-void FilmProgress::written(const FrameStats& frame) {
+void SequenceProgress::written(const FrameStats& frame) {
     record({"written", frame.frame, frame.file});
 }
 
-void FilmProgress::snapshot(int frame, const std::string& file, double fraction) {
+void SequenceProgress::snapshot(int frame, const std::string& file, double fraction) {
     record({"snapshot", frame, file, fraction});
 }
 
-void FilmProgress::warning(const std::string& line) {
+void SequenceProgress::warning(const std::string& line) {
     remark("warning: " + line);
 }
 
-void FilmProgress::remark(const std::string& line) {
+void SequenceProgress::remark(const std::string& line) {
     if (talk_ != Talk::errors) say("render: " + line);
 }
 
-void FilmProgress::end(size_t done, size_t frames) {
+void SequenceProgress::end(const RunStats&, size_t done, size_t frames) {
     line_.update([&] { in_frame_ = false; });
     line_.aside([] {});
     record({"end", -1, "", -1, fmt::format("{} of {} frames written", done, frames)});
 }
 
-void FilmProgress::say(const std::string& line) {
+void SequenceProgress::say(const std::string& line) {
     line_.say(line);
     record({"message", -1, "", -1, line});
 }
 
-void FilmProgress::record(const FilmRecord& record) {
+void SequenceProgress::record(const EventRecord& record) {
     if (!is_for_programs(style_)) return;
     ProgressState now;
     line_.update([&] { now = state(); });
     if (const std::string lines = event_record(style_, record, now); !lines.empty()) line_.record(lines);
 }
 
-ProgressState FilmProgress::state() const {
+ProgressState SequenceProgress::state() const {
     const double pixels = static_cast<double>(progress_.pixels_done.load());
     const double rays = static_cast<double>(progress_.rays.load());
     const double frame_seconds = std::max(seconds_since(frame_start_), 1e-6);
@@ -139,7 +142,7 @@ ProgressState FilmProgress::state() const {
             rays / frame_seconds};
 }
 
-std::string FilmProgress::text(int columns) const {
+std::string SequenceProgress::text(int columns) const {
     if (!in_frame_) return "";
     if (is_for_programs(style_)) return state_record(style_, state());
     return columns > 0 ? progress_bar(state(), columns) : progress_line(state());

@@ -1,4 +1,4 @@
-#include "sequence/film_loop.h"
+#include "sequence/sequence_loop.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,7 +28,7 @@ namespace cistula {
 namespace {
 
 /// The files of a frame, without values: their windows, channels and attributes.
-std::vector<FrameFile> expected_files(const FilmJob& job, const CameraFrame& camera) {
+std::vector<FrameFile> expected_files(const SequenceJob& job, const CameraFrame& camera) {
     Film one;
     one.full_width = one.full_height = one.rect.width = one.rect.height = 1;
     one.pixels.assign(1);
@@ -61,7 +61,7 @@ bool is_finished(const FrameFile& file) {
     }
 }
 
-bool is_finished(const FilmJob& job, const CameraFrame& camera) {
+bool is_finished(const SequenceJob& job, const CameraFrame& camera) {
     const std::string preview = job.preview.for_frame(camera.frame);
     std::error_code error;
     if (!std::filesystem::is_regular_file(job.output.for_frame(camera.frame), error)) return false;
@@ -71,7 +71,7 @@ bool is_finished(const FilmJob& job, const CameraFrame& camera) {
 }
 
 /// The files that are written for a frame: images, those of layers first, and the preview.
-std::vector<std::string> paths_of(const FilmJob& job, const CameraFrame& camera) {
+std::vector<std::string> paths_of(const SequenceJob& job, const CameraFrame& camera) {
     std::vector<std::string> paths;
     if (job.request.split == Split::files)
         for (const FrameFile& file : expected_files(job, camera)) paths.push_back(file.path);
@@ -82,12 +82,12 @@ std::vector<std::string> paths_of(const FilmJob& job, const CameraFrame& camera)
 }
 
 /// Throws Error if a frame cannot be written.
-void probe_outputs(const FilmJob& job, const CameraFrame& camera) {
+void probe_outputs(const SequenceJob& job, const CameraFrame& camera) {
     for (const std::string& path : paths_of(job, camera)) const AtomicFile probe(path);
 }
 
 /// Removes what programs that died left beside a frame's files.
-void remove_stale(const FilmJob& job, const CameraFrame& camera) {
+void remove_stale(const SequenceJob& job, const CameraFrame& camera) {
     for (const std::string& path : paths_of(job, camera)) AtomicFile::remove_stale(path);
 }
 
@@ -97,7 +97,7 @@ constexpr size_t most_looked_at = 4;
 /// The frames of a job that are still to be rendered, found as they are asked for.
 class FramesToRender {
   public:
-    FramesToRender(const FilmJob& job, const std::atomic<bool>& stop, std::vector<int>& resumed)
+    FramesToRender(const SequenceJob& job, const std::atomic<bool>& stop, std::vector<int>& resumed)
         : job_(job), stop_(stop), resumed_(resumed) {}
 
     /// The next one, if it is among the `most` frames that follow.
@@ -127,14 +127,14 @@ class FramesToRender {
         if (!warning.empty()) job_.events.warning(warning);
     }
 
-    const FilmJob& job_;
+    const SequenceJob& job_;
     const std::atomic<bool>& stop_;
     std::vector<int>& resumed_;
     size_t index_ = 0;
 };
 
 /// `rendered`: index of the first frame that was not.
-[[noreturn]] void fail_interrupted(const FilmJob& job, size_t done, size_t rendered) {
+[[noreturn]] void fail_interrupted(const SequenceJob& job, size_t done, size_t rendered) {
     const bool raw = file_kind(job.output.text()) == FileKind::raw;
     throw Error(ExitCode::interrupted,
                 fmt::format("interrupted; {} of {} frames written; the same command with {} goes on from here", done,
@@ -157,45 +157,29 @@ FrameStats stats_of(const Film& film, int frame, const std::string& path, double
     return stats;
 }
 
-}  // namespace
-
-Attributes attributes_of(const FilmJob& job, const CameraFrame& camera) {
-    Attributes attributes = header_attributes(job.hashes, job.settings, job.precision, camera);
-    add_film_attributes(job.scene.film, attributes);
-    return attributes;
+/// Adds to a frame what its files and its statistics say beside its film.
+void describe(FinishedFrame& frame, const SequenceJob& job, const CameraFrame& camera, double seconds,
+              const Renderer& renderer) {
+    frame.image = job.output;
+    frame.split = job.request.split;
+    frame.preview = job.preview.for_frame(camera.frame);
+    frame.view = job.request.view;
+    frame.attributes = attributes_of(job, camera);
+    frame.stats = stats_of(frame.film, camera.frame, job.output.for_frame(camera.frame), seconds, renderer.times());
+    if (!job.settings.adaptive())
+        frame.stats.depth_loss = depth_loss(frame.stats.cut, ledger_totals(frame.film, frame.film.totals.radiance));
+    frame.settings = job.settings;
+    frame.strict = job.request.strict;
 }
 
-// Every core compresses that has no rays to trace: TBB's by zip, which go where there is work, and OpenEXR's threads by
-// others. A GPU renders much faster than frames are compressed, so several frames are written at once, and of OpenEXR's
-// threads a few share each: with one frame per core, cores would idle until as many frames are rendered, and again
-// while the last ones are written. At least two frames, so that one is encoded while the
-// other is compressed. The CPU backend writes one, with all cores: it has memory for no more than two films.
-WriterLimits writer_limits(Backend backend, size_t frames) {
-    constexpr int few = 4;  // a frame queues twice as many blocks of lines, and others wait behind them
-    const int threads = tbb::this_task_arena::max_concurrency();
-    WriterLimits limits;
-    limits.exr_threads_of_a_frame = threads;
-    if (backend == Backend::cuda && frames > 1) {
-        limits.frames = std::max(2, threads / 2);
-        limits.exr_threads_of_a_frame = std::min(threads, few);
-    }
-    return limits;
-}
-
-std::vector<std::string> layers_with_files(const FilmJob& job) {
-    std::vector<std::string> layers;
-    if (job.request.split != Split::files) return layers;
-    for (const FrameFile& file : expected_files(job, camera_at(job.scene.camera, job.frames.front())))
-        if (file.parts.front().name != main_part) layers.push_back(file.parts.front().name);
-    return layers;
-}
-
-void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
+/// Returns the number of frames that were rendered.
+size_t render_and_write(const SequenceJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
     const RenderRequest& request = job.request;
     std::set<std::string> notes;  // printed so far
     FrameWriter writer(request.channels, !request.stats.empty(), writer_limits(request.backend, job.frames.size()),
                        progress.stop, [&](const FrameStats& frame) {
                            stats.totals.add(frame);
+                           if (job.stats_file) job.stats_file->add(frame);
                            job.events.written(frame);
                        });
     size_t rendered = 0;
@@ -242,18 +226,7 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
                             fmt::format("{}: frame {} cannot be trusted and is not written: {}", job.scene.source,
                                         camera.frame, describe_flags(finished.film.flags, job.scene)));
             }
-            finished.image = job.output;
-            finished.split = request.split;
-            finished.preview = job.preview.for_frame(camera.frame);
-            finished.view = request.view;
-            finished.attributes = attributes_of(job, camera);
-            finished.stats =
-                stats_of(finished.film, camera.frame, job.output.for_frame(camera.frame), seconds, renderer.times());
-            if (!settings.adaptive())
-                finished.stats.depth_loss =
-                    depth_loss(finished.stats.cut, ledger_totals(finished.film, finished.film.totals.radiance));
-            finished.settings = job.settings;
-            finished.strict = request.strict;
+            describe(finished, job, camera, seconds, renderer);
             job.events.end_frame(finished.stats);
             writer.put(std::move(finished));
             ++rendered;
@@ -263,10 +236,80 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
     if (!stats.resumed.empty())
         job.events.remark(
             fmt::format("{} of {} frames are complete and stay as they are", stats.resumed.size(), job.frames.size()));
+    return rendered;
+}
+
+/// Warns of values of the written frames that were clamped to half precision.
+void warn_of_clamped(const SequenceJob& job, const SequenceTotals& totals) {
+    if (totals.clamped == 0) return;
+    const std::string where = totals.frames == 1 ? totals.first_file
+                                                 : fmt::format("{}: in {} of {} frames", job.output.text(),
+                                                               totals.clamped_frames, totals.frames);
+    job.events.warning(fmt::format("{}: clamped: {}", where, over_largest_half(totals.clamped)));
+}
+
+}  // namespace
+
+Attributes attributes_of(const SequenceJob& job, const CameraFrame& camera) {
+    Attributes attributes = header_attributes(job.hashes, job.settings, job.precision, camera);
+    add_film_attributes(job.scene.film, attributes);
+    return attributes;
+}
+
+// Every core compresses that has no rays to trace: TBB's by zip, which go where there is work, and OpenEXR's threads by
+// others. A GPU renders much faster than frames are compressed, so several frames are written at once, and of OpenEXR's
+// threads a few share each: with one frame per core, cores would idle until as many frames are rendered, and again
+// while the last ones are written. At least two frames, so that one is encoded while the
+// other is compressed. The CPU backend writes one, with all cores: it has memory for no more than two films.
+WriterLimits writer_limits(Backend backend, size_t frames) {
+    constexpr int few = 4;  // a frame queues twice as many blocks of lines, and others wait behind them
+    const int threads = tbb::this_task_arena::max_concurrency();
+    WriterLimits limits;
+    limits.exr_threads_of_a_frame = threads;
+    if (backend == Backend::cuda && frames > 1) {
+        limits.frames = std::max(2, threads / 2);
+        limits.exr_threads_of_a_frame = std::min(threads, few);
+    }
+    return limits;
+}
+
+std::vector<std::string> layers_with_files(const SequenceJob& job) {
+    std::vector<std::string> layers;
+    if (job.request.split != Split::files) return layers;
+    for (const FrameFile& file : expected_files(job, camera_at(job.scene.camera, job.frames.front())))
+        if (file.parts.front().name != main_part) layers.push_back(file.parts.front().name);
+    return layers;
+}
+
+void render_frames(const SequenceJob& job, Renderer& renderer, RenderProgress& progress, RunStats& stats) {
+    size_t rendered = 0;
+    const auto close = [&] {
+        stats.intersector = renderer.intersector();
+        stats.lanes = renderer.lanes();
+        stats.effects = renderer.effects();  // it knows which it used
+        warn_of_clamped(job, stats.totals);
+    };
+    try {
+        stats.seconds = seconds_of([&] { rendered = render_and_write(job, renderer, progress, stats); });
+    } catch (const Error&) {
+        close();
+        throw;
+    }
+    close();
     const size_t done = stats.resumed.size() + stats.totals.frames;
-    job.events.end(done, job.frames.size());
-    if (done == job.frames.size()) return;  // an interruption after the last frame has no effect
-    fail_interrupted(job, done, rendered);
+    if (done < job.frames.size()) {  // an interruption after the last frame has no effect
+        job.events.end(stats, done, job.frames.size());
+        fail_interrupted(job, done, rendered);
+    }
+    const std::string depth = describe_depth_loss(stats.totals, job.output.text(), job.settings.depth);
+    if (!depth.empty()) job.events.warning(depth);
+    std::string target;
+    if (job.settings.adaptive() && stats.totals.frames > 0)
+        target = describe_target(stats.totals.target, stats.totals.pixels, job.settings, job.precision);
+    const bool is_missed = stats.totals.target.missed != 0;
+    if (!target.empty() && !is_missed) job.events.remark(target);
+    job.events.end(stats, done, job.frames.size());
+    if (is_missed) throw Error(ExitCode::target, target);
 }
 
 }  // namespace cistula

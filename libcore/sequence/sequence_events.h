@@ -1,4 +1,4 @@
-// What happens to a film while it renders, as it is told to whoever asked for it.
+// What happens to a sequence of frames while it renders, as it is told to whoever asked for it.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,9 @@
 
 namespace cistula {
 
+struct FrameSettings;
 struct FrameStats;
+struct RunStats;
 
 /// How a program shows its progress. `automatic`: on a terminal a line that is redrawn, elsewhere a line every 30 s.
 /// `plain`: a line every 10 s and at milestones. `json` and `openjd`: records for other programs on standard output.
@@ -18,13 +20,17 @@ constexpr bool is_for_programs(ProgressStyle style) {
     return style == ProgressStyle::json || style == ProgressStyle::openjd;
 }
 
-/// Receives what happens to a film, on any thread, one call at a time for each member. The library prints nothing
-/// itself. What these throw ends the film.
-class FilmEvents {
+/// Receives what happens to a sequence, on any thread, one call at a time for each member. The library prints nothing
+/// itself. What these throw ends the sequence.
+class SequenceEvents {
   public:
-    virtual ~FilmEvents() = default;
+    virtual ~SequenceEvents() = default;
 
-    /// A film of so many frames, of which some may be complete.
+    /// What the frames will be rendered with, before anything is compiled or written.
+    virtual void planned(const FrameSettings&) {}
+    /// A scene is compiled and its renderer made: what is known of them.
+    virtual void ready(const RunStats&) {}
+    /// A sequence of so many frames, of which some may be complete.
     virtual void begin(size_t /*frames*/) {}
     /// A frame that is complete since an earlier run.
     virtual void kept(int /*frame*/, const std::string& /*file*/) {}
@@ -32,15 +38,15 @@ class FilmEvents {
     virtual void begin_frame(int /*frame*/, size_t /*index*/, size_t /*count*/, uint64_t /*pixels*/) {}
     /// A frame's last ray. Its stats lack what depends on its files.
     virtual void end_frame(const FrameStats&) {}
-    /// A frame whose files are whole, in the film's order. What it throws is a failed write.
+    /// A frame whose files are whole, in the sequence's order. What it throws is a failed write.
     virtual void written(const FrameStats&) {}
     /// A file with the part of a frame that is done, `fraction` of its pixels.
     virtual void snapshot(int /*frame*/, const std::string& /*file*/, double /*fraction*/) {}
     /// A line on something that may be wrong with the pictures, or that may interest.
     virtual void warning(const std::string& /*line*/) {}
     virtual void remark(const std::string& /*line*/) {}
-    /// All that could be rendered is written, `done` of the film's frames.
-    virtual void end(size_t /*done*/, size_t /*frames*/) {}
+    /// All that could be rendered is written, `done` of its frames; the last event.
+    virtual void end(const RunStats&, size_t /*done*/, size_t /*frames*/) {}
 };
 
 }  // namespace cistula

@@ -1,5 +1,5 @@
-// A film's loop over a renderer that costs nothing: what it is told, what is said, what is left when it ends early.
-#include "sequence/film_loop.h"
+// A sequence's loop over a renderer that costs nothing: what it is told, what is said, what is left when it ends early.
+#include "sequence/sequence_loop.h"
 
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-#include "apps/common/film_progress.h"
+#include "apps/common/sequence_progress.h"
 #include "image/exr/exr.h"
 #include "scene/readers/read_scene.h"
 #include "testing/support/render_program.h"
@@ -49,22 +49,22 @@ class FakeRenderer : public Renderer {
 };
 
 /// Says what `render` says, and keeps what is told of written frames.
-class Report : public FilmProgress {
+class Report : public SequenceProgress {
   public:
     Report(Talk talk, const RenderProgress& progress, std::vector<FrameStats>& frames)
-        : FilmProgress(ProgressStyle::none, talk, progress), frames_(frames) {}
+        : SequenceProgress(ProgressStyle::none, talk, progress), frames_(frames) {}
     void written(const FrameStats& frame) override {
         frames_.push_back(frame);
-        FilmProgress::written(frame);
+        SequenceProgress::written(frame);
     }
 
   private:
     std::vector<FrameStats>& frames_;
 };
 
-class FilmLoop : public RenderProgram {
+class SequenceLoop : public RenderProgram {
   protected:
-    FilmLoop() : scene_(read_scene(file("s.json"))) {
+    SequenceLoop() : scene_(read_scene(file("s.json"))) {
         settings_.full_width = settings_.crop.width = 40;
         settings_.full_height = settings_.crop.height = 24;
     }
@@ -75,7 +75,7 @@ class FilmLoop : public RenderProgram {
         const OutputName output(file("f.##.exr"), "-o"), none;
         RenderProgress progress;
         Report report(talk_, progress, written_);
-        FilmJob job{options_, scene_, FrameHashes("hash"), settings_, output, none, frames, report};
+        SequenceJob job{options_, scene_, FrameHashes("hash"), settings_, output, none, frames, report};
         job.look_ahead = [this](const std::vector<int>& stretch) {
             stretches_.push_back(stretch);
             return warning_;
@@ -84,7 +84,7 @@ class FilmLoop : public RenderProgram {
         written_.clear();
         testing::internal::CaptureStderr();
         try {
-            render_film(job, renderer_, progress, stats_);
+            render_frames(job, renderer_, progress, stats_);
         } catch (...) {
             testing::internal::GetCapturedStderr();
             throw;
@@ -113,7 +113,7 @@ class FilmLoop : public RenderProgram {
     std::string warning_;                      // that comes of it
 };
 
-TEST_F(FilmLoop, AnnouncesTheNextFramesBeforeItAsksForOne) {
+TEST_F(SequenceLoop, AnnouncesTheNextFramesBeforeItAsksForOne) {
     film({0, 5, 2}, Backend::cuda);
     EXPECT_EQ(renderer_.asked, " +5 0 +2 5 2");
     renderer_.asked.clear();
@@ -129,13 +129,13 @@ TEST_F(FilmLoop, AnnouncesTheNextFramesBeforeItAsksForOne) {
     EXPECT_EQ(stats_.resumed, (std::vector<int>{5, 2}));
 }
 
-TEST_F(FilmLoop, SaysEachNoteOnceAndNothingWhereQuiet) {
+TEST_F(SequenceLoop, SaysEachNoteOnceAndNothingWhereQuiet) {
     EXPECT_EQ(film({0, 1, 2}, Backend::cuda), "render: memory is short\n");
     talk_ = Talk::errors;
     EXPECT_EQ(film({0, 1, 2}, Backend::cuda), "");
 }
 
-TEST_F(FilmLoop, FramesArePassedOnInTheOrderOfTheFilmWithTheDevicesTimes) {
+TEST_F(SequenceLoop, FramesArePassedOnInTheOrderOfTheFilmWithTheDevicesTimes) {
     std::vector<int> frames;
     for (int i = 0; i < 20; ++i) frames.push_back(i * 7 % 20);
     film(frames, Backend::cuda);
@@ -161,7 +161,7 @@ TEST_F(FilmLoop, FramesArePassedOnInTheOrderOfTheFilmWithTheDevicesTimes) {
     EXPECT_NE(text(true).find("\"transfer_ms\": 500.0"), std::string::npos);
 }
 
-TEST_F(FilmLoop, AMillionFramesBeginAtOnceAndAreLookedAtInStretches) {
+TEST_F(SequenceLoop, AMillionFramesBeginAtOnceAndAreLookedAtInStretches) {
     renderer_.stop_at = 2003;
     expect_failure(parse_frames("0-999999"), Backend::embree, ExitCode::interrupted,
                    "interrupted; 2003 of 1000000 frames written; ");
@@ -178,7 +178,7 @@ TEST_F(FilmLoop, AMillionFramesBeginAtOnceAndAreLookedAtInStretches) {
     EXPECT_EQ(stats_.resumed, parse_frames("0-2002"));
 }
 
-TEST_F(FilmLoop, WarningsOfWhatIsAheadAreSaidOnce) {
+TEST_F(SequenceLoop, WarningsOfWhatIsAheadAreSaidOnce) {
     warning_ = "the camera turns";
     EXPECT_EQ(film(parse_frames("0-99999x99"), Backend::embree),
               "render: memory is short\nrender: warning: the camera turns\n");
@@ -186,14 +186,14 @@ TEST_F(FilmLoop, WarningsOfWhatIsAheadAreSaidOnce) {
     EXPECT_EQ(film(parse_frames("0-99999x99"), Backend::embree), "");
 }
 
-TEST_F(FilmLoop, OnTheCpuAFilmIsWrittenBeforeTheNextIsHandedOver) {
+TEST_F(SequenceLoop, OnTheCpuAFilmIsWrittenBeforeTheNextIsHandedOver) {
     film({0, 1, 2, 3, 4}, Backend::embree);
     EXPECT_EQ(renderer_.sizes.size(), 5u);
     for (size_t i = 2; i < renderer_.sizes.size(); ++i)
         EXPECT_EQ(renderer_.sizes[i], 40u * 24u) << "frame " << i << " is a third film";
 }
 
-TEST_F(FilmLoop, TheThreadsOfTheArenaCompress) {
+TEST_F(SequenceLoop, TheThreadsOfTheArenaCompress) {
     Imf::setGlobalThreadCount(3);  // the process's, not ours
     for (const int threads : {1, 2, 9}) {
         tbb::task_arena(threads).execute([&] {
@@ -211,7 +211,7 @@ TEST_F(FilmLoop, TheThreadsOfTheArenaCompress) {
     Imf::setGlobalThreadCount(0);
 }
 
-TEST_F(FilmLoop, WhatWasRenderedBeforeAnInterruptionIsWhole) {
+TEST_F(SequenceLoop, WhatWasRenderedBeforeAnInterruptionIsWhole) {
     renderer_.stop_at = 7;
     std::vector<int> frames;
     for (int i = 0; i < 12; ++i) frames.push_back(i);
@@ -227,7 +227,7 @@ TEST_F(FilmLoop, WhatWasRenderedBeforeAnInterruptionIsWhole) {
     }
 }
 
-TEST_F(FilmLoop, AFailedWriteEndsTheFilm) {
+TEST_F(SequenceLoop, AFailedWriteEndsTheFilm) {
     std::vector<int> frames;
     for (int i = 0; i < 1000; ++i) frames.push_back(i);
     std::filesystem::create_directory(file("f.03.exr"));

@@ -1,4 +1,4 @@
-// Progress display while the frames of a film render.
+// Progress display while the frames of a sequence render.
 #pragma once
 
 #include <chrono>
@@ -6,17 +6,17 @@
 
 #include "apps/common/status_line.h"
 #include "render/renderer.h"
-#include "sequence/film_events.h"
+#include "sequence/sequence_events.h"
 
 namespace cistula {
 
-/// State of a film's rendering.
+/// State of a sequence's rendering.
 struct ProgressState {
     int frame = 0;        // number of the current frame
     size_t index = 0;     // its index among the frames to render, from 0
     size_t count = 1;     // frames to render
     double fraction = 0;  // of the current frame, 0 to 1
-    double elapsed = 0;   // seconds since the film began
+    double elapsed = 0;   // seconds since the sequence began
     double rays_per_second = 0;
 };
 
@@ -30,16 +30,16 @@ std::string format_rate(double rays_per_second);
 std::string progress_bar(const ProgressState& state, int columns);
 std::string progress_line(const ProgressState& state);
 
-struct FilmRecord;
+struct EventRecord;
 
-/// What a program says of a film besides its progress.
+/// What a program says of a sequence besides its progress.
 enum class Talk { errors, some, much };
 
-/// Shows a film's progress from a RenderProgress: a bar on a terminal, a line now and then elsewhere, or records for
-/// programs; and says what else happens to it. All members may be called on any thread.
-class FilmProgress : public FilmEvents {
+/// Shows a sequence's progress from a RenderProgress: a bar on a terminal, a line now and then elsewhere, or records
+/// for programs; and says what else happens to it. All members may be called on any thread.
+class SequenceProgress : public SequenceEvents {
   public:
-    FilmProgress(ProgressStyle style, Talk talk, const RenderProgress& progress);
+    SequenceProgress(ProgressStyle style, Talk talk, const RenderProgress& progress);
 
     void begin(size_t frames) override;
     void kept(int frame, const std::string& file) override;
@@ -49,11 +49,11 @@ class FilmProgress : public FilmEvents {
     void snapshot(int frame, const std::string& file, double fraction) override;
     void warning(const std::string& line) override;
     void remark(const std::string& line) override;
-    void end(size_t done, size_t frames) override;
+    void end(const RunStats& stats, size_t done, size_t frames) override;
 
   private:
     void say(const std::string& line);
-    void record(const FilmRecord& record);
+    void record(const EventRecord& record);
     using Clock = std::chrono::steady_clock;
 
     ProgressState state() const;
@@ -62,7 +62,7 @@ class FilmProgress : public FilmEvents {
     const ProgressStyle style_;
     const Talk talk_;
     const RenderProgress& progress_;
-    const Clock::time_point start_ = Clock::now();
+    Clock::time_point start_ = Clock::now();
     bool in_frame_ = false;
     int frame_ = 0;
     size_t index_ = 0, count_ = 1;
