@@ -33,3 +33,6 @@
 // cistula::compare: pictures and suites
 #include "compare/metrics/compare.h"  // compare_files
 #include "compare/suite/suite_run.h"  // run_cases
+
+// cistula::verify: the renderer checks itself
+#include "verify/verify.h"  // verify::run

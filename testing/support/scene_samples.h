@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "scene/description/description.h"
-#include "testing/generated_mesh.h"
+#include "verify/scenes/generated_mesh.h"
 
 namespace cistula::samples {
 

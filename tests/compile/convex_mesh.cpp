@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "scene/compile/solids/solid_planes.h"
-#include "testing/generated_mesh.h"
 #include "testing/support/scene.h"
+#include "verify/scenes/generated_mesh.h"
 
 namespace cistula {
 namespace {
