@@ -115,7 +115,8 @@ void FilmProgress::end(size_t done, size_t frames) {
     record({"end", -1, "", -1, fmt::format("{} of {} frames written", done, frames)});
 }
 
-void FilmProgress::say(const std::string& line) {
+void FilmProgress::say(const std::string& text) {
+    const std::string line = with_options(text);
     line_.say(line);
     record({"message", -1, "", -1, line});
 }

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "apps/common/command_line.h"
 #include "apps/common/film_progress.h"
-#include "base/error.h"
 
 namespace cistula {
 

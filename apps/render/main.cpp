@@ -137,7 +137,7 @@ Outputs plan_outputs(const RenderRequest& request, const SceneDescription& scene
     outputs.frames = frames_to_render(outputs.image, request.frames, scene.film.frames);
     if (file_kind(name) == FileKind::raw) {
         const auto refuse = [&](const std::string& option, const char* why) {
-            throw Error(ExitCode::usage, fmt::format("-o {}: {} needs an .exr; {}", name, option, why));
+            throw Error(ErrorKind::usage, fmt::format("-o {}: {} needs an .exr; {}", name, option, why));
         };
         if (request.channels.half) refuse("--bits half", "raw frames have 8 bits a channel");
         const OutputChannels& c = request.channels;
@@ -201,7 +201,7 @@ void warn_of_depth(const FilmTotals& totals, const OutputName& image, const Fram
 void judge_target(const FilmTotals& totals, const FrameSettings& settings, Precision precision,
                   const RenderRequest& request) {
     const std::string text = describe_target(totals.target, totals.pixels, settings, precision);
-    if (totals.target.missed != 0) throw Error(ExitCode::target, text);
+    if (totals.target.missed != 0) throw Error(ErrorKind::target, text);
     if (!request.quiet) note(fmt::format("render: {}", text));
 }
 
@@ -365,8 +365,8 @@ void report_pixel(const RenderCommand& request, const SceneDescription& descript
     else if (!request.json.empty())
         write_file_atomically(request.json, pixel_json(report));
     if (!flaws.empty())
-        throw Error(ExitCode::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
-                                                  request.pixel.x, request.pixel.y, flaws));
+        throw Error(ErrorKind::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
+                                                   request.pixel.x, request.pixel.y, flaws));
 }
 
 void report_pixel(const RenderCommand& request) {
@@ -374,7 +374,7 @@ void report_pixel(const RenderCommand& request) {
     const FrameSettings settings = frame_settings(request, scene);
     const ChosenPixel& pixel = request.pixel;
     if (pixel.x >= settings.full_width || pixel.y >= settings.full_height)
-        throw Error(ExitCode::usage,
+        throw Error(ErrorKind::usage,
                     fmt::format("--pixel {},{}: is outside of the frame, which is {}x{}; its last pixel is {},{}",
                                 pixel.x, pixel.y, settings.full_width, settings.full_height, settings.full_width - 1,
                                 settings.full_height - 1));
@@ -417,7 +417,7 @@ void run_and_record(const RenderCommand& request, std::string& memory_advice) {
         run(request, memory_advice);
     } catch (const std::exception& error) {
         const Failure failure = failure_of(error, memory_advice);
-        const std::string lines = failure_record(request.progress, failure.text, failure.code);
+        const std::string lines = failure_record(request.progress, with_options(failure.text), exit_code(failure.kind));
         if (!lines.empty()) std::fputs((lines + "\n").c_str(), stdout);
         std::fflush(stdout);
         throw;
