@@ -104,6 +104,10 @@ check() {
     code '(std::(cout|cerr|clog)|[^a-z_](printf|puts|fputs|perror|_exit|exit|signal|sigaction|set_new_handler) *[(])' "${below[@]}" "${above[@]}" |
         { grep -vE '^libcore/image/reader/(reader_main|reader_answer|picture_oiio)\.cpp:|snprintf' || true; } |
         fail 'the library prints nothing, ends no program and handles no signals'
+    # Those of other programs, and CSS.
+    code '"[^"]*--[a-z]' "${core[@]}" "${below[@]}" "${above[@]}" "${embree[@]}" "${cuda[@]}" |
+        { grep -vE '^libcore/compare/(metrics/flip|page/page_style)\.cpp:' || true; } |
+        fail 'the library knows no options: texts name a setting as `max_samples` (base/error.h)'
     includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|testing/|["<]cuda|"(sequence|compare|verify)/' || true; } |
         fail 'backend_embree knows neither backend_cuda nor what stands on both'
     includes "${cuda[@]}" | { grep -E 'backend_embree|apps/|bench/|testing/|embree[34]/' || true; } |
@@ -198,6 +202,8 @@ all_rules() {
     breaks libcore/verify/cases/a.cu '#include "testing/support/scene.h"'
     breaks libcore/compare/a.cpp 'void f() { std::fputs("", stderr); }'
     breaks libcore/base/a.cpp 'void f() { std::signal(2, f); }'
+    breaks libcore/sequence/a.cpp 'const char* text = "raise --max-samples";'
+    breaks backend_cuda/kernels/a.cu 'const char* text = "a smaller --res needs less";'
     breaks backend_embree/host/a.cpp '#include "sequence/sequence_loop.h"'
     breaks backend_embree/host/a.cpp '#include "verify/scenes/generated_scene.h"'
     breaks backend_cuda/kernels/a.h '#include "verify/draw.h"'

@@ -47,7 +47,7 @@ void check_pixel(const std::string& pixel, const RenderCommand& command) {
     };
     for (const auto& [why, keys] : senseless)
         for (const char* key : keys)
-            if (request_key(key).given(command)) refuse("--pixel", pixel, option_name(request_key(key)), why);
+            if (request_key(key).given(command)) refuse("--pixel", pixel, option_name(key), why);
     if (command.frames.size() > 1)
         fail_usage(fmt::format("--frames names {} frames, and --pixel {} is of one; name that one",
                                command.frames.size(), pixel));
@@ -57,7 +57,7 @@ void check_pixel(const std::string& pixel, const RenderCommand& command) {
 
 CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view name, const char* description) {
     const RequestKey& key = request_key(name);
-    const std::string option(key.option), help(description ? description : key.help);
+    const std::string option = option_names(name), help = with_options(description ? description : key.help);
     if (key.type == KeyType::boolean)
         return app.add_flag_callback(
             option, [&request, &key] { key.set(request, "true"); }, help);

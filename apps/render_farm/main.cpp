@@ -39,7 +39,7 @@ std::string folder_of_programs() {
 
 void check_output(const RenderRequest& request, const OutputName& output, const std::vector<int>& frames) {
     if (file_kind(output.text()) == FileKind::raw)
-        throw Error(ExitCode::usage,
+        throw Error(ErrorKind::usage,
                     fmt::format("-o {}: tasks go on from what is complete, and raw frames do not say what they show; "
                                 "name it *.exr",
                                 output.text()));

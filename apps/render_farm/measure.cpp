@@ -71,7 +71,7 @@ MeasuredFrames measure_tiles(Renderer& renderer, const SceneDescription& scene, 
         progress.render.pixels_done = 0;
         bool whole = false;
         seconds += seconds_of([&] { whole = renderer.render(camera, small, film, progress.render); });
-        if (!whole) throw Error(ExitCode::interrupted, "interrupted; nothing was written");
+        if (!whole) throw Error(ErrorKind::interrupted, "interrupted; nothing was written");
         measured.seconds.push_back(rays_of_tiles(film, settings, grid));
         rays += static_cast<double>(film.rays.total());
         progress.advance();

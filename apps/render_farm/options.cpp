@@ -57,7 +57,7 @@ FarmOptions parse_farm_options(int argc, const char* const* argv) {
         if (std::ranges::count(own, key.name) > 0 || !key.given(render)) continue;
         const bool of_preview = std::ranges::count(of_previews, key.name) > 0;
         std::vector<std::string>& to = render.tiles && of_preview ? options.merged : options.passed;
-        const std::string name = option_name(key);
+        const std::string name = option_name(key.name);
         to.push_back(key.type == KeyType::boolean ? name : name + '=' + key.text(render));
     }
     if (render.scene == "-") fail_usage("-: every task reads the scene; give a file");

@@ -55,9 +55,9 @@ std::vector<size_t> frames_to_measure(size_t frames, size_t most) {
 std::vector<FarmTask> plan_tasks(const std::vector<int>& frames, size_t tiles, const MeasuredFrames& measured,
                                  double seconds, size_t most) {
     if (tiles > most)
-        throw Error(ExitCode::usage, fmt::format("--most-tasks {}: there are {} tiles, each of which is a task at "
-                                                 "least; give fewer --tiles or more tasks",
-                                                 most, tiles));
+        throw Error(ErrorKind::usage, fmt::format("--most-tasks {}: there are {} tiles, each of which is a task at "
+                                                  "least; give fewer --tiles or more tasks",
+                                                  most, tiles));
     std::vector<Portion> portions = portions_of(frames.size(), tiles, measured, seconds);
     while (portions.size() > most) {
         seconds *= std::max(1.1, static_cast<double>(portions.size()) / static_cast<double>(most));

@@ -41,7 +41,7 @@ OutputChannels parse_layers(std::string_view text, OutputChannels layers) {
         all_lights |= name == "light";
         for (const Layer& layer : known)
             if (layer.name == name || layer.group == name) *layer.wanted = found = true;
-        if (!found) fail_usage(fmt::format("there is no layer '{}'; {}", name, nearest_first(name, names, "layers")));
+        if (!found) fail_usage(fmt::format("there is no layer '{}'", name), nearest_first(name, names, "layers"));
     }
     if (all_lights) layers.light_layers.clear();
     return layers;
@@ -52,8 +52,8 @@ void require_light_layers(const OutputChannels& channels, const LayerNames& name
     known.insert(known.end(), names.light_groups.begin(), names.light_groups.end());
     for (const std::string& layer : channels.light_layers)
         if (std::find(known.begin(), known.end(), layer) == known.end())
-            fail_usage(fmt::format("--layers {}{}: the scene has no such group of lights; {}", light_layer_prefix,
-                                   layer, nearest_first(layer, known, "groups")));
+            fail_usage(fmt::format("`layers` {}{}: the scene has no such group of lights", light_layer_prefix, layer),
+                       nearest_first(layer, known, "groups"));
 }
 
 }  // namespace cistula

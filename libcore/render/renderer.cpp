@@ -15,15 +15,15 @@
 namespace cistula {
 
 RayHits Renderer::intersect(std::span<const glm::dvec3>, std::span<const glm::dvec3>) {
-    throw Error(ExitCode::usage, intersector() + ": this renderer tells nothing of rays");
+    throw Error(ErrorKind::usage, intersector() + ": this renderer tells nothing of rays");
 }
 
 std::vector<glm::dvec3> Renderer::transmittance(std::span<const glm::dvec3>, std::span<const glm::dvec3>) {
-    throw Error(ExitCode::usage, intersector() + ": this renderer tells nothing of rays");
+    throw Error(ErrorKind::usage, intersector() + ": this renderer tells nothing of rays");
 }
 
 PixelTree Renderer::pixel_tree(const CameraFrame&, const FrameSettings&, int, int) {
-    throw Error(ExitCode::usage, intersector() + ": the trees of pixels are told by the renderer of the CPU");
+    throw Error(ErrorKind::usage, intersector() + ": the trees of pixels are told by the renderer of the CPU");
 }
 
 namespace {

@@ -57,8 +57,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             fuzz::require(parse_frames(format_frames(frames)) == frames);
         }
     } catch (const Error& error) {
-        fuzz::require(error.code() == ExitCode::usage || error.code() == ExitCode::device ||
-                      error.code() == ExitCode::file);
+        fuzz::require(error.kind() == ErrorKind::usage || error.kind() == ErrorKind::device ||
+                      error.kind() == ErrorKind::file);
         fuzz::check_line(error.what());
     }
     return 0;

@@ -17,10 +17,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         fuzz::require(one.picture.texels.size() == static_cast<size_t>(one.picture.width) * one.picture.height);
         fuzz::require(all.picture.texels.size() >= one.picture.texels.size());
     } catch (const Error& error) {
-        if (error.code() == ExitCode::usage)  // too large a sheet
+        if (error.kind() == ErrorKind::usage)  // too large a sheet
             fuzz::check_line(error.what());
         else
-            fuzz::check_error(error, ExitCode::file);
+            fuzz::check_error(error, ErrorKind::file);
     }
     return 0;
 }

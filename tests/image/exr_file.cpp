@@ -86,7 +86,7 @@ TEST(ExrFile, PartsThatAreCutOffAreErrors) {
             read_all();
             ADD_FAILURE() << "no error at " << size;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file) << size;
+            EXPECT_EQ(error.kind(), ErrorKind::file) << size;
         }
     }
 }

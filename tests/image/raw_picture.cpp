@@ -64,7 +64,7 @@ TEST(RawPicture, Errors) {
         try {
             read_raw_picture(path);
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file);
+            EXPECT_EQ(error.kind(), ErrorKind::file);
             const std::string start = path + ": cannot read: ", what = error.what();
             EXPECT_EQ(what.substr(0, start.size()), start);
             return what.substr(start.size());

@@ -71,7 +71,7 @@ TEST(SceneKind, OtherFilesAreNamedForWhatTheyAre) {
             read_unnamed(bytes);
             ADD_FAILURE() << "no error: " << name;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::scene);
             EXPECT_TRUE(std::string(error.what()).starts_with("a: is "s + name + "; ")) << error.what();
         }
     }
@@ -120,7 +120,7 @@ TEST(SceneKind, InputWithoutAnEndIsRefused) {
             read_scene("-");
             ADD_FAILURE() << what;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::scene);
             EXPECT_TRUE(std::string(error.what()).starts_with("standard input" + what)) << error.what();
         }
         std::cin.rdbuf(before);

@@ -238,7 +238,7 @@ TEST(TextInput, EveryShorterInputSaysWhatIsMissing) {
             ADD_FAILURE() << "read without its last " << words + 1 << " words";
         } catch (const Error& error) {
             const std::string message = error.what();
-            EXPECT_EQ(error.code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::scene);
             EXPECT_TRUE(message.ends_with("found the end of the input")) << message;
             EXPECT_NE(message, last);
             last = message;

@@ -60,7 +60,7 @@ class Comparer {
         for (const PicturePair& pair : pairs_.pairs) compare_pair(pair);
         if (pairs_.is_other_order) result_.not_compared.push_back("the order of parts");
         if (!left_out_.empty())
-            result_.not_compared.push_back(fmt::format("{} channel{} that --layers leaves out: {}", left_out_.size(),
+            result_.not_compared.push_back(fmt::format("{} channel{} that `layers` leaves out: {}", left_out_.size(),
                                                        left_out_.size() == 1 ? "" : "s", fmt::join(left_out_, ", ")));
         count_pixels(thresholds);
         return std::move(result_);
@@ -92,8 +92,8 @@ class Comparer {
                 }
         for (const std::string& pattern : selection_.layers)
             if (fitting.count(pattern) == 0)
-                fail_usage(fmt::format("--layers {}: no channel has such a name; {}", pattern,
-                                       nearest_first(pattern, {names.begin(), names.end()}, "channels")));
+                fail_usage(fmt::format("`layers` {}: no channel has such a name", pattern),
+                           nearest_first(pattern, {names.begin(), names.end()}, "channels"));
     }
 
     void compare_windows(const PicturePair& pair) {

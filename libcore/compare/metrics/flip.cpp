@@ -65,7 +65,7 @@ int exit_status(pid_t child, const std::atomic<bool>& stop) {
         if (stop) kill(child, SIGKILL);
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    if (stop) throw Error(ExitCode::interrupted, "interrupted while flip runs; nothing was written");
+    if (stop) throw Error(ErrorKind::interrupted, "interrupted while flip runs; nothing was written");
     return status;
 }
 

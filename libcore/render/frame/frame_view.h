@@ -22,20 +22,23 @@ void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings
 /// The view of a frame, except the solids around the camera, which need an intersector (find_camera_solids).
 template <class Real>
 FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera, const FrameSettings& settings) {
-    const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, what); };
+    const auto refuse = [](const char* key, auto value, const std::string& right) {
+        throw Error(ErrorKind::usage, "", "must be " + right).of(key, std::to_string(value));
+    };
     if (settings.depth < 1 || settings.depth > largest_depth)
-        refuse("depth " + std::to_string(settings.depth) + ": must be from 1 to " + std::to_string(largest_depth));
+        refuse("depth", settings.depth, "from 1 to " + std::to_string(largest_depth));
     if (settings.supersample < 1 || settings.supersample > 64)
-        refuse("supersample " + std::to_string(settings.supersample) + ": must be from 1 to 64");
-    if (!(settings.cutoff >= 0)) refuse("cutoff: must be at least 0");
-    if (!(settings.target_error >= 0)) refuse("target error: must be at least 0");
+        refuse("supersample", settings.supersample, "from 1 to 64");
+    if (!(settings.cutoff >= 0)) refuse("cutoff", settings.cutoff, "at least 0");
+    if (!(settings.target_error >= 0)) refuse("target_error", settings.target_error, "at least 0");
     if (settings.layers.light && scene.layer_names->light_groups.size() > size_t(most_light_groups))
-        refuse("light layers: the scene has " + std::to_string(scene.layer_names->light_groups.size()) +
-               " groups of lights; put lights together with \"group\", at most " + std::to_string(most_light_groups) +
-               " groups");
+        throw Error(ErrorKind::usage,
+                    "light layers: the scene has " + std::to_string(scene.layer_names->light_groups.size()) +
+                        " groups of lights",
+                    "put lights together with \"group\", at most " + std::to_string(most_light_groups) + " groups");
     if (settings.max_samples < least_lattice_samples || settings.max_samples > lattice_samples)
-        refuse("max samples " + std::to_string(settings.max_samples) + ": must be from " +
-               std::to_string(least_lattice_samples) + " to " + std::to_string(lattice_samples));
+        refuse("max_samples", settings.max_samples,
+               "from " + std::to_string(least_lattice_samples) + " to " + std::to_string(lattice_samples));
     const double unit = elementary::power_of_two(scene.scale);
     FrameView frame;
     frame.camera = camera.camera;

@@ -19,7 +19,7 @@ PrecisionChoice choose_precision(const std::optional<Precision>& wanted, const S
     choice.precision = wanted.value_or(holds(Precision::single_) ? Precision::single_ : Precision::double_);
     if (!holds(choice.precision)) {
         choice.warning = verdict(choice.precision, part, choice.precision);
-        if (choice.precision == Precision::single_) choice.warning += "; take --precision double";
+        if (choice.precision == Precision::single_) choice.warning += "; take `precision` double";
     } else if (!wanted && choice.precision == Precision::double_) {
         choice.note = verdict(Precision::double_, part, Precision::single_);
     }

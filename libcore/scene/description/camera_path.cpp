@@ -111,13 +111,16 @@ CameraFrame camera_at(const CameraDescription& description, int frame) {
     result.time = frame * description.time_step;
     const View view = view_at(description, result.time);
 
-    const std::string place = one_line(description.place) + ": at frame " + std::to_string(frame) + " ";
+    const auto refuse = [&](const char* problem, const char* remedy = "") {
+        throw Error(ErrorKind::scene, "at frame " + std::to_string(frame) + " " + problem, remedy)
+            .at(description.place);
+    };
     if (!is_finite(view.direction) || !(view.distance > 0))
-        throw Error(ExitCode::usage, place + "the camera's position and target coincide; they must be apart");
+        refuse("the camera's position and target coincide", "they must be apart");
     if (!is_finite(description.up) || !(length(description.up) > 0))
-        throw Error(ExitCode::usage, place + "up is the zero vector; it must point somewhere, such as [0, 0, 1]");
+        refuse("up is the zero vector", "it must point somewhere, such as [0, 0, 1]");
     if (!(description.field_of_view > 0 && description.field_of_view < 180))
-        throw Error(ExitCode::usage, place + "the field of view must be above 0 and below 180 degrees");
+        refuse("the field of view must be above 0 and below 180 degrees");
 
     const dvec3 up = normalized(description.up);
     Camera& camera = result.camera;

@@ -99,8 +99,8 @@ class SequenceLoop : public RenderProgram {
             film(frames, backend);
             ADD_FAILURE() << "no error";
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), code);
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+            EXPECT_EQ(exit_code(error.kind()), code);
+            EXPECT_NE(with_options(error.what()).find(part), std::string::npos) << error.what();
         }
     }
 

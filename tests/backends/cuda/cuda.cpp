@@ -193,7 +193,7 @@ TYPED_TEST(Cuda, AFrameInPartsIsTheSame) {
             render(*this->gpu(scene, options), scene, settings);
             ADD_FAILURE() << "a row fits into 1000 bytes";
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::device) << error.what();
+            EXPECT_EQ(error.kind(), ErrorKind::device) << error.what();
         }
     }
 }

@@ -196,7 +196,7 @@ TEST(Textures, Errors) {
             read_texture(scratch.file("bad.bmp"));
             ADD_FAILURE() << "no error for " << bad.size() << " bytes";
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file);
+            EXPECT_EQ(error.kind(), ErrorKind::file);
             EXPECT_EQ(std::string(error.what()).rfind(scratch.file("bad.bmp") + ": cannot read: ", 0), 0u);
             EXPECT_GT(std::string(error.what()).size(), scratch.file("bad.bmp").size() + 20) << error.what();
         }

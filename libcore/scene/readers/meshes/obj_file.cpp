@@ -55,7 +55,7 @@ class ObjReader {
   private:
     [[noreturn]] void fail(const std::string& what) const { fail_at(lines_.line(), what); }
     [[noreturn]] void fail_at(int line, const std::string& what) const {
-        throw Error(ExitCode::file, fmt::format("{}:{}: {}", label_, line, what));
+        throw Error(ErrorKind::file, what).at(fmt::format("{}:{}", label_, line));
     }
 
     void read_statement(std::string_view key) {

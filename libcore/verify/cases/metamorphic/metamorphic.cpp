@@ -454,7 +454,7 @@ void brightness(Stage& stage, Tally& tally) {
                 expect_same(tally, film, expected, seed, uint64_t(k + 100), 1, k);
                 tally.expect(stage.in_double() || k <= most);
             } catch (const Error& error) {
-                tally.expect(!stage.in_double() && k > most && error.code() == ExitCode::usage);
+                tally.expect(!stage.in_double() && k > most && error.kind() == ErrorKind::scene);
             }
         }
         return true;
@@ -518,7 +518,7 @@ bool refused(Stage& stage, const SceneDescription& scene) {
     try {
         return (stage.render(scene, frame_of(3, 3)).flags & flag_not_finite) != 0;
     } catch (const Error& error) {
-        return error.code() == ExitCode::usage;
+        return error.kind() == ErrorKind::scene;
     }
 }
 void expect_refusals(Stage& stage, Tally& tally) {

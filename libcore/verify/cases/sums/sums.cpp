@@ -201,7 +201,7 @@ void add_sums(Cases& cases) {
     cases.images("in-a-torus", "the picture, background too, of a lamp with a radius of 1e-3", at_most(0x1p-20, "of 1"),
                  lamp_in_torus);
     cases.images("hidden-lamp", "the picture of a lamp too small to be seen", at_most(0x1p-20, "of 1"), hidden_lamp);
-    cases.images("target-error", "the light of a wall at the pixel's middle, with --target-error 0.01",
+    cases.images("target-error", "the light of a wall at the pixel's middle, with a target error of 0.01",
                  at_most(0.01, "of 1"), with_target_error);
     Bound bound_of_sun = bound_of_light;
     bound_of_sun.flags = float_warns;
