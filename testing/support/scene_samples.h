@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "scene/description/description.h"
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::samples {
 
