@@ -21,7 +21,7 @@
 #include "image/exr/exr.h"
 #include "render/pixel_report.h"
 #include "scene/compile/materials/required_effects.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "sequence/backends.h"
 #include "sequence/render_sequence.h"
 #include "sequence/run_files.h"

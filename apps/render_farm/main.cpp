@@ -12,10 +12,10 @@
 #include "job_files.h"
 #include "measure.h"
 #include "options.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/precision_choice.h"
 #include "scene/compile/scene_source.h"
+#include "scene/compile/solids/smallest_part.h"
 #include "sequence/sequence_loop.h"
 
 namespace cistula {

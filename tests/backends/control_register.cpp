@@ -8,8 +8,8 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "base/error.h"
-#include "render/frame_settings.h"
 #include "render/record/film_picture.h"
+#include "render/renderer.h"
 #include "testing/support/shipped_scenes.h"
 #include "verify/reference_renderers.h"
 

@@ -19,7 +19,7 @@
 #include "testing/support/golden.h"
 #include "testing/support/shipped_scenes.h"
 #include "verify/reference_renderers.h"
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

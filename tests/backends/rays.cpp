@@ -9,7 +9,7 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "base/error.h"
-#include "render/frame_settings.h"
+#include "render/renderer.h"
 #include "testing/support/shipped_scenes.h"
 #include "verify/reference_renderers.h"
 

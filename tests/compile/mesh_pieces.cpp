@@ -10,7 +10,7 @@
 #include "pieces_of.h"
 #include "scene/compile/scene_source.h"
 #include "testing/support/scene.h"
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

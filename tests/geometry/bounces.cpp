@@ -8,7 +8,7 @@
 #include "cistula/transport/ray_tree.h"
 #include "cistula/traversal/bvh.h"
 #include "testing/support/scene.h"
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

@@ -7,7 +7,7 @@
 #include "cistula/shading/snell.h"
 #include "cistula/shading/surface.h"
 #include "testing/support/scene.h"
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

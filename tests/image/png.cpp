@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "image/color/srgb_codes.h"
-#include "image/picture/png.h"
+#include "image/picture/picture_io.h"
 #include "testing/support/pictures/png_pixels.h"
 #include "testing/support/pictures/srgb_codes.h"
 #include "testing/support/special_values.h"

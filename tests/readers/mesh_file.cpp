@@ -13,7 +13,7 @@
 #include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

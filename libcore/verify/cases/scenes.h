@@ -9,7 +9,7 @@
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
 #include "verify/case.h"
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::verify {
 

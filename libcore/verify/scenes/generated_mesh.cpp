@@ -1,4 +1,4 @@
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 #include <cmath>
 

@@ -4,9 +4,9 @@
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
-#include "scene/readers/meshes/quad.h"
-#include "verify/scenes/generated_mesh.h"
+#include "scene/readers/meshes/polygon.h"
 #include "verify/scenes/generated_parts.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::generated {
 namespace {

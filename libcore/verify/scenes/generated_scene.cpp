@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "render/frame_settings.h"
+#include "render/renderer.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"

@@ -10,7 +10,7 @@
 
 #include "scene/description/mesh_source.h"
 #include "testing/support/render_program.h"
-#include "verify/scenes/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

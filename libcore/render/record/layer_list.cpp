@@ -1,4 +1,4 @@
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 
 #include <fmt/format.h>
 

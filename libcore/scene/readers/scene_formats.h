@@ -1,7 +1,9 @@
-// The JSON scene format (docs/scene.md). Private: use read_scene.h.
+// The formats of scenes, JSON and the text input (docs/scene.md), and what else a file may be. Private: use
+// read_scene.h.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <unordered_map>
 
 #include "scene/description/description.h"
@@ -34,5 +36,16 @@ ObjectDescription read_json_object(const JsonValue& value, const ObjectContext& 
 /// Index of the name that `value` holds. Throws Error (usage) with the nearest known name; `kind` is "material" or
 /// "texture".
 int index_of_name(const JsonValue& value, const std::unordered_map<std::string, int>& indices, const std::string& kind);
+
+/// Parses the text input, in either order of its parts. Throws Error (usage): "label:line: expected ..., found ...".
+/// Does not set `source`.
+SceneDescription read_text_input(const std::string& text, const std::string& label, const std::string& base_dir);
+
+/// A valid, colorful input in the text input's format; it describes the same scene as scenes/seed.json.
+std::string text_input_template();
+
+/// "is a PNG picture; ...", with what is wanted, for the start of a file without its byte order mark; empty where it is
+/// none of the formats that are known here. Some hundred bytes are enough.
+std::string no_scene_because(std::string_view start);
 
 }  // namespace cistula
