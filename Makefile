@@ -19,7 +19,7 @@ configure = @cmake/configure $(1) $(2) $(CMAKE_ARGS)
 CUDA   ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-quick test-asan test-report test-clients fuzz lint check-all bench gpu-check golden docs install uninstall package cuda-toolkit clean
+.PHONY: help render build test test-quick test-asan test-report test-clients fuzz lint check-all bench gpu-check golden docs install uninstall package wheel cuda-toolkit clean
 
 help: ## this list
 	@echo 'make TARGET [PRESET=release|release-all|debug|asan|fuzz|clang] [SETUP=no] [CMAKE_ARGS=...]'
@@ -32,8 +32,9 @@ render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
 	@mkdir -p out
 	$(BUILD)/bin/render $(SCENE) --backend embree -o out/$(NAME).exr --preview out/$(NAME).png
 
-build: ## build libraries, programs and tests
+build: ## build libraries, programs, the Python package and tests
 	$(call setup,packages.txt)
+	@python/make-venv
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD)
 
@@ -45,6 +46,7 @@ test: build ## build everything and run the tests; TEST=PATTERN: those whose nam
 
 test-quick: ## build and run the quick tests alone
 	$(call setup,packages.txt)
+	@python/make-venv
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD) --target quick_tests
 	$(call run_tests,-L quick)
@@ -117,6 +119,11 @@ golden: ## record the golden images that differ and say what changed
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD) --target render-compare
 	$(BUILD)/bin/render-compare suite golden --backend embree --update
+
+wheel: ## make a wheel of the Python package, with all libraries that it needs, and an sdist, into out/wheel; CUDA=yes: with kernels
+	$(call setup,packages.txt)
+	@python/make-venv
+	@python/make-wheel
 
 docs: ## the reference of libcore/cistula and of the Renderer interface, into out/docs
 	$(call setup,docs/packages.txt)
