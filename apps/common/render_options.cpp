@@ -53,18 +53,7 @@ void check_pixel(const std::string& pixel, const RenderCommand& command) {
                                command.frames.size(), pixel));
 }
 
-}  // namespace
-
-CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view name, const char* description) {
-    const RequestKey& key = request_key(name);
-    const std::string option(key.option), help(description ? description : key.help);
-    if (key.type == KeyType::boolean)
-        return app.add_flag_callback(
-            option, [&request, &key] { key.set(request, "true"); }, help);
-    return add_option(app, option, std::string(key.shape), help,
-                      [&request, &key](const std::string& text) { key.set(request, text); });
-}
-
+/// Adds render's options to a command line; `command` must outlive it.
 void declare_render_options(CLI::App& app, RenderCommand& command) {
     for (const RequestKey& key : request_keys()) add_key(app, command, key.name);
     const auto add_action = [&](const char* name, const char* description, Action action) {
@@ -95,6 +84,7 @@ void declare_render_options(CLI::App& app, RenderCommand& command) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
+/// Checks how the options that were given fit together. Throws Error (usage).
 void check_render_options(const CLI::App& app, const RenderCommand& command) {
     const std::string pixel = given_text(app, "--pixel");
     if (!pixel.empty()) check_pixel(pixel, command);
@@ -113,6 +103,18 @@ void check_render_options(const CLI::App& app, const RenderCommand& command) {
     if (command.quiet && command.verbose) fail_usage("-q and -v exclude each other; give one");
     if (command.scene.empty())
         fail_usage("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
+}
+
+}  // namespace
+
+CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view name, const char* description) {
+    const RequestKey& key = request_key(name);
+    const std::string option(key.option), help(description ? description : key.help);
+    if (key.type == KeyType::boolean)
+        return app.add_flag_callback(
+            option, [&request, &key] { key.set(request, "true"); }, help);
+    return add_option(app, option, std::string(key.shape), help,
+                      [&request, &key](const std::string& text) { key.set(request, text); });
 }
 
 RenderCommand parse_options(int argc, const char* const* argv) {
