@@ -1,5 +1,4 @@
 """`cistula farm`: a film as tasks for many machines: for Open Job Description (AWS Deadline Cloud), for Slurm, for make."""
-import importlib.util
 import json
 import os
 import re
@@ -16,7 +15,9 @@ from . import farm_task
 from .command import Parser, Refused, number, shown, write_whole
 from .farm_task import folder_and_name, format_frames, parse_frames, tiles_of
 
-REFUSED = ("--tile", "--stats", "--explain", "--pixel", "--json", "--resume", "--progress", "--list-devices", "--print-template")
+REFUSED = "--tile --stats --explain --pixel --json --resume --progress --list-devices --print-template".split()
+
+TASK = Path(farm_task.__file__)
 
 SLURM = """#!/bin/sh
 #SBATCH --job-name={name}
@@ -57,9 +58,9 @@ $(tasks): task-%:
 def program(name: str) -> Path:
     """A program of Cistula, from $CISTULA_BIN or the PATH."""
     folder = os.environ.get("CISTULA_BIN")
-    found = shutil.which(name, path=folder) if folder else shutil.which(name)
+    found = shutil.which(name, path=folder or None)
     if not found:
-        raise Refused(f"there is no {name} in {'$CISTULA_BIN, ' + folder if folder else 'the PATH'}; $CISTULA_BIN names its folder")
+        raise Refused(f"there is no {name} in {folder or 'the PATH'}; $CISTULA_BIN names its folder")
     return Path(found).absolute()
 
 
@@ -85,7 +86,7 @@ class Film:
                 if run.wait() not in (0, 5):
                     said.seek(0)
                     text = said.read().decode(errors="replace").strip() or f"render ended with {run.returncode}"
-                    raise Refused(text.splitlines()[-1].replace(folder + "/", ""), max(run.returncode, 3) if run.returncode > 2 else 2)
+                    raise Refused(text.splitlines()[-1].replace(folder + "/", ""), max(run.returncode, 1))
             finally:
                 run.terminate()
                 run.wait()
@@ -123,7 +124,7 @@ def assets_of(scene: Path) -> list[Path]:
             for line in lines:
                 if file.suffix in (".obj", ".mtl") and not re.match(r"\s*(mtllib|map_|bump|disp|norm)", line):
                     continue
-                quoted = [json.loads(text) for text in re.findall(r'"(?:[^"\\]|\\["\\/])*"', line)]
+                quoted = map(json.loads, re.findall(r'"(?:[^"\\]|\\["\\/])*"', line))
                 for name in (*quoted, *line.split(), line.strip().partition(" ")[2]):
                     path = Path(os.path.normpath(file.parent / name))
                     if re.search(r"\.[A-Za-z]\w*$", name) and path not in found and path.is_file():
@@ -160,22 +161,23 @@ def template(job: dict[str, str], title: str, seconds: int) -> tuple[dict[str, A
     def script(more: dict[str, str], *options: str) -> dict[str, Any]:
         run = {"command": "python3", "args": ["{{Task.File.Task}}", *(f"{k}={v}" for k, v in (words | more).items()), *options],
                "cancelation": {"mode": "NOTIFY_THEN_TERMINATE", "notifyPeriodInSeconds": 30}}
-        text = Path(farm_task.__file__).read_text(encoding="utf-8")
         return {"actions": {"onRun": run},
-                "embeddedFiles": [{"name": "Task", "type": "TEXT", "filename": "task.py", "data": text}]}
-
+                "embeddedFiles": [{"name": "Task", "type": "TEXT", "filename": "task.py", "data": TASK.read_text("utf-8")}]}
     render = {"step": "render", "frames": "{{Task.Param.Frame}}"} | ({"tile": "{{Task.Param.Tile}}"} if job["tiles"] else {})
-    steps = [{"name": "Render", "parameterSpace": {"taskParameterDefinitions": space}, "script": script(render, "--progress=openjd")},
+    steps = [{"name": "Render", "parameterSpace": {"taskParameterDefinitions": space},
+              "script": script(render, "--progress=openjd")},
              {"name": "Finish", "dependencies": [{"dependsOn": "Render"}],
               "script": script({"step": "finish", "frames": "{{Param.Frames}}"})}]
     form = {"specificationVersion": "jobtemplate-2023-09", "extensions": ["TASK_CHUNKING"], "name": title,
             "parameterDefinitions": parameters, "steps": steps}
-    if importlib.util.find_spec("openjd"):
+    try:
         from openjd.model import DecodeValidationError, decode_job_template
-        try:
-            decode_job_template(template=form, supported_extensions=["TASK_CHUNKING"])
-        except DecodeValidationError as error:
-            raise Refused(f"no template of Open Job Description can be made: {' '.join(str(error).split())}") from error
+    except ImportError:
+        return form, paths
+    try:
+        decode_job_template(template=form, supported_extensions=["TASK_CHUNKING"])
+    except DecodeValidationError as error:
+        raise Refused(f"no template of Open Job Description can be made: {' '.join(str(error).split())}") from error
     return form, paths
 
 
@@ -192,10 +194,8 @@ def check_folder(folder: Path, scene: Path) -> None:
 
 
 def main(arguments: Sequence[str]) -> int:
-    parser = Parser("farm", description=__doc__, usage="cistula farm SCENE -o NAME [--tiles CxR] [--to DIR] [options of render]",
-                    epilog="""Options of render that are not listed here are passed on to it.
-
-examples:
+    usage = "cistula farm SCENE -o NAME [--tiles CxR] [--to DIR] [options of render, which are passed on to it]"
+    parser = Parser("farm", description=__doc__, usage=usage, epilog="""examples:
   cistula farm scenes/seed.json -o out/beauty.####.exr --to farm
   cistula farm scenes/seed.json -o out/beauty.####.exr --to farm --tiles 4x3 --bits half --task-seconds 600
   make -j 2 -f farm/Makefile                  on this machine
@@ -211,9 +211,9 @@ exit codes: as of render""")
     add("-f", "--frames", default="", metavar="LIST", help="as of render: all of the film")
     add("--tiles", default="", metavar="CxR", help="cut every frame into a grid of tiles, which render-merge puts together")
     add("--to", metavar="DIR", help="the folder of the job's files; SCENE.farm in the working directory")
-    add("--task-seconds", type=number(1, 1e7), default=300.0, metavar="S", help="about how long a task takes on a machine as this; 300")
-    add("--frames-per-task", type=number(1, 1e6, int), metavar="N", help="instead of --task-seconds, for which frames are measured")
-    add("--most-tasks", type=number(1, 1e6, int), default=1000, metavar="N", help="longer tasks where there would be more than these; 1000")
+    add("--task-seconds", type=number(1, 1e7), default=300.0, metavar="S", help="how long a task takes here, about; 300")
+    add("--frames-per-task", type=number(1, 1e6, int), metavar="N", help="in place of --task-seconds; nothing is measured")
+    add("--most-tasks", type=number(1, 1e6, int), default=1000, metavar="N", help="longer tasks if there would be more; 1000")
     add("--cpus", type=number(1, 1024, int), metavar="N", help="cores of a task of Slurm; --threads, or this machine's")
     add("--preview", default="", metavar="FILE", help="as of render; of tiles, render-merge makes them")
     for option in ("--exposure", "--view", "--bloom"):
@@ -230,7 +230,7 @@ exit codes: as of render""")
         if word.partition("=")[0] in REFUSED:
             raise Refused(f"{word}: is of a run of render, not of a job of many; leave it out")
     if Path(options.output).suffix.lower() != ".exr":
-        raise Refused(f"-o {options.output}: tasks go on from what is complete, and only EXRs say what they show; name it *.exr")
+        raise Refused(f"-o {options.output}: only EXRs say what they show, so that tasks can go on; name it *.exr")
     if options.tiles and not re.fullmatch(r"[1-9]\d{0,4}x[1-9]\d{0,4}", options.tiles):
         raise Refused(f"--tiles {options.tiles}: must be columns x rows, as 4x3")
     tiles = tiles_of(options.tiles)
@@ -238,7 +238,6 @@ exit codes: as of render""")
     name = re.sub(r"[^\w.-]", "_", Path(scene).stem, flags=re.ASCII)[:60].lstrip("-.") or "film"
     folder = Path(options.to or name + ".farm")
     check_folder(folder, Path(scene))
-
     if look and not options.preview:
         raise Refused(f"{look[0]}: is of previews; give --preview FILE.png, too")
     film = Film([scene, *more], options.output, options.preview, look)
@@ -250,30 +249,31 @@ exit codes: as of render""")
         chunk = min(max(int(options.task_seconds * tiles / seconds), longer, 1), len(frames))
     count = -(-len(frames) // chunk) * tiles
     if count > options.most_tasks:
-        raise Refused(f"--most-tasks {options.most_tasks}: there are {count} tasks; give fewer tiles, more frames a task or more tasks")
+        raise Refused(f"--most-tasks {options.most_tasks}: there are {count} tasks; give fewer tiles or more frames a task")
 
+    def from_folder(path: str) -> str:
+        return os.path.relpath(os.path.realpath(path), folder.resolve())
     ocio = os.environ.get("OCIO", "") if options.view not in (None, "srgb", "filmic") else ""
-    job = {"cistula_farm": "1", "root": os.path.relpath(os.path.realpath("."), folder.resolve()), "programs": str(program("render").parent),
-           "scene": scene, "output": options.output, "options": shlex.join(more),
-           "tiles": options.tiles if tiles > 1 else "", "preview": options.preview, "look": shlex.join(look),
-           "ocio": os.path.abspath(ocio) if ocio and "://" not in ocio else ocio, "frames": format_frames(frames), "chunk": str(chunk)}
+    job = {"cistula_farm": "1", "root": from_folder("."), "programs": str(program("render").parent), "scene": scene,
+           "output": options.output, "options": shlex.join(more), "tiles": options.tiles if tiles > 1 else "",
+           "preview": options.preview, "look": shlex.join(look), "frames": format_frames(frames), "chunk": str(chunk),
+           "ocio": os.path.abspath(ocio) if ocio and "://" not in ocio else ocio}
     form, paths = template(job, name, 0 if options.frames_per_task else int(options.task_seconds))
-    values = [{"name": n, "value": os.path.relpath(os.path.realpath(path), folder.resolve())} for n, path in paths.items()]
+    values = [{"name": n, "value": from_folder(path)} for n, path in paths.items()]
     assets = [str(path.resolve()) for path in assets_of(Path(scene))]
     threads = re.search(r"--threads[= ](\d+)", job["options"])
     fields = {"name": name, "last": count - 1, "cpus": options.cpus or (threads and threads[1]) or os.cpu_count()}
     write_whole({folder / n: text.encode() for n, text in {
-        "task.py": Path(farm_task.__file__).read_text(encoding="utf-8"),
-        "job.json": json.dumps(job, indent=2) + "\n",
-        "template.json": json.dumps(form, indent=2) + "\n",
-        "parameter_values.json": json.dumps({"parameterValues": values}, indent=2) + "\n",
-        "asset_references.json": json.dumps({"assetReferences": {"inputs": {"filenames": assets}}}, indent=2) + "\n",
+        "task.py": TASK.read_text("utf-8"), "job.json": json.dumps(job, indent=2), "template.json": json.dumps(form, indent=2),
+        "parameter_values.json": json.dumps({"parameterValues": values}, indent=2),
+        "asset_references.json": json.dumps({"assetReferences": {"inputs": {"filenames": assets}}}, indent=2),
         "job.slurm": TASKS.format(**fields), "finish.slurm": FINISH.format(**fields | {"name": name + "-finish"}),
         "submit.sh": SUBMIT, "Makefile": MAKEFILE.format(**fields)}.items()})
     if not options.quiet:
         each = f", about {min(chunk, len(frames)) * seconds / tiles:.3g} s each on this machine" if seconds else ""
         print(f"{shown(str(folder))}: {count} tasks for {len(frames)} frames of {tiles} tiles{each}")
-        print("make -j 2 -f " + shlex.quote(f"{folder}/Makefile"))
-        print("sh " + shlex.quote(f"{folder}/submit.sh"))
-        print(shlex.join(["openjd", "run", f"{folder}/template.json", *(w for n, p in paths.items() for w in ("-p", f"{n}={p}"))]))
+        given = [word for n, path in paths.items() for word in ("-p", f"{n}={path}")]
+        for way in (["make", "-j2", "-f", f"{folder}/Makefile"], ["sh", f"{folder}/submit.sh"],
+                    ["openjd", "run", f"{folder}/template.json", *given]):
+            print(shlex.join(way))
     return 0

@@ -25,7 +25,7 @@ def parse_frames(text: str) -> list[int]:
     for item in text.split(","):
         found = RANGE.fullmatch(item.strip())
         if not found or int(found[3] or 1) == 0:
-            raise ValueError(f"'{item}' is no frame, no range A-B and no range with a step A-BxS; a list looks like 0-299x5,7")
+            raise ValueError(f"'{item}' is no frame, no range A-B and no A-BxSTEP; a list looks like 0-299x5,7")
         frames.update(range(int(found[1]), int(found[2] or found[1]) + 1, int(found[3] or 1)))
     return sorted(frames)
 
@@ -62,8 +62,8 @@ def images_of(output: str, frames: list[int]) -> tuple[Path, list[Path]]:
         lead, end = os.path.splitext(lead)
     word = r"(?P<word>[^/]+[._ -])?(?P<frame>\d+)" if place else r"(?P<word>\.[^/]+)?(?P<frame>)"
     form = re.compile(re.escape(lead) + word + re.escape(end))
-    named = ((file, form.fullmatch(str(file.relative_to(folder)))) for file in Path(folder).glob("*/" * name.count("/") + "*"))
-    wanted = {str(frame) for frame in frames}
+    files, wanted = Path(folder).glob("*/" * name.count("/") + "*"), {str(frame) for frame in frames}
+    named = ((file, form.fullmatch(str(file.relative_to(folder)))) for file in files)
     return Path(folder), sorted(file for file, m in named if m and not re.match(r"\.?(tile\d|snapshot)", m["word"] or "")
                                 and (not place or str(int(m["frame"])) in wanted))
 

@@ -308,7 +308,7 @@ def test_errors_are_one_line(film: Farm) -> None:
     film.refused(2, "--to s.json: holds other files", "s.json", "-o", "a.exr", "--to", "s.json")
     film.refused(2, "--to .: holds other files", "s.json", "-o", "a.exr", "--to", ".")
     film.environment["CISTULA_BIN"] = "/nowhere"
-    film.refused(2, "there is no render in $CISTULA_BIN, /nowhere", "s.json", "-o", "a.exr")
+    film.refused(2, "there is no render in /nowhere", "s.json", "-o", "a.exr")
 
 
 def test_the_files_of_a_scene_are_listed(film: Farm) -> None:
