@@ -53,6 +53,20 @@ void check_pixel(const std::string& pixel, const RenderCommand& command) {
                                command.frames.size(), pixel));
 }
 
+}  // namespace
+
+CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view name, const char* description) {
+    const RequestKey& key = request_key(name);
+    const std::string option(key.option), help(description ? description : key.help);
+    if (key.type == KeyType::boolean)
+        return app.add_flag_callback(
+            option, [&request, &key] { key.set(request, "true"); }, help);
+    return add_option(app, option, std::string(key.shape), help,
+                      [&request, &key](const std::string& text) { key.set(request, text); });
+}
+
+namespace {
+
 /// Adds render's options to a command line; `command` must outlive it.
 void declare_render_options(CLI::App& app, RenderCommand& command) {
     for (const RequestKey& key : request_keys()) add_key(app, command, key.name);
@@ -106,16 +120,6 @@ void check_render_options(const CLI::App& app, const RenderCommand& command) {
 }
 
 }  // namespace
-
-CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view name, const char* description) {
-    const RequestKey& key = request_key(name);
-    const std::string option(key.option), help(description ? description : key.help);
-    if (key.type == KeyType::boolean)
-        return app.add_flag_callback(
-            option, [&request, &key] { key.set(request, "true"); }, help);
-    return add_option(app, option, std::string(key.shape), help,
-                      [&request, &key](const std::string& text) { key.set(request, text); });
-}
 
 RenderCommand parse_options(int argc, const char* const* argv) {
     CLI::App app;
