@@ -65,6 +65,9 @@ CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view nam
                       [&request, &key](const std::string& text) { key.set(request, text); });
 }
 
+namespace {
+
+/// Adds render's options to a command line; `command` must outlive it.
 void declare_render_options(CLI::App& app, RenderCommand& command) {
     for (const RequestKey& key : request_keys()) add_key(app, command, key.name);
     const auto add_action = [&](const char* name, const char* description, Action action) {
@@ -95,6 +98,7 @@ void declare_render_options(CLI::App& app, RenderCommand& command) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
+/// Checks how the options that were given fit together. Throws Error (usage).
 void check_render_options(const CLI::App& app, const RenderCommand& command) {
     const std::string pixel = given_text(app, "--pixel");
     if (!pixel.empty()) check_pixel(pixel, command);
@@ -114,6 +118,8 @@ void check_render_options(const CLI::App& app, const RenderCommand& command) {
     if (command.scene.empty())
         fail_usage("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
 }
+
+}  // namespace
 
 RenderCommand parse_options(int argc, const char* const* argv) {
     CLI::App app;

@@ -90,7 +90,7 @@ const std::vector<float>& channel(const LayeredPicture& frame, const char* name,
 /// space; file where it cannot be written.
 void write_merged_preview(const std::string& path, const LayeredPicture& frame, const PictureView& view) {
     const auto refuse = [&](const char* what) {
-        throw Error(ErrorKind::usage, fmt::format("--preview {}: {}; render-view shows the merged file", path, what));
+        throw Error(ErrorKind::usage, fmt::format("--preview {}: {}; cistula view shows the merged file", path, what));
     };
     if (frame.attributes.count("cistula:background") != 0) refuse("the tiles' background was left out");
     const auto* id = attribute_of<std::string>(frame, "colorInteropID");

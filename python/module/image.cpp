@@ -9,7 +9,6 @@
 #include "base/suggest.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture_io.h"
-#include "image/picture/png.h"
 #include "image/view/picture_view.h"
 #include "render/record/film_picture.h"
 #include "render/record/target_report.h"

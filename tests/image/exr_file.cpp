@@ -28,7 +28,7 @@ TEST(ExrFile, ReadsScanLineAndTiledParts) {
         EXPECT_EQ(file.parts()[i].name, two_parts[i].name);
         EXPECT_EQ(file.parts()[i].width, two_parts[i].width);
         EXPECT_EQ(file.parts()[i].height, two_parts[i].height);
-        EXPECT_EQ(file.parts()[i].full_height, 10);
+        EXPECT_EQ(file.parts()[i].display.height, 10);
     }
     ASSERT_EQ(file.parts()[0].channels.size(), 2u);
     EXPECT_EQ(file.parts()[0].channels[0].type, Type::float_);
@@ -63,7 +63,7 @@ TEST(ExrFile, HasTheAttributesOfItsParts) {
     const ExrFile file(scratch.file("a.exr"));
     ASSERT_EQ(file.parts().size(), 1u);
     for (const auto& [name, value] : picture.attributes) EXPECT_EQ(file.parts()[0].attributes.at(name), value) << name;
-    EXPECT_EQ(file.parts()[0].full_height, 10);
+    EXPECT_EQ(file.parts()[0].display.height, 10);
     EXPECT_EQ(file.parts()[0].channels[0].type, Type::half);
     EXPECT_EQ(file.read(0, {0})[0].values, std::vector<float>{0.5f});
 }

@@ -36,7 +36,6 @@ struct ExrLevel {
 struct ExrPart {
     std::string name;           // files of one part need not have one
     int width = 0, height = 0;  // of the data window
-    int full_height = 0;        // of the display window
     Compression compression = Compression::other;
     PixelRect data, display;
     std::vector<ExrLevel> levels;  // {0, 0} is the whole resolution, and first
