@@ -238,8 +238,9 @@ void render_film(const FilmJob& job, Renderer& renderer, RenderProgress& progres
             if (finished.film.flags != 0) {
                 writer.finish();
                 throw Error(ErrorKind::failed,
-                            fmt::format("{}: frame {} cannot be trusted and is not written: {}", job.scene.source,
-                                        camera.frame, describe_flags(finished.film.flags, job.scene)));
+                            fmt::format("frame {} cannot be trusted and is not written: {}", camera.frame,
+                                        describe_flags(finished.film.flags, job.scene)))
+                    .at(job.scene.source);
             }
             finished.image = job.output;
             finished.split = request.split;
