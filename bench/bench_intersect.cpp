@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "program.h"
 #include "render/frame/frame_view.h"
-#include "testing/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::bench {
 namespace {

@@ -12,8 +12,8 @@
 #include "cistula/model/effects.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
-#include "render/frame_settings.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
+#include "render/renderer.h"
 #include "scene/readers/read_scene.h"
 #include "sequence/frame_list.h"
 

@@ -1,4 +1,4 @@
-#include "effect_costs.h"
+#include "explain.h"
 
 #include <bit>
 

@@ -12,11 +12,11 @@
 #include "job_files.h"
 #include "measure.h"
 #include "options.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/precision_choice.h"
 #include "scene/compile/scene_source.h"
-#include "sequence/film_loop.h"
+#include "scene/compile/solids/smallest_part.h"
+#include "sequence/sequence_loop.h"
 
 namespace cistula {
 namespace {
@@ -83,8 +83,8 @@ void write_job(const FarmOptions& farm) {
     const MeasuredFrames measured = measure_tiles(*renderer, scene, settings, frames, grid, progress);
 
     const OutputName none;
-    FilmEvents nothing;
-    FilmJob job{request, scene, FrameHashes(), settings, output, none, frames, nothing, compiled.precision()};
+    SequenceEvents nothing;
+    SequenceJob job{request, scene, FrameHashes(), settings, output, none, frames, nothing, compiled.precision()};
     job.layer_names = compiled.layer_names();
     FarmJob farm_job{job_name(request.scene),
                      fs::current_path().string(),

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/timing.h"
-#include "sequence/film_loop.h"
+#include "sequence/sequence_loop.h"
 
 namespace cistula::report {
 namespace {

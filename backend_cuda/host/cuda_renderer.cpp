@@ -287,7 +287,8 @@ class CudaRenderer : public Renderer {
     int next_device_ = 0;           // of frames that are not shared
     RenderTimes times_;
     std::vector<std::string> notes_;
-    size_t bytes_ = 0, largest_part_ = 0;
+    size_t bytes_ = 0;
+    size_t largest_part_ = 0;
     uint32_t effects_ = 0;
 };
 

@@ -72,4 +72,13 @@ std::string describe_flags(uint32_t flags, const SceneDescription& scene) {
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+FrameSettings frame_settings(const SceneDescription& scene) {
+    FrameSettings settings;
+    settings.set_size(scene.film.width, scene.film.height);
+    settings.supersample = scene.film.supersample;
+    settings.depth = scene.depth;
+    settings.cutoff = scene.cutoff;
+    return settings;
+}
+
 }  // namespace cistula

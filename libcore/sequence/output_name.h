@@ -49,8 +49,8 @@ FileKind file_kind(const std::string& path);
 /// SCENE.####.exr if several frames were given explicitly. A scene from standard input is named "stdin".
 std::string default_output(const SceneDescription& scene, size_t frames_given);
 
-/// The frames to render: those given; by default the whole film for a pattern, the first frame for a plain name. Throws
-/// Error (usage) if several frames are given for a plain name.
+/// The frames to render: those given; by default all of the scene's for a pattern, the first frame for a plain name.
+/// Throws Error (usage) if several frames are given for a plain name.
 std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames);
 
 /// The name of previews of these frames; an empty text is none. Throws Error (usage).

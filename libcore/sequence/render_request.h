@@ -15,7 +15,7 @@
 #include "render/renderer.h"
 #include "scene/readers/scene_keys.h"
 #include "sequence/backends.h"
-#include "sequence/film_events.h"
+#include "sequence/sequence_events.h"
 
 namespace cistula {
 
@@ -31,7 +31,7 @@ struct RenderRequest {
     FrameSettings frame = {.full_width = 0, .full_height = 0, .supersample = 0, .depth = 0, .cutoff = -1};
     std::optional<TileGrid> tiles;       // over the crop or the full frame
     std::optional<int> tile;             // the one to render; none: all pixels
-    std::optional<Precision> precision;  // none: the scene decides (precision_choice.h)
+    std::optional<Precision> precision;  // none: the scene decides (choose_precision)
     int threads = 0;                     // 0: one per core
     double texture_gb = 0;               // for all textures; 0: default_texture_bytes()
     std::string layers;                  // as given

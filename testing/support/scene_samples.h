@@ -8,7 +8,7 @@
 
 #include "apps/common/command_line.h"
 #include "scene/description/description.h"
-#include "testing/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::samples {
 

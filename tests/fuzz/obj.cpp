@@ -2,8 +2,8 @@
 #include <cstdint>
 
 #include "mesh_checks.h"
+#include "scene/readers/meshes/mesh_formats.h"
 #include "scene/readers/meshes/mesh_text.h"
-#include "scene/readers/meshes/obj_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;

@@ -1,5 +1,5 @@
 // The text input, in either order of its parts.
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "scene_checks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -8,9 +8,9 @@
 #include "cistula/numerics/elementary.h"
 #include "image/color/srgb_codes.h"
 #include "testing/support/expect_error.h"
+#include "testing/support/pictures/srgb_codes.h"
 #include "testing/support/scratch_directory.h"
 #include "testing/support/special_values.h"
-#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {

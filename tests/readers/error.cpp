@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/file_bytes.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "scene/assets/assets.h"
 #include "sequence/render_request.h"
 #include "testing/support/read_text.h"

@@ -5,7 +5,7 @@
 #include <streambuf>
 
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 

@@ -6,7 +6,7 @@
 #include "base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "testing/support/read_text.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"

@@ -9,7 +9,7 @@
 #include "scene/description/camera_path.h"
 #include "scene/description/platonic.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"

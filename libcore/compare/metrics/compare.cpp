@@ -12,9 +12,7 @@
 #include "base/option_text.h"
 #include "base/suggest.h"
 #include "compare/metrics/channel_statistics.h"
-#include "compare/metrics/header_differences.h"
 #include "compare/metrics/picture_pairs.h"
-#include "compare/metrics/ssim.h"
 #include "image/picture/picture.h"
 #include "render/record/frame_header.h"
 

@@ -25,7 +25,7 @@
 #include "compare/metrics/picture_pairs.h"
 #include "image/color/srgb_codes.h"
 #include "image/exr/exr.h"
-#include "image/picture/png.h"
+#include "image/picture/picture_io.h"
 
 namespace cistula {
 namespace {

@@ -8,7 +8,7 @@
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_keys.h"
 #include "image/color/color_space.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "scene/readers/json_reader.h"
 #include "sequence/output_name.h"
 

@@ -4,11 +4,11 @@
 
 #include "base/timing.h"
 #include "image/picture/picture_hash.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "render/record/frame_header.h"
 #include "scene/readers/read_scene.h"
-#include "sequence/film_loop.h"
 #include "sequence/frame_writer.h"
+#include "sequence/sequence_loop.h"
 
 namespace cistula {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "base/file_bytes.h"
-#include "base/machine_memory.h"
+#include "base/machine.h"
 
 namespace cistula {
 

@@ -4,11 +4,16 @@
 #include "base/error.h"
 #include "cistula/transport/pixel.h"
 #include "cistula/transport/pixel_sums.h"
-#include "render/frame/camera_sides.h"
 #include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
 
 namespace cistula {
+
+/// Sets where a frame's rays start: at the camera, or, where it lies on faces to within 16 times the rounding of its
+/// distance from their planes, 32 u M off each plane, on either side. Of more than three planes the first three count.
+/// The camera's position is already in the frame, and so is `half_unit`, which rounding may have moved it by.
+template <class Real>
+void set_camera_sides(const CompiledScene<Real>& scene, const glm::dvec3& half_unit, FrameView& frame);
 
 /// The parameters of adaptive sampling for a frame with a target error.
 template <class Real>

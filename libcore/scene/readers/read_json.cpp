@@ -1,4 +1,4 @@
-#include "scene/readers/read_json.h"
+#include "scene/readers/scene_formats.h"
 
 #include <algorithm>
 #include <filesystem>

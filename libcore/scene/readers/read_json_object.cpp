@@ -5,8 +5,8 @@
 
 #include "base/suggest.h"
 #include "scene/readers/json_reader.h"
-#include "scene/readers/meshes/quad.h"
-#include "scene/readers/read_json.h"
+#include "scene/readers/meshes/polygon.h"
+#include "scene/readers/scene_formats.h"
 
 namespace cistula {
 namespace {

@@ -12,9 +12,7 @@
 #include "base/decimal.h"
 #include "base/default_rounding.h"
 #include "base/error.h"
-#include "scene/readers/read_json.h"
-#include "scene/readers/read_text_input.h"
-#include "scene/readers/scene_kind.h"
+#include "scene/readers/scene_formats.h"
 #include "scene/readers/text_tokens.h"
 
 namespace cistula {

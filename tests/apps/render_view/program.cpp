@@ -9,8 +9,8 @@
 #include "base/error.h"
 #include "image/exr/exr.h"
 #include "testing/support/expect_error.h"
-#include "testing/support/exr_parts.h"
-#include "testing/support/png_pixels.h"
+#include "testing/support/pictures/exr_parts.h"
+#include "testing/support/pictures/png_pixels.h"
 #include "testing/support/run_program.h"
 
 namespace cistula {

@@ -10,8 +10,7 @@
 #include "backend_cuda/host/cuda_renderer.h"
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/description/without_effect.h"
-#include "testing/generated_scene.h"
-#include "testing/support/contact_search.h"
+#include "testing/support/contacts/contact_search.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/golden.h"
@@ -19,6 +18,7 @@
 #include "testing/support/scene.h"
 #include "testing/support/shipped_scenes.h"
 #include "testing/support/stopping.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

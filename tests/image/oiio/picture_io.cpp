@@ -10,10 +10,10 @@
 #include "image/picture/raw_picture.h"
 #include "testing/support/byte_order.h"
 #include "testing/support/expect_error.h"
-#include "testing/support/icc_profiles.h"
+#include "testing/support/pictures/icc_profiles.h"
+#include "testing/support/pictures/srgb_codes.h"
 #include "testing/support/scratch_directory.h"
 #include "testing/support/special_values.h"
-#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {

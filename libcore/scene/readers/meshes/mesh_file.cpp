@@ -8,9 +8,8 @@
 #include "base/file_bytes.h"
 #include "cistula/numerics/vec.h"
 #include "scene/description/rotation.h"
+#include "scene/readers/meshes/mesh_formats.h"
 #include "scene/readers/meshes/mesh_text.h"
-#include "scene/readers/meshes/obj_file.h"
-#include "scene/readers/meshes/ply_file.h"
 #include "scene/readers/meshes/polygon.h"
 
 namespace cistula {

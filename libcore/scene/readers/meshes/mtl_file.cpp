@@ -1,4 +1,4 @@
-#include "scene/readers/meshes/mtl_file.h"
+#include "scene/readers/meshes/mesh_formats.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scene/readers/meshes/obj_file.h"
+#include "scene/readers/meshes/mesh_formats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "scene/readers/meshes/mesh_text.h"
-#include "scene/readers/meshes/mtl_file.h"
 
 namespace cistula {
 namespace {
