@@ -58,7 +58,7 @@ FileHandle open_for_reading(const std::string& path) {
     if (fstat(fileno(file.get()), &status) != 0) throw file_error(path, "read", errno);
     if (S_ISDIR(status.st_mode)) throw file_error(path, "read", EISDIR);
     if (S_ISCHR(status.st_mode))  // such as /dev/zero, which has no end
-        throw file_error(path, "read", std::string("it is a device; give the name of a file"));
+        throw file_error(path, "read", std::string("it is a device"), "give the name of a file");
     return file;
 }
 
@@ -80,7 +80,7 @@ std::string read_up_to(const std::string& path, size_t most) {
         if (got < step) break;
     }
     if (!has_size && bytes.size() > largest_pipe)
-        throw file_error(path, "read", std::string("it is a pipe of more than 1 GiB; write it to a file first"));
+        throw file_error(path, "read", std::string("it is a pipe of more than 1 GiB"), "write it to a file first");
     return bytes;
 }
 
@@ -92,7 +92,7 @@ Error file_error(const std::string& path, const std::string& verb, int error_num
         .at(path);
 }
 
-Error file_error(const std::string& path, const std::string& verb, const std::string& reason) {
+Error file_error(const std::string& path, const std::string& verb, const std::string& reason, const char* remedy) {
     std::string line;
     for (const char c : reason) {
         const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
@@ -102,7 +102,7 @@ Error file_error(const std::string& path, const std::string& verb, const std::st
             line += ' ';
     }
     while (!line.empty() && (line.back() == ' ' || line.back() == '.')) line.pop_back();
-    return Error(ErrorKind::file, "cannot " + verb + ": " + line).at(path);
+    return Error(ErrorKind::file, "cannot " + verb + ": " + line, remedy).at(path);
 }
 
 uint64_t regular_file_size(const std::string& path) {
@@ -110,7 +110,7 @@ uint64_t regular_file_size(const std::string& path) {
     if (stat(path.c_str(), &status) != 0) throw file_error(path, "read", errno);
     if (S_ISDIR(status.st_mode)) throw file_error(path, "read", EISDIR);
     if (!S_ISREG(status.st_mode))
-        throw file_error(path, "read", std::string("it is a pipe, a socket or a device; give a file"));
+        throw file_error(path, "read", std::string("it is a pipe, a socket or a device"), "give a file");
     return static_cast<uint64_t>(status.st_size);
 }
 

@@ -15,8 +15,8 @@ inline constexpr int64_t largest_picture_side = 65536;
 /// spelling". verb: "read" or "write".
 Error file_error(const std::string& path, const std::string& verb, int error_number);
 
-/// An error with a library's reason, line breaks removed: "PATH: cannot read: REASON".
-Error file_error(const std::string& path, const std::string& verb, const std::string& reason);
+/// An error with a library's reason, line breaks removed: "PATH: cannot read: REASON; REMEDY".
+Error file_error(const std::string& path, const std::string& verb, const std::string& reason, const char* remedy = "");
 
 /// The size in bytes of a file; throws Error (file) if there is none, or it is a directory, a pipe or a
 /// device. It is not opened, which waits for a writer where it is a pipe.

@@ -222,8 +222,9 @@ size_t render_and_write(const SequenceJob& job, Renderer& renderer, RenderProgre
             if (finished.film.flags != 0) {
                 writer.finish();
                 throw Error(ErrorKind::failed,
-                            fmt::format("{}: frame {} cannot be trusted and is not written: {}", job.scene.source,
-                                        camera.frame, describe_flags(finished.film.flags, job.scene)));
+                            fmt::format("frame {} cannot be trusted and is not written: {}", camera.frame,
+                                        describe_flags(finished.film.flags, job.scene)))
+                    .at(job.scene.source);
             }
             describe(finished, job, camera, seconds, renderer);
             job.events.end_frame(finished.stats);

@@ -22,7 +22,7 @@ void write_preview(const std::string& path, const ColorPicture& linear) {
     if (linear.width == 0 || linear.texels.size() != static_cast<size_t>(linear.width) * linear.height)
         throw std::invalid_argument("write_preview: texels must number width * height, and be some");
     if (lower_extension(path) != ".png")
-        throw file_error(path, "write", std::string("a preview is a PNG; give a name that ends in .png"));
+        throw file_error(path, "write", std::string("a preview is a PNG"), "give a name that ends in .png");
     std::string bytes;
     try {
         bytes = encode_png(linear);
