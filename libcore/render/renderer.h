@@ -47,6 +47,9 @@ struct FrameSettings {
     KeptParts kept_parts() const { return adaptive() ? KeptParts() : parts; }
 };
 
+/// A scene's own settings: the size and the samples of its film, its depth and its cutoff, without a crop.
+FrameSettings frame_settings(const SceneDescription& scene);
+
 /// State shared between the rendering threads and an observer; all members may be read at any time.
 struct RenderProgress {
     std::atomic<uint64_t> pixels_done{0};

@@ -17,7 +17,7 @@ class OutputName {
   public:
     OutputName() = default;
 
-    /// `option` is the option named in messages ("-o"). Throws Error (usage) if the text holds two patterns or another
+    /// `option` names it in messages ("`output`"). Throws Error (usage) if the text holds two patterns or another
     /// conversion.
     OutputName(std::string_view text, std::string_view option);
 

@@ -1,4 +1,4 @@
-"""What the commands share: errors of one line, options, names that are nearest, files that are written whole or not at all."""
+"""What the commands share: errors of one line, options, nearest names, files that are written whole or not at all."""
 import argparse
 import difflib
 import os
@@ -33,7 +33,8 @@ class Parser(argparse.ArgumentParser):
         options, extra = self.parse_known_args(arguments)
         if extra and extra[0].startswith("-"):
             near = difflib.get_close_matches(extra[0].split("=")[0], self._option_string_actions, 1)
-            raise Refused(f"{extra[0]}: no such option" + (f"; did you mean {near[0]}?" if near else "") + "; --help lists them")
+            like = f"; did you mean {near[0]}?" if near else ""
+            raise Refused(f"{extra[0]}: no such option{like}; --help lists them")
         if extra:
             raise Refused(f"{extra[0]}: one file at a time; --help tells more")
         return options

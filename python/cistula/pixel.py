@@ -72,7 +72,8 @@ def _ray(parent: int, kind: str, end: str, depth: int, weight: Vector, arriving:
     met = None
     if surface is not None:
         *fields, lights = surface
-        met = Surface(*fields, lights=tuple(Light(*light) for light in lights))
+        fields.append(tuple(Light(*light) for light in lights))
+        met = Surface(*fields)
     return Ray(parent, kind, end, depth, weight, arriving, origin, direction, distance, met, *others)
 
 

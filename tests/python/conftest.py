@@ -31,7 +31,7 @@ def render(programs: Path, tmp_path: Path) -> Callable[..., dict[str, Any]]:
 
     def run(scene: Path, *options: str) -> dict[str, Any]:
         stats = tmp_path / "stats.json"
-        command = [programs / "render", scene, "-q", "-o", tmp_path / "file.exr", "--stats", stats, *options]
+        command = [str(programs / "render"), str(scene), "-q", "-o", str(tmp_path / "file.exr"), "--stats", str(stats), *options]
         assert subprocess.run(command, check=False).returncode in (0, 5)  # 5: a target error was missed
         entry: dict[str, Any] = json.loads(stats.read_text())["benchmarks"][0]
         return entry

@@ -11,7 +11,7 @@
 
 #include "base/stages.h"
 #include "image/exr/exr.h"
-#include "image/picture/png.h"
+#include "image/picture/picture_io.h"
 #include "image/picture/raw_picture.h"
 #include "image/view/picture_view.h"
 #include "render/target.h"
