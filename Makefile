@@ -76,10 +76,11 @@ check-all: lint ## before a release: lint, all tests, the benchmarks built, the 
 
 test-report: ## measure a small report, open it and a suite's page in headless Chromium and look for what is wrong; screenshots into out/report
 	$(call setup,packages.txt tests/report-packages.txt)
+	@python/make-venv
 	$(call configure,$(PRESET))
-	@cmake --build $(BUILD) --target render-report render-compare
+	@cmake --build $(BUILD) --target python render-compare
 	@mkdir -p out/report
-	$(BUILD)/bin/render-report scenes/benchmark.json scenes/platonic.json --quick --res 96x54 --scaling -o out/report/small.html
+	PYTHONPATH=$(BUILD)/python build/python/bin/python -m cistula report scenes/benchmark.json scenes/platonic.json --quick --res 96x54 --scaling -o out/report/small.html
 	tests/report-check out/report/small.html $(wildcard docs/report/*.html) --screenshots out/report
 	tests/check_suite_page.sh . $(BUILD) out/report
 

@@ -210,7 +210,7 @@ all_rules() {
     breaks apps/render/a.cpp '#include "bench/gpu/record.h"'
     breaks apps/render/a.cpp '#include "testing/support/gpu.h"'
     breaks apps/render/a.cpp '#include "testing/parity/record.h"'
-    breaks apps/render/a.cpp '#include "apps/render_report/record.h"'
+    breaks apps/render/a.cpp '#include "apps/render_merge/options.h"'
     breaks apps/common/a.cpp '#include "apps/render/options.h"'
     breaks bench/gpu/a.cpp '#include "tests/gpu.h"'
     breaks testing/a.cpp '#include "bench/gpu/record.h"'

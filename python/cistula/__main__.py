@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from cistula.command import run
 
 COMMANDS = {
+    "report": "what accuracy costs in time, measured and shown as a page",
     "view": "layers of EXR pictures as PNG, and contact sheets",
     "farm": "tasks of a film, for OpenJD, Slurm and make",
 }

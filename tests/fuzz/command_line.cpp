@@ -1,5 +1,4 @@
-// Command lines, one word a line. The first line is the program's name: render, render-compare, render-merge or
-// render-report.
+// Command lines, one word a line. The first line is the program's name: render, render-compare or render-merge.
 #include <algorithm>
 #include <string_view>
 #include <vector>
@@ -8,7 +7,6 @@
 #include "apps/render_compare/options.h"
 #include "apps/render_compare/suite_options.h"
 #include "apps/render_merge/options.h"
-#include "apps/render_report/options.h"
 #include "checks.h"
 #include "sequence/output_name.h"
 
@@ -31,8 +29,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             parse_compare_options(count, arguments.data());
         } else if (words[0] == "render-merge") {
             parse_merge_options(count, arguments.data());
-        } else if (words[0] == "render-report") {
-            report::parse_report_options(count, arguments.data());
         } else {
             const RenderCommand options = parse_options(count, arguments.data());
             fuzz::require(options.frames.size() <= most_frames);

@@ -12,21 +12,17 @@ std::string escaped(const std::string& text);
 /// A table in a scrollable box. Cells are HTML; columns whose head begins with '>' are numbers.
 class Table {
   public:
-    explicit Table(std::vector<std::string> heads, std::string caption = "");
+    explicit Table(std::vector<std::string> heads);
     void row(const std::vector<std::string>& cells, const std::string& css = "");
-    bool empty() const { return body_.empty(); }
     std::string html() const;
 
   private:
     std::vector<std::string> heads_;
-    std::string caption_, body_;
+    std::string body_;
 };
 
 /// A figure with its caption (HTML).
 std::string figure(const std::string& content, const std::string& caption, const std::string& css = "");
-
-/// A command line that a click selects as a whole.
-std::string command_html(const std::string& command);
 
 /// Bytes as the text of a data: address.
 std::string base64(const std::string& bytes);

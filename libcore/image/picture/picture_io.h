@@ -24,9 +24,4 @@ void write_preview(const std::string& path, const ColorPicture& linear);
 /// instance for pictures of 4 GiB and more.
 std::string encode_png(const ColorPicture& linear);
 
-/// An indexed PNG. `pixels`: row-major from the top left, indices into `colors`, which are 1 to 256 sRGB triples of
-/// bytes. Throws std::runtime_error with libpng's reason.
-std::string encode_indexed_png(uint32_t width, uint32_t height, const std::vector<uint8_t>& pixels,
-                               const std::vector<uint8_t>& colors);
-
 }  // namespace cistula
