@@ -38,23 +38,6 @@ def parser() -> Parser:
     return made
 
 
-def read(file: str) -> Any:
-    """A record that --json wrote. Raises Refused."""
-    from .page import NO_RECORD, page_of
-
-    def constant(word: str) -> float:
-        raise ValueError(f"{word} is no number of JSON")
-
-    text = Path(file).read_bytes()
-    try:
-        record = json.loads(text, parse_constant=constant)
-        page_of([record])  # what has no page is no record
-        return record
-    except NO_RECORD as error:
-        why = shown(" ".join(str(error).split())[:200])
-        raise Refused(f"{shown(file)}: is no record of cistula report ({type(error).__name__}: {why}); give what its --json wrote", 3) from None
-
-
 def check(options: Any) -> None:
     """Raises Refused for options that do not go together, and files that are read and written."""
     measuring = {name: getattr(options, name) for name in ("backend", "device", "threads", "res", "limit", "repetitions", "quick", "scaling", "json")}
@@ -98,10 +81,16 @@ def main(arguments: Sequence[str]) -> int:
     import cistula
 
     from .measure import Options, measure
-    from .page import page_of, targets
+    from .page import NO_RECORD, page_of, targets
 
+    text = ""
     if options.records:
-        records = [read(file) for file in options.records]
+        try:
+            records = [json.loads(Path(file).read_bytes()) for file in options.records]
+            text = page_of(records)
+        except NO_RECORD as error:
+            why = shown(f"{type(error).__name__}: {error}".replace("\n", " ")[:200])
+            raise Refused(f"{shown(', '.join(options.records))}: is no record of cistula report ({why}); give what its --json wrote", 3) from None
     else:
         how = Options(options.backend or "embree", options.device or "0", options.threads, options.res, quick=options.quick,
                       repetitions=options.repetitions or (3 if options.quick else 10), warm_ups=1 if options.quick else 2,
@@ -109,11 +98,12 @@ def main(arguments: Sequence[str]) -> int:
         try:
             records = [measure(options.scenes, how, scenes=options.scaling != "only", scale=bool(options.scaling))]
         except cistula.Error as error:
-            raise Refused(str(error), error.code) from None
+            codes = {cistula.FrameError: 1, cistula.FileError: 3, cistula.DeviceError: 4}
+            raise Refused(str(error), codes.get(type(error), 2)) from None
     files: dict[Path, bytes] = {}
     if options.json:
         files[Path(options.json)] = (json.dumps(records[0] | {"targets": targets(records[0])}, indent=1) + "\n").encode()
     if options.output:
-        files[Path(options.output)] = page_of(records).encode()
+        files[Path(options.output)] = (text or page_of(records)).encode()
     write_whole(files)
     return 0

@@ -24,7 +24,7 @@ from cistula.command import Refused
 from cistula.scene import keywords
 
 Json = dict[str, Any]
-Picture = npt.NDArray[np.float64]
+Picture = npt.NDArray[np.floating[Any]]
 
 DEEPEST, REFERENCE_SAMPLES = 256, 16  # depth of references, and their samples on a side
 KNOB_CUTOFF = 2.0**-40                # radiance that a pixel may lose in references of one knob

@@ -28,7 +28,7 @@ NO_RECORD = (ArithmeticError, AttributeError, LookupError, RuntimeError, TypeErr
 
 
 def middle(entry: Json) -> float:
-    return median(entry["repetition_times"])
+    return float(median(entry["repetition_times"]))
 
 
 def front_of(entries: list[Json], error: Callable[[Json], float]) -> list[Json]:
@@ -209,7 +209,7 @@ class Shown:
                 ("the first frame", *map(stages["first frame"].get, ("float", "double"))),
                 *((text, *(f.get(key) for f in frames)) for key, text in [*parts, ("repetition_times", "a frame, all in all")]),
                 ("a frame by code for all effects", stages["all effects"]["float"], None),
-                ("encode and write an EXR", *map(stages["encode"].get, ("float", "double")))]  # type: ignore[list-item]
+                ("encode and write an EXR", *map(stages["encode"].get, ("float", "double")))]
 
 
 def scaling_chart(series: Json) -> Markup:
