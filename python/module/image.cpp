@@ -203,7 +203,8 @@ void bind_image(nb::module_& m) {
                 if (times.kernel <= 0 && times.transfer <= 0) return std::map<std::string, double>{};
                 return std::map<std::string, double>{{"kernel", times.kernel}, {"transfer", times.transfer}};
             },
-            "On GPUs the parts of `seconds`: \"kernel\", computing pixels, and \"transfer\", from then until the image is "
+            "On GPUs the parts of `seconds`: \"kernel\", computing pixels, and \"transfer\", from then until the image "
+            "is "
             "there.")
         .def_prop_ro("target", target_of, nb::sig("def target(self) -> dict[str, int | float | bool] | None"),
                      "With a target error what is proven and estimated of it, in pixels; else None.")

@@ -20,7 +20,7 @@ struct Image {
     FrameSettings settings;
     int frame = 0;
     double seconds = 0;
-    RenderTimes times;  // 0 where the backend has no device of its own
+    RenderTimes times;                                 // 0 where the backend has no device of its own
     LayeredPicture picture;                            // of values made as they are asked for
     std::map<std::string, std::vector<float>> values;  // that were
     std::atomic<uint64_t> clamped{0};
