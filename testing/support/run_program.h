@@ -35,6 +35,7 @@ class RunningProgram {
         for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
         argv.push_back(nullptr);
         put_bytes(streams_.file("error"), "");
+        put_bytes(streams_.file("out"), "");
         const std::string in = streams_.file("in"), out = streams_.file("out"), error = streams_.file("error");
         child_ = fork();
         if (child_ < 0) throw std::runtime_error("cannot fork");
@@ -62,6 +63,7 @@ class RunningProgram {
     RunningProgram& operator=(const RunningProgram&) = delete;
 
     std::string error_so_far() const { return bytes_of(streams_.file("error")); }
+    std::string output_so_far() const { return bytes_of(streams_.file("out")); }
 
     void send(int signal_number) const { ::kill(child_, signal_number); }
 
