@@ -32,8 +32,9 @@ render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
 	@mkdir -p out
 	$(BUILD)/bin/render $(SCENE) --backend embree -o out/$(NAME).exr --preview out/$(NAME).png
 
-build: ## build libraries, programs and tests
+build: ## build libraries, programs, the Python package and tests
 	$(call setup,packages.txt)
+	@python/make-venv
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD)
 
@@ -45,6 +46,7 @@ test: build ## build everything and run the tests; TEST=PATTERN: those whose nam
 
 test-quick: ## build and run the quick tests alone
 	$(call setup,packages.txt)
+	@python/make-venv
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD) --target quick_tests
 	$(call run_tests,-L quick)

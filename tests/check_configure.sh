@@ -7,7 +7,7 @@ unset MAKEFLAGS MAKELEVEL MFLAGS MAKEOVERRIDES GNUMAKEFLAGS CUDA PRESET  # those
 root=$(cd "${1:?usage: check_configure.sh ROOT}" && pwd)
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree/cmake" "$tree/bin"
+mkdir -p "$tree/cmake" "$tree/bin" "$tree/python"
 cp "$root/Makefile" "$root/CMakePresets.json" "$root/packages.txt" "$tree"
 cp "$root/cmake/configure" "$root/cmake/install-packages" "$tree/cmake"
 cat >"$tree/bin/cmake" <<'CMAKE'
@@ -17,7 +17,8 @@ echo "configured: $*"
 mkdir -p "build/$2" && touch "build/$2/CMakeCache.txt" "build/$2/build.ninja"
 CMAKE
 printf '#!/bin/sh\nexit 1\n' >"$tree/bin/nvidia-smi"  # no GPU
-chmod +x "$tree/bin/cmake" "$tree/bin/nvidia-smi"
+printf '#!/bin/sh\n' >"$tree/python/make-venv"  # no Python
+chmod +x "$tree/python/make-venv" "$tree/bin/cmake" "$tree/bin/nvidia-smi"
 cd "$tree"
 
 failures=0
@@ -58,6 +59,11 @@ for target in install package gpu-check; do
     made 'release --fresh -DCISTULA_EVERY_KERNEL=ON' "$target"
     made '' test
 done
+mkdir build/python && touch build/python/requirements.txt  # Python
+made "release --fresh -DCISTULA_BUILD_PYTHON=ON -DPython_EXECUTABLE=$tree/build/python/bin/python -DCISTULA_EVERY_KERNEL=ON" build
+made '' render
+made '' test
+made 'asan -DCISTULA_EVERY_KERNEL=OFF' test PRESET=asan
 
 # wanted LIST: what install-packages says that it wants where there is no apt-get
 wanted() { bash -c 'command() { return 1; }; source cmake/install-packages "$1"' wanted "$1" 2>&1 | sed -n 2p; }

@@ -1,0 +1,1 @@
+"""Cistula: an exact ray tracer; the same image, bit for bit, from the CPU and from the GPU."""
