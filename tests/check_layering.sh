@@ -106,7 +106,7 @@ check() {
         fail 'the library prints nothing, ends no program and handles no signals'
     # Those of other programs, and CSS.
     code '"[^"]*--[a-z]' "${core[@]}" "${below[@]}" "${above[@]}" "${embree[@]}" "${cuda[@]}" |
-        { grep -vE '^libcore/compare/(metrics/flip|page/page_style)\.cpp:' || true; } |
+        { grep -vE '^libcore/compare/(metrics/flip|page/page_style|suite/suite_page)\.cpp:' || true; } |
         fail 'the library knows no options: texts name a setting as `max_samples` (base/error.h)'
     includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|testing/|["<]cuda|"(sequence|compare|verify)/' || true; } |
         fail 'backend_embree knows neither backend_cuda nor what stands on both'

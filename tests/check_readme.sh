@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Runs README.md's commands, those in ```sh blocks, as a newcomer would: word by word, in their order, in a fresh copy of the tree.
+# Runs the commands of README.md and of pages, those in ```sh blocks, as a newcomer would: word by word, in their order, in a fresh copy
+# of the tree; those of pages with the programs on the PATH, as they are installed.
 # Commands in ```console blocks need a GPU, root or much time, and are not run.
 # usage: check_readme.sh ROOT [BUILD] | --self-test
 # BUILD: a folder in which `make render` has built already. Then `make` compiles nothing; what else its targets do is done.
 # SETUP=no in the environment: no packages are installed.
 set -euo pipefail
+pages=(docs/grading.md docs/compare-yours.md)
 unset MAKEFLAGS MAKELEVEL MFLAGS MAKEOVERRIDES GNUMAKEFLAGS  # those of the `make test` that runs this
 self=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/$(basename "${BASH_SOURCE[0]}")
 
@@ -28,11 +30,16 @@ make_nothing() {
 }
 
 check() {  # check ROOT [BUILD]
-    local root build copy log blocks
+    local root build copy log blocks='' page commands
     root=$(cd "$1" && pwd)
     [ -e "$root/README.md" ] || { echo "no README.md under $1" >&2; exit 2; }
-    blocks=$(awk '/^```/ { inside = !inside && $0 == "```sh"; next } inside' "$root/README.md")
-    [ -n "$blocks" ] || { echo "README.md has no commands in sh blocks"; return 1; }
+    for page in README.md "${pages[@]}"; do
+        [ "$page" = README.md ] || [ -e "$root/$page" ] || continue
+        [ "$page" = README.md ] || blocks+=$'\nPATH=$PWD/build/release/bin:$PATH\n'
+        commands=$(awk '/^```/ { inside = !inside && $0 == "```sh"; next } inside' "$root/$page")
+        [ -n "$commands" ] || { echo "$page has no commands in sh blocks"; return 1; }
+        blocks+=$commands
+    done
     copy=$(mktemp -d)
     trap 'rm -rf "$copy"' RETURN
     mkdir "$copy/tree"
@@ -50,7 +57,7 @@ check() {  # check ROOT [BUILD]
         printf '%s\n' "$blocks"
     } >"$copy/commands"
     if ! (cd "$copy/tree" && bash -euo pipefail "$copy/commands" </dev/null >"$log" 2>&1); then
-        echo "README.md: a command failed, the last of these:"
+        echo "a command failed, the last of these:"
         tail -n 40 "$log"
         return 1
     fi
@@ -78,8 +85,14 @@ self_test() {
     holds no '# T\n```sh\nno-such-program\n```\n'
     holds no '# T\n```sh\nmake none\n```\n'
     holds no '# T\n```console\ntrue\n```\n'
+    mkdir -p "$tree/t/docs" "$tree/built/bin"
+    cp "$tree/built/program" "$tree/built/bin/installed"
+    printf '# P\n```sh\ninstalled\ntest -s out/image\n```\n' >"$tree/t/docs/grading.md"
+    holds yes '# T\n```sh\nmake render\n```\n'
+    printf '# P\n```sh\nfalse\n```\n' >"$tree/t/docs/grading.md"
+    holds no '# T\n```sh\nmake render\n```\n'
     [ ! -e "$tree/t/out" ] || { echo "the source tree was written to"; failures=$((failures + 1)); }
-    echo "7 READMEs tried, $failures failures"
+    echo "9 READMEs tried, $failures failures"
     [ "$failures" -eq 0 ]
 }
 

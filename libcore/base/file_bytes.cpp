@@ -116,7 +116,10 @@ uint64_t regular_file_size(const std::string& path) {
 
 void check_readable(const std::string& path) {
     regular_file_size(path);  // before it is opened
-    open_for_reading(path);
+    constexpr std::string_view pointer = "version https://git-lfs.github.com/spec/";
+    if (read_file_start(path, pointer.size()) == pointer)
+        throw file_error(path, "read",
+                         std::string("it is a pointer of Git LFS, not the file; git lfs pull brings that"));
 }
 
 std::string read_file(const std::string& path) {

@@ -22,7 +22,7 @@ Error file_error(const std::string& path, const std::string& verb, const std::st
 /// device. It is not opened, which waits for a writer where it is a pipe.
 uint64_t regular_file_size(const std::string& path);
 
-/// Throws Error (file) unless `path` is a regular file that can be opened.
+/// Throws Error (file) unless `path` is a regular file that can be opened, and not a Git LFS pointer to one.
 void check_readable(const std::string& path);
 
 /// All bytes of a file. Throws Error (file).

@@ -32,10 +32,12 @@ Character first_character(std::string_view text) {
     return {code, length, true};
 }
 
-/// Whether a character beyond ASCII controls a terminal, ends a line, or changes the direction of writing.
+/// Whether a character beyond ASCII controls a terminal, ends a line, changes the direction of writing, or is none of
+/// XML's.
 bool is_control(uint32_t code) {
     return (code >= 0x80 && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
-           (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;
+           (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069) || code == 0xfeff ||
+           (code & 0xfffe) == 0xfffe;
 }
 
 std::string shown(const Character& character, std::string_view bytes) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "base/error.h"
 #include "cistula/geometry/hit.h"
 #include "render/record/film.h"
 
@@ -88,6 +90,12 @@ struct SampleTree {
     std::vector<PixelBranch> branches;  // the primary ray first, children after their parents
     PixelRecord record;
     PixelRays rays;
+};
+
+/// What bounds the work on a pixel's trees.
+struct PixelTreeLimits {
+    size_t branches = size_t{1} << 18;  // of all samples; some 1 KB each
+    StopSignal stop = {};
 };
 
 struct PixelTree {

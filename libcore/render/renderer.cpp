@@ -22,7 +22,7 @@ std::vector<glm::dvec3> Renderer::transmittance(std::span<const glm::dvec3>, std
     throw Error(ErrorKind::usage, intersector() + ": this renderer tells nothing of rays");
 }
 
-PixelTree Renderer::pixel_tree(const CameraFrame&, const FrameSettings&, int, int) {
+PixelTree Renderer::pixel_tree(const CameraFrame&, const FrameSettings&, int, int, const PixelTreeLimits&) {
     throw Error(ErrorKind::usage, intersector() + ": the trees of pixels are told by the renderer of the CPU");
 }
 

@@ -97,8 +97,10 @@ class Renderer {
     virtual std::vector<glm::dvec3> transmittance(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to);
 
     /// The ray trees of pixel (x, y) of the frame; settings.crop is ignored. Throws std::logic_error if the trees do
-    /// not give the renderer's result for that pixel bit for bit, and Error as a render does.
-    virtual PixelTree pixel_tree(const CameraFrame& camera, const FrameSettings& settings, int x, int y);
+    /// not give the renderer's result for that pixel bit for bit, and Error as a render does; `failed` where there are
+    /// more branches than the limits allow.
+    virtual PixelTree pixel_tree(const CameraFrame& camera, const FrameSettings& settings, int x, int y,
+                                 const PixelTreeLimits& limits = {});
 
     /// Announces a frame that is to be rendered after the next one and those announced before it, so that a device can
     /// start it early. A wrong announcement costs time and nothing else.

@@ -142,19 +142,23 @@ OutputName preview_name(const std::string& text, const std::vector<int>& frames)
     return name;
 }
 
-std::vector<int> frames_named_in(const std::vector<std::string>& paths, const std::vector<int>& frames) {
+std::set<int> numbers_in(const std::string& path) {
     std::set<int> numbers;
-    for (const std::string& path : paths) {
-        const auto is_digit = [&](size_t i) { return i < path.size() && path[i] >= '0' && path[i] <= '9'; };
-        for (size_t begin = 0; begin < path.size(); ++begin) {
-            int number = 0;
-            for (size_t i = begin; is_digit(i); ++i) {
-                number = number * 10 + (path[i] - '0');
-                if (number > largest_frame) break;
-                numbers.insert(number);
-            }
+    const auto is_digit = [&](size_t i) { return i < path.size() && path[i] >= '0' && path[i] <= '9'; };
+    for (size_t begin = 0; begin < path.size(); ++begin) {
+        int number = 0;
+        for (size_t i = begin; is_digit(i); ++i) {
+            number = number * 10 + (path[i] - '0');
+            if (number > largest_frame) break;
+            numbers.insert(number);
         }
     }
+    return numbers;
+}
+
+std::vector<int> frames_named_in(const std::vector<std::string>& paths, const std::vector<int>& frames) {
+    std::set<int> numbers;
+    for (const std::string& path : paths) numbers.merge(numbers_in(path));
     std::vector<int> named;
     std::copy_if(frames.begin(), frames.end(), std::back_inserter(named),
                  [&](int frame) { return numbers.contains(frame); });

@@ -8,15 +8,25 @@ docs/python.md tells more.
 """
 from __future__ import annotations
 
-from ._processor import require_processor
+from importlib.util import find_spec as _find_spec
 
-require_processor()
+if _find_spec("._core", __name__):
+    from ._processor import require_processor
 
-from ._core import ChannelDifference, Comparison, Hits, Image, backends, version as __version__  # noqa: E402
-from .comparison import compare  # noqa: E402
-from .errors import ArgumentError, DeviceError, Error, FileError, FrameError, SceneError  # noqa: E402
-from .pixel import Light, Pixel, Ray, Surface  # noqa: E402
-from .scene import Scene, SceneBuilder, Settings  # noqa: E402
+    require_processor()
+
+    from ._core import ChannelDifference, Comparison, Hits, Image, backends, version as __version__
+    from .comparison import compare
+    from .errors import ArgumentError, DeviceError, Error, FileError, FrameError, SceneError
+    from .pixel import Light, Pixel, Ray, Surface
+    from .scene import Scene, SceneBuilder, Settings
+else:  # the folder of a checkout: `python3 -m cistula view` and `farm` need no module
+    def _missing(name: str) -> object:
+        if name not in __all__:
+            raise AttributeError(name)
+        raise ImportError(f"cistula.{name}: the native module is not here; `make wheel` or `make test` builds it")
+
+    globals()["__getattr__"] = _missing
 
 __all__ = ["ArgumentError", "ChannelDifference", "Comparison", "DeviceError", "Error", "FileError", "FrameError", "Hits",
            "Image", "Light", "Pixel", "Ray", "Scene", "SceneBuilder", "SceneError", "Settings", "Surface", "__version__",

@@ -89,6 +89,7 @@ class Film:
                     raise Refused(text.splitlines()[-1].replace(folder + "/", ""), max(run.returncode, 1))
             finally:
                 run.terminate()
+                run.stdout.close()
                 run.wait()
 
     def frames(self, given: str, tile: list[str]) -> list[int]:

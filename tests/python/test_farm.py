@@ -32,7 +32,9 @@ class Farm:
 
     def __init__(self, folder: Path, programs: Path) -> None:
         self.folder = folder
-        self.environment = {**os.environ, "CISTULA_BIN": str(programs)}
+        # python3 is this one, not a script that looks for one.
+        path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+        self.environment = {**os.environ, "CISTULA_BIN": str(programs), "PATH": path}
         self.render = programs / "render"
         (folder / "s.json").write_text(json.dumps(SCENE))
 

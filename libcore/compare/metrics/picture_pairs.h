@@ -22,10 +22,16 @@ struct PicturePair {
     std::string shown(const std::string& channel) const;
 };
 
+/// A picture that only one file has.
+struct LonePicture {
+    PicturePair picture;  // as both
+    std::string line;     // "part depth: only in the first"
+};
+
 struct PicturePairs {
-    std::vector<PicturePair> pairs;     // in the order of the first file
-    std::vector<std::string> unpaired;  // lines: "part depth: only in the first"
-    bool is_other_order = false;        // of parts that have partners
+    std::vector<PicturePair> pairs;  // in the order of the first file
+    std::vector<LonePicture> unpaired;
+    bool is_other_order = false;  // of parts that have partners
 };
 
 /// Parts are matched by their names where all parts of both files have one, else by their order, as the only parts of

@@ -35,7 +35,7 @@ struct SuiteResult {
 
 /// Compares a frame with what its case expects: the golden image (already read, or null where it is not there), or
 /// hashes. The header's attributes are compared, and noted, but do not decide.
-void judge(const SuiteFrame& frame, size_t index, const LayeredPicture* golden, SuiteResult& result);
+void judge(const SuiteFrame& frame, size_t index, const LayeredPicture* golden, StopSignal stop, SuiteResult& result);
 
 /// Whether two pictures have the same windows, channels, types and bits.
 bool same_bits(const LayeredPicture& a, const LayeredPicture& b);

@@ -27,9 +27,10 @@ struct SuitePixelWhy {
     std::string golden_note, fresh_note;  // what there is to say beside or in the place of a tree, one line
 };
 
-/// The trees of both sides. That of the golden image is known where its header names the same scene and camera: then
-/// its own precision, depth, samples and cutoff are followed, and shown where they give its value to the last bit.
+/// The trees of both sides, of so many branches at most. That of the golden image is known where its header names the
+/// same scene and camera: then its own precision, depth, samples and cutoff are followed, and shown where they give its
+/// value to the last bit.
 SuitePixelWhy why_pixel(const SuiteResult& result, const std::string& folder, const LayeredPicture* golden,
-                        const LayeredPicture& fresh, const SuitePixel& pixel);
+                        const LayeredPicture& fresh, const SuitePixel& pixel, StopSignal stop);
 
 }  // namespace cistula

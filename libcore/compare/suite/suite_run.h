@@ -18,6 +18,7 @@ struct SuiteRunSettings {
     DeviceChoice devices;
     int jobs = 1;  // cases at once
     bool update = false, fail_fast = false;
+    bool run_commands = false;  // those of cases; else such a case fails
 };
 
 /// The cases that the names, the filters and the backend choose, in the order of the file. Throws Error (usage) for a
@@ -47,7 +48,7 @@ struct SuiteWork {
 std::vector<SuiteBackend> find_backends(const std::vector<const SuiteCase*>& chosen, const SuiteRunSettings& options);
 
 /// Renders the cases. What is wrong with a case is in its results; others go on. Returns the results in the order of
-/// the file; with fail_fast those of the cases that were begun. Throws Error (interrupted) once progress.stop is set.
+/// the file: with fail_fast those of the cases that were begun, and once progress.stop is set of those that are done.
 std::vector<SuiteResult> run_cases(const Suite& suite, const std::vector<const SuiteCase*>& chosen,
                                    const std::vector<SuiteBackend>& backends, const SuiteRunSettings& options,
                                    const SuiteWork& work, RenderProgress& progress);

@@ -32,6 +32,7 @@ void clamp_or_refuse(ColorPicture& picture, ClampedTexels* clamped, ErrorKind ki
 
 /// Whether a file is an EXR, by extension or by content. Throws Error where there is nothing in it.
 bool is_exr(const std::string& path) {
+    check_readable(path);
     if (regular_file_size(path) == 0) throw file_error(path, "read", std::string("it is empty"), "give a picture");
     return lower_extension(path) == ".exr" || read_file_start(path, exr_magic.size()) == exr_magic;
 }

@@ -174,7 +174,7 @@ TEST(Verify, AStopEndsTheRunAmongTheRaysOfACase) {
         run(options, progress);
         ADD_FAILURE() << "not stopped";
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::interrupted);
+        EXPECT_EQ(error.kind(), ErrorKind::interrupted);
     }
 }
 
