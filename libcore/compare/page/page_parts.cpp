@@ -51,6 +51,10 @@ std::string figure(const std::string& content, const std::string& caption, const
                        css.empty() ? "" : " class=\"" + css + "\"", content, caption);
 }
 
+std::string command_html(const std::string& command) {
+    return "<pre class=\"command\" tabindex=\"0\"><code>" + escaped(command) + "</code></pre>\n";
+}
+
 std::string base64(const std::string& bytes) {
     static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;

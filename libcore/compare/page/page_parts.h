@@ -24,6 +24,9 @@ class Table {
 /// A figure with its caption (HTML).
 std::string figure(const std::string& content, const std::string& caption, const std::string& css = "");
 
+/// A command line that a click selects as a whole.
+std::string command_html(const std::string& command);
+
 /// Bytes as the text of a data: address.
 std::string base64(const std::string& bytes);
 
