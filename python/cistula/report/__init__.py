@@ -32,7 +32,7 @@ def parser() -> Parser:
     add("--repetitions", metavar="N", type=number(1, 1000, int), help="timed runs of each setting after warm-up; 10, --quick 3")
     add("--limit", metavar="S", type=number(1e-3, 1e6), help="leave out settings whose frames take longer than S seconds; 2")
     add("--quick", action="store_true", help="fewer settings and runs: to try it out")
-    add("--scaling", choices=("also", "only"), nargs="?", const="also",
+    add("--scaling", choices=("also", "only"), metavar="also|only",
         help="also time against triangles, lights, depth, pixels and GPUs, by the first scene; --scaling=only: nothing else")
     add("-q", "--quiet", action="store_true", help="errors only")
     return made
@@ -71,7 +71,7 @@ def main(arguments: Sequence[str]) -> int:
     if {"-h", "--help"} & set(arguments):
         made.print_help()
         return 0
-    options = made.parse(arguments)
+    options = made.parse(["--scaling=also" if word == "--scaling" else word for word in arguments])
     check(options)
     try:
         import jinja2  # noqa: F401
