@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "program.h"
 #include "render/frame/frame_view.h"
-#include "testing/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::bench {
 namespace {
@@ -111,7 +111,7 @@ class Theirs {
         rtcAttachGeometry(scene_, geometry);
         rtcReleaseGeometry(geometry);
         rtcCommitScene(scene_);
-        if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw Error(ExitCode::device, "Embree's own tree failed");
+        if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw Error(ErrorKind::device, "Embree's own tree failed");
     }
     ~Theirs() {
         rtcReleaseScene(scene_);
@@ -222,7 +222,7 @@ void check_agreement() {
         differing += differs(t[0]);
     }
     if (hits == 0 || differing * 1000 > hits)
-        throw Error(ExitCode::failed,
+        throw Error(ErrorKind::failed,
                     fmt::format("of {} hits {} differ from Embree's; at most 1 in 1000 may", hits, differing));
 }
 

@@ -21,7 +21,7 @@ void register_frames(const std::string& name, std::shared_ptr<Renderer> renderer
             RenderProgress progress;
             renderer->render(camera, settings, film, progress);
             if (film.flags != 0)
-                throw Error(ExitCode::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
+                throw Error(ErrorKind::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
         }
         state.counters["rays_per_second"] =
             benchmark::Counter(double(film.rays.total()), benchmark::Counter::kIsIterationInvariantRate);

@@ -27,7 +27,7 @@ bool is_gray(const dvec3& v) {
 /// Refuses what has no equal in POV-Ray's light model, or one with other edges.
 void check(const SceneDescription& scene, const SceneSource& source) {
     const auto refuse = [&](const std::string& what) {
-        throw Error(ExitCode::usage, scene.source + ": cannot be put in POV-Ray's terms: " + what);
+        throw Error(ErrorKind::usage, scene.source + ": cannot be put in POV-Ray's terms: " + what);
     };
     for (const MaterialDescription& m : source.materials) {
         if (m.index == 1 ? m.fresnel : !m.fresnel || m.transmission < 1)

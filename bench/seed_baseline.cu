@@ -15,7 +15,7 @@ void check(cudaError_t result, const char* call) {
     std::string message = std::string(call) + ": " + cudaGetErrorString(result);
     if (result == cudaErrorNoDevice || result == cudaErrorInsufficientDriver)
         message += "; runs on the GPU need an NVIDIA GPU with a driver that is new enough, --cpu needs neither";
-    throw Error(ExitCode::device, message);
+    throw Error(ErrorKind::device, message);
 }
 #define SEED_CHECK(call) check(call, #call)
 
@@ -40,7 +40,7 @@ Kernel kernel_of(int depth) {
         case 8:
             return render<8>;
     }
-    throw Error(ExitCode::usage, "no kernel was compiled for depth " + std::to_string(depth));
+    throw Error(ErrorKind::usage, "no kernel was compiled for depth " + std::to_string(depth));
 }
 
 template <class T>

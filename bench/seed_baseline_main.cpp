@@ -101,7 +101,7 @@ void time_on_device(const Options& options, const OwnedScene& scene, const View&
         DeviceRun run = render_on_device(depth, grid, warm_ups, options.repetitions, scene, view);
         records.push_back(entry(fmt::format("{}/grid:{}", name, grid), run.time));
         if (!pixels.empty() && pixels != run.pixels)
-            throw Error(ExitCode::failed, fmt::format("{}: the picture of grid {} is another one", name, grid));
+            throw Error(ErrorKind::failed, fmt::format("{}: the picture of grid {} is another one", name, grid));
         pixels = std::move(run.pixels);
     }
 }

@@ -6,7 +6,7 @@
 
 using namespace cistula;
 
-struct Teller : FilmEvents {
+struct Teller : SequenceEvents {
     void kept(int, const std::string& file) override { std::printf("%s: kept\n", file.c_str()); }
     void written(const FrameStats& frame) override {
         std::printf("%s: %.3f s\n", frame.file.c_str(), frame.render_seconds);
@@ -21,22 +21,12 @@ int main(int argc, char** argv) try {
     }
     RenderRequest request;
     request.scene = argv[1];
+    request.output = argv[2];
+    request.frames = parse_frames(argv[3]);
     request.resume = true;
-    const SceneDescription description = read_scene(request);
-    const FrameSettings settings = frame_settings(request, description);
-    const OutputName images(argv[2], "NAME"), no_previews;
-    const std::vector<int> frames = parse_frames(argv[3]);
-    make_directories(images, frames);
-
-    const Scene scene(description);
-    const std::unique_ptr<Renderer> renderer = make_renderer(Backend::embree, scene, {});
     Teller teller;
-    FilmJob film{request,     description, scene.hashes(), settings,         images,
-                 no_previews, frames,      teller,         scene.precision()};
-    film.layer_names = scene.layer_names();
     RenderProgress progress;  // setting progress.stop ends it after the frames in work
-    RunStats stats;
-    render_film(film, *renderer, progress, stats);
+    render_sequence(request, teller, progress);
 } catch (const std::exception& error) {
     std::fprintf(stderr, "film: %s\n", error.what());
     return 1;

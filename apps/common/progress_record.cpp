@@ -18,7 +18,7 @@ std::string line_of(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// The share of the film's frames that is rendered.
+/// The share of the sequence's frames that is rendered.
 double film_fraction(const ProgressState& state) {
     return std::min((static_cast<double>(state.index) + state.fraction) / static_cast<double>(state.count), 1.0);
 }
@@ -27,7 +27,7 @@ std::string openjd_progress(double fraction) {
     return fmt::format("openjd_progress: {:.2f}", 100 * fraction);
 }
 
-std::string openjd_event(const FilmRecord& event, const ProgressState& state) {
+std::string openjd_event(const EventRecord& event, const ProgressState& state) {
     const std::string_view name = event.event;
     if (name == "frame") return openjd_progress(film_fraction(state)) + "\nopenjd_status: " + progress_line(state);
     if (name == "snapshot") return "openjd_status: " + message_line("snapshot: " + event.file);
@@ -37,7 +37,7 @@ std::string openjd_event(const FilmRecord& event, const ProgressState& state) {
 
 }  // namespace
 
-std::string event_record(ProgressStyle style, const FilmRecord& event, const ProgressState& state) {
+std::string event_record(ProgressStyle style, const EventRecord& event, const ProgressState& state) {
     if (style == ProgressStyle::openjd) return openjd_event(event, state);
     if (style != ProgressStyle::json) return "";
     Json json = {{"event", event.event}};

@@ -1,17 +1,18 @@
-// Records of a film's progress for other programs: lines of JSON, or the messages that Open Job Description defines.
+// Records of a sequence's progress for other programs: lines of JSON, or the messages that Open Job Description
+// defines.
 #pragma once
 
 #include <cstddef>
 #include <string>
 
-#include "apps/common/film_progress.h"
-#include "base/error.h"
+#include "apps/common/command_line.h"
+#include "apps/common/sequence_progress.h"
 
 namespace cistula {
 
 /// Something that happens to a film. `event`: "begin", "frame" (its first ray), "rendered", "written", "kept" (complete
 /// since an earlier run), "snapshot", "message" or "end".
-struct FilmRecord {
+struct EventRecord {
     const char* event;
     int frame = -1;         // -1: none
     std::string file = {};  // empty: none
@@ -20,7 +21,7 @@ struct FilmRecord {
 };
 
 /// Records are one or more lines without the last line end, or empty where the style has none for this.
-std::string event_record(ProgressStyle style, const FilmRecord& event, const ProgressState& state);
+std::string event_record(ProgressStyle style, const EventRecord& event, const ProgressState& state);
 
 /// The record of a frame under way.
 std::string state_record(ProgressStyle style, const ProgressState& state);

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "sequence/film_events.h"
+#include "sequence/sequence_events.h"
 
 namespace cistula {
 

@@ -1,46 +1,34 @@
 // render: renders a scene to images.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <cstdio>
-#include <filesystem>
-#include <future>
 #include <optional>
 
 #include "apps/common/command_line.h"
-#include "apps/common/film_progress.h"
 #include "apps/common/interrupt.h"
 #include "apps/common/progress_record.h"
 #include "apps/common/render_options.h"
+#include "apps/common/sequence_progress.h"
 #include "apps/common/step_progress.h"
 #include "backend_embree/embree/embree_renderer.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/stages.h"
-#include "base/suggest.h"
-#include "base/timing.h"
 #include "explain.h"
 #include "image/exr/exr.h"
-#include "render/layer_list.h"
 #include "render/pixel_report.h"
-#include "scene/compile/compiled_scene.h"
 #include "scene/compile/materials/required_effects.h"
-#include "scene/compile/precision_choice.h"
-#include "scene/compile/scene_source.h"
-#include "scene/description/camera_turns.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "sequence/backends.h"
-#include "sequence/film_loop.h"
+#include "sequence/render_sequence.h"
 #include "sequence/run_files.h"
 #include "sequence/snapshots.h"
 
 namespace cistula {
 namespace {
-
-int threads_of(const RenderRequest& request) {
-    return request.threads > 0 ? request.threads : tbb::this_task_arena::max_concurrency();
-}
 
 /// Runs `work` with its parallelism, and that of OpenEXR, limited to --threads.
 template <class Work>
@@ -52,158 +40,22 @@ void on_threads(const RenderRequest& request, const Work& work) {
     arena.execute(work);
 }
 
-void print_warnings(const std::vector<std::string>& warnings, const RenderRequest& request) {
-    if (request.quiet) return;
-    for (const std::string& warning : warnings) note(fmt::format("render: warning: {}", warning));
+Talk talk_of(const RenderRequest& request) {
+    return request.quiet ? Talk::errors : request.verbose ? Talk::much : Talk::some;
 }
 
-/// The precision of the frames, which is said where the scene decides it.
-PrecisionChoice precision_of(const RenderRequest& request, const SceneSource& source) {
-    const PrecisionChoice choice = choose_precision(request.precision, smallest_part(source));
-    if (!choice.note.empty() && !request.quiet) note(fmt::format("render: {}", choice.note));
-    return choice;
-}
-
-/// The precision, of which is warned here where no compilation will.
-Precision warned_precision_of(const RenderRequest& request, const SceneSource& source) {
-    const PrecisionChoice choice = precision_of(request, source);
-    if (!choice.warning.empty()) print_warnings({choice.warning}, request);
-    return choice.precision;
-}
-
-/// Compiles, and says what it found.
-Scene compiled(SceneSource source, const RenderRequest& request) {
-    PrecisionChoice choice = precision_of(request, source);
-    Scene scene(std::move(source), std::move(choice));
-    print_warnings(scene.warnings(), request);
-    return scene;
-}
-
-/// Tells a film's progress, and writes its frames down for --stats.
-class ToldFilm : public FilmProgress {
+/// Prints warnings and remarks on a scene.
+class SceneTalk : public SequenceEvents {
   public:
-    ToldFilm(const RenderRequest& request, const RenderProgress& progress, StatsFile* stats)
-        : FilmProgress(request.progress,
-                       request.quiet     ? Talk::errors
-                       : request.verbose ? Talk::much
-                                         : Talk::some,
-                       progress),
-          stats_(stats) {}
-
-    void written(const FrameStats& frame) override {
-        if (stats_) stats_->add(frame);
-        FilmProgress::written(frame);
+    explicit SceneTalk(const RenderRequest& request) : quiet_(request.quiet) {}
+    void warning(const std::string& line) override { remark("warning: " + line); }
+    void remark(const std::string& line) override {
+        if (!quiet_) note("render: " + line);
     }
 
   private:
-    StatsFile* const stats_;  // null: nobody asked
+    const bool quiet_;
 };
-
-/// A renderer on the devices that are being made ready.
-std::unique_ptr<Renderer> renderer_of(const Scene& scene, const RenderRequest& request,
-                                      std::future<ChosenDevices> choice, StopSignal stop, RunStats& stats) {
-    stats.required_effects = scene.effects();
-    enter_stage(Stage::device);
-    const ChosenDevices devices = choice.get();
-    stop.check();
-    stats.devices = devices.names;
-    stats.driver = devices.driver;
-    enter_stage(Stage::tree);
-    return make_renderer(request.backend, scene, devices.options);
-}
-
-/// The names of the images and previews, and their frames.
-struct Outputs {
-    OutputName image, preview;
-    std::vector<int> frames;
-    std::vector<std::string> layers;  // that have files of their own
-};
-
-/// Checks the names of these frames against all others, creates their directories, and finds their cameras. Returns
-/// where the picture turns at once.
-std::string look_ahead(const Outputs& outputs, const RenderRequest& request, const SceneDescription& scene,
-                       const RunFiles& others, const std::vector<int>& frames) {
-    require_different_files(others, outputs.image, outputs.preview, frames, outputs.layers);
-    make_directories(outputs.image, frames);
-    if (!request.preview.empty()) make_directories(outputs.preview, frames);
-    return camera_turns(scene.camera, frames);
-}
-
-Outputs plan_outputs(const RenderRequest& request, const SceneDescription& scene) {
-    Outputs outputs;
-    const std::string name = request.output.empty() ? default_output(scene, request.frames.size()) : request.output;
-    outputs.image = OutputName(name, "-o");
-    if (request.tile) outputs.image = outputs.image.named(tile_name(*request.tiles, *request.tile));
-    outputs.frames = frames_to_render(outputs.image, request.frames, scene.film.frames);
-    if (file_kind(name) == FileKind::raw) {
-        const auto refuse = [&](const std::string& option, const char* why) {
-            throw Error(ExitCode::usage, fmt::format("-o {}: {} needs an .exr; {}", name, option, why));
-        };
-        if (request.channels.half) refuse("--bits half", "raw frames have 8 bits a channel");
-        const OutputChannels& c = request.channels;
-        if (!request.layers.empty()) refuse("--layers", "raw frames have none");
-        if (c.transparent) refuse("--background transparent", "raw frames have no alpha");
-        if (c.space != &color_spaces().front()) refuse("--colorspace", "raw frames are sRGB");
-        if (c.compression != Compression::zip) refuse("--compression", "raw frames have none");
-        if (request.tile) refuse("--tile", "raw frames do not say what part they are");
-        if (request.resume) refuse("--resume", "raw frames do not say what they show");
-    }
-    outputs.preview = preview_name(request.preview, outputs.frames);
-    return outputs;
-}
-
-/// Checks the names of all frames that may be those of `others`: `paths`, the scene and the stats.
-void check_names(const RenderRequest& request, const RunFiles& others, std::vector<std::string> paths,
-                 const Outputs& outputs) {
-    paths.insert(paths.end(), {request.scene, request.stats});
-    require_different_files(others, outputs.image, outputs.preview, frames_named_in(paths, outputs.frames),
-                            outputs.layers);
-}
-
-/// Checks the files to be written against all others, makes the directories of the first frames, and finds their
-/// cameras.
-void prepare_files(const RenderRequest& request, const SceneDescription& scene, const RunFiles& others,
-                   const std::vector<std::string>& read, const Outputs& outputs) {
-    check_names(request, others, read, outputs);
-    const std::string turns =
-        look_ahead(outputs, request, scene, others, frames_from(outputs.frames, 0, stretch_length));
-    if (!turns.empty()) print_warnings({turns}, request);
-    if (request.stats.empty()) return;
-    make_directory_of(request.stats);
-    const AtomicFile probe(request.stats);
-}
-
-void print_summary(const FilmTotals& totals, const OutputName& image, double seconds) {
-    if (totals.frames == 0) return;
-    const std::string what =
-        totals.frames == 1 ? totals.first_file : fmt::format("{}: {} frames", image.text(), totals.frames);
-    const double rate = totals.render_seconds > 0 ? static_cast<double>(totals.rays) / totals.render_seconds : 0;
-    note(fmt::format("render: {}: {:.2f} s, {} rays, {}", what, seconds, totals.rays, format_rate(rate)));
-}
-
-/// Prints a warning if values of the written frames were clamped to half precision.
-void warn_of_clamped(const FilmTotals& totals, const OutputName& image, const RenderRequest& request) {
-    if (totals.clamped == 0) return;
-    const std::string where =
-        totals.frames == 1 ? totals.first_file
-                           : fmt::format("{}: in {} of {} frames", image.text(), totals.clamped_frames, totals.frames);
-    print_warnings({fmt::format("{}: clamped: {}", where, over_largest_half(totals.clamped))}, request);
-}
-
-/// Prints a warning if it is seen in the written frames what the depth took.
-void warn_of_depth(const FilmTotals& totals, const OutputName& image, const FrameSettings& settings,
-                   const RenderRequest& request) {
-    const std::string warning = describe_depth_loss(totals, image.text(), settings.depth);
-    if (!warning.empty()) print_warnings({warning}, request);
-}
-
-/// Prints the target report. Throws Error (target) if pixels missed the target.
-void judge_target(const FilmTotals& totals, const FrameSettings& settings, Precision precision,
-                  const RenderRequest& request) {
-    const std::string text = describe_target(totals.target, totals.pixels, settings, precision);
-    if (totals.target.missed != 0) throw Error(ExitCode::target, text);
-    if (!request.quiet) note(fmt::format("render: {}", text));
-}
 
 /// What is advised when memory runs out.
 std::string advice_on_memory(const RenderRequest& request, const FrameSettings& settings) {
@@ -217,110 +69,69 @@ std::string advice_on_memory(const RenderRequest& request, const FrameSettings& 
                        crop.width, crop.height, mebibytes);
 }
 
-void render_scene(RenderCommand request, std::string& memory_advice) {
-    const bool explain = request.action == Action::explain;
-    SnapshotRequests snapshot_requests;
-    std::optional<UserSignal> user_signal;
-    if (!explain) user_signal.emplace(snapshot_requests);
-    // Devices take longer to begin than most scenes to be read and compiled, which goes on meanwhile.
-    std::future<ChosenDevices> devices;
-    if (!explain)
-        devices =
-            std::async(std::launch::async, [&request] { return choose_devices(request.backend, request.devices); });
-    enter_stage(Stage::read);
-    SceneDescription scene = read_scene(request);
-    enter_stage(Stage::other);
-    if (explain) {
-        SceneSource source = gather_scene(scene);
-        const Precision precision = warned_precision_of(request, source);
-        return print(explain_table(scene.source, explain_scene(std::move(source), precision), request.backend));
+/// Tells a sequence's progress and what it came to. Interruptions end it from the moment that files may be written.
+class ToldSequence : public SequenceProgress {
+  public:
+    ToldSequence(const RenderRequest& request, RenderProgress& progress, std::string& memory_advice)
+        : SequenceProgress(request.progress, talk_of(request), progress),
+          request_(request),
+          stop_(progress.stop),
+          memory_advice_(memory_advice) {}
+
+    void planned(const FrameSettings& settings) override {
+        memory_advice_ = advice_on_memory(request_, settings);
+        guard_.emplace().watch(stop_);
     }
 
-    if (const std::string warning = open_config_view(request.view); !warning.empty())
-        print_warnings({warning}, request);
-    const FrameSettings settings = frame_settings(request, scene);
-    memory_advice = advice_on_memory(request, settings);
-    Outputs outputs = plan_outputs(request, scene);
-    RenderProgress progress;  // must outlive the guard
-    InterruptGuard guard;
-    guard.watch(progress.stop);
+    void ready(const RunStats& stats) override {
+        if (!request_.verbose) return;
+        const StageSeconds so_far = stage_seconds();
+        const auto seconds = [&](Stage stage) { return so_far[static_cast<size_t>(stage)]; };
+        note(fmt::format("render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}",
+                         seconds(Stage::read), seconds(Stage::compile), seconds(Stage::tree), stats.scene_bytes,
+                         stats.scene_hash));
+    }
 
-    RunStats stats;
-    stats.scene = request.scene;
-    stats.backend = request.backend;
-    stats.threads = threads_of(request);
-    on_threads(request, [&] {
-        enter_stage(Stage::read);
-        SceneSource source = gather_scene(scene, progress.stop);
-        enter_stage(Stage::other);
-        RunFiles others;
-        others.reads_scene(request.scene, source.files);
-        others.writes(request.stats, "--stats");
-        const std::vector<std::string> read = source.files;
-        prepare_files(request, scene, others, read, outputs);
-        enter_stage(Stage::compile);
-        std::optional<Scene> made_scene = compiled(std::move(source), request);
-        const Precision precision = stats.precision = made_scene->precision();
-        std::unique_ptr<Renderer> made = renderer_of(*made_scene, request, std::move(devices), progress.stop, stats);
-        Renderer& renderer = *made;
-        const std::shared_ptr<const LayerNames> layer_names = made_scene->layer_names();
-        const FrameHashes hashes = made_scene->hashes();
-        made_scene.reset();  // the renderer keeps what it needs
-        enter_stage(Stage::other);
-        stats.scene_hash = hashes.of(outputs.frames.empty() ? 0 : outputs.frames.front());
-        std::optional<StatsFile> file;
-        if (!request.stats.empty()) file.emplace(request.stats, settings, !stats.devices.empty());
-        const auto write_stats = [&] {
-            stats.intersector = renderer.intersector();
-            stats.lanes = renderer.lanes();
-            stats.effects = renderer.effects();
-            stats.scene_bytes = renderer.memory();
-            enter_stage(Stage::end);  // of what the renderer has, too, so that the time for that is among the stages
-            made.reset();
-            enter_stage(Stage::other);
-            if (file) file->finish(stats);
-        };
-        if (request.verbose) {
-            const StageSeconds so_far = stage_seconds();
-            const auto seconds = [&](Stage stage) { return so_far[static_cast<size_t>(stage)]; };
-            note(fmt::format("render: read {:.3f} s, compile {:.3f} s, tree {:.3f} s, {} bytes; scene hash {}",
-                             seconds(Stage::read), seconds(Stage::compile), seconds(Stage::tree), renderer.memory(),
-                             stats.scene_hash));
-        }
-        ToldFilm report(request, progress, file ? &*file : nullptr);
-        FilmJob job{request,         scene,          hashes, settings, outputs.image,
-                    outputs.preview, outputs.frames, report, precision};
-        job.layer_names = layer_names;
-        job.snapshot_requests = &snapshot_requests;
-        require_light_layers(request.channels, *job.layer_names);
-        outputs.layers = layers_with_files(job);
-        if (!outputs.layers.empty()) {  // their names are known only now
-            check_names(request, others, read, outputs);
-            require_different_files(others, outputs.image, outputs.preview,
-                                    frames_from(outputs.frames, 0, stretch_length), outputs.layers);
-        }
-        job.look_ahead = [&](const std::vector<int>& frames) {
-            return look_ahead(outputs, request, scene, others, frames);
-        };
-        double seconds = 0;
-        try {
-            seconds = seconds_of([&] { render_film(job, renderer, progress, stats); });
-        } catch (const Error&) {
-            warn_of_clamped(stats.totals, outputs.image, request);
-            try {
-                write_stats();        // of the finished frames
-            } catch (const Error&) {  // the original error is the one to report
-            }
-            throw;
-        }
-        warn_of_clamped(stats.totals, outputs.image, request);
-        warn_of_depth(stats.totals, outputs.image, settings, request);
-        write_stats();
-        if (request.verbose && stats.totals.frames > 0)  // the renderer knows which effects it used
-            note(fmt::format("render: effects: {}", fmt::join(names_of_effects(stats.effects), ", ")));
-        if (!request.quiet) print_summary(stats.totals, outputs.image, seconds);
-        if (settings.adaptive() && stats.totals.frames > 0) judge_target(stats.totals, settings, precision, request);
-    });
+    void end(const RunStats& stats, size_t done, size_t frames) override {
+        SequenceProgress::end(stats, done, frames);
+        const SequenceTotals& totals = stats.totals;
+        if (done < frames || totals.frames == 0) return;
+        if (request_.verbose)
+            note(fmt::format("render: hits by {}{}; effects: {}", stats.intersector,
+                             stats.lanes > 1 ? fmt::format(" of {} rays", stats.lanes) : "",
+                             fmt::join(names_of_effects(stats.effects), ", ")));
+        if (request_.quiet) return;
+        const std::string what =
+            totals.frames == 1 ? totals.first_file : fmt::format("{}: {} frames", stats.images, totals.frames);
+        const double rate = totals.render_seconds > 0 ? static_cast<double>(totals.rays) / totals.render_seconds : 0;
+        note(fmt::format("render: {}: {:.2f} s, {} rays, {}", what, stats.seconds, totals.rays, format_rate(rate)));
+    }
+
+  private:
+    const RenderRequest& request_;
+    std::atomic<bool>& stop_;
+    std::string& memory_advice_;
+    std::optional<InterruptGuard> guard_;
+};
+
+void render_scene(const RenderRequest& request, std::string& memory_advice) {
+    SnapshotRequests snapshots;
+    const UserSignal user_signal(snapshots);
+    RenderProgress progress;  // must outlive the guard
+    ToldSequence told(request, progress, memory_advice);
+    const size_t threads = static_cast<size_t>(threads_of(request));
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    set_exr_threads(static_cast<int>(threads));
+    render_sequence(request, told, progress, &snapshots);
+}
+
+void explain(const RenderRequest& request) {
+    const SceneDescription scene = read_scene(request);
+    SceneSource source = gather_scene(scene);
+    SceneTalk talk(request);
+    PrecisionChoice choice = told_precision(request, source, talk);
+    if (!choice.warning.empty()) talk.warning(choice.warning);
+    print(explain_table(scene.source, explain_scene(std::move(source), choice.precision), request.backend));
 }
 
 void measure_scene(const RenderRequest& request) {
@@ -333,7 +144,10 @@ void measure_scene(const RenderRequest& request) {
     on_threads(request, [&] {
         const StopSignal stop(progress.render.stop);
         SceneSource source = gather_scene(scene, stop);
-        const Precision precision = warned_precision_of(request, source);
+        SceneTalk talk(request);
+        const PrecisionChoice choice = told_precision(request, source, talk);
+        if (!choice.warning.empty()) talk.warning(choice.warning);
+        const Precision precision = choice.precision;
         const Explanation explanation = explain_scene(std::move(source), precision);
         const auto make = [&](const SceneDescription& of) {
             return make_renderer(request.backend, Scene(of, precision, stop), devices.options);
@@ -346,7 +160,8 @@ void measure_scene(const RenderRequest& request) {
 
 void report_pixel(const RenderCommand& request, const SceneDescription& description, SceneSource source,
                   const FrameSettings& settings, const CameraFrame& camera) {
-    const Scene scene = compiled(std::move(source), request);
+    SceneTalk talk(request);
+    const Scene scene = compile_for(request, std::move(source), talk);
     PixelTree tree = make_embree_renderer(scene)->pixel_tree(camera, settings, request.pixel.x, request.pixel.y);
     const std::string flaws = describe_flags(tree.film.flags, description);
     const PixelReport report{request.pixel.x,
@@ -365,8 +180,8 @@ void report_pixel(const RenderCommand& request, const SceneDescription& descript
     else if (!request.json.empty())
         write_file_atomically(request.json, pixel_json(report));
     if (!flaws.empty())
-        throw Error(ExitCode::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
-                                                  request.pixel.x, request.pixel.y, flaws));
+        throw Error(ErrorKind::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
+                                                   request.pixel.x, request.pixel.y, flaws));
 }
 
 void report_pixel(const RenderCommand& request) {
@@ -374,7 +189,7 @@ void report_pixel(const RenderCommand& request) {
     const FrameSettings settings = frame_settings(request, scene);
     const ChosenPixel& pixel = request.pixel;
     if (pixel.x >= settings.full_width || pixel.y >= settings.full_height)
-        throw Error(ExitCode::usage,
+        throw Error(ErrorKind::usage,
                     fmt::format("--pixel {},{}: is outside of the frame, which is {}x{}; its last pixel is {},{}",
                                 pixel.x, pixel.y, settings.full_width, settings.full_height, settings.full_width - 1,
                                 settings.full_height - 1));
@@ -400,12 +215,13 @@ void run(const RenderCommand& request, std::string& memory_advice) {
         case Action::print_template:
             return print(text_input_template());
         case Action::list_devices:
-            return print(list_devices_text());
+            return print(with_options(list_devices_text()));
         case Action::pixel:
             return report_pixel(request);
         case Action::measure:
             return measure_scene(request);
         case Action::explain:
+            return explain(request);
         case Action::render:
             return render_scene(request, memory_advice);
     }
@@ -417,7 +233,7 @@ void run_and_record(const RenderCommand& request, std::string& memory_advice) {
         run(request, memory_advice);
     } catch (const std::exception& error) {
         const Failure failure = failure_of(error, memory_advice);
-        const std::string lines = failure_record(request.progress, failure.text, failure.code);
+        const std::string lines = failure_record(request.progress, with_options(failure.text), exit_code(failure.kind));
         if (!lines.empty()) std::fputs((lines + "\n").c_str(), stdout);
         std::fflush(stdout);
         throw;

@@ -33,7 +33,8 @@ bool compare_images(CompareOptions options) {
     StoredReader reader;
     const StoredFile a = reader.read(options.a), b = reader.read(options.b);
     if (!options.mask.empty()) options.selection.mask = mask_of(reader.read(options.mask).pictures.front());
-    const Comparison comparison = compare_files(a, b, options.thresholds, options.selection);
+    Comparison comparison = compare_files(a, b, options.thresholds, options.selection);
+    for (std::string& line : comparison.not_compared) line = with_options(line);
     std::optional<FlipResult> flip;
     if (options.flip) {
         std::atomic<bool> stop = false;
@@ -41,13 +42,13 @@ bool compare_images(CompareOptions options) {
         guard.watch(stop);
         flip = flip_of(a, b, options.selection, stop);
     }
-    std::string text = report_text(comparison, options.thresholds, flip ? &*flip : nullptr);
+    std::string text = with_options(report_text(comparison, options.thresholds, flip ? &*flip : nullptr));
     if (!options.diff.empty()) text += write_differences(options, a, b);
-    if (!options.json.empty())
-        write_file_atomically(options.json,
-                              report_json(comparison, options.thresholds, options.a, options.b, flip ? &*flip : nullptr)
-                                      .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                                  "\n");
+    if (!options.json.empty()) {
+        auto json = report_json(comparison, options.thresholds, options.a, options.b, flip ? &*flip : nullptr);
+        json["verdict"] = with_options(json["verdict"].get<std::string>());
+        write_file_atomically(options.json, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    }
     if (!options.quiet) print(text);
     return passes(comparison, options.thresholds);
 }
@@ -56,7 +57,7 @@ bool check_sums(const CompareOptions& options) {
     const LayeredPicture picture = read_exr(options.a);
     const std::vector<DivisionSums> divisions = division_sums(picture);
     if (divisions.empty())
-        throw Error(ExitCode::file,
+        throw Error(ErrorKind::file,
                     one_line(options.a) +
                         ": has no R G B with all layers by path or by light; render --layers path,light writes them");
     if (!options.quiet)

@@ -58,7 +58,8 @@ int run_suite(int argc, const char* const* argv) {
         return static_cast<int>(ExitCode::done);
     }
     require_other_files(suite, options, chosen);
-    const std::vector<SuiteBackend> backends = find_backends(chosen, options);
+    std::vector<SuiteBackend> backends = find_backends(chosen, options);
+    for (SuiteBackend& backend : backends) backend.obstacle = with_options(backend.obstacle);
     for (const std::string& path : {options.junit, options.json, options.html}) probe(path);
 
     size_t name_width = 8;
@@ -74,7 +75,11 @@ int run_suite(int argc, const char* const* argv) {
             result.page = failure_html(result, suite.folder, golden, frame.picture);
         if (options.update) update.record(frame, golden, result);
     };
-    work.finished = [&](const std::vector<SuiteResult>& results) {
+    work.finished = [&](std::vector<SuiteResult>& results) {
+        for (SuiteResult& result : results) {
+            result.verdict = with_options(result.verdict);
+            for (std::string& note : result.notes) note = with_options(note);
+        }
         say(table_rows(results, name_width));
         if (options.update) update.finish(results);
     };

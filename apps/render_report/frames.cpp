@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/timing.h"
-#include "sequence/film_loop.h"
+#include "sequence/sequence_loop.h"
 
 namespace cistula::report {
 namespace {
@@ -69,7 +69,7 @@ Frames::Frames(const SceneDescription& description, const Machine& machine, int 
       progress(watched) {}
 
 void check_interrupt(const StepProgress& progress) {
-    if (progress.render.stop) throw Error(ExitCode::interrupted, "interrupted; nothing was written");
+    if (progress.render.stop) throw Error(ErrorKind::interrupted, "interrupted; nothing was written");
 }
 
 double Frames::render(const Setting& setting, Film& film, uint32_t effects) {
@@ -113,7 +113,7 @@ void Frames::begin() {
 void Frames::check(const Film& film) const {
     check_interrupt(progress);
     if (film.flags != 0)
-        throw Error(ExitCode::failed,
+        throw Error(ErrorKind::failed,
                     fmt::format("{}: a frame cannot be trusted: {}", scene.source, describe_flags(film.flags, scene)));
 }
 

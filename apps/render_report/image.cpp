@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "compare/page/page_parts.h"
-#include "image/picture/png.h"
+#include "image/picture/picture_io.h"
 
 namespace cistula::report {
 namespace {

@@ -5,7 +5,7 @@
 #include "render/record/film_difference.h"
 #include "render/record/film_picture.h"
 #include "small_frame.h"
-#include "testing/reference_renderers.h"
+#include "verify/reference_renderers.h"
 
 namespace cistula::report {
 namespace {

@@ -8,7 +8,7 @@
 #include "measure.h"
 #include "scene/description/platonic.h"
 #include "scene/readers/read_scene.h"
-#include "testing/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::report {
 namespace {

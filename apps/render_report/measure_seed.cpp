@@ -42,8 +42,8 @@ SeedTable read_seed_table(const std::string& file) {
         if (table.scene.empty() || table.seed.empty()) throw std::runtime_error("it times no algorithm of a scene");
         return table;
     } catch (const std::exception& error) {
-        throw Error(ExitCode::file, fmt::format("{}: is no record of seed_baseline ({}); give what its --json wrote",
-                                                file, error.what()));
+        throw Error(ErrorKind::file, fmt::format("{}: is no record of seed_baseline ({}); give what its --json wrote",
+                                                 file, error.what()));
     }
 }
 

@@ -62,7 +62,7 @@ class Sweep {
         const Setting setting = reference_setting(scene_.base, settings_.quick);
         const auto found = reference_picture(frames_, scene_.hash, setting, settings_.of_reference(), settings_.cache);
         if (!found)
-            throw Error(ExitCode::failed,
+            throw Error(ErrorKind::failed,
                         fmt::format("{}: the reference, {}, does not get on within {:g} seconds: where next to no "
                                     "light is lost and much goes both ways, ray trees have no end; a larger --limit "
                                     "gives it more time",

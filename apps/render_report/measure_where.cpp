@@ -52,7 +52,7 @@ void measure_stages(Frames& frames, const MeasureSettings& settings, SceneRecord
         setting.precision = precision;
         const auto seconds = frames.render_within(settings.of_reference(), setting, film);
         if (!seconds)
-            throw Error(ExitCode::failed,
+            throw Error(ErrorKind::failed,
                         fmt::format("{}: a frame of the scene's own depth, {}, does not get on within {:g} seconds; "
                                     "give it less depth, or a larger --limit",
                                     scene.file, setting_name(setting), settings.of_reference().still));

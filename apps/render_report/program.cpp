@@ -33,8 +33,8 @@ Json read_verdicts(const std::string& file) {
         (void)verify_section({record});  // throws for what its table does not find
         return *record.verify;
     } catch (const std::exception& error) {
-        throw Error(ExitCode::file, fmt::format("{}: is no record of render-verify ({}); give what its --json wrote",
-                                                file, error.what()));
+        throw Error(ErrorKind::file, fmt::format("{}: is no record of render-verify ({}); give what its --json wrote",
+                                                 file, error.what()));
     }
 }
 
@@ -97,8 +97,8 @@ std::string page_of(const std::vector<Record>& records, const ReportOptions& opt
         std::vector<std::string> files = options.from;
         for (const std::string& file : {options.verify, options.seed_baseline})
             if (!file.empty()) files.push_back(file);
-        throw Error(ExitCode::file, fmt::format("{}: a value is not of its type ({}); give what --json wrote",
-                                                fmt::join(files, ", "), error.what()));
+        throw Error(ErrorKind::file, fmt::format("{}: a value is not of its type ({}); give what --json wrote",
+                                                 fmt::join(files, ", "), error.what()));
     }
 }
 

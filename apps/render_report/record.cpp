@@ -178,8 +178,8 @@ Record parse_record(const std::string& text, const std::string& name) {
         (void)report_page({record});  // what has no page is no record
         return record;
     } catch (const std::exception& error) {
-        throw Error(ExitCode::file, fmt::format("{}: is no record of render-report ({}); give what its --json wrote",
-                                                name, error.what()));
+        throw Error(ErrorKind::file, fmt::format("{}: is no record of render-report ({}); give what its --json wrote",
+                                                 name, error.what()));
     }
 }
 

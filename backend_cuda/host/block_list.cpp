@@ -43,7 +43,8 @@ BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primi
     listed_.resize(size_t(rows) * size_t(columns_));
     const size_t count = size_t(std::count(listed_.begin(), listed_.end(), 1));
     places_.reserve(count);
-    const int groups = (columns_ + most_side_by_side - 1) / most_side_by_side, width = (columns_ + groups - 1) / groups;
+    const int groups = (columns_ + most_side_by_side - 1) / most_side_by_side;
+    const int width = (columns_ + groups - 1) / groups;
     std::array<std::vector<size_t>, heaviest + 1> by_weight;
     for (int left = 0; left < columns_; left += width)
         for (int i = 0; i < rows; ++i)
@@ -61,7 +62,8 @@ BlockList::BlockList(const FrameCover& cover, const std::vector<uint32_t>& primi
 template <class Visit>
 void BlockList::for_each_met(const FrameCover& cover, int i, const Visit& visit) const {
     const BlockShape shape = this->shape();
-    const int top = row_of(i) * shape.height, bottom = std::min(top + shape.height, rect_.height);
+    const int top = row_of(i) * shape.height;
+    const int bottom = std::min(top + shape.height, rect_.height);
     for (int row = top; row < bottom; row += FrameCover::band_rows)
         for (const FrameCover::Outline& outline : cover.outlines()) {
             const PixelRun run = outline.run(row);

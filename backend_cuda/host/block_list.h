@@ -15,7 +15,9 @@ static_assert(strip_rows % BlockPlan{PixelMapping::own_tiles, most_warps}.shape(
 
 /// A device's strips of a frame's rectangle: first, first + step, ..., `count` of them.
 struct Strips {
-    int first = 0, step = 1, count = 0;
+    int first = 0;
+    int step = 1;
+    int count = 0;
 };
 
 class BlockList {
@@ -38,7 +40,8 @@ class BlockList {
     template <class Visit>
     void for_each_gap(int i, const Visit& visit) const {
         const BlockShape shape = this->shape();
-        const int top = row_of(i) * shape.height, bottom = std::min(top + shape.height, rect_.height);
+        const int top = row_of(i) * shape.height;
+        const int bottom = std::min(top + shape.height, rect_.height);
         const uint8_t* listed = listed_.data() + size_t(i) * size_t(columns_);
         for (int begin = 0, end; begin < columns_; begin = end) {
             for (end = begin + 1; end < columns_ && listed[end] == listed[begin];) ++end;

@@ -15,8 +15,10 @@ namespace cistula {
 struct CudaDevice {
     int index = 0;
     std::string name;
-    int major = 0, minor = 0;  // compute capability
-    size_t memory = 0;         // bytes
+    // compute capability
+    int major = 0;
+    int minor = 0;
+    size_t memory = 0;  // bytes
     int multiprocessors = 0;
     std::string obstacle;
 };

@@ -19,7 +19,9 @@ constexpr int most_blocks = 6;
 constexpr size_t next_bytes = 16;
 /// The time for which the host polls for the end of a part without pausing, and its longest pause after that; pauses
 /// are a hundredth of the time waited.
-constexpr double patience = 5e-3, longest_nap = 1e-3;  // seconds
+// seconds
+constexpr double patience = 5e-3;
+constexpr double longest_nap = 1e-3;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -80,7 +82,8 @@ void DeviceWorker<Real>::reserve_storage(const LayerPlan& layers) {
     storage_.free();
     storage_blocks_ = 0;
     int multiprocessors = 0;
-    size_t unused = 0, all = 0;
+    size_t unused = 0;
+    size_t all = 0;
     CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
     CISTULA_CUDA_CHECK(cudaMemGetInfo(&unused, &all));
     sample_words_ = layers.sample_words();

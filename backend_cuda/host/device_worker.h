@@ -53,7 +53,8 @@ class DeviceWorker {
 
     /// Totals over all parts fetched since the caller reset them.
     struct Totals {
-        double kernel_seconds = 0, transfer_seconds = 0;
+        double kernel_seconds = 0;
+        double transfer_seconds = 0;
         FrameCounts counts;  // without the totals that adaptive sampling's kernel would count
     };
     Totals totals;
@@ -84,9 +85,13 @@ class DeviceWorker {
     unsigned int storage_blocks_ = 0;  // 0: storage_ is empty
     int sample_words_ = 0;             // for which storage_ has room
     uint32_t primed_ = 0;              // bit 2 m + s: mask m's kernel for Sampling s has run
-    size_t pixels_ = 0, words_ = 0;    // for which slots have room, and
-    KeptParts parts_;                  // ... the parts of pixels that they keep
-    int started_ = 0, fetched_ = 0;    // parts; number i goes to slot i % slots
+    // What slots have room for: pixels, words of layers, and the parts of pixels that they keep.
+    size_t pixels_ = 0;
+    size_t words_ = 0;
+    KeptParts parts_;
+    // parts; number i goes to slot i % slots
+    int started_ = 0;
+    int fetched_ = 0;
     PartSlot slots_[slots];
 };
 

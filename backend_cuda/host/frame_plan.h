@@ -35,7 +35,8 @@ struct FramePlan {
     }
 
     uint64_t pixels_of(int part) const {
-        const int rows = part_strips * devices * strip_rows, height = settings.crop.height;
+        const int rows = part_strips * devices * strip_rows;
+        const int height = settings.crop.height;
         return uint64_t(std::clamp(height - part * rows, 0, rows)) * uint64_t(settings.crop.width);
     }
 

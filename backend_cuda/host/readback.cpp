@@ -32,9 +32,10 @@ RecordOrder rows_of_records(const BlockPlan& plan) {
 template <class Put>
 void for_each_pixel(const RecordOrder& records, BlockShape shape, const BlockPlace& block, const Film& film,
                     const Put& put) {
-    const int left = block.column * shape.width, top = block.row * shape.height;
-    const int width = std::min(shape.width, film.rect.width - left),
-              height = std::min(shape.height, film.rect.height - top);
+    const int left = block.column * shape.width;
+    const int top = block.row * shape.height;
+    const int width = std::min(shape.width, film.rect.width - left);
+    const int height = std::min(shape.height, film.rect.height - top);
     for (int row = 0; row < height; ++row) {
         const size_t first = size_t(top + row) * size_t(film.rect.width) + size_t(left);
         for (int column = 0; column < width; ++column)

@@ -38,7 +38,8 @@ struct WarpScheduler {
     template <class Visit>
     __device__ void for_each(const Visit& visit) const {
         for (int j = threadIdx.x % warp_threads; __any_sync(whole_warp, j < total); j += warp_threads) {
-            int pixel = 0, i = 0;
+            int pixel = 0;
+            int i = 0;
             find(j, pixel, i);
             if (j < total) visit(pixel, i);
         }
@@ -91,9 +92,11 @@ class WarpPixels {
     __device__ bool take_samples(const Take& take) {
         const WarpScheduler pieces = WarpScheduler::of(wanted_ - given_);
         if (pieces.total == 0) return false;
-        int pixel = 0, i = 0;
+        int pixel = 0;
+        int i = 0;
         pieces.find(lane_, pixel, i);
-        const int x = __shfl_sync(whole_warp, x_, pixel), y = __shfl_sync(whole_warp, y_, pixel);
+        const int x = __shfl_sync(whole_warp, x_, pixel);
+        const int y = __shfl_sync(whole_warp, y_, pixel);
         const unsigned int record = __shfl_sync(whole_warp, record_, pixel);
         i += __shfl_sync(whole_warp, given_, pixel);
         if (lane_ < pieces.total) take(x, y, pixel, storage_[pixel].pixel.wanted(i), job_.records.sights[record]);
@@ -127,7 +130,8 @@ class WarpPixels {
         const WarpScheduler standing = WarpScheduler::of(done ? cells_ : 0);
         const unsigned int record = record_;
         for (int j = lane_; __any_sync(whole_warp, j < standing.total); j += warp_threads) {
-            int pixel = 0, i = 0;
+            int pixel = 0;
+            int i = 0;
             standing.find(j, pixel, i);
             const unsigned int place = __shfl_sync(whole_warp, record, pixel);
             if (j >= standing.total) continue;
@@ -152,7 +156,8 @@ class WarpPixels {
     __device__ void begin(unsigned int place) {
         const BlockPlace tile = job_.blocks[place / warp_threads];
         const PixelPlace in_tile = BlockPlan{PixelMapping::shared_tile}.place_of(int(place % warp_threads));
-        const int column = tile.column * tile_width + in_tile.column, row = tile.row * tile_height + in_tile.row;
+        const int column = tile.column * tile_width + in_tile.column;
+        const int row = tile.row * tile_height + in_tile.row;
         record_ = place;
         job_.records.put(record_, PixelRecord());  // also beyond the rectangle: whole tiles are copied
         if (column >= job_.width || row >= job_.height) return;
@@ -196,9 +201,12 @@ class WarpPixels {
     const unsigned int first_;   // of the pixels in the job's storage
     LatticeStorage* const storage_;
     bool more_ = true;  // whether there are pixels that no warp has started
-    int x_ = 0, y_ = 0;
+    int x_ = 0;
+    int y_ = 0;
     unsigned int record_ = 0;
-    int given_ = 0, wanted_ = 0;  // samples of this round: taken by lanes, and all; wanted 0: no pixel
+    // samples of this round: taken by lanes, and all; wanted 0: no pixel
+    int given_ = 0;
+    int wanted_ = 0;
     int cells_ = 0;
 };
 

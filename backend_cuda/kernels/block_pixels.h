@@ -7,7 +7,8 @@
 namespace cistula {
 
 /// Size of a tile: a warp renders 8 x 4 pixels, since neighbors see the same things.
-inline constexpr int tile_width = 8, tile_height = 4;
+inline constexpr int tile_width = 8;
+inline constexpr int tile_height = 4;
 
 /// How the pixels of a block are mapped to its warps.
 enum class PixelMapping {
@@ -40,7 +41,8 @@ struct BlockPlan {
     }
     /// The pixel, within its block, of record i.
     CISTULA_INLINE PixelPlace place_of(int i) const {
-        const int warp = i / warp_threads, lane = i % warp_threads;
+        const int warp = i / warp_threads;
+        const int lane = i % warp_threads;
         return {lane % tile_width + warp % 2 * tile_width, lane / tile_width + warp / 2 * tile_height};
     }
 };

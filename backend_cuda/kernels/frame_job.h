@@ -13,9 +13,10 @@ namespace cistula {
 /// Ray counts, totals and error flags, added up by many blocks; several slots reduce contention between them.
 struct DeviceTally {
     static constexpr int slots = 64;
-    static constexpr int totals_kept = 10, unless_pruned = 7;  // the first of them, where a block prunes nothing
-    unsigned long long rays[slots][4];                         // in the order of RayCounts
-    Total totals[slots][totals_kept];  // radiance, cut, units, pruned; not of frames with a target error
+    static constexpr int totals_kept = 10;
+    static constexpr int unless_pruned = 7;  // the first of them, where a block prunes nothing
+    unsigned long long rays[slots][4];       // in the order of RayCounts
+    Total totals[slots][totals_kept];        // radiance, cut, units, pruned; not of frames with a target error
     unsigned int flags;
 };
 
@@ -34,8 +35,12 @@ struct FrameJob {
     FrameView frame;
     PixelPlanes records;        // ordered by blocks; unset beyond the rectangle
     int64_t* layers = nullptr;  // frame.layers.words for each record, 0 at first
-    int x = 0, y = 0;           // of the rectangle in the frame
-    int width = 0, height = 0;  // of the rectangle
+    // of the rectangle in the frame
+    int x = 0;
+    int y = 0;
+    // of the rectangle
+    int width = 0;
+    int height = 0;
     const BlockPlace* blocks = nullptr;
     unsigned int block_count = 0;
     PixelMapping mapping = PixelMapping::own_tiles;

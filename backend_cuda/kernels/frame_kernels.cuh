@@ -36,16 +36,19 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
                   const __grid_constant__ typename PathTraits<Real, path>::Scene scene) {
     using E = Effects<effect_masks[mask]>;
     using Stack = DeviceStack<Real, E, path>;
-    constexpr int warps = kernel_shapes[mask].warps, threads = kernel_shapes[mask].threads();
+    constexpr int warps = kernel_shapes[mask].warps;
+    constexpr int threads = kernel_shapes[mask].threads();
     __shared__ Uninitialized<BlockStorage<threads>> memory;
     BlockStorage<threads>& block_storage = memory.get();
-    const int warp = threadIdx.x / warp_threads, lane = threadIdx.x % warp_threads;
+    const int warp = threadIdx.x / warp_threads;
+    const int lane = threadIdx.x % warp_threads;
     const bool shared_tile = job.mapping == PixelMapping::shared_tile;
     const BlockPlace block = job.blocks[blockIdx.x];
     const BlockPlan plan{job.mapping, warps};
     const BlockShape shape = plan.shape();
     const PixelPlace place = plan.place_of(shared_tile ? lane : int(threadIdx.x));
-    const int column = block.column * shape.width + place.column, row = block.row * shape.height + place.row;
+    const int column = block.column * shape.width + place.column;
+    const int row = block.row * shape.height + place.row;
     PixelWork& own = block_storage.work[threadIdx.x] = PixelWork();
     PixelRecord& record = block_storage.records[threadIdx.x];
     typename Stack::Storage branches;
@@ -86,7 +89,9 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
 /// The number of a kernel's blocks that fill this thread's current device.
 template <class Kernel>
 unsigned int filling_blocks(const Kernel& kernel, int threads) {
-    int device = 0, multiprocessors = 0, blocks = 0;
+    int device = 0;
+    int multiprocessors = 0;
+    int blocks = 0;
     CISTULA_CUDA_CHECK(cudaGetDevice(&device));
     CISTULA_CUDA_CHECK(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device));
     CISTULA_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, 0));
@@ -116,7 +121,7 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
     if (path == DevicePath::tree)
         launch.template operator()<DevicePath::tree>(scene.view);
     else if constexpr (mask == layered_mask)
-        throw Error(ExitCode::failed, "internal error: layers need the tree");
+        throw Error(ErrorKind::failed, "internal error: layers need the tree");
     else
         launch.template operator()<DevicePath::plain_loop>(scene.constant);
 }

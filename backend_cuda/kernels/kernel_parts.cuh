@@ -81,8 +81,8 @@ __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, u
         for (int i = 0; i < 4; ++i) atomicAdd(to + i, (unsigned long long)counts[i]);
     } else {
         const unsigned int lane = threadIdx.x % warp_threads;
-        const unsigned int first = warp_sum(counts[0] | counts[1] << half),
-                           last = warp_sum(counts[2] | counts[3] << half);
+        const unsigned int first = warp_sum(counts[0] | counts[1] << half);
+        const unsigned int last = warp_sum(counts[2] | counts[3] << half);
         const unsigned int sum = (lane < 2 ? first : last) >> (lane % 2 * half) & ((1u << half) - 1);
         if (lane < 4 && sum != 0) atomicAdd(to + lane, (unsigned long long)sum);
     }
@@ -113,7 +113,8 @@ __device__ inline unsigned long long counted_number(const PixelRecord& record, i
 /// Adds the numbers of as many records as a warp has lanes to the totals. Four lanes add up each number: a block ends
 /// no sooner than this, so it is to take few steps.
 __device__ inline void add_totals_to_tally(DeviceTally& tally, const PixelRecord* records) {
-    constexpr int lanes = 4, together = warp_threads / lanes;
+    constexpr int lanes = 4;
+    constexpr int together = warp_threads / lanes;
     const int lane = threadIdx.x % warp_threads;
     const int64_t* const pruned = records[lane].pruned;
     const int kept = __any_sync(0xffffffffu, (pruned[0] | pruned[1] | pruned[2]) != 0) ? DeviceTally::totals_kept

@@ -50,7 +50,7 @@ class EmbreeRenderer : public Renderer {
     }
     uint32_t effects() const override { return effects_; }
     int lanes() const override { return lanes_; }
-    std::string intersector() const override { return "embree"; }
+    std::string intersector() const override { return lanes_ > 1 ? "lanes" : "embree"; }
     size_t memory() const override {
         return scene_->memory() + (in_lanes_ ? in_lanes_->memory() : 0) + (tree_ ? tree_->memory() : 0);
     }

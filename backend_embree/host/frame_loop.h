@@ -100,7 +100,7 @@ class FrameTask {
                                   : find_camera_solids(scene_, intersector, frame_)))
             film.flags |= flag_media_overflow;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
-            throw Error(ExitCode::usage, "this intersector has no layers");
+            throw Error(ErrorKind::usage, "this intersector has no layers");
         if (in_lanes != nullptr && camera_fits_lanes()) tiles_ = tile_functions(*in_lanes, settings.lanes);
         mask_ = mask_to_run(compiled.effects, settings, frame_);
         if (mask_ != layered_mask) mask_ = tiles_ != nullptr ? std::max(mask_, least_lane_mask) : limited_mask;
@@ -231,14 +231,16 @@ class FrameTask {
     bool for_each_tile(const Render& render) {
         const PixelRect rect = film_.rect;
         const int tile = settings_.tile;
-        const int columns = (rect.width + tile - 1) / tile, rows = (rect.height + tile - 1) / tile;
+        const int columns = (rect.width + tile - 1) / tile;
+        const int rows = (rect.height + tile - 1) / tile;
         std::mutex totals;
         const ShownTiles shown(progress_.tiles, film_, tile);
         tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
             const DefaultRounding rounding;
             Tile own(tile);
             for (int64_t t = range.begin(); t != range.end(); ++t) {
-                const int x = int(t % columns) * tile, y = int(t / columns) * tile;
+                const int x = int(t % columns) * tile;
+                const int y = int(t / columns) * tile;
                 own.begin({x, y, std::min(tile, rect.width - x), std::min(tile, rect.height - y)});
                 render(own);
                 if (stopped()) return;
@@ -261,7 +263,8 @@ class FrameTask {
         const PixelRect& rect = tile.rect;
         for (int y = rect.y; y < rect.y + rect.height; ++y)
             hints_.cover.for_each_part(y, rect.x, rect.x + rect.width, [&](int begin, int end, bool covered) {
-                const size_t first = size_t(y) * size_t(film_.rect.width) + size_t(begin), count = size_t(end - begin);
+                const size_t first = size_t(y) * size_t(film_.rect.width) + size_t(begin);
+                const size_t count = size_t(end - begin);
                 if (!covered) {
                     hints_.fill(writer, film_.rect.x + begin, film_.rect.y + y, end - begin, first, tile.counts);
                     return fill_background_layers(film_, first, count);

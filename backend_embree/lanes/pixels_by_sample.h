@@ -29,14 +29,18 @@ class PixelsBySample {
         const size_t together = adaptive ? most_pixels : std::max<size_t>(most_samples / grid_samples(), 1);
         for (first_ = 0; first_ < pixels_.size() && !stop; first_ += together) {
             count_ = std::min(pixels_.size() - first_, together);
-            adaptive ? render_adaptively(stop, rays, flags) : render_grid(stop, rays, flags);
+            if (adaptive)
+                render_adaptively(stop, rays, flags);
+            else
+                render_grid(stop, rays, flags);
         }
         pixels_.clear();
     }
 
   private:
     // Pixels and samples at a time: an adaptive pixel has some 24 KiB of samples, and a sample 150 bytes.
-    static constexpr size_t most_pixels = 256, most_samples = 4096;
+    static constexpr size_t most_pixels = 256;
+    static constexpr size_t most_samples = 4096;
 
     struct Pixel {
         int x, y;
@@ -127,7 +131,9 @@ class PixelsBySample {
     TileRenderer renderer_;
     std::optional<TileRenderer> layered_;  // of frames with layers
     std::vector<Pixel> pixels_;
-    size_t first_ = 0, count_ = 0;  // of the pixels under way
+    // of the pixels under way
+    size_t first_ = 0;
+    size_t count_ = 0;
     std::vector<Taken> taken_;
     std::unique_ptr<AdaptivePixel[]> adaptive_;
 };

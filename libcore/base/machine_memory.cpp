@@ -1,4 +1,4 @@
-#include "base/machine_memory.h"
+#include "base/machine.h"
 
 #include <sys/resource.h>
 #include <unistd.h>

@@ -30,7 +30,7 @@ PictureSize parse_size(std::string_view text) {
     std::string_view rest = text;
     const std::optional<PictureSize> size = take_size(rest);
     if (!size || !rest.empty())
-        fail_usage(fmt::format("must be WIDTHxHEIGHT, each from 1 to {}, as in 1280x720", largest_side));
+        fail_usage("", fmt::format("must be WIDTHxHEIGHT, each from 1 to {}, as in 1280x720", largest_side));
     return *size;
 }
 
@@ -45,7 +45,7 @@ PixelRect parse_crop(std::string_view text) {
             if (x && y && *x >= 0 && *y >= 0) return {*x, *y, size->width, size->height};
         }
     }
-    fail_usage("must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");
+    fail_usage("", "must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");
 }
 
 TileGrid parse_tiles(std::string_view text) {
@@ -55,13 +55,14 @@ TileGrid parse_tiles(std::string_view text) {
         if (columns && rows && *columns > 0 && *rows > 0 && int64_t{*columns} * *rows <= most_tiles)
             return {*columns, *rows};
     }
-    fail_usage(fmt::format("must be CxR, columns and rows of a grid of at most {} tiles, as in 4x3", most_tiles));
+    fail_usage("", fmt::format("must be CxR, columns and rows of a grid of at most {} tiles, as in 4x3", most_tiles));
 }
 
 PixelRect tile_rect(const PixelRect& whole, const TileGrid& grid, int number) {
     if (grid.columns > whole.width || grid.rows > whole.height)
-        fail_usage(fmt::format("--tiles {}x{}: more than there are pixels, {}x{}; give fewer", grid.columns, grid.rows,
-                               whole.width, whole.height));
+        fail_usage(fmt::format("`tiles` {}x{}: more than there are pixels, {}x{}", grid.columns, grid.rows, whole.width,
+                               whole.height),
+                   "give fewer");
     const auto edge = [](int length, int parts, int i) { return static_cast<int>(int64_t{length} * i / parts); };
     const int column = number % grid.columns, row = number / grid.columns;
     const int left = edge(whole.width, grid.columns, column), top = edge(whole.height, grid.rows, row);

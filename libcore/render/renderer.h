@@ -47,6 +47,9 @@ struct FrameSettings {
     KeptParts kept_parts() const { return adaptive() ? KeptParts() : parts; }
 };
 
+/// A scene's own settings: the size and the samples of its film, its depth and its cutoff, without a crop.
+FrameSettings frame_settings(const SceneDescription& scene);
+
 /// State shared between the rendering threads and an observer; all members may be read at any time.
 struct RenderProgress {
     std::atomic<uint64_t> pixels_done{0};
@@ -110,7 +113,7 @@ class Renderer {
     /// The maximum number of rays that the last render traced at once.
     virtual int lanes() const { return 1; }
 
-    /// The name of the intersector: "embree", "bvh", "brute" or "cuda".
+    /// What found the last render's hits: "lanes", "embree", "bvh", "brute" or "cuda".
     virtual std::string intersector() const = 0;
 
     /// Times of the last frame for backends with devices of their own; zeros for others.

@@ -25,21 +25,23 @@ void make_directory(const std::string& path) {
     std::error_code error;
     fs::create_directories(directory, error);
     if (error)
-        throw Error(ExitCode::file,
-                    fmt::format("{}: cannot be written: the directory {} cannot be made: {}; give another", path,
-                                directory.string(), error.message()));
+        throw Error(
+            ErrorKind::file,
+            fmt::format("cannot be written: the directory {} cannot be made: {}", directory.string(), error.message()),
+            "give another")
+            .at(path);
 }
 
 }  // namespace
 
 OutputName::OutputName(std::string_view text, std::string_view option) : text_(text) {
-    const auto fail = [&](const std::string& what) {
-        throw Error(ExitCode::usage, fmt::format("{} {}: {}", option, text, what));
+    const auto fail = [&](const std::string& problem, const char* remedy = "") {
+        throw Error(ErrorKind::usage, fmt::format("{} {}: {}", option, text, problem), remedy);
     };
-    if (text.empty()) throw Error(ExitCode::usage, fmt::format("{}: the file name is empty", option));
+    if (text.empty()) throw Error(ErrorKind::usage, fmt::format("{}: the file name is empty", option));
     std::string* part = &prefix_;
     const auto place = [&](int digits) {
-        if (has_pattern()) fail("two places for the frame number; a name has one, #### or %04d");
+        if (has_pattern()) fail("two places for the frame number", "a name has one, #### or %04d");
         if (digits > most_digits) fail(fmt::format("a frame number of more than {} digits", most_digits));
         digits_ = digits;
         part = &suffix_;
@@ -101,9 +103,10 @@ FileKind file_kind(const std::string& path) {
     const std::string extension = lower_extension(path);
     if (extension == ".exr") return FileKind::exr;
     if (extension == ".out" || extension == ".data") return FileKind::raw;
-    throw Error(ExitCode::usage,
-                fmt::format("-o {}: images are written as .exr, or as the seed's raw frames .out and .data; {}", path,
-                            extension == ".png" ? "for a PNG add --preview FILE.png" : "name it *.exr"));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("`output` {}: images are written as .exr, or as the seed's raw frames .out and .data", path),
+        extension == ".png" ? "for a PNG add `preview` FILE.png" : "name it *.exr");
 }
 
 std::string default_output(const SceneDescription& scene, size_t frames_given) {
@@ -118,10 +121,9 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
     if (!output.has_pattern() && given.size() > 1) {
         fs::path better = output.text();
         better.replace_extension(".####" + better.extension().string());
-        throw Error(ExitCode::usage,
-                    fmt::format("-o {} holds one frame and --frames names {}; put the frame number into "
-                                "the name, as in -o {}",
-                                output.text(), given.size(), better.string()));
+        throw Error(ErrorKind::usage,
+                    fmt::format("`output` {} holds one frame and `frames` names {}", output.text(), given.size()),
+                    fmt::format("put the frame number into the name, as in `output` {}", better.string()));
     }
     if (!given.empty()) return given;
     std::vector<int> film(static_cast<size_t>(output.has_pattern() ? std::max(film_frames, 1) : 1));
@@ -131,12 +133,12 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
 
 OutputName preview_name(const std::string& text, const std::vector<int>& frames) {
     if (text.empty()) return OutputName();
-    OutputName name(text, "--preview");
+    OutputName name(text, "`preview`");
     if (std::filesystem::path(text).extension() != ".png")
-        throw Error(ExitCode::usage, fmt::format("--preview {}: a preview is a PNG; name it *.png", text));
+        throw Error(ErrorKind::usage, fmt::format("`preview` {}: a preview is a PNG", text), "name it *.png");
     if (frames.size() > 1 && !name.has_pattern())
-        throw Error(ExitCode::usage,
-                    fmt::format("--preview {}: holds one frame of {}; put #### into the name", text, frames.size()));
+        throw Error(ErrorKind::usage, fmt::format("`preview` {}: holds one frame of {}", text, frames.size()),
+                    "put #### into the name");
     return name;
 }
 
@@ -177,7 +179,7 @@ void make_directory_of(const std::string& path) {
     make_directory(path);
     std::error_code error;
     if (fs::is_directory(path, error))
-        throw Error(ExitCode::file, fmt::format("{}: cannot be written: it is a directory; name a file in it", path));
+        throw Error(ErrorKind::file, "cannot be written: it is a directory", "name a file in it").at(path);
 }
 
 void make_directories(const OutputName& name, const std::vector<int>& frames) {

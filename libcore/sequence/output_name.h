@@ -17,7 +17,7 @@ class OutputName {
   public:
     OutputName() = default;
 
-    /// `option` is the option named in messages ("-o"). Throws Error (usage) if the text holds two patterns or another
+    /// `option` names it in messages ("`output`"). Throws Error (usage) if the text holds two patterns or another
     /// conversion.
     OutputName(std::string_view text, std::string_view option);
 
@@ -49,8 +49,8 @@ FileKind file_kind(const std::string& path);
 /// SCENE.####.exr if several frames were given explicitly. A scene from standard input is named "stdin".
 std::string default_output(const SceneDescription& scene, size_t frames_given);
 
-/// The frames to render: those given; by default the whole film for a pattern, the first frame for a plain name. Throws
-/// Error (usage) if several frames are given for a plain name.
+/// The frames to render: those given; by default all of the scene's for a pattern, the first frame for a plain name.
+/// Throws Error (usage) if several frames are given for a plain name.
 std::vector<int> frames_to_render(const OutputName& output, const std::vector<int>& given, int film_frames);
 
 /// The name of previews of these frames; an empty text is none. Throws Error (usage).

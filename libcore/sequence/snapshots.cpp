@@ -1,6 +1,6 @@
 #include "sequence/snapshots.h"
 
-#include "base/option_text.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ void clear_others(LayeredPicture& picture, const std::vector<bool>& done) {
 
 }  // namespace
 
-Snapshots::Snapshots(const FilmJob& job, SnapshotRequests& requests, const FinishedTiles& tiles)
+Snapshots::Snapshots(const SequenceJob& job, SnapshotRequests& requests, const FinishedTiles& tiles)
     : job_(job), requests_(requests), tiles_(tiles), thread_([this] {
           while (requests_.wait()) write();
       }) {}

@@ -8,7 +8,7 @@
 #include <optional>
 #include <thread>
 
-#include "sequence/film_loop.h"
+#include "sequence/sequence_loop.h"
 
 namespace cistula {
 
@@ -38,12 +38,12 @@ class SnapshotRequests {
 inline constexpr const char* snapshot_attribute = "cistula:snapshot";
 
 /// Writes the finished part of the frame in work to a file beside its own, on a thread of its own, whenever one
-/// is asked for, and says so. Pixels that are not done are 0 in every channel. Whatever fails is said, and the film
-/// goes on.
+/// is asked for, and says so. Pixels that are not done are 0 in every channel. Whatever fails is said, and the
+/// sequence goes on.
 class Snapshots {
   public:
     /// All arguments must outlive this object.
-    Snapshots(const FilmJob& job, SnapshotRequests& requests, const FinishedTiles& tiles);
+    Snapshots(const SequenceJob& job, SnapshotRequests& requests, const FinishedTiles& tiles);
     ~Snapshots();
     Snapshots(const Snapshots&) = delete;
     Snapshots& operator=(const Snapshots&) = delete;
@@ -55,7 +55,7 @@ class Snapshots {
     void write();
     void write(const CameraFrame& camera, PartialFilm part);
 
-    const FilmJob& job_;
+    const SequenceJob& job_;
     SnapshotRequests& requests_;
     const FinishedTiles& tiles_;
     std::mutex mutex_;

@@ -100,7 +100,7 @@ DepthLoss depth_loss(const LedgerTotals& cut, const LedgerTotals& radiance) {
     return {largest(cut.mean), largest(cut.worst), largest(radiance.mean)};
 }
 
-std::string describe_depth_loss(const FilmTotals& totals, const std::string& film, int depth) {
+std::string describe_depth_loss(const SequenceTotals& totals, const std::string& film, int depth) {
     if (totals.dark_frames == 0) return "";
     const DepthLoss& loss = totals.depth_loss;
     const std::string where = totals.frames == 1
@@ -109,11 +109,11 @@ std::string describe_depth_loss(const FilmTotals& totals, const std::string& fil
                                                 totals.frames, totals.depth_loss_frame);
     return fmt::format(
         "{}: depth {} may have taken up to {:.2g} from a pixel and {:.2g} in the mean, where the picture's mean is "
-        "{:.2g}: see --depth and --layers error",
+        "{:.2g}: see `depth` and `layers` error",
         where, depth, loss.worst, loss.mean, loss.brightness);
 }
 
-void FilmTotals::add(const FrameStats& frame) {
+void SequenceTotals::add(const FrameStats& frame) {
     if (frames == 0) first_file = frame.file;
     ++frames;
     pixels += static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);

@@ -48,8 +48,8 @@ struct FrameStats {
     uint64_t clamped = 0;      // values of the file that were over the largest half
 };
 
-/// Sums over the frames of a film that were written.
-struct FilmTotals {
+/// Sums over the frames of a sequence that were written.
+struct SequenceTotals {
     uint64_t frames = 0, pixels = 0, rays = 0;
     double render_seconds = 0;
     uint64_t clamped = 0, clamped_frames = 0;  // values over the largest half, frames that have any
@@ -66,11 +66,13 @@ struct RunStats {
     Backend backend = Backend::embree;
     Precision precision = Precision::single_;
     std::string scene, scene_hash, intersector, driver;
+    std::string images;                          // the name or pattern of the frames' files
+    double seconds = 0;                          // from the first frame to the last file
     std::vector<std::string> devices;            // GPUs; empty, like the driver, if none is used
     uint32_t required_effects = 0, effects = 0;  // masks
     size_t scene_bytes = 0;                      // geometry, trees and shading data
     int threads = 0, lanes = 1;
-    FilmTotals totals;
+    SequenceTotals totals;
     std::vector<int> resumed;  // frames that --resume skipped
 };
 
@@ -84,9 +86,9 @@ LedgerTotals unit_totals(const Film& film);
 /// What the depth may have taken, from the totals of `cut` and of the radiance.
 DepthLoss depth_loss(const LedgerTotals& cut, const LedgerTotals& radiance);
 
-/// One line on the frame of a film in which the depth took the most; empty where it is not seen. `film`: the name of
-/// the frames' files.
-std::string describe_depth_loss(const FilmTotals& totals, const std::string& film, int depth);
+/// One line on the frame of a sequence in which the depth took the most; empty where it is not seen. `film`: the name
+/// of the frames' files.
+std::string describe_depth_loss(const SequenceTotals& totals, const std::string& film, int depth);
 
 /// The file of --stats, which is written while the film renders: its frames take no memory. It is complete or, without
 /// finish(), not there.

@@ -7,14 +7,16 @@ import re
 class Error(Exception):
     """What can be mended by who calls. str() is the whole line.
 
-    code: the exit code of `render` for it; source, pointer: the file and the JSON pointer in it, or None.
+    source, pointer: the file and the JSON pointer in it; argument: its name; remedy: what would be right. Each may be None.
     """
 
-    def __init__(self, line: str, code: int = 2, source: str | None = None, pointer: str | None = None) -> None:
+    def __init__(self, line: str, source: str | None = None, pointer: str | None = None, argument: str | None = None,
+                 remedy: str | None = None) -> None:
         super().__init__(line)
-        self.code = code
         self.source = source
         self.pointer = pointer
+        self.argument = argument
+        self.remedy = remedy
 
 
 class SceneError(Error, ValueError):
@@ -34,16 +36,16 @@ class DeviceError(Error):
 
 
 class FrameError(Error, ArithmeticError):
-    """A frame cannot be trusted: a number was not finite, or a stated limit was passed."""
+    """A frame cannot be trusted, or missed its target: a number was not finite, a stated limit was passed."""
 
 
-_KINDS: dict[int, type[Error]] = {1: FrameError, 3: FileError, 4: DeviceError}
-_PLACE = re.compile(r"(?P<source>[^:]+)(:\d+(:\d+)?: |: (?P<pointer>/[^:\s]*): )")
+_KINDS: dict[str, type[Error]] = {"usage": ArgumentError, "scene": SceneError, "file": FileError, "device": DeviceError,
+                                  "failed": FrameError, "target": FrameError}
+_PLACE = re.compile(r"(?P<source>.*?)(: (?P<pointer>/.*)|(:\d+){1,2})?$", re.DOTALL)
 
 
-def of_message(line: str, code: int) -> Error:
-    """The exception for an error of the library: the only place where it is told what kind it is."""
-    place = _PLACE.match(line)
-    if place is None:
-        return _KINDS.get(code, ArgumentError)(line, code)
-    return _KINDS.get(code, SceneError)(line, code, place["source"], place["pointer"])
+def of_library(line: str, kind: str, subject: str, place: str, remedy: str) -> Error:
+    """The exception for an error of the library."""
+    parts = _PLACE.match(place)
+    assert parts is not None
+    return _KINDS.get(kind, Error)(line, parts["source"] or None, parts["pointer"], subject or None, remedy or None)

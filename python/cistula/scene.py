@@ -97,7 +97,7 @@ def _plain(value: object, pointer: str) -> Any:
         return {key: _plain(part, pointer + "/" + key.replace("~", "~0").replace("/", "~1")) for key, part in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(part, f"{pointer}/{i}") for i, part in enumerate(value)]
-    raise SceneError(f"dict: {pointer or '/'}: expected what JSON has, found {value!r}", 2, "dict", pointer)
+    raise SceneError(f"dict: {pointer or '/'}: expected what JSON has, found {value!r}", "dict", pointer)
 
 
 class Scene:

@@ -22,21 +22,21 @@ def read_others(description: _core.Description) -> None:
         try:
             import OpenImageIO as oiio
         except ImportError:
-            raise FileError(f"{file}: textures other than EXR need the package OpenImageIO: pip install openimageio", 3,
+            raise FileError(f"{file}: textures other than EXR need the package OpenImageIO: pip install openimageio",
                             file) from None
         config = oiio.ImageSpec()
         config.attribute("oiio:UnassociatedAlpha", 1)
         picture = oiio.ImageInput.open(file, config)
         if picture is None:
-            raise FileError(f"{file}: {oiio.geterror().strip()}", 3, file)
+            raise FileError(f"{file}: {oiio.geterror().strip()}", file)
         spec = picture.spec()
         kind = {"uint8": "uint8", "uint16": "uint16"}.get(str(spec.format), "float")
         said = spec.get_string_attribute("oiio:ColorSpace")
         if not colorspace and (spec.getattribute("ICCProfile") is not None or
                                said not in (_LINEAR if kind == "float" else _SRGB)):
             raise FileError(f"{file}: says of its colors what is not read here ({said or 'a profile'}); give the texture a "
-                            "\"colorspace\"", 3, file)
+                            "\"colorspace\"", file)
         texels = picture.read_image(kind)
         if texels is None:
-            raise FileError(f"{file}: {picture.geterror().strip()}", 3, file)
+            raise FileError(f"{file}: {picture.geterror().strip()}", file)
         description.set_texels(name, np.ascontiguousarray(texels))

@@ -9,7 +9,6 @@
 #include "base/suggest.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture_io.h"
-#include "image/picture/png.h"
 #include "image/view/picture_view.h"
 #include "render/record/film_picture.h"
 #include "render/record/target_report.h"
@@ -28,7 +27,7 @@ template <class T, ssize_t... more, class Record>
 View<T, -1, -1, more...> field(Self self, const Record* first, const T* member, const char* needs) {
     const Image& image = image_of(self);
     if (!first)
-        throw Error(ExitCode::usage, fmt::format("this image does not have it; render it with layers=\"{}\"", needs));
+        throw Error(ErrorKind::usage, fmt::format("this image does not have it; render it with layers=\"{}\"", needs));
     constexpr auto step = static_cast<int64_t>(sizeof(Record) / sizeof(T));
     const auto row = step * static_cast<int64_t>(image.width());
     if constexpr (sizeof...(more) == 0)

@@ -18,13 +18,17 @@ namespace {
 
 constexpr std::pair<std::string_view, const char*> other_names[] = {{"resolution", "size"}, {"device", "devices"}};
 
+constexpr const char* kinds[] = {"usage", "scene", "file", "device", "failed", "target", "interrupted"};
+
 /// Turns an Error into the exception that cistula.errors makes of it.
 void translate(const std::exception_ptr& failure, void*) {
     try {
         std::rethrow_exception(failure);
     } catch (const Error& error) {
-        const nb::object made =
-            nb::module_::import_("cistula.errors").attr("of_message")(error.what(), static_cast<int>(error.code()));
+        const Error told = error.named(argument_name);
+        const nb::object made = nb::module_::import_("cistula.errors")
+                                    .attr("of_library")(told.what(), kinds[static_cast<size_t>(told.kind())],
+                                                        argument_name(told.subject()), told.place(), told.remedy());
         PyErr_SetObject(made.type().ptr(), made.ptr());
     }
 }
@@ -33,10 +37,10 @@ std::atomic<pid_t> working_process{0};
 
 }  // namespace
 
-std::string argument_name(const RequestKey& key) {
+std::string argument_name(std::string_view key) {
     for (const auto& [name, other] : other_names)
-        if (key.name == name) return other;
-    return std::string(key.name);
+        if (key == name) return other;
+    return std::string(key);
 }
 
 const std::vector<std::string_view>& frame_keys() {
@@ -52,13 +56,13 @@ RenderRequest request_of(const Keywords& keywords, const std::vector<std::string
     std::vector<std::string> names;
     for (const RequestKey& key : request_keys()) {
         if (std::find(allowed.begin(), allowed.end(), key.name) == allowed.end()) continue;
-        names.push_back(argument_name(key));
+        names.push_back(argument_name(key.name));
         for (const auto& [name, value] : keywords) {
             if (name != names.back()) continue;
             try {
                 key.set(request, value);
             } catch (const Error& error) {
-                throw Error(error.code(), fmt::format("{}={}: {}", name, value, error.what()));
+                throw Error(error.kind(), fmt::format("`{}`={}: {}", key.name, value, error.what()));
             }
         }
     }
@@ -67,7 +71,7 @@ RenderRequest request_of(const Keywords& keywords, const std::vector<std::string
             throw nb::type_error(fmt::format("there is no argument '{}'; {}", name,
                                              suggestion(name, {names.begin(), names.end()}, "arguments"))
                                      .c_str());
-    check_request(request, argument_name);
+    check_request(request);
     return request;
 }
 
@@ -134,7 +138,7 @@ NB_MODULE(_core, m) {
         "frame_arguments",
         [] {
             std::vector<std::string> names;
-            for (const std::string_view key : frame_keys()) names.push_back(argument_name(request_key(key)));
+            for (const std::string_view key : frame_keys()) names.push_back(argument_name(key));
             return names;
         },
         "The names of the keyword arguments that say how frames are rendered.");

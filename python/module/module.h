@@ -48,7 +48,7 @@ RenderRequest request_of(const Keywords& keywords, const std::vector<std::string
 /// The keys that say how frames are rendered.
 const std::vector<std::string_view>& frame_keys();
 /// What Python calls a key.
-std::string argument_name(const RequestKey& key);
+std::string argument_name(std::string_view key);
 
 /// Calls work() on a thread of its own, without the GIL. This thread has Python handle signals meanwhile and calls
 /// tick() with the GIL, 20 times a second; if either raises, `stop` is set, and the exception goes on once work() is

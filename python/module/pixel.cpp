@@ -55,10 +55,10 @@ std::shared_ptr<PixelReport> trace(const std::shared_ptr<SceneHandle>& scene, in
                                    const Keywords& keywords) {
     const SceneDescription& description = scene->description();
     const RenderRequest request = request_of(keywords, {"resolution", "supersample", "depth", "cutoff", "threads"});
-    const FrameSettings settings = frame_settings(request, description, argument_name);
+    const FrameSettings settings = frame_settings(request, description);
     if (x < 0 || y < 0 || x >= settings.full_width || y >= settings.full_height)
         throw Error(
-            ExitCode::usage,
+            ErrorKind::usage,
             fmt::format("x={}, y={}: is outside of the frame, which is {}x{}; its last pixel is {},{}", x, y,
                         settings.full_width, settings.full_height, settings.full_width - 1, settings.full_height - 1));
     const CameraFrame camera = camera_at(description.camera, frame);

@@ -11,9 +11,9 @@
 #include "image.h"
 #include "image/reader/picture_reader.h"
 #include "module.h"
-#include "render/frame_settings.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "render/record/frame_header.h"
+#include "render/renderer.h"
 #include "render/scene.h"
 #include "scene.h"
 #include "scene/compile/materials/required_effects.h"
@@ -30,7 +30,7 @@ class Frames {
     Frames(std::shared_ptr<SceneHandle> scene, std::vector<int> frames, const Keywords& keywords)
         : scene_(std::move(scene)),
           request_(request_of(keywords, frame_keys())),
-          settings_(frame_settings(request_, scene_->description(), argument_name)),
+          settings_(frame_settings(request_, scene_->description())),
           frames_(frames.begin(), frames.end()) {
         require_light_layers(request_.channels, *scene_->scene().layer_names());
         for (const int frame : frames) check_frame(frame);
@@ -67,14 +67,14 @@ class Frames {
 
   private:
     static void check_frame(int frame) {
-        if (frame < 0) throw Error(ExitCode::usage, fmt::format("frame={}: must be 0 or more", frame));
+        if (frame < 0) throw Error(ErrorKind::usage, fmt::format("frame={}: must be 0 or more", frame));
     }
 
     void finish(Image& image, const CameraFrame& camera) const {
         const SceneDescription& description = scene_->description();
         if (image.film.flags != 0)
-            throw Error(ExitCode::failed, fmt::format("{}: frame {} cannot be trusted: {}", description.source,
-                                                      camera.frame, describe_flags(image.film.flags, description)));
+            throw Error(ErrorKind::failed, fmt::format("{}: frame {} cannot be trusted: {}", description.source,
+                                                       camera.frame, describe_flags(image.film.flags, description)));
         image.settings = settings_;
         image.frame = camera.frame;
         image.picture = channels_of(image.film, request_.channels, &image.clamped);

@@ -10,8 +10,8 @@
 #include "cistula/model/effects.h"
 #include "render/record/film_difference.h"
 #include "scene/readers/read_scene.h"
-#include "testing/generated_scene.h"
 #include "testing/support/golden_suite.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::bench {
 namespace {

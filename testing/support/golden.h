@@ -15,7 +15,7 @@
 #include "render/record/film_difference.h"
 #include "render/record/film_picture.h"
 #include "scene/readers/read_scene.h"
-#include "testing/reference_renderers.h"
+#include "verify/reference_renderers.h"
 
 namespace cistula::golden {
 

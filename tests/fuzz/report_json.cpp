@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         fuzz::require(report::record_text(report::parse_record(text, "b.json")) == text);
         fuzz::require(!report::report_page({record}).empty());
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::file);
+        fuzz::check_error(error, ErrorKind::file);
     }
     return 0;
 }

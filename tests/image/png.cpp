@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "image/color/srgb_codes.h"
-#include "image/picture/png.h"
-#include "testing/support/png_pixels.h"
+#include "image/picture/picture_io.h"
+#include "testing/support/pictures/png_pixels.h"
+#include "testing/support/pictures/srgb_codes.h"
 #include "testing/support/special_values.h"
-#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {

@@ -9,7 +9,7 @@
 #include "cistula/lanes/lane_shadow.h"
 #include "cistula/lanes/lane_sums.h"
 #include "cistula/lanes/lane_surface.h"
-#include "testing/draw/draw.h"
+#include "verify/draw.h"
 
 using namespace cistula;
 
@@ -62,7 +62,7 @@ class LanesTest : public ::testing::Test {
         ASSERT_EQ(found.bits(), bits) << what;
     }
 
-    parity::Draw draw_{1, 38};
+    verify::Draw draw_{1, 38};
 };
 
 using Reals = ::testing::Types<float, double>;
@@ -152,10 +152,10 @@ TYPED_TEST(LanesTest, LossesAreThoseOfNumbersUpToWhereNothingPasses) {
         }
         add_loss(LaneMask<8, n>(true), absorption_loss(depths), sums);
         const uint32_t mask = uint32_t(this->draw_.below(1u << n));
-        const auto who = widened(MaskOf<Real>::of_bits(mask));
+        const auto active = widened(MaskOf<Real>::of_bits(mask));
         for (int term = 0; term < 6; ++term) {
             const uint64_t loss = this->draw_.one_in(4) ? largest_loss : this->draw_.shifted(0, 63);
-            add_loss(who, loss, sums);
+            add_loss(active, loss, sums);
             for (int i = 0; i < n; ++i) add_loss((mask >> i & 1u) != 0, loss, expected[i]);
         }
         const Real shares = uncached_transmittance<TypeParam>(sums);

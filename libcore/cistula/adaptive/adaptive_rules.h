@@ -10,10 +10,11 @@ namespace cistula {
 /// Statistics of a cell's corner samples, and of the middle sample of a whole pixel. Color differences are maxima over
 /// the channels.
 struct CornerFindings {
-    bool differs = false;          // whether the path hashes differ
-    uint32_t most_rays = 0;        // rays of the largest tree
-    int64_t range = 0;             // between the darkest and the brightest corner
-    int64_t across = 0, down = 0;  // along the upper or lower side; along the left or right side
+    bool differs = false;    // whether the path hashes differ
+    uint32_t most_rays = 0;  // rays of the largest tree
+    int64_t range = 0;       // between the darkest and the brightest corner
+    int64_t across = 0;      // along the upper or lower side
+    int64_t down = 0;        // along the left or right side
 
     CISTULA_INLINE static CornerFindings of(const LatticeSample* samples, const LatticeCell& cell) {
         const bool has_middle = cell.is_whole();
@@ -24,9 +25,12 @@ struct CornerFindings {
         for (int c = 1; c < 4; ++c) found.add(*at[c], *at[0]);
         if (has_middle) found.add(samples[lattice_middle], *at[0]);
         for (int c = 0; c < 3; ++c) {
-            const int64_t a = at[0]->color(c), b = at[1]->color(c), d = at[2]->color(c), e = at[3]->color(c);
-            int64_t low = min_or_second(min_or_second(a, b), min_or_second(d, e)),
-                    high = max_or_second(max_or_second(a, b), max_or_second(d, e));
+            const int64_t a = at[0]->color(c);
+            const int64_t b = at[1]->color(c);
+            const int64_t d = at[2]->color(c);
+            const int64_t e = at[3]->color(c);
+            int64_t low = min_or_second(min_or_second(a, b), min_or_second(d, e));
+            int64_t high = max_or_second(max_or_second(a, b), max_or_second(d, e));
             if (has_middle) {
                 const int64_t m = samples[lattice_middle].color(c);
                 low = min_or_second(low, m);
@@ -116,7 +120,9 @@ struct SideCrossed {
     CISTULA_INLINE static bool stands_out(const LatticeSettings& settings, const LatticeSample& a,
                                           const LatticeSample& b, const LatticeSample& beside, int64_t area) {
         for (int c = 0; c < 3; ++c) {
-            const int64_t one = a.color(c), other = b.color(c), there = beside.color(c);
+            const int64_t one = a.color(c);
+            const int64_t other = b.color(c);
+            const int64_t there = beside.color(c);
             const int64_t beyond = max_or_second(min_or_second(one, other) - there, there - max_or_second(one, other));
             if (3 * beyond * area > 2 * settings.target * lattice_samples) return true;
         }

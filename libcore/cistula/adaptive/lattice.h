@@ -70,7 +70,9 @@ class LatticePixel {
                                 LargeTrees::splits(settings, now.seen, cell.area());
             if (cell.area() == 4 || !splits) continue;
             const bool first = cell.is_whole();
-            const int in_four = first ? 11 : 12, in_two = 4;  // the first split has its middle sample already
+            // the first split has its middle sample already
+            const int in_four = first ? 11 : 12;
+            const int in_two = 4;
             if ((first || wants_four(settings, now.seen, cell)) && now.due + in_four <= settings.most) {
                 now.due += in_four;
                 for (int q = 0; q < 4; ++q) add_child(now, i, q, cell.part(q & 1 ? 1 : -1, q & 2 ? 1 : -1));

@@ -21,7 +21,8 @@ template <class Real>
 CISTULA_INLINE MaskOf<Real> misses_bounds(const BoundingSphere<ScalarOf<Real>>& sphere, const Vec3<Real>& origin,
                                           const Vec3<Real>& direction, Real limit) {
     const Vec3<Real> to_center = spread<Real>(sphere.center) - origin;
-    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - sphere.padded_square;
+    const Real ahead = dot(to_center, direction);
+    const Real rest = dot(to_center, to_center) - sphere.padded_square;
     const Real beyond = limit * (Real(2) * ahead - limit);
     const Real beside = select(ahead < Real(0), Real(0), ahead * ahead);
     return rest > select(ahead > limit, beyond, beside);

@@ -9,7 +9,8 @@ namespace cistula::convex_device {
 /// infinity.
 template <class Real>
 struct Interval {
-    Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
+    Real enter = -RealTraits<Real>::infinity;
+    Real leave = RealTraits<Real>::infinity;
     uint32_t enter_slab = 0;  // scene-wide number of the first slab with this value
 };
 
@@ -27,7 +28,8 @@ struct SlabCrossing {
 
     CISTULA_INLINE SlabCrossing(const Slab<Real>& slab, const Vec3<Real>& origin, const Vec3<Real>& direction) {
         slope = dot(slab.normal, direction);
-        const Real no = dot(slab.normal, origin), inverse = reciprocal(slope);
+        const Real no = dot(slab.normal, origin);
+        const Real inverse = reciprocal(slope);
         at_low = (slab.low - no) * inverse;
         at_high = (slab.high - no) * inverse;
     }

@@ -10,7 +10,8 @@ namespace cistula::convex_host {
 /// infinity.
 template <class Real>
 struct Interval {
-    Real enter = -RealTraits<Real>::infinity, leave = RealTraits<Real>::infinity;
+    Real enter = -RealTraits<Real>::infinity;
+    Real leave = RealTraits<Real>::infinity;
 };
 
 /// The smallest t at which a line leaves a slab.

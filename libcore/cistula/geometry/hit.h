@@ -60,7 +60,9 @@ template <class Real>
 struct Hit {
     Real t = RealTraits<Real>::infinity;
     KeyOf<Real> key = KeyFormat<Real>::none;
-    Real u = 0, v = 0;           // triangles: weights of the second and third corner
+    // triangles: weights of the second and third corner
+    Real u = 0;
+    Real v = 0;
     IndexOf<Real> slot = 0;      // triangles: 8 cluster + lane
     MaskOf<Real> enters = true;  // triangles: against the normal; the sign of det, not of a rounded dot product
     /// The smallest t of mesh crossings that were refused because they come from the wrong side (triangle.h).
@@ -68,16 +70,16 @@ struct Hit {
 
     CISTULA_INLINE MaskOf<Real> found() const { return key != KeyFormat<Real>::none; }
 
-    /// Replaces the hit by another crossing where `who` holds, keeping `wrong_side_t`.
-    CISTULA_INLINE void take(const MaskOf<Real>& who, const Real& other_t, const KeyOf<Real>& other_key,
+    /// Replaces the hit by another crossing where `active` holds, keeping `wrong_side_t`.
+    CISTULA_INLINE void take(const MaskOf<Real>& active, const Real& other_t, const KeyOf<Real>& other_key,
                              const Real& other_u, const Real& other_v, const IndexOf<Real>& other_slot,
                              const MaskOf<Real>& other_enters) {
-        assign_where(who, t, other_t);
-        assign_where(who, key, other_key);
-        assign_where(who, u, other_u);
-        assign_where(who, v, other_v);
-        assign_where(who, slot, other_slot);
-        assign_where(who, enters, other_enters);
+        assign_where(active, t, other_t);
+        assign_where(active, key, other_key);
+        assign_where(active, u, other_u);
+        assign_where(active, v, other_v);
+        assign_where(active, slot, other_slot);
+        assign_where(active, enters, other_enters);
     }
 
     /// Whether another crossing comes first: the hit with the smallest (t, key) is kept.

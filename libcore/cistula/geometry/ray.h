@@ -88,7 +88,8 @@ struct InteriorList {
 /// The interior list of scenes whose closed solids are all convex and do not touch, so that a ray is inside at most
 /// one. Its state lets a ray enter only from outside and leave only from inside.
 struct SingleInterior {
-    static constexpr bool contacts = false, meshes = false;
+    static constexpr bool contacts = false;
+    static constexpr bool meshes = false;
 
     uint32_t solid = no_solid;
 
@@ -134,15 +135,15 @@ struct Ray {
     Media media;                          // the interior list at `after`
 
     CISTULA_INLINE bool fresh() const { return after.t < Real(0); }
-    /// Takes another ray where `who` holds; in lanes.
-    CISTULA_INLINE void take_where(const MaskOf<Real>& who, const Ray& other) {
-        assign_where(who, origin, other.origin);
-        assign_where(who, direction, other.direction);
-        assign_where(who, from_solid, other.from_solid);
-        assign_where(who, from_face, other.from_face);
-        assign_where(who, after.t, other.after.t);
-        assign_where(who, after.key, other.after.key);
-        media.take_where(who, other.media);
+    /// Takes another ray where `active` holds; in lanes.
+    CISTULA_INLINE void take_where(const MaskOf<Real>& active, const Ray& other) {
+        assign_where(active, origin, other.origin);
+        assign_where(active, direction, other.direction);
+        assign_where(active, from_solid, other.from_solid);
+        assign_where(active, from_face, other.from_face);
+        assign_where(active, after.t, other.after.t);
+        assign_where(active, after.key, other.after.key);
+        media.take_where(active, other.media);
     }
     /// Whether the ray's first crossing of a mesh must come from the side on which the ray starts.
     CISTULA_INLINE bool by_side() const { return after.t <= Real(-1); }

@@ -73,38 +73,52 @@ struct HalfSpace {
 /// The part of a line inside a convex solid, if the ray enters it.
 template <class Real>
 struct EntryBeside {
-    Real enter = 0, leave = 0;  // enter < 0: the ray is inside from its start on
-    uint32_t face = no_face;    // the face by which it enters, or no_face if it does not
+    Real enter = 0;  // less than 0: the ray is inside from its start on
+    Real leave = 0;
+    uint32_t face = no_face;  // the face by which it enters, or no_face if it does not
 };
+
+/// How far in front of a face a start may be computed that lies on it, in units of s u M.
+template <class Real>
+inline constexpr Real start_margin = 16;
 
 /// Where a ray that starts on a shared plane enters a convex solid that has `own_face` on it and is not around the ray
 /// (docs/rules.md, 11, line 14). The rounding of the start lets no face decide by itself: the own face never counts,
-/// and a face within 16 s u M of the start is not passed outward. Not inlined, so its arguments are by value.
+/// and a face within start_margin s u M of the start is not passed outward. Not inlined, so its arguments are by value.
 template <class Real>
 CISTULA_NOINLINE EntryBeside<Real> entry_beside(const SceneView<Real>& scene, uint32_t index, uint32_t own_face,
                                                 Vec3<Real> origin, Vec3<Real> direction, Real slack) {
     const Solid& solid = scene.solids[index];
     EntryBeside<Real> entry{-RealTraits<Real>::infinity, RealTraits<Real>::infinity, no_face};
     Real farthest = -RealTraits<Real>::infinity;
-    uint32_t entered_before = no_face, entered = no_face;
+    uint32_t entered_before = no_face;
+    uint32_t entered = no_face;
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         Slab<Real> slab = scene.slabs[solid.first_slab + i];
         for (uint32_t side = 0; side < 2; ++side) {
             if (side == 0 && slab.low == -RealTraits<Real>::infinity) continue;
             const HalfSpace<Real> half = HalfSpace<Real>::of(slab, side);
-            const Real slope = dot(half.normal, direction), out = half.outside(origin);
+            const Real slope = dot(half.normal, direction);
+            const Real out = half.outside(origin);
             if (2 * i + side == own_face) {
                 if (slope > Real(0)) return {};
             } else {
-                if (out >= Real(-16) * slack && !(slope < Real(0))) return {};
-                if (slope < Real(0) && out > farthest) farthest = out, entered_before = 2 * i + side;
+                const bool leaves_at_start = out >= -start_margin<Real> * slack && !(slope < Real(0));
+                if (leaves_at_start) return {};
+                if (slope < Real(0) && out > farthest) {
+                    farthest = out;
+                    entered_before = 2 * i + side;
+                }
             }
         }
         if (own_face == 2 * i) slab.low = -RealTraits<Real>::infinity;
         if (own_face == 2 * i + 1) slab.high = RealTraits<Real>::infinity;
         Real enter, leave;
         cross_slab(slab.normal, slab.low, slab.high, origin, direction, enter, leave);
-        if (enter > entry.enter) entry.enter = enter, entered = leaving_face(i, dot(slab.normal, direction)) ^ 1u;
+        if (enter > entry.enter) {
+            entry.enter = enter;
+            entered = leaving_face(i, dot(slab.normal, direction)) ^ 1u;
+        }
         entry.leave = min_no_nan(leave, entry.leave);
     }
     if (!(entry.enter <= entry.leave && entry.leave > Real(0))) return {};

@@ -19,12 +19,15 @@ template <class Real>
 CISTULA_INLINE void cross_slab(const Vec3<Real>& normal, Real low, Real high, const Vec3<Real>& origin,
                                const Vec3<Real>& direction, Real& enter, Real& leave) {
     constexpr auto infinity = RealTraits<Real>::infinity;
-    const Real nd = dot(normal, direction), no = dot(normal, origin);
+    const Real nd = dot(normal, direction);
+    const Real no = dot(normal, origin);
     const MaskOf<Real> parallel = magnitude(nd) < least_slope<ScalarOf<Real>>;
     const Real inverse = reciprocal(select(parallel, Real(1), nd));
-    const Real at_low = (low - no) * inverse, at_high = (high - no) * inverse;
+    const Real at_low = (low - no) * inverse;
+    const Real at_high = (high - no) * inverse;
     const Real beside = select((no >= high) | (no <= low), Real(infinity), Real(-infinity));
-    const Real first = min_no_nan(at_low, at_high), last = max_no_nan(at_low, at_high);
+    const Real first = min_no_nan(at_low, at_high);
+    const Real last = max_no_nan(at_low, at_high);
     enter = select(parallel, beside, first);
     leave = select(parallel, Real(infinity), last);
 }

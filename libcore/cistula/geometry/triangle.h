@@ -23,7 +23,9 @@ struct TriangleRay {
     Real ox, oy, oz;  // origin along kx, ky, kz
 
     CISTULA_INLINE static TriangleRay of(const Vec3<Real>& origin, const Vec3<Real>& direction) {
-        const Real x = magnitude(direction.x), y = magnitude(direction.y), z = magnitude(direction.z);
+        const Real x = magnitude(direction.x);
+        const Real y = magnitude(direction.y);
+        const Real z = magnitude(direction.z);
         TriangleRay r;
         r.kz = select(x >= y, select(x >= z, Axis(0), Axis(2)), select(y >= z, Axis(1), Axis(2)));
         r.kx = select(r.kz == 2, Axis(0), r.kz + 1);
@@ -105,7 +107,8 @@ struct ShearedTriangle {
     }
     CISTULA_INLINE void find_edges() {
         for (int c = 0; c < 3; ++c) {
-            const int a = c == 2 ? 0 : c + 1, b = a == 2 ? 0 : a + 1;
+            const int a = c == 2 ? 0 : c + 1;
+            const int b = a == 2 ? 0 : a + 1;
             edge[c] = difference_of_products(x[b], y[a], y[b], x[a]);
         }
     }
@@ -120,8 +123,10 @@ struct ShearedTriangle {
     CISTULA_INLINE MaskOf<Real> owns_zero_edges(Real sign) const {
         MaskOf<Real> owns = true;
         for (int c = 0; c < 3; ++c) {
-            const int a = c == 2 ? 0 : c + 1, b = a == 2 ? 0 : a + 1;
-            const Real dx = (x[b] - x[a]) * sign, dy = (y[b] - y[a]) * sign;
+            const int a = c == 2 ? 0 : c + 1;
+            const int b = a == 2 ? 0 : a + 1;
+            const Real dx = (x[b] - x[a]) * sign;
+            const Real dy = (y[b] - y[a]) * sign;
             owns &= (edge[c] != Real(0)) | (dy > Real(0)) | ((dy == Real(0)) & (dx > Real(0)));
         }
         return owns;
@@ -154,13 +159,22 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
         pz[c] = cluster.corner[c][ray.kz];
     }
     alignas(32) int32_t within[cluster_lanes];
-    const Real ox = ray.ox, oy = ray.oy, oz = ray.oz, sx = ray.sx, sy = ray.sy;
+    const Real ox = ray.ox;
+    const Real oy = ray.oy;
+    const Real oz = ray.oz;
+    const Real sx = ray.sx;
+    const Real sy = ray.sy;
     CISTULA_LANES
     for (int lane = 0; lane < cluster_lanes; ++lane) {
-        const Real az = pz[0][lane] - oz, bz = pz[1][lane] - oz, cz = pz[2][lane] - oz;
-        const Real ax = sheared(px[0][lane] - ox, sx, az), ay = sheared(py[0][lane] - oy, sy, az);
-        const Real bx = sheared(px[1][lane] - ox, sx, bz), by = sheared(py[1][lane] - oy, sy, bz);
-        const Real cx = sheared(px[2][lane] - ox, sx, cz), cy = sheared(py[2][lane] - oy, sy, cz);
+        const Real az = pz[0][lane] - oz;
+        const Real bz = pz[1][lane] - oz;
+        const Real cz = pz[2][lane] - oz;
+        const Real ax = sheared(px[0][lane] - ox, sx, az);
+        const Real ay = sheared(py[0][lane] - oy, sy, az);
+        const Real bx = sheared(px[1][lane] - ox, sx, bz);
+        const Real by = sheared(py[1][lane] - oy, sy, bz);
+        const Real cx = sheared(px[2][lane] - ox, sx, cz);
+        const Real cy = sheared(py[2][lane] - oy, sy, cz);
         const Real u = difference_of_products(cx, by, cy, bx);
         const Real v = difference_of_products(ax, cy, ay, cx);
         const Real w = difference_of_products(bx, ay, by, ax);
@@ -180,7 +194,10 @@ CISTULA_INLINE uint32_t cluster_candidates(const Cluster<Real>& cluster, const T
 template <class Real, class Shear>
 CISTULA_INLINE MaskOf<Real> cross_triangle(const TriangleRay<Real>& ray, const Real (&edge)[3], const Real (&z)[3],
                                            const Shear& shear, TriangleCrossing<Real>& crossing) {
-    const Real u = edge[0], v = edge[1], w = edge[2], det = u + v + w;
+    const Real u = edge[0];
+    const Real v = edge[1];
+    const Real w = edge[2];
+    const Real det = u + v + w;
     MaskOf<Real> owned = true;
     const MaskOf<Real> on_edge = (u == Real(0)) | (v == Real(0)) | (w == Real(0));
     if (any(on_edge)) {
@@ -241,7 +258,8 @@ CISTULA_INLINE bool starts_on_flat_sheet(const Scene& scene, uint32_t cluster, c
 /// `off`: signed distance of the origin from the plane; `slant`: direction . normal.
 template <class Real>
 CISTULA_INLINE MaskOf<Real> clears_plane(Real off, Real slant, Real limit) {
-    const Real ahead = select(off < Real(0), -slant, slant), far_off = magnitude(off);
+    const Real ahead = select(off < Real(0), -slant, slant);
+    const Real far_off = magnitude(off);
     return (far_off > Real(plane_padding)) & (far_off + ahead * limit > Real(plane_padding));
 }
 
@@ -256,8 +274,9 @@ CISTULA_INLINE MaskOf<Real> crosses_outside_sheet(const SheetPlane<ScalarOf<Real
                                                   const Vec3<Real>& direction, Real off, Real slant) {
     const Vec3<Real> at = along(origin, -off * reciprocal(slant), direction) - spread<Real>(plane.center);
     const MaskOf<Real> steep = magnitude(slant) > least_slant<ScalarOf<Real>>;
-    const MaskOf<Real> beside_x = magnitude(at.x) > plane.half.x, beside_y = magnitude(at.y) > plane.half.y,
-                       beside_z = magnitude(at.z) > plane.half.z;
+    const MaskOf<Real> beside_x = magnitude(at.x) > plane.half.x;
+    const MaskOf<Real> beside_y = magnitude(at.y) > plane.half.y;
+    const MaskOf<Real> beside_z = magnitude(at.z) > plane.half.z;
     return steep & (beside_x | beside_y | beside_z);
 }
 
@@ -266,7 +285,8 @@ template <class Real>
 CISTULA_INLINE MaskOf<Real> misses_flat_sheet(const SheetPlane<ScalarOf<Real>>& plane, const IndexOf<Real>& from,
                                               const Vec3<Real>& origin, const Vec3<Real>& direction, Real limit) {
     const Vec3<Real> normal = spread<Real>(plane.normal);
-    const Real off = dot(normal, origin) - plane.offset, slant = dot(normal, direction);
+    const Real off = dot(normal, origin) - plane.offset;
+    const Real slant = dot(normal, direction);
     // Both tests without branches between them, so that their values are computed at once.
     const MaskOf<Real> flat = plane.flat != 0;
     const MaskOf<Real> misses = flat & ((from == plane.solid) | clears_plane(off, slant, limit));
@@ -303,14 +323,14 @@ CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t triangle, Real ow
     return own;
 }
 
-/// Takes accepted crossings, where `who` holds, as `best` if they are the rays' next.
+/// Takes accepted crossings, where `active` holds, as `best` if they are the rays' next.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE void closest_crossing(const Scene& scene, const MaskOf<Real>& who, uint32_t solid, uint32_t triangle,
+CISTULA_INLINE void closest_crossing(const Scene& scene, const MaskOf<Real>& active, uint32_t solid, uint32_t triangle,
                                      uint32_t slot, const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray,
                                      Hit<Real>& best) {
     const MaskOf<Real> own = ray.from_solid == solid;
     const Real t = crossing_time(scene, triangle, c.t, ray);
-    const MaskOf<Real> meets = who & (t >= Real(0)) & !(own & (ray.from_face == triangle));
+    const MaskOf<Real> meets = active & (t >= Real(0)) & !(own & (ray.from_face == triangle));
     if (!any(meets)) return;
     CrossingKind kind = CrossingKind::sheet;
     if constexpr (Media::meshes) {

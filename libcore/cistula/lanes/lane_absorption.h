@@ -15,20 +15,21 @@ struct Absorption<true, Lanes<T, n>> {
     MaskOf<Real> summed;
 
     template <class Media, class Scene>
-    CISTULA_INLINE void begin(const Scene& scene, const Media& media, const Real& t, const MaskOf<Real>& who) {
+    CISTULA_INLINE void begin(const Scene& scene, const Media& media, const Real& t, const MaskOf<Real>& active) {
         summed = false;
         if (!scene.absorbing.any) return;
-        const MaskOf<Real> from = who & (t > Real(0)) & absorbs(scene, media);
+        const MaskOf<Real> from = active & (t > Real(0)) & absorbs(scene, media);
         if (any(from)) add(scene, media, t, -1, from);
     }
 
     /// Records that rays pass faces at t without shading, which changes the media around them.
     template <class Media, class Scene>
     CISTULA_INLINE void change(const Scene& scene, const Media& before, const Media& beyond, const Real& t,
-                               const MaskOf<Real>& who) {
+                               const MaskOf<Real>& active) {
         if (!scene.absorbing.any) return;
-        for_each_lane(who, [&](int lane) {
-            const InteriorSet from = before.of(lane), to = beyond.of(lane);
+        for_each_lane(active, [&](int lane) {
+            const InteriorSet from = before.of(lane);
+            const InteriorSet to = beyond.of(lane);
             clear(lane);
             of[lane].add_all(scene, from.among([&](uint32_t i) { return !to.contains(i); }), t[lane], 1);
             of[lane].add_all(scene, to.among([&](uint32_t i) { return !from.contains(i); }), t[lane], -1);
@@ -37,10 +38,10 @@ struct Absorption<true, Lanes<T, n>> {
 
     template <class Media, class Scene>
     CISTULA_INLINE void dim(const Scene& scene, const Media& media, const Real& t, Vec3<Real>& weight,
-                            const MaskOf<Real>& who) {
+                            const MaskOf<Real>& active) {
         if (!scene.absorbing.any) return;
-        const MaskOf<Real> inside = who & absorbs(scene, media);
-        if (any(inside | (who & summed))) dim_inside(scene, media, t, weight, inside, who);
+        const MaskOf<Real> inside = active & absorbs(scene, media);
+        if (any(inside | (active & summed))) dim_inside(scene, media, t, weight, inside, active);
     }
 
   private:
@@ -55,8 +56,8 @@ struct Absorption<true, Lanes<T, n>> {
     }
     template <class Media, class Scene>
     CISTULA_NOINLINE void add(const Scene& scene, const Media& media, const Real& t, int sign,
-                              const MaskOf<Real>& who) {
-        for_each_lane(who, [&](int lane) {
+                              const MaskOf<Real>& active) {
+        for_each_lane(active, [&](int lane) {
             clear(lane);
             of[lane].add_all(scene, media.of(lane), t[lane], sign);
         });
@@ -64,8 +65,8 @@ struct Absorption<true, Lanes<T, n>> {
 
     template <class Media, class Scene>
     CISTULA_NOINLINE void dim_inside(const Scene& scene, const Media& media, const Real& t, Vec3<Real>& weight,
-                                     const MaskOf<Real>& inside, const MaskOf<Real>& who) {
-        MaskOf<Real> single = who & summed;
+                                     const MaskOf<Real>& inside, const MaskOf<Real>& active) {
+        MaskOf<Real> single = active & summed;
         const double farthest = 4 * double(scene.extent);
         Vec3<Real> sigma(Real(0));
         for_each_value(inside & !summed, media.among(scene.absorbing), [&](uint32_t bits, const MaskOf<Real>& same) {

@@ -62,9 +62,9 @@ class LaneQueue<LaneBranch<Lanes<T, n>, Media, Weight>> {
     bool is_empty() const { return count_ == 0; }
     void clear() { count_ = 0; }
 
-    /// Adds the branches where `who` holds. There must be fewer than n.
-    CISTULA_INLINE void push(const Entry& branch, const MaskOf<Real>& who) {
-        const uint32_t bits = who.bits();
+    /// Adds the branches where `active` holds. There must be fewer than n.
+    CISTULA_INLINE void push(const Entry& branch, const MaskOf<Real>& active) {
+        const uint32_t bits = active.bits();
         int row = 0;
         each(branch, [&](const auto& value) {
             using Value = std::remove_cvref_t<decltype(value)>;
@@ -124,12 +124,12 @@ template <class Entry>
 class LaneQueues {
   public:
     template <class Mask>
-    CISTULA_INLINE void push(const Entry& branch, const Mask& who) {
+    CISTULA_INLINE void push(const Entry& branch, const Mask& active) {
         const size_t number = 2 * size_t(branch.depth) + (branch.mirrored ? 1 : 0);
         while (queues_.size() <= number) queues_.push_back(std::make_unique<LaneQueue<Entry>>());
         LaneQueue<Entry>& queue = *queues_[number];
         const bool was_full = queue.is_full();
-        queue.push(branch, who);
+        queue.push(branch, active);
         if (queue.is_full() && !was_full) full_.push_back(uint32_t(number));
         if (number < lowest_) lowest_ = number;
     }

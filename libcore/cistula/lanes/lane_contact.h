@@ -62,7 +62,8 @@ CISTULA_INLINE auto bodies_at_start(const LaneScene<T>& scene, const Ray<Lanes<T
 /// EntryBeside in lanes, of rays that enter.
 template <class Real>
 struct LaneEntries {
-    Real enter = 0, leave = 0;
+    Real enter = 0;
+    Real leave = 0;
     IndexOf<Real> face = 0;
     MaskOf<Real> found = false;
 };
@@ -71,9 +72,9 @@ struct LaneEntries {
 template <class T, int n>
 CISTULA_NOINLINE LaneEntries<Lanes<T, n>> entries_beside(const LaneScene<T>& scene, uint32_t index,
                                                          const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
-                                                         const MaskOf<Lanes<T, n>>& who) {
+                                                         const MaskOf<Lanes<T, n>>& active) {
     LaneEntries<Lanes<T, n>> entries;
-    for_each_lane(who, [&](int lane) {
+    for_each_lane(active, [&](int lane) {
         const auto plane = uint32_t(ray.from_plane[lane]);
         const EntryBeside<T> one =
             entry_beside(static_cast<const SceneView<T>&>(scene), index, face_on(scene, scene.solids[index], plane),
@@ -110,24 +111,24 @@ CISTULA_INLINE MaskOf<Real> is_miscounted(const Ray<Real, Media>& ray, const Hit
            (is_kind(hit.key, CrossingKind::leave) & !is_inside);
 }
 
-/// Finds the events of hits where `who` holds (surface_event.h), and returns the rays whose media lanes cannot hold.
+/// Finds the events of hits where `active` holds (surface_event.h), and returns the rays whose media lanes cannot hold.
 /// Crossings that share a plane are gathered lane by lane.
 template <class E, class T, int n>
 CISTULA_INLINE MaskOf<Lanes<T, n>> resolve_event(const LaneScene<T>& scene,
                                                  const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
-                                                 const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& who,
+                                                 const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& active,
                                                  SurfaceEvent<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& event) {
     MaskOf<Lanes<T, n>> strays = false;
     event.begin(ray, hit);
     if constexpr (E::has(effect_transmission | effect_insides))  // else no ray goes on behind a crossing
     {
-        if (scene.meshes.any) strays = who & is_miscounted(ray, hit);
-        if (scene.named) strays |= who & !event.fits;
+        if (scene.meshes.any) strays = active & is_miscounted(ray, hit);
+        if (scene.named) strays |= active & !event.fits;
     }
     if constexpr (E::has(effect_contacts)) {
         using Index = IndexOf<Lanes<T, n>>;
         if (scene.shared_planes.empty()) return strays;
-        const auto bodies = who & !strays & !is_kind(hit.key, CrossingKind::sheet);
+        const auto bodies = active & !strays & !is_kind(hit.key, CrossingKind::sheet);
         if (!any(bodies)) return strays;
         const Index planes = planes_of<Lanes<T, n>>(scene, key_solid(hit.key), key_face(hit.key));
         for_each_lane(bodies & (planes != Index(ScalarOf<Index>(no_plane))), [&](int lane) {
@@ -178,15 +179,15 @@ CISTULA_NOINLINE bool gather_in_lane(const LaneScene<T>& scene, const Ray<Lanes<
 template <class T>
 inline constexpr T farthest_start = T(64) * near_start<T>;
 
-/// Hits of `who` near shared planes where a mesh with a face there may be around new rays (ContactStart).
+/// Hits of `active` near shared planes where a mesh with a face there may be around new rays (ContactStart).
 template <class T, int n>
 CISTULA_NOINLINE MaskOf<Lanes<T, n>> find_meshes_at_starts(const LaneScene<T>& scene, const Vec3<Lanes<T, n>>& met,
                                                            const IndexOf<Lanes<T, n>>& solids,
-                                                           const MaskOf<Lanes<T, n>>& who) {
+                                                           const MaskOf<Lanes<T, n>>& active) {
     using Real = Lanes<T, n>;
     constexpr T start_reach = T(0x1p-8);  // of squares of distances, for starts that near the hits
     MaskOf<Real> found = false;
-    for_each_value(who, solids, [&](uint32_t index, const MaskOf<Real>& same) {
+    for_each_value(active, solids, [&](uint32_t index, const MaskOf<Real>& same) {
         const Solid& solid = scene.solids[index];
         for (uint32_t i = 0; i < solid.near_count; ++i) {
             const SharedPlane<T>& plane = scene.shared_planes[scene.near_planes[solid.first_near + i]];
@@ -204,19 +205,20 @@ CISTULA_NOINLINE MaskOf<Lanes<T, n>> find_meshes_at_starts(const LaneScene<T>& s
     return found;
 }
 
-/// Hits of `who` from which new rays may have to count the meshes around them (count_meshes), or may be inside more
+/// Hits of `active` from which new rays may have to count the meshes around them (count_meshes), or may be inside more
 /// solids than lanes can name, and perhaps others.
 template <class E, class T, int n>
 CISTULA_INLINE MaskOf<Lanes<T, n>> meshes_at_starts(const LaneScene<T>& scene,
                                                     const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
-                                                    const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& who) {
+                                                    const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& active) {
     if constexpr (E::has(effect_contacts))
         if (!scene.shared_planes.empty()) {
             MaskOf<Lanes<T, n>> found = false;
             if (scene.meshes.any)
-                found = find_meshes_at_starts(scene, along(ray.origin, hit.t, ray.direction), key_solid(hit.key), who);
+                found =
+                    find_meshes_at_starts(scene, along(ray.origin, hit.t, ray.direction), key_solid(hit.key), active);
             if (scene.named)  // of a ray inside several solids, starts may be inside too many
-                for_each_lane(who & !found & !ray.media.empty(), [&](int lane) {
+                for_each_lane(active & !found & !ray.media.empty(), [&](int lane) {
                     if (ray.media.of(lane).count() > 1) found |= MaskOf<Lanes<T, n>>::of_bits(1u << lane);
                 });
             return found;
@@ -245,14 +247,14 @@ CISTULA_NOINLINE void correct_lane(const LaneScene<T>& scene, const Ray<Lanes<T,
 /// there, above it where `up` holds.
 template <class T, int n>
 CISTULA_INLINE void leave_bodies(const LaneScene<T>& scene, uint32_t plane, const MaskOf<Lanes<T, n>>& up,
-                                 const MaskOf<Lanes<T, n>>& who, LaneMedia<Lanes<T, n>>& media) {
+                                 const MaskOf<Lanes<T, n>>& active, LaneMedia<Lanes<T, n>>& media) {
     using Index = IndexOf<Lanes<T, n>>;
     if (!scene.named) {
         const PlaneBodies& bodies = scene.plane_bodies[plane];
         const Index beside = select(up, Index(int(bodies.below)), Index(int(bodies.above)));
-        return assign_where(who, media.bits, media.bits & (beside ^ Index(-1)));
+        return assign_where(active, media.bits, media.bits & (beside ^ Index(-1)));
     }
-    for_each_lane(who & !media.empty(), [&](int lane) {
+    for_each_lane(active & !media.empty(), [&](int lane) {
         const int other_side = (up.bits() >> lane & 1u) != 0 ? -1 : 1;
         const InteriorSet left =
             media.of(lane).among([&](uint32_t i) { return inner_side(scene, i, plane) != other_side; });
@@ -260,29 +262,31 @@ CISTULA_INLINE void leave_bodies(const LaneScene<T>& scene, uint32_t plane, cons
     });
 }
 
-/// Corrects the origins and the media of rays that start at hits where `who` holds (start_at_contact). Starts near one
-/// plane alone are lifted off it at once, others lane by lane.
+/// Corrects the origins and the media of rays that start at hits where `active` holds (start_at_contact). Starts near
+/// one plane alone are lifted off it at once, others lane by lane.
 template <class E, class T, int n>
 CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& parent,
                                    const SurfaceEvent<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& event,
-                                   const Vec3<Lanes<T, n>>& normal, bool beyond, const MaskOf<Lanes<T, n>>& who,
+                                   const Vec3<Lanes<T, n>>& normal, bool beyond, const MaskOf<Lanes<T, n>>& active,
                                    Vec3<Lanes<T, n>>& origin, LaneMedia<Lanes<T, n>>& media) {
     if constexpr (E::has(effect_contacts)) {
         using Real = Lanes<T, n>;
         using Index = IndexOf<Real>;
         if (scene.shared_planes.empty()) return;
-        const Index solids = key_solid(event.hit.key), own = planes_of<Real>(scene, solids, key_face(event.hit.key));
-        const Vec3<Real> toward = beyond ? -normal : normal, met = along(parent.origin, event.hit.t, parent.direction);
+        const Index solids = key_solid(event.hit.key);
+        const Index own = planes_of<Real>(scene, solids, key_face(event.hit.key));
+        const Vec3<Real> toward = beyond ? -normal : normal;
+        const Vec3<Real> met = along(parent.origin, event.hit.t, parent.direction);
         Vec3<Real> start = origin;
         LaneMedia<Real> around = media;
-        for_each_value(who & (own != Index(ScalarOf<Index>(no_plane))), own, [&](uint32_t number, const auto& same) {
+        for_each_value(active & (own != Index(ScalarOf<Index>(no_plane))), own, [&](uint32_t number, const auto& same) {
             const SharedPlane<T>& plane = scene.shared_planes[number];
             assign_where(same, start, along(met, Real(start_lift<T> * plane.slack), toward));
             const auto up = dot(toward, spread<Real>(plane.normal)) > Real(0);
             leave_bodies(scene, number, up, same, around);
         });
         MaskOf<Real> single = false;  // lanes that are done by themselves
-        for_each_value(who, solids, [&](uint32_t index, const auto& same) {
+        for_each_value(active, solids, [&](uint32_t index, const auto& same) {
             const Solid& solid = scene.solids[index];
             for (uint32_t i = 0; i < solid.near_count; ++i) {
                 const uint32_t number = scene.near_planes[solid.first_near + i];
@@ -301,8 +305,8 @@ CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T,
             assign_where(only, start, corrected);
             around.take_where(only, corrected_media);
         });
-        assign_where(who, origin, start);
-        media.take_where(who, around);
+        assign_where(active, origin, start);
+        media.take_where(active, around);
     }
 }
 

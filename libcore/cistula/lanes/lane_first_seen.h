@@ -21,8 +21,8 @@ struct LaneFirstSeen {
     PixelWork work[lanes];  // start and facing of samples in the middle of their pixels
     uint32_t middle = 0;    // the lanes of these
 
-    CISTULA_INLINE void surface(const Hit<Real>& hit, const Surface<Real>& s, const MaskOf<Real>& who) const {
-        for_each_lane(who, [&](int lane) {
+    CISTULA_INLINE void surface(const Hit<Real>& hit, const Surface<Real>& s, const MaskOf<Real>& active) const {
+        for_each_lane(active, [&](int lane) {
             const uint32_t number = scene.numbers[uint32_t(key_solid(hit.key)[lane])];
             Hit<T> one;
             one.t = hit.t[lane];
@@ -40,8 +40,8 @@ struct LaneFirstSeen {
     }
     template <class Media>
     CISTULA_INLINE void light(const LaneScene<T>&, const VisibleLightHit<Real>& hit, const Ray<Real, Media>& ray,
-                              const MaskOf<Real>& who) const {
-        for_each_lane(who, [&](int lane) {
+                              const MaskOf<Real>& active) const {
+        for_each_lane(active, [&](int lane) {
             const VisibleLightHit<T> one{hit.t[lane], uint32_t(hit.light[lane])};
             if constexpr (layers)
                 layered(lane).light(scene, one, lane_of(ray, lane));

@@ -19,12 +19,12 @@ struct LanePathHash {
         value = 0;
         counts = counted & Mask(any_counts);
     }
-    /// PathHash::add where `who` holds. Integers are below 2^32, in lanes of 64 bits too.
-    CISTULA_INLINE void add(const Index& a, const Index& b, const Index& c, const Mask& who) {
+    /// PathHash::add where `active` holds. Integers are below 2^32, in lanes of 64 bits too.
+    CISTULA_INLINE void add(const Index& a, const Index& b, const Index& c, const Mask& active) {
         Index h = kept(a * of(0x9e3779b1u) + b * of(0x85ebca77u) + c * of(0xc2b2ae3du) + of(0x27d4eb2fu));
         h = kept((h ^ shifted<16>(h)) * of(0x85ebca6bu));
         h = kept((h ^ shifted<13>(h)) * of(0xc2b2ae35u));
-        value += select(who, h ^ shifted<16>(h), Index(0));
+        value += select(active, h ^ shifted<16>(h), Index(0));
     }
 
   private:
@@ -55,14 +55,15 @@ struct HashingLanes {
     bool gradual;  // shades_gradually
 
     template <class E>
-    CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray, const Mask& who) const {
-        const Hit<Real> hit = inner.template closest<E>(ray, who);
-        const Mask starts_on_face = ray.from_solid != int(no_solid), found = hit.found();
-        const Mask counts = who & hash.counts;
+    CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray, const Mask& active) const {
+        const Hit<Real> hit = inner.template closest<E>(ray, active);
+        const Mask starts_on_face = ray.from_solid != int(no_solid);
+        const Mask found = hit.found();
+        const Mask counts = active & hash.counts;
         if (!any(counts)) return hit;
         const Index from = select(starts_on_face, own_numbers(ray.from_solid), Index(int(no_solid)));
-        const Index solid = own_numbers(key_solid(hit.key)),
-                    place = select(is_kind(hit.key, CrossingKind::sheet), solid ^ Index(0xffffff), solid);
+        const Index solid = own_numbers(key_solid(hit.key));
+        const Index place = select(is_kind(hit.key, CrossingKind::sheet), solid ^ Index(0xffffff), solid);
         const Index kind = hit.key >> LaneKey::kind_bit;
         const Index miss(ScalarOf<Index>(~0u));
         hash.add(select(found, key_face(hit.key), miss), select(found, kind << 24 | place, miss),
@@ -77,9 +78,9 @@ struct HashingLanes {
     }
 
     template <class E>
-    CISTULA_INLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow, const Mask& who) const {
-        const Throughput<Real, E> arrives = inner.template transmittance<E>(shadow, who);
-        const Mask counts = who & hash.counts;
+    CISTULA_INLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow, const Mask& active) const {
+        const Throughput<Real, E> arrives = inner.template transmittance<E>(shadow, active);
+        const Mask counts = active & hash.counts;
         if (any(counts)) {
             const auto light = int(shadow.light - inner.scene.lights.data);
             hash.add(told_apart(channel(arrives, 0)) + Index(3) * told_apart(channel(arrives, 1)),

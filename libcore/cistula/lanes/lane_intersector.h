@@ -17,12 +17,12 @@ struct LaneIntersector {
     using Integer = ScalarOf<Index>;
     const Scene& scene;
 
-    /// The hits with the smallest (t, key) after ray.after, where `who` holds.
+    /// The hits with the smallest (t, key) after ray.after, where `active` holds.
     template <class E>
-    CISTULA_NOINLINE Hit<Real> closest(const Ray<Real, Media>& ray, const Mask& who) const {
+    CISTULA_NOINLINE Hit<Real> closest(const Ray<Real, Media>& ray, const Mask& active) const {
         Hit<Real> best;
         // With t = -1 a ray that is not finite, or not asked for, finds nothing.
-        const Mask traced = who & is_finite(ray);
+        const Mask traced = active & is_finite(ray);
         best.t = select(traced, Real(RealTraits<Real>::infinity), Real(-1));
         Mask enclosed = false;  // by solids that nothing else comes near
         if constexpr (E::solids && E::has(effect_insides)) enclosed = traced & (ray.media.among(scene.isolated) != 0);
@@ -35,13 +35,13 @@ struct LaneIntersector {
         return best;
     }
 
-    /// The share of the light's intensity that reaches the rays' origins, where `who` holds.
+    /// The share of the light's intensity that reaches the rays' origins, where `active` holds.
     template <class E>
-    CISTULA_NOINLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow, const Mask& who) const {
+    CISTULA_NOINLINE Throughput<Real, E> transmittance(const ShadowRay<Real, Media>& shadow, const Mask& active) const {
         ShadowSum<E, Real> sum;
-        assign_where(!(who & is_finite(shadow.ray)), sum.opaque, Index(7));
+        assign_where(!(active & is_finite(shadow.ray)), sum.opaque, Index(7));
         if constexpr (E::has(effect_absorption))
-            if (scene.meshes.any) shadow_start(scene, shadow, who, sum);
+            if (scene.meshes.any) shadow_start(scene, shadow, active, sum);
         const Index beside = beside_start<E>(shadow.ray);
         if (scene.tree.empty())
             shadow_in_loop(shadow, beside, sum);
@@ -60,12 +60,12 @@ struct LaneIntersector {
         return scene.named ? Index(Integer(no_plane)) : Index(0);
     }
 
-    /// `free`: the rays of `who` that may hit more than the solid that they are in.
+    /// `free`: the rays of `active` that may hit more than the solid that they are in.
     template <class E>
-    CISTULA_INLINE void closest_in_loop(const Ray<Real, Media>& ray, const Mask& who, const Mask& free,
+    CISTULA_INLINE void closest_in_loop(const Ray<Real, Media>& ray, const Mask& active, const Mask& free,
                                         const Index& beside, Hit<Real>& best) const {
         for (uint32_t i = 0; E::solids && i < scene.convex_copies.size; ++i)
-            closest_solid<E>(i, ray, who, free, beside, best);
+            closest_solid<E>(i, ray, active, free, beside, best);
         for (uint32_t i = 0; E::triangles && i < scene.clusters.size; ++i) {
             const Mask reaches = reaching(i, ray, free, best.t);
             if (any(reaches))
@@ -93,24 +93,24 @@ struct LaneIntersector {
             });
     }
 
-    /// The rays of `who` that may reach a cluster's triangles up to `limit`.
-    CISTULA_INLINE Mask reaching(uint32_t cluster, const Ray<Real, Media>& ray, const Mask& who,
+    /// The rays of `active` that may reach a cluster's triangles up to `limit`.
+    CISTULA_INLINE Mask reaching(uint32_t cluster, const Ray<Real, Media>& ray, const Mask& active,
                                  const Real& limit) const {
-        if (scene.planes[cluster].flat == 0) return who;
-        return who & !misses_flat_sheet(scene, cluster, ray, limit);
+        if (scene.planes[cluster].flat == 0) return active;
+        return active & !misses_flat_sheet(scene, cluster, ray, limit);
     }
 
-    /// A convex solid, by its place among them. `free`: the rays of `who` that may hit it from outside.
+    /// A convex solid, by its place among them. `free`: the rays of `active` that may hit it from outside.
     template <class E>
-    CISTULA_INLINE void closest_solid(uint32_t place, const Ray<Real, Media>& ray, const Mask& who, const Mask& free,
+    CISTULA_INLINE void closest_solid(uint32_t place, const Ray<Real, Media>& ray, const Mask& active, const Mask& free,
                                       const Index& beside, Hit<Real>& best) const {
         const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[place];
         const uint32_t index = next.index;
         Mask inside = false;
-        if constexpr (E::has(effect_insides)) inside = who & ray.media.contains(index);
+        if constexpr (E::has(effect_insides)) inside = active & ray.media.contains(index);
         const Mask near = free & (!inside) & !misses_bounds(next.sphere, ray.origin, ray.direction, best.t);
-        const Mask on_plane = is_beside<E>(index, beside),
-                   outside = near & (!on_plane) & (ray.from_solid != int(index));
+        const Mask on_plane = is_beside<E>(index, beside);
+        const Mask outside = near & (!on_plane) & (ray.from_solid != int(index));
         if (any(inside | outside)) {
             const Index left = faces_left<E>(scene, index, ray, inside & on_plane);
             closest_in_solid(next, ray, left, inside, outside, best);
@@ -133,9 +133,9 @@ struct LaneIntersector {
     }
 
     /// The crossings by which rays enter a convex solid that has a face on the shared plane on which they start.
-    CISTULA_NOINLINE void closest_beside(uint32_t index, const Ray<Real, Media>& ray, const Mask& who,
+    CISTULA_NOINLINE void closest_beside(uint32_t index, const Ray<Real, Media>& ray, const Mask& active,
                                          Hit<Real>& best) const {
-        const LaneEntries<Real> entries = entries_beside(scene, index, ray, who);
+        const LaneEntries<Real> entries = entries_beside(scene, index, ray, active);
         const Real t = max_or_second(entries.enter, Real(0));
         const KeyOf<Real> key = KeyFormat<Real>::make(CrossingKind::enter, index, entries.face);
         best.take(entries.found & ray.after.before(t, key) & best.improves(t, key), t, key, Real(0), Real(0), 0, true);
@@ -183,19 +183,20 @@ struct LaneIntersector {
 
     /// Adds a convex solid, by its place among them.
     template <class E>
-    CISTULA_INLINE void shadow_solid(uint32_t place, const ShadowRay<Real, Media>& shadow, const Mask& who,
+    CISTULA_INLINE void shadow_solid(uint32_t place, const ShadowRay<Real, Media>& shadow, const Mask& active,
                                      const Index& beside, ShadowSum<E, Real>& sum) const {
         const Ray<Real, Media>& ray = shadow.ray;
         const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[place];
         const uint32_t index = next.index;
-        Mask inside = false, outside = true;
+        Mask inside = false;
+        Mask outside = true;
         if constexpr (E::has(effect_insides)) {
             const Mask contains = ray.media.contains(index);
-            inside = who & contains;
+            inside = active & contains;
             outside = !contains;
         }
         const Mask on_plane = is_beside<E>(index, beside);
-        Mask reaches = who & outside;
+        Mask reaches = active & outside;
         if constexpr (!E::has(effect_contacts)) reaches &= ray.from_solid != int(index);
         if (any(reaches))
             reaches &= !misses_bounds(next.sphere, ray.origin, ray.direction, shadow.distance);
@@ -213,43 +214,45 @@ struct LaneIntersector {
     CISTULA_INLINE void closest_in_solid(const IndexedSolid<ScalarOf<Real>>& next, const Ray<Real, Media>& ray,
                                          const Index& left, const Mask& inside, const Mask& outside,
                                          Hit<Real>& best) const {
-        const auto line = any(inside) ? convex_lanes::cross<Real, convex_lanes::entering | convex_lanes::inside>(
-                                            scene, next.solid, ray.origin, ray.direction, left)
-                                      : convex_lanes::cross<Real, convex_lanes::entering>(scene, next.solid, ray.origin,
-                                                                                          ray.direction, left);
+        const auto crossing = any(inside) ? convex_lanes::cross<Real, convex_lanes::entering | convex_lanes::inside>(
+                                                scene, next.solid, ray.origin, ray.direction, left)
+                                          : convex_lanes::cross<Real, convex_lanes::entering>(
+                                                scene, next.solid, ray.origin, ray.direction, left);
         if (any(inside))
             take_exit<Real>(
-                inside, next.index, line.leave, [&] { return line.leave_face; }, best);
-        const Mask meets = outside & is_met(line, scene.extent);
+                inside, next.index, crossing.leave, [&] { return crossing.leave_face; }, best);
+        const Mask meets = outside & is_met(crossing, scene.extent);
         if (any(meets))
             take_entry<Real>(
-                meets, next.index, line.enter, [&] { return line.enter_face; }, ray, best);
+                meets, next.index, crossing.enter, [&] { return crossing.enter_face; }, ray, best);
     }
 
     CISTULA_INLINE void closest_in_cluster(uint32_t index, const Ray<Real, Media>& ray,
-                                           const LaneTriangleRay<Real>& triangle_ray, const Mask& who,
+                                           const LaneTriangleRay<Real>& triangle_ray, const Mask& active,
                                            Hit<Real>& best) const {
         const auto& cluster = scene.clusters[index];
         const bool is_mesh = scene.meshes.has(cluster.solid);
-        for_each_crossing(
-            cluster, triangle_ray, who, [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
-                const uint32_t triangle = cluster.triangle[lane], slot = index * uint32_t(cluster_lanes) + lane;
-                if (is_mesh)
-                    closest_mesh_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
-                else
-                    closest_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
-            });
+        for_each_crossing(cluster, triangle_ray, active,
+                          [&](uint32_t lane, const Mask& accepted, const TriangleCrossing<Real>& c) {
+                              const uint32_t triangle = cluster.triangle[lane];
+                              const uint32_t slot = index * uint32_t(cluster_lanes) + lane;
+                              if (is_mesh)
+                                  closest_mesh_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
+                              else
+                                  closest_crossing(scene, accepted, cluster.solid, triangle, slot, c, ray, best);
+                          });
     }
 
     template <class E>
     CISTULA_INLINE void shadow_cluster(uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                       const LaneTriangleRay<Real>& triangle_ray, const Mask& who,
+                                       const LaneTriangleRay<Real>& triangle_ray, const Mask& active,
                                        ShadowSum<E, Real>& sum) const {
         const auto& cluster = scene.clusters[index];
-        for_each_crossing(
-            cluster, triangle_ray, who, [&](uint32_t triangle, const Mask& accepted, const TriangleCrossing<Real>& c) {
-                shadow_crossing<Real, E>(scene, accepted, cluster.solid, cluster.triangle[triangle], c, shadow, sum);
-            });
+        for_each_crossing(cluster, triangle_ray, active,
+                          [&](uint32_t triangle, const Mask& accepted, const TriangleCrossing<Real>& c) {
+                              shadow_crossing<Real, E>(scene, accepted, cluster.solid, cluster.triangle[triangle], c,
+                                                       shadow, sum);
+                          });
     }
 };
 

@@ -14,12 +14,15 @@ CISTULA_INLINE MaskOf<Real> near_edges(const Scene& scene, const Solid& solid, S
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         const Slab<ScalarOf<Real>>& slab = scene.slabs.data[solid.first_slab + i];
         const Vec3<Real> normal = spread<Real>(slab.normal);
-        const Real slope = dot(normal, direction), no = dot(normal, origin);
+        const Real slope = dot(normal, direction);
+        const Real no = dot(normal, origin);
         constexpr auto least = ScalarOf<Real>(0x1p-60);
         const Real inverse = reciprocal(select(magnitude(slope) < least, Real(least), slope));
-        const Real at_low = (slab.low - no) * inverse, at_high = (slab.high - no) * inverse;
+        const Real at_low = (slab.low - no) * inverse;
+        const Real at_high = (slab.high - no) * inverse;
         const Real half = reach * magnitude(inverse);
-        const Real in = min_no_nan(at_low, at_high), out = max_no_nan(at_low, at_high);
+        const Real in = min_no_nan(at_low, at_high);
+        const Real out = max_no_nan(at_low, at_high);
         past[i] = in + half;
         soon[i] = out - half;
         from = max_or_second(in - half, from);
@@ -27,10 +30,15 @@ CISTULA_INLINE MaskOf<Real> near_edges(const Scene& scene, const Solid& solid, S
     }
     MaskOf<Real> near = from <= to;
     if (!any(near)) return near;
-    MaskOf<Real> entering = false, two_entering = false, leaving = false, two_leaving = false;
-    Real first = to, last = from;
+    MaskOf<Real> entering = false;
+    MaskOf<Real> two_entering = false;
+    MaskOf<Real> leaving = false;
+    MaskOf<Real> two_leaving = false;
+    Real first = to;
+    Real last = from;
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const MaskOf<Real> enters = past[i] >= from, leaves = soon[i] <= to;
+        const MaskOf<Real> enters = past[i] >= from;
+        const MaskOf<Real> leaves = soon[i] <= to;
         two_entering |= entering & enters;
         entering |= enters;
         two_leaving |= leaving & leaves;
@@ -47,32 +55,33 @@ CISTULA_INLINE MaskOf<Real> near_edges(const Scene& scene, const Solid& solid, S
 /// Rays that may meet a visible light between `from` and `to`.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE MaskOf<Real> may_hit_visible_lights(const Scene& scene, const Ray<Real, Media>& ray,
-                                                   const MaskOf<Real>& who, const Real& from, const Real& to) {
-    if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return who;
+                                                   const MaskOf<Real>& active, const Real& from, const Real& to) {
+    if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return active;
     MaskOf<Real> may = false;
     for (const IndexedSolid<ScalarOf<Real>>& entry : scene.convex_copies) {
         const SlabGroup<ScalarOf<Real>>& group = scene.slab_groups[entry.solid.first_group];
         const Vec3<Real> to_center = spread<Real>(entry.sphere.center) - ray.origin;
-        const Real ahead = dot(to_center, ray.direction), rest = dot(to_center, to_center) - group.light_square;
+        const Real ahead = dot(to_center, ray.direction);
+        const Real rest = dot(to_center, to_center) - group.light_square;
         const Real nearest = clamped(ahead, from, to);
         const MaskOf<Real> passes = rest > nearest * (Real(2) * ahead - nearest);
-        const MaskOf<Real> left = who & !may & !passes;
+        const MaskOf<Real> left = active & !may & !passes;
         if (any(left))
             may |= left & near_edges(scene, entry.solid, group.light_reach, ray.origin, ray.direction, from, to);
     }
     return may;
 }
 
-/// The nearest visible light at or after ray.after and before the limit, where `who` holds.
+/// The nearest visible light at or after ray.after and before the limit, where `active` holds.
 template <class T, int n, class Media, class Scene>
 CISTULA_INLINE VisibleLightHit<Lanes<T, n>> closest_visible_light(const Scene& scene,
                                                                   const Ray<Lanes<T, n>, Media>& ray,
                                                                   const Lanes<T, n>& limit,
-                                                                  const MaskOf<Lanes<T, n>>& who) {
+                                                                  const MaskOf<Lanes<T, n>>& active) {
     using Real = Lanes<T, n>;
     VisibleLightHit<Real> best;
     best.t = limit;
-    MaskOf<Real> asked = who & is_finite(ray);
+    MaskOf<Real> asked = active & is_finite(ray);
     if (scene.visible_light_tree.empty()) {
         best.t = select(asked, limit, Real(-1));
         for (uint32_t i = 0; i < scene.visible_lights.size; ++i) intersect_visible_light(scene, i, ray, best);

@@ -10,7 +10,8 @@ namespace cistula {
 /// by itself (lane_single.h).
 template <class Real>
 struct LaneMedia {
-    static constexpr bool contacts = true, meshes = false;
+    static constexpr bool contacts = true;
+    static constexpr bool meshes = false;
     using Index = IndexOf<Real>;
     using Mask = MaskOf<Real>;
 
@@ -66,12 +67,15 @@ struct LaneMedia {
         return fits | !(enters | leaves);
     }
 
-    CISTULA_INLINE void take_where(const Mask& who, const LaneMedia& other) { assign_where(who, bits, other.bits); }
+    CISTULA_INLINE void take_where(const Mask& active, const LaneMedia& other) {
+        assign_where(active, bits, other.bits);
+    }
     CISTULA_INLINE InteriorSet of(int lane) const { return {uint32_t(bits[lane]), named}; }
 
   private:
     /// The lowest and the highest bit of each number.
-    static constexpr int lowest = 1 | 1 << 10 | 1 << 20, highest = lowest << 9;
+    static constexpr int lowest = 1 | 1 << 10 | 1 << 20;
+    static constexpr int highest = lowest << 9;
 
     CISTULA_INLINE static Index bit_of(const Index& solid) { return Index(1) << (solid & 31); }
     /// The highest bits of the zeros among numbers; of two zeros with a one between them, perhaps a bit too many.
@@ -85,8 +89,11 @@ struct LaneMedia {
         return zeros & (Index(0) - zeros);
     }
     CISTULA_NOINLINE Mask cross_named(const Mask& enters, const Mask& leaves, const Index& solid) {
-        const Index own = places_of(solid), free = zeros_of(bits), first_free = free & (Index(0) - free);
-        const Mask enters_now = enters & (own == 0) & (free != 0), leaves_now = leaves & (own != 0);
+        const Index own = places_of(solid);
+        const Index free = zeros_of(bits);
+        const Index first_free = free & (Index(0) - free);
+        const Mask enters_now = enters & (own == 0) & (free != 0);
+        const Mask leaves_now = leaves & (own != 0);
         const Index number = solid + Index(1);
         assign_where(enters_now, bits, bits + number * (first_free >> 9));
         assign_where(leaves_now, bits, bits - number * (own >> 9));

@@ -20,11 +20,15 @@ struct LanePixel {
     int first, count;  // samples of the pixel's grid
     TreeThreshold threshold;
     PixelRecord* record;
-    PixelLayers layers = {};                                          // of effects with fills_layers
-    LaneSample* sample = nullptr;                                     // if it is one by itself
-    uint32_t rays = 0;                                                // of all kinds
-    int64_t left = 0;                                                 // of the budget
-    uint32_t reflected = 0, shadow = 0, branches = 0, path_hash = 0;  // of a sample by itself
+    PixelLayers layers = {};       // of effects with fills_layers
+    LaneSample* sample = nullptr;  // if it is one by itself
+    uint32_t rays = 0;             // of all kinds
+    int64_t left = 0;              // of the budget
+    // of a sample by itself
+    uint32_t reflected = 0;
+    uint32_t shadow = 0;
+    uint32_t branches = 0;
+    uint32_t path_hash = 0;
 
     /// Whether the sample has more branches than a frame with a target error follows.
     CISTULA_INLINE bool is_too_large(bool adaptive) const { return adaptive && branches > most_branches; }

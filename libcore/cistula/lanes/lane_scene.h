@@ -8,14 +8,17 @@ namespace cistula {
 
 /// The fields of a crossing's key in lanes, which has 31 bits: kind, solid, face.
 struct LaneKey {
-    static constexpr int solid_bit = 17, kind_bit = 29;
-    static constexpr uint32_t solids = (1u << (kind_bit - solid_bit)) - 1, faces = (1u << solid_bit) - 1;
+    static constexpr int solid_bit = 17;
+    static constexpr int kind_bit = 29;
+    static constexpr uint32_t solids = (1u << (kind_bit - solid_bit)) - 1;
+    static constexpr uint32_t faces = (1u << solid_bit) - 1;
     static constexpr int32_t none = 0x7fffffff;
 };
 
 /// The convex solids with a face on a shared plane, a bit each: those that lie where its normal points, and the others.
 struct PlaneBodies {
-    uint32_t above = 0, below = 0;
+    uint32_t above = 0;
+    uint32_t below = 0;
 
     CISTULA_INLINE uint32_t all() const { return above | below; }
 };
@@ -48,7 +51,9 @@ struct SolidSet {
 /// The closed solids of a LaneScene that contain a point: a bit each or, where the scene has too many for that
 /// (`named`), up to three of them by number, 1 + solid in ten bits each, 0 for none.
 struct InteriorSet {
-    static constexpr uint32_t most_named = 3, number_bits = 10, number_mask = (1u << number_bits) - 1;
+    static constexpr uint32_t most_named = 3;
+    static constexpr uint32_t number_bits = 10;
+    static constexpr uint32_t number_mask = (1u << number_bits) - 1;
 
     uint32_t bits = 0;
     bool named = false;
@@ -121,7 +126,8 @@ struct InteriorSet {
 /// numbers do (InteriorSet). The order within either kind is kept, and with it that of crossings at equal t.
 template <class Real>
 struct LaneScene : SceneView<Real> {
-    static constexpr uint32_t most_with_bits = 31, most_closed = 1022;
+    static constexpr uint32_t most_with_bits = 31;
+    static constexpr uint32_t most_closed = 1022;
 
     Span<IndexedSolid<Real>> convex_copies;  // of `convex`, to avoid an indirection
     Span<SheetPlane<Real>> planes;           // of the clusters

@@ -33,23 +33,23 @@ CISTULA_INLINE void absorb_in_lane(const Scene& scene, const Solid& solid, const
     for (int c = 0; c < one.channels; ++c) sum.path[c * LaneTraits<Real>::lanes + lane].sum += one.path[c].sum;
 }
 
-/// Adds the absorption of the crossings of a triangle at t, where `who` holds, if it belongs to a mesh.
+/// Adds the absorption of the crossings of a triangle at t, where `active` holds, if it belongs to a mesh.
 template <class E, class Real, class Media, class Scene>
 CISTULA_INLINE void absorb_crossings(const Scene& scene, const Solid& solid, const ShadowRay<Real, Media>& shadow,
-                                     const Real& t, const MaskOf<Real>& enters, const MaskOf<Real>& who,
+                                     const Real& t, const MaskOf<Real>& enters, const MaskOf<Real>& active,
                                      ShadowSum<E, Real>& sum) {
     if (solid.kind != SolidKind::mesh) return;
     const uint32_t entering = enters.bits();
-    for_each_lane(who, [&](int lane) {
+    for_each_lane(active, [&](int lane) {
         absorb_in_lane(scene, solid, shadow, lane, t[lane], (entering >> lane & 1u) != 0 ? 1 : -1, sum);
     });
 }
 
 /// Adds the absorption of the meshes that contain the rays' origins.
 template <class E, class Real, class Media, class Scene>
-CISTULA_NOINLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& who,
+CISTULA_NOINLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& active,
                                    ShadowSum<E, Real>& sum) {
-    for_each_lane(who, [&](int lane) {
+    for_each_lane(active, [&](int lane) {
         shadow.ray.media.of(lane).for_each([&](uint32_t solid, int) {
             if (!scene.meshes.has(solid)) return;
             absorb_in_lane(scene, scene.solids[solid], shadow, lane, ScalarOf<Real>(0), 1, sum);
@@ -71,12 +71,13 @@ CISTULA_INLINE void add_path_losses(const Scene& scene, const ShadowSum<E, Real>
 /// Where rays start whose light lies on faces of a convex solid: inside all of them, or outside one.
 template <class E, class Real, class Media, class Scene>
 CISTULA_INLINE void light_sides(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
-                                const MaskOf<Real>& who, MaskOf<Real>& inside, MaskOf<Real>& outside) {
+                                const MaskOf<Real>& active, MaskOf<Real>& inside, MaskOf<Real>& outside) {
     inside = outside = false;
     if constexpr (E::has(effect_lights_on_faces)) {
         if (shadow.light->incident_count == 0) return;
-        uint32_t in = 0, out = 0;
-        for_each_lane(who, [&](int lane) {
+        uint32_t in = 0;
+        uint32_t out = 0;
+        for_each_lane(active, [&](int lane) {
             const LightSide side = light_on_convex(scene, *shadow.light, index, lane_of(shadow.ray.origin, lane));
             in |= uint32_t(side == LightSide::inside) << lane;
             out |= uint32_t(side == LightSide::outside) << lane;
@@ -97,13 +98,13 @@ CISTULA_INLINE void shadow_solid(const Scene& scene, uint32_t index, const Solid
     light_sides<E>(scene, index, shadow, inside | others, lit_inside, lit_outside);
     const MaskOf<Real> on_face = lit_inside | lit_outside;
     const Material<ScalarOf<Real>>& material = scene.materials[solid.material];
-    const auto line =
+    const auto crossing =
         any(inside) ? convex_lanes::cross<Real, convex_lanes::inside>(scene, solid, ray.origin, ray.direction, left)
                     : convex_lanes::cross<Real, 0>(scene, solid, ray.origin, ray.direction, left);
-    const Real leave = select(on_face, shadow.distance, max_or_second(line.leave, Real(0)));
+    const Real leave = select(on_face, shadow.distance, max_or_second(crossing.leave, Real(0)));
     if (any(inside)) add_exit<Real, E>(inside, material, leave, shadow.distance, sum);
-    const Real enter = max_or_second(line.enter, Real(0));
-    const MaskOf<Real> meets = is_met(line, scene.extent) & (enter < shadow.distance);
+    const Real enter = max_or_second(crossing.enter, Real(0));
+    const MaskOf<Real> meets = is_met(crossing, scene.extent) & (enter < shadow.distance);
     const MaskOf<Real> enters = others & !lit_outside & (lit_inside | meets);
     if (any(enters)) add_entry<Real, E>(enters, material, enter, leave, shadow.distance, sum);
 }
@@ -111,11 +112,11 @@ CISTULA_INLINE void shadow_solid(const Scene& scene, uint32_t index, const Solid
 /// Adds what a convex solid takes from the light of rays that start on a shared plane where it has a face.
 template <class E, class Real, class Media, class Scene>
 CISTULA_NOINLINE void shadow_beside(const Scene& scene, uint32_t index, const Solid& solid,
-                                    const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& who,
+                                    const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& active,
                                     ShadowSum<E, Real>& sum) {
     MaskOf<Real> lit_inside, lit_outside;
-    light_sides<E>(scene, index, shadow, who, lit_inside, lit_outside);
-    const LaneEntries<Real> entries = entries_beside(scene, index, shadow.ray, who & !lit_outside);
+    light_sides<E>(scene, index, shadow, active, lit_inside, lit_outside);
+    const LaneEntries<Real> entries = entries_beside(scene, index, shadow.ray, active & !lit_outside);
     const Real enter = max_or_second(entries.enter, Real(0));
     const MaskOf<Real> enters = entries.found & (enter < shadow.distance);
     const Real leave = select(lit_inside, shadow.distance, min_or_second(entries.leave, shadow.distance));

@@ -15,8 +15,10 @@ CISTULA_INLINE Lanes<int64_t, n> integers_of(const Lanes<double, n>& a) {
     } else {
         const native::Longs bits = (native::Longs)a.v;
         // The significand, shifted by the exponent; shifts by 64 and more give 0.
-        const native::Longs exponent = bits >> 52, whole = (bits & ((int64_t(1) << 52) - 1)) | int64_t(1) << 52;
-        const native::Longs left = exponent - 1075, right = 1075 - exponent;
+        const native::Longs exponent = bits >> 52;
+        const native::Longs whole = (bits & ((int64_t(1) << 52) - 1)) | int64_t(1) << 52;
+        const native::Longs left = exponent - 1075;
+        const native::Longs right = 1075 - exponent;
         const native::Longs floor = native::shifted_left(whole, left) | native::shifted_right(whole, right);
         if constexpr (!above) return Lanes<int64_t, n>(floor);
         using Integers = Lanes<int64_t, n>;
@@ -34,8 +36,10 @@ struct alignas(32) SumRow {
 /// Adds numbers of four lanes to the rows of these lanes.
 template <class Index>
 CISTULA_INLINE void add_to_rows(SumRow* rows, const Index* numbers, __m256i a, __m256i b, __m256i c, __m256i d) {
-    const __m256i ab_even = _mm256_unpacklo_epi64(a, b), ab_odd = _mm256_unpackhi_epi64(a, b),
-                  cd_even = _mm256_unpacklo_epi64(c, d), cd_odd = _mm256_unpackhi_epi64(c, d);
+    const __m256i ab_even = _mm256_unpacklo_epi64(a, b);
+    const __m256i ab_odd = _mm256_unpackhi_epi64(a, b);
+    const __m256i cd_even = _mm256_unpacklo_epi64(c, d);
+    const __m256i cd_odd = _mm256_unpackhi_epi64(c, d);
     const __m256i of[4] = {
         _mm256_permute2x128_si256(ab_even, cd_even, 0x20), _mm256_permute2x128_si256(ab_odd, cd_odd, 0x20),
         _mm256_permute2x128_si256(ab_even, cd_even, 0x31), _mm256_permute2x128_si256(ab_odd, cd_odd, 0x31)};
@@ -84,26 +88,26 @@ class LaneSums {
         if (any(cuts_)) give(cut_, cuts_, &PixelRecord::cut);
     }
 
-    CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource, const Mask& who) {
+    CISTULA_INLINE void add(const Vec3<Real>& radiance, LightSource, const Mask& active) {
         Integers added[3];
-        add_units(radiance, who, added);
+        add_units(radiance, active, added);
     }
     /// Adds what is at the end of branches. Which of them meet visible lights matters to LayeredLaneSums alone.
-    CISTULA_INLINE void add_end(const Vec3<Real>& radiance, const Mask&, const Mask& who) {
-        add(radiance, LightSource::background, who);
+    CISTULA_INLINE void add_end(const Vec3<Real>& radiance, const Mask&, const Mask& active) {
+        add(radiance, LightSource::background, active);
     }
     template <class Diffuse>
-    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t, const Diffuse&, const Mask& who) {
-        add(radiance, LightSource::background, who);
+    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t, const Diffuse&, const Mask& active) {
+        add(radiance, LightSource::background, active);
     }
 
     /// The branches to follow; the bounds of others are added to the ledger (PixelSums::afford).
     template <class Weight>
-    CISTULA_INLINE Mask afford(const Weight& weight, const Mask& who) {
+    CISTULA_INLINE Mask afford(const Weight& weight, const Mask& active) {
         const Real most = largest_component(bounded(weight));
-        const Mask counts = (most <= Real(1)) & (most > thresholds_of(who));
-        Mask followed = who & counts;
-        for_each_lane(who & !counts, [&](int lane) {
+        const Mask counts = (most <= Real(1)) & (most > thresholds_of(active));
+        Mask followed = active & counts;
+        for_each_lane(active & !counts, [&](int lane) {
             LanePixel& pixel = pixels_[pixel_[lane]];
             const TreeLimit<T, true> limit(pixel.threshold.of_branches(settings_), pixel.left);
             PixelSums<T, true> sums(settings_, bounds_, *pixel.record, flags_, limit);
@@ -114,12 +118,12 @@ class LaneSums {
     }
 
     template <class Weight>
-    CISTULA_INLINE void cut(const Weight& weight, const Mask& who) {
-        const Vec3<Real> units = in_units(bounded(weight), who);
+    CISTULA_INLINE void cut(const Weight& weight, const Mask& active) {
+        const Vec3<Real> units = in_units(bounded(weight), active);
         if (!any(cuts_))
             for (int c = 0; c < 3; ++c) cut_[c] = int64_t(0);
         for (int c = 0; c < 3; ++c) cut_[c] += integers_of<true>(Lanes<double, lanes>(units[c]));
-        cuts_ |= who;
+        cuts_ |= active;
     }
 
     CISTULA_INLINE void flag(uint32_t bits) { flags_ |= bits; }
@@ -127,28 +131,28 @@ class LaneSums {
     /// The rays that were counted since begin().
     CISTULA_INLINE const IndexOf<Real>& rays() const { return rays_; }
     /// Counts rays.
-    CISTULA_INLINE void count(const Mask& who) { rays_ -= minus_one_where(who); }
+    CISTULA_INLINE void count(const Mask& active) { rays_ -= minus_one_where(active); }
 
   protected:
     using Integers = Lanes<int64_t, lanes>;
 
     /// A radiance in units of the sums; 0 in other lanes.
-    CISTULA_INLINE void units_of(const Vec3<Real>& radiance, const Mask& who, Integers (&to)[3]) {
+    CISTULA_INLINE void units_of(const Vec3<Real>& radiance, const Mask& active, Integers (&to)[3]) {
         if constexpr (sizeof(T) == 4) {
             const Mask usual = native::are_below_one(radiance.x.v, radiance.y.v, radiance.z.v);
-            if (!any(who & !usual)) {
+            if (!any(active & !usual)) {
                 const Real scale(T(settings_.fixed_scale) * T(0x1p-31));
                 for (int c = 0; c < 3; ++c)
-                    native::whole_of(masked(who, radiance[c] * scale).v, to[c].low.v, to[c].high.v);
+                    native::whole_of(masked(active, radiance[c] * scale).v, to[c].low.v, to[c].high.v);
                 return;
             }
         }
-        const Vec3<Real> units = in_units(radiance, who);
+        const Vec3<Real> units = in_units(radiance, active);
         for (int c = 0; c < 3; ++c) to[c] = integers_of<false>(Lanes<double, lanes>(units[c]));
     }
     /// Adds a radiance, and tells how many units that is.
-    CISTULA_INLINE void add_units(const Vec3<Real>& radiance, const Mask& who, Integers (&added)[3]) {
-        units_of(radiance, who, added);
+    CISTULA_INLINE void add_units(const Vec3<Real>& radiance, const Mask& active, Integers (&added)[3]) {
+        units_of(radiance, active, added);
         for (int c = 0; c < 3; ++c) radiance_[c] += added[c];
     }
 
@@ -171,33 +175,33 @@ class LaneSums {
     }
 
     /// The thresholds of samples (tree_threshold.h).
-    CISTULA_INLINE Real thresholds_of(const Mask& who) const {
+    CISTULA_INLINE Real thresholds_of(const Mask& active) const {
         const Real unit(T(settings_.fixed_unit));
         if (settings_.budget == 0) return unit;
         LaneArray<Real> thresholds(unit);
         for_each_lane(
-            who, [&](int lane) { thresholds.of[lane] = T(pixels_[pixel_[lane]].threshold.of_branches(settings_)); });
+            active, [&](int lane) { thresholds.of[lane] = T(pixels_[pixel_[lane]].threshold.of_branches(settings_)); });
         return thresholds.all();
     }
 
     /// PixelSums::in_units in lanes; 0 in others.
-    CISTULA_INLINE Vec3<Real> in_units(const Vec3<Real>& a, const Mask& who) {
+    CISTULA_INLINE Vec3<Real> in_units(const Vec3<Real>& a, const Mask& active) {
         const Real scale(T(settings_.fixed_scale)), zero(0);
         Vec3<Real> units(fused(a.x, scale, zero), fused(a.y, scale, zero), fused(a.z, scale, zero));
         Mask right = true;
         for (int c = 0; c < 3; ++c) {
             const Mask is_right = (units[c] >= zero) & (units[c] <= scale);
-            units[c] = select(who & is_right, units[c], zero);
+            units[c] = select(active & is_right, units[c], zero);
             right &= is_right;
         }
-        if (any(who & !right)) flags_ |= flag_not_finite;
+        if (any(active & !right)) flags_ |= flag_not_finite;
         return units;
     }
 
-    CISTULA_INLINE void give(const Integers (&from)[3], const Mask& who, int64_t (PixelRecord::*to)[3]) {
+    CISTULA_INLINE void give(const Integers (&from)[3], const Mask& active, int64_t (PixelRecord::*to)[3]) {
         alignas(lane_bytes) int64_t whole[3][lanes];
         for (int c = 0; c < 3; ++c) memcpy(whole[c], &from[c], sizeof from[c]);
-        for_each_lane(who, [&](int lane) {
+        for_each_lane(active, [&](int lane) {
             int64_t(&sum)[3] = pixels_[pixel_[lane]].record->*to;
             for (int c = 0; c < 3; ++c) sum[c] += whole[c][lane];
         });

@@ -61,11 +61,11 @@ CISTULA_INLINE Lanes<T, n> highlight(const LaneMaterial<Lanes<T, n>>& material, 
     Real result = select(material.integer_exponent == 0, Real(1), Real(0));
     if (!any(shines)) return result;
     const Real base = min_or_second(cosine, Real(1));
-    for_each_value(shines, material.integer_exponent, [&](uint32_t exponent, const MaskOf<Real>& who) {
+    for_each_value(shines, material.integer_exponent, [&](uint32_t exponent, const MaskOf<Real>& active) {
         if (int32_t(exponent) >= 0) {
-            assign_where(who, result, elementary::power_by_squaring(base, int(exponent)));
+            assign_where(active, result, elementary::power_by_squaring(base, int(exponent)));
         } else {
-            for_each_lane(who, [&](int lane) {
+            for_each_lane(active, [&](int lane) {
                 const Material<T>& own = material.all[material.number[lane]];
                 result.set(lane, T(fractional_power(double(base[lane]), double(own.exponent))));
             });
@@ -80,17 +80,17 @@ CISTULA_INLINE Lanes<double, n> index_of(const Scene& scene, const LaneMedia<Lan
     using Index = IndexOf<Lanes<T, n>>;
     Lanes<double, n> index(1.0);
     const Index medium = media.medium(scene);
-    for_each_value(medium != Index(int(no_solid)), medium, [&](uint32_t solid, const auto& who) {
-        assign_where(widened(who), index, Lanes<double, n>(scene.materials[scene.solids[solid].material].index));
+    for_each_value(medium != Index(int(no_solid)), medium, [&](uint32_t solid, const auto& active) {
+        assign_where(widened(active), index, Lanes<double, n>(scene.materials[scene.solids[solid].material].index));
     });
     return index;
 }
 
 template <class Scene, class T, int n>
 CISTULA_INLINE void take_opaque_index(const Scene& scene, const LaneMaterial<Lanes<T, n>>& m,
-                                      const MaskOf<Lanes<T, n>>& who, Lanes<double, n>& beyond) {
+                                      const MaskOf<Lanes<T, n>>& active, Lanes<double, n>& beyond) {
     if (!scene.has_opaque_fresnel) return;
-    for_each_value(who, m.number, [&](uint32_t number, const MaskOf<Lanes<T, n>>& same) {
+    for_each_value(active, m.number, [&](uint32_t number, const MaskOf<Lanes<T, n>>& same) {
         const Material<T>& own = m.all[number];
         if (own.transparency == Transparency::opaque) assign_where(widened(same), beyond, Lanes<double, n>(own.index));
     });
@@ -129,13 +129,13 @@ CISTULA_INLINE Vec3<Lanes<T, n>> off_triangle(const Scene& scene, uint32_t slot,
     return select(outside, start(apex[1]), start(apex[0]));
 }
 
-/// texture_uv(), where `who` holds; else 0.
+/// texture_uv(), where `active` holds; else 0.
 template <class T, int n, class Scene>
 CISTULA_INLINE Vec2<Lanes<T, n>> texture_uv(const Scene& scene, const Hit<Lanes<T, n>>& hit,
-                                            const MaskOf<Lanes<T, n>>& who) {
+                                            const MaskOf<Lanes<T, n>>& active) {
     using Real = Lanes<T, n>;
     Vec2<Real> uv(Real(0));
-    for_each_value(who, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+    for_each_value(active, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
         const auto& cluster = scene.clusters[slot / cluster_lanes];
         const Solid& solid = scene.solids[cluster.solid];
         const Vec2<T>* of =
@@ -162,22 +162,25 @@ CISTULA_INLINE IndexOf<Lanes<T, n>> repeated(const Lanes<T, n>& i, uint32_t size
 template <class T, int n>
 CISTULA_INLINE Vec3<Lanes<T, n>> texel_at(const Vec3<float>* texels, const Texture& texture, const Lanes<T, n>& i,
                                           const Lanes<T, n>& j) {
-    const auto row = repeated(j, texture.height), column = repeated(i, texture.width);
+    const auto row = repeated(j, texture.height);
+    const auto column = repeated(i, texture.width);
     return vectors_at<3>(&texels->x, row * IndexOf<Lanes<T, n>>(int(texture.width)) + column);
 }
 
-/// Finds the surfaces of hits in the lanes of `who`; others hold arbitrary numbers, but the first material.
+/// Finds the surfaces of hits in the lanes of `active`; others hold arbitrary numbers, but the first material.
 template <class E, class T, int n, class Media, class Scene>
 CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media>& ray, const Hit<Lanes<T, n>>& hit,
-                                const MaskOf<Lanes<T, n>>& who, Surface<Lanes<T, n>>& s) {
+                                const MaskOf<Lanes<T, n>>& active, Surface<Lanes<T, n>>& s) {
     using Real = Lanes<T, n>;
     using Index = IndexOf<Real>;
-    const Index solids = key_solid(hit.key), faces = key_face(hit.key);
+    const Index solids = key_solid(hit.key);
+    const Index faces = key_face(hit.key);
     s.point = s.viewer_side = along(ray.origin, hit.t, ray.direction);
     s.viewer_media = ray.media;
     s.material.all = scene.materials.data;
     s.material.number = s.material.integer_exponent = 0;  // read in all lanes
-    Index first_slab = 0, is_convex = 0;
+    Index first_slab = 0;
+    Index is_convex = 0;
     const auto take_all = [&](const Solid& solid, const auto& take) {
         const Material<T>& material = scene.materials[solid.material];
         s.material.template take_all<E>(take, scene.tables, material);
@@ -191,7 +194,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
     if (scene.solids.size <= native::table_entries<sizeof(T)>)
         take_all(scene.solids[0], [&](auto& to, const auto& table, const auto&) { to = looked_up(table, solids); });
     else
-        for_each_value(who, solids, [&](uint32_t index, const MaskOf<Real>& same) {
+        for_each_value(active, solids, [&](uint32_t index, const MaskOf<Real>& same) {
             take_all(scene.solids[index], [&]<class To>(To& to, const auto&, const auto& value) {
                 if constexpr (std::is_same_v<To, Vec3<Real>>)
                     assign_where(same, to, spread<Real>(value));
@@ -199,15 +202,16 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
                     assign_where(same, to, To(value));
             });
         });
-    const MaskOf<Real> convex = who & (is_convex != 0);
+    const MaskOf<Real> convex = active & (is_convex != 0);
     if (any(convex)) {
         const Vec3<Real> normal = vectors_at<sizeof(Slab<T>) / sizeof(T)>(&scene.slabs.data->normal.x,
                                                                           masked(convex, first_slab + (faces >> 1)));
-        const MaskOf<Real> high = (faces & 1) != 0, outward = (high & hit.enters) | !(high | hit.enters);
+        const MaskOf<Real> high = (faces & 1) != 0;
+        const MaskOf<Real> outward = (high & hit.enters) | !(high | hit.enters);
         assign_where(convex, s.normal, select(outward, normal, -normal));
     }
     if constexpr (E::triangles) {
-        for_each_value(who & !convex, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+        for_each_value(active & !convex, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
             Vec3<T> corner[3];
             triangle_corners(scene, slot, corner);
             const Vec3<Real> first = spread<Real>(corner[0]);
@@ -220,7 +224,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
         });
     }
     if constexpr (E::has(effect_texture)) {
-        const MaskOf<Real> textured = who & !convex & (s.material.texture >= Index(0));
+        const MaskOf<Real> textured = active & !convex & (s.material.texture >= Index(0));
         for_each_value(textured, s.material.texture, [&](uint32_t texture, const MaskOf<Real>& same) {
             const Vec2<Real> uv = texture_uv(scene, hit, same);
             assign_where(same, s.color, s.color * texture_at(scene, scene.textures[texture], uv));
@@ -231,11 +235,11 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
 /// The origins of rays that are refracted into the other side of their faces.
 template <class E, class T, int n, class Scene>
 CISTULA_INLINE Vec3<Lanes<T, n>> far_side(const Scene& scene, const Hit<Lanes<T, n>>& hit,
-                                          const MaskOf<Lanes<T, n>>& who, const Vec3<Lanes<T, n>>& point) {
+                                          const MaskOf<Lanes<T, n>>& active, const Vec3<Lanes<T, n>>& point) {
     using Real = Lanes<T, n>;
     Vec3<Real> start = point;
     if constexpr (E::triangles)
-        for_each_value(who, key_solid(hit.key), [&](uint32_t index, const MaskOf<Real>& same) {
+        for_each_value(active, key_solid(hit.key), [&](uint32_t index, const MaskOf<Real>& same) {
             if (is_convex<E>(scene.solids[index])) return;
             for_each_value(same, hit.slot, [&](uint32_t slot, const MaskOf<Real>& there) {
                 assign_where(there, start, off_triangle(scene, slot, !hit.enters, point));

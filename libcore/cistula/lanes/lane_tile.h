@@ -20,10 +20,10 @@ struct LaneRays {
     RayCounts counts;
     LaneSums<Real>& sums;
 
-    CISTULA_INLINE void add_shadow(const MaskOf<Real>& who) { counts.shadow += count(who); }
-    CISTULA_INLINE uint64_t count(const MaskOf<Real>& who) {
-        sums.count(who);
-        return uint64_t(__builtin_popcount(who.bits()));
+    CISTULA_INLINE void add_shadow(const MaskOf<Real>& active) { counts.shadow += count(active); }
+    CISTULA_INLINE uint64_t count(const MaskOf<Real>& active) {
+        sums.count(active);
+        return uint64_t(__builtin_popcount(active.bits()));
     }
 };
 
@@ -69,29 +69,29 @@ class LaneTile {
         First first{scene_, frame_, flags, {}, {}};
         for (uint32_t turns = 1;; ++turns) {
             if (turns % turns_between_stops == 0 && stopped()) return clear();
-            Mask who = false;
+            Mask active = false;
             if (queues_.has_full() || next_ == pixels_.size()) {
-                who = queues_.pop(branch);
-                if (!any(who)) break;
+                active = queues_.pop(branch);
+                if (!any(active)) break;
                 sums.begin(branch);
-                if constexpr (by_sample) who = of_kept_samples(branch, who);
-                who = sums.afford(branch.weight, who);
-                if (!any(who)) continue;
-                (branch.mirrored ? rays.counts.reflected : rays.counts.transmitted) += rays.count(who);
+                if constexpr (by_sample) active = of_kept_samples(branch, active);
+                active = sums.afford(branch.weight, active);
+                if (!any(active)) continue;
+                (branch.mirrored ? rays.counts.reflected : rays.counts.transmitted) += rays.count(active);
             } else {
                 branch.begin();
-                who = take_primaries(branch, first, flags);
+                active = take_primaries(branch, first, flags);
                 sums.begin(branch);
-                if (!any(who)) continue;
-                sums.count(who);
+                if (!any(active)) continue;
+                sums.count(active);
             }
             if constexpr (by_sample) hash.begin(largest_component(branch.weight) >= least_weight(), adaptive_);
             find_start_plane<E>(scene_, branch.ray);
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
             if (scene_.meshes.any || scene_.named) kept = branch;
-            const Mask single = tree.follow(branch, who, first);
-            sums.end(who);
-            if constexpr (by_sample) add_to_samples(branch, hash, sums.rays(), who, single);
+            const Mask single = tree.follow(branch, active, first);
+            sums.end(active);
+            if constexpr (by_sample) add_to_samples(branch, hash, sums.rays(), active, single);
             if (any(single)) trace_singly(kept, single, first, stopped, rays.counts, flags);
         }
         for (size_t i = 0; i < pixels_.size(); ++i) {
@@ -124,12 +124,12 @@ class LaneTile {
 
     /// Traces branches by themselves, and adds the counts.
     template <class Stopped>
-    CISTULA_NOINLINE void trace_singly(const Entry& branch, const Mask& who, const First& first, const Stopped& stopped,
-                                       RayCounts& counts, uint32_t& flags) {
+    CISTULA_NOINLINE void trace_singly(const Entry& branch, const Mask& active, const First& first,
+                                       const Stopped& stopped, RayCounts& counts, uint32_t& flags) {
         using All = Effects<all_effects | (E::mask & (keeps_budget | fills_layers))>;
         using Stack = StoppableStack<BranchStack<Branch<T>>, StopQuestion>;
         const SingleIntersector<T> intersector{scene_};
-        for_each_lane(who, [&](int lane) {
+        for_each_lane(active, [&](int lane) {
             LanePixel& pixel = pixels_[size_t(branch.pixel[lane] & (Entry::by_mirror - 1))];
             SumsOf<T, All> sums(frame_.tree, scene_, *pixel.record, flags, limit_of(frame_, pixel));
             if constexpr (E::has(fills_layers)) {
@@ -170,9 +170,9 @@ class LaneTile {
     CISTULA_INLINE Real least_weight() const { return Real(T(frame_.lattice.significant)); }
 
     /// Counts branches for their samples, and returns those of samples that are not given up.
-    CISTULA_INLINE Mask of_kept_samples(const Entry& branch, const Mask& who) {
+    CISTULA_INLINE Mask of_kept_samples(const Entry& branch, const Mask& active) {
         uint32_t kept = 0;
-        for_each_lane(who, [&](int lane) {
+        for_each_lane(active, [&](int lane) {
             LanePixel& pixel = pixels_[branch.pixel[lane]];
             ++pixel.branches;
             kept |= uint32_t(pixel.left >= 0 && !pixel.is_too_large(adaptive_)) << lane;
@@ -183,10 +183,10 @@ class LaneTile {
     /// Adds the hashes of branches and the counts of their rays to their samples. `rays`: each branch and its shadow
     /// rays. `single`: those that are to be traced by themselves, of which nothing was done.
     CISTULA_INLINE void add_to_samples(const Entry& branch, const LanePathHash<Real>& hash, const IndexOf<Real>& rays,
-                                       const Mask& who, const Mask& single) {
-        for_each_lane(who & !single,
+                                       const Mask& active, const Mask& single) {
+        for_each_lane(active & !single,
                       [&](int lane) { pixels_[branch.pixel[lane]].path_hash += uint32_t(hash.value[lane]); });
-        for_each_lane(who, [&](int lane) {
+        for_each_lane(active, [&](int lane) {
             LanePixel& pixel = pixels_[branch.pixel[lane]];
             pixel.reflected += branch.mirrored;
             pixel.shadow += uint32_t(rays[lane]) - 1;

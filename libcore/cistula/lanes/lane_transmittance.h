@@ -12,13 +12,13 @@ inline constexpr uint64_t loss_of_all = (uint64_t{1} << 62) - 1;
 
 /// Adds losses up to loss_of_all where the mask holds.
 template <int n>
-CISTULA_INLINE void add_loss(const LaneMask<8, n>& who, const Lanes<int64_t, n>& added, Lanes<int64_t, n>& sum) {
-    const Lanes<int64_t, n> all(int64_t{loss_of_all}), more = sum + masked(who, added);
+CISTULA_INLINE void add_loss(const LaneMask<8, n>& active, const Lanes<int64_t, n>& added, Lanes<int64_t, n>& sum) {
+    const Lanes<int64_t, n> all(int64_t{loss_of_all}), more = sum + masked(active, added);
     sum = select(more < all, more, all);
 }
 template <int n>
-CISTULA_INLINE void add_loss(const LaneMask<8, n>& who, uint64_t added, Lanes<int64_t, n>& sum) {
-    if (added != 0) add_loss(who, Lanes<int64_t, n>(int64_t(min_or_second(added, loss_of_all))), sum);
+CISTULA_INLINE void add_loss(const LaneMask<8, n>& active, uint64_t added, Lanes<int64_t, n>& sum) {
+    if (added != 0) add_loss(active, Lanes<int64_t, n>(int64_t(min_or_second(added, loss_of_all))), sum);
 }
 
 /// absorption_loss(), up to loss_of_all.
@@ -26,11 +26,14 @@ template <int n>
 CISTULA_INLINE Lanes<int64_t, n> absorption_loss(const Lanes<double, n>& sigma_length) {
     using Wide = Lanes<double, n>;
     using Loss = Lanes<int64_t, n>;
-    constexpr double log2_e_hi = 0x1.71547652b82fep+0, log2_e_lo = 0x1.777d0ffda0d24p-56;
+    constexpr double log2_e_hi = 0x1.71547652b82fep+0;
+    constexpr double log2_e_lo = 0x1.777d0ffda0d24p-56;
     const DoubleDoubleOf<Wide> product = two_product(sigma_length, Wide(log2_e_hi));
     const DoubleDoubleOf<Wide> log = fast_two_sum(product.high, fused(sigma_length, Wide(log2_e_lo), product.low));
-    const auto none = sigma_length <= Wide(0.0), part = log.high < Wide(1024.0);
-    const Wide high = select(part, log.high, Wide(0.0)) * Wide(0x1p52), whole = floor_of(high);
+    const auto none = sigma_length <= Wide(0.0);
+    const auto part = log.high < Wide(1024.0);
+    const Wide high = select(part, log.high, Wide(0.0)) * Wide(0x1p52);
+    const Wide whole = floor_of(high);
     const Wide rest = floor_of((high - whole) + (select(part, log.low, Wide(0.0)) * Wide(0x1p52) + Wide(0.5)));
     const Loss loss = select(part, integers_of<false>(whole) + whole_of(rest), Loss(int64_t{loss_of_all}));
     return select(none, Loss(int64_t{0}), loss);

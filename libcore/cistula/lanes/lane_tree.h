@@ -45,8 +45,8 @@ class LaneBoxRay {
         Real& enter = entered.of[box];
         enter = near_limit_;
         for (int k = 0; k < 3; ++k) {
-            const Real at_low = fused(Real(node.low[box][k]), inverse_[k], shift_[k]),
-                       at_high = fused(Real(node.high[box][k]), inverse_[k], shift_[k]);
+            const Real at_low = fused(Real(node.low[box][k]), inverse_[k], shift_[k]);
+            const Real at_high = fused(Real(node.high[box][k]), inverse_[k], shift_[k]);
             enter = max_or_second(min_or_second(at_low, at_high), enter);
             far = min_or_second(max_or_second(at_low, at_high), far);
         }
@@ -78,10 +78,11 @@ class LaneBoxRay<Lanes<double, n>> {
     }
 
     CISTULA_INLINE uint32_t enters(const TreeNode& node, const Real& far, Entered& entered) const {
-        Both enter = near_limit_, leave = twice(far);
+        Both enter = near_limit_;
+        Both leave = twice(far);
         for (int k = 0; k < 3; ++k) {
-            const Both at_low = fused(of_both(node.low[0][k], node.low[1][k]), inverse_[k], shift_[k]),
-                       at_high = fused(of_both(node.high[0][k], node.high[1][k]), inverse_[k], shift_[k]);
+            const Both at_low = fused(of_both(node.low[0][k], node.low[1][k]), inverse_[k], shift_[k]);
+            const Both at_high = fused(of_both(node.high[0][k], node.high[1][k]), inverse_[k], shift_[k]);
             enter = max_or_second(min_or_second(at_low, at_high), enter);
             leave = min_or_second(max_or_second(at_low, at_high), leave);
         }
@@ -120,10 +121,10 @@ CISTULA_INLINE Lanes<T, n> tree_near(const Lanes<T, n>& t) {
                          Lanes<T, n>(T(0)));
 }
 
-/// Calls visit(item, rays) for the items whose boxes the rays of `who` may meet up to far(), nearer boxes first.
+/// Calls visit(item, rays) for the items whose boxes the rays of `active` may meet up to far(), nearer boxes first.
 template <class Real, class Far, class Visit>
 CISTULA_INLINE void traverse_tree(const Span<TreeNode>& nodes, const Span<uint32_t>& items, const LaneBoxRay<Real>& ray,
-                                  const MaskOf<Real>& who, const Far& far, const Visit& visit) {
+                                  const MaskOf<Real>& active, const Far& far, const Visit& visit) {
     using Mask = MaskOf<Real>;
     using Boxes = LaneBoxRay<Real>;
     constexpr int lanes = LaneTraits<Real>::lanes;
@@ -136,7 +137,7 @@ CISTULA_INLINE void traverse_tree(const Span<TreeNode>& nodes, const Span<uint32
     int depth = 0;
     if (nodes.empty()) return;
     int32_t node = 0;
-    uint32_t rays = who.bits();
+    uint32_t rays = active.bits();
     for (;;) {
         const TreeNode& n = nodes[uint32_t(node)];
         typename Boxes::Entered entered;

@@ -35,42 +35,43 @@ class LaneTriangleRay {
     LaneArray<Real> shear_[3], origin_[3];
 };
 
-/// Calls visit(triangle's lane in the cluster, rays, crossings) for the triangles of a cluster that rays of `who`
+/// Calls visit(triangle's lane in the cluster, rays, crossings) for the triangles of a cluster that rays of `active`
 /// cross.
 template <class Real, class Visit>
 CISTULA_INLINE void for_each_crossing(const Cluster<ScalarOf<Real>>& cluster, const LaneTriangleRay<Real>& ray,
-                                      const MaskOf<Real>& who, const Visit& visit) {
+                                      const MaskOf<Real>& active, const Visit& visit) {
     using T = ScalarOf<Real>;
     using Mask = MaskOf<Real>;
     constexpr uint32_t registers = cluster_lanes * sizeof(T) / 32;  // of a ray's test against a whole cluster
-    if (uint32_t(__builtin_popcount(who.bits())) * registers >= cluster.count) {
+    if (uint32_t(__builtin_popcount(active.bits())) * registers >= cluster.count) {
         for (uint32_t triangle = 0; triangle < cluster.count; ++triangle) {
             TriangleCrossing<Real> c;  // not set to 0, which takes longer than the test
             const Mask accepted =
-                who & cross_triangle(ShearedTriangle<Real>::of(cluster, int(triangle), ray.all), ray.all, c);
+                active & cross_triangle(ShearedTriangle<Real>::of(cluster, int(triangle), ray.all), ray.all, c);
             if (any(accepted)) visit(triangle, accepted, c);
         }
         return;
     }
-    for_each_lane(who, [&](int lane) {
+    for_each_lane(active, [&](int lane) {
         for_each_crossing(cluster, ray.of(lane), [&](uint32_t triangle, const TriangleCrossing<T>& c) {
             visit(triangle, Mask::of_bits(1u << lane), TriangleCrossing<Real>{c.t, c.edge_u, c.edge_v, c.det});
         });
     });
 }
 
-/// Takes accepted crossings of a closed mesh, where `who` holds, as `best` if they are the rays' next
+/// Takes accepted crossings of a closed mesh, where `active` holds, as `best` if they are the rays' next
 /// (closest_crossing).
 template <class Real, class Media, class Scene>
-CISTULA_INLINE void closest_mesh_crossing(const Scene& scene, const MaskOf<Real>& who, uint32_t solid,
+CISTULA_INLINE void closest_mesh_crossing(const Scene& scene, const MaskOf<Real>& active, uint32_t solid,
                                           uint32_t triangle, uint32_t slot, const TriangleCrossing<Real>& c,
                                           const Ray<Real, Media>& ray, Hit<Real>& best) {
     using Mask = MaskOf<Real>;
     const Real t = crossing_time(scene, triangle, c.t, ray);
     const Mask starts_there = (ray.from_solid == int(solid)) & (ray.from_face == int(triangle));
-    const Mask enters = c.enters(), is_inside = ray.media.contains(solid);
+    const Mask enters = c.enters();
+    const Mask is_inside = ray.media.contains(solid);
     const Mask wrong = (ray.after.t <= Real(-1)) & ((enters & is_inside) | !(enters | is_inside));
-    const Mask meets = who & (t >= Real(0)) & !starts_there;
+    const Mask meets = active & (t >= Real(0)) & !starts_there;
     assign_where(meets & wrong, best.wrong_side_t, min_no_nan(t, best.wrong_side_t));
     using Keys = KeyFormat<Real>;
     const auto face = KeyOf<Real>(int32_t(triangle));

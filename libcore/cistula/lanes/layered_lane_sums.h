@@ -35,20 +35,21 @@ class LayeredLaneSums : public LaneSums<Real> {
         for (int c = 0; c < 3; ++c) lights_[c] = diffuse_[c] = int64_t(0);
     }
 
-    CISTULA_INLINE void end(const Mask& who) {
-        Base::end(who);
+    CISTULA_INLINE void end(const Mask& active) {
+        Base::end(active);
         if (plan_->path < 0 && plan_->light < 0) return;
-        const uint32_t glows = glows_.bits(), mirrored = mirrored_.bits();
+        const uint32_t glows = glows_.bits();
+        const uint32_t mirrored = mirrored_.bits();
         const auto way = [&](int lane, PathLayer own) {
             return at_first_ ? own : (mirrored >> lane & 1u) != 0 ? PathLayer::reflection : PathLayer::transmission;
         };
         const Units all(this->radiance_);
-        for_each_lane(who & ends_, [&](int lane) {
+        for_each_lane(active & ends_, [&](int lane) {
             const bool glow = (glows >> lane & 1u) != 0;
             give(plan_->path, int(way(lane, glow ? PathLayer::emission : PathLayer::background)), all, lane);
             give(plan_->light, int(glow ? LightLayer::glow : LightLayer::environment), all, lane);
         });
-        const Mask lit = who & !ends_;
+        const Mask lit = active & !ends_;
         if (!any(lit)) return;
         Integers rest[3], specular[3];
         for (int c = 0; c < 3; ++c) {
@@ -66,25 +67,25 @@ class LayeredLaneSums : public LaneSums<Real> {
     }
 
     /// Adds what is at the end of branches: visible lights, where `glows` holds, or else the background.
-    CISTULA_INLINE void add_end(const Vec3<Real>& radiance, const Mask& glows, const Mask& who) {
-        Base::add_end(radiance, glows, who);
-        ends_ |= who;
-        glows_ |= who & glows;
+    CISTULA_INLINE void add_end(const Vec3<Real>& radiance, const Mask& glows, const Mask& active) {
+        Base::add_end(radiance, glows, active);
+        ends_ |= active;
+        glows_ |= active & glows;
     }
 
     template <class Diffuse>
-    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t i, const Diffuse& diffuse, const Mask& who) {
+    CISTULA_INLINE void add_light(const Vec3<Real>& radiance, uint32_t i, const Diffuse& diffuse, const Mask& active) {
         Integers added[3];
-        this->add_units(radiance, who, added);
+        this->add_units(radiance, active, added);
         for (int c = 0; c < 3; ++c) lights_[c] += added[c];
         if (at_first_ && plan_->path >= 0) {
             Integers part[3];
-            this->units_of(diffuse(), who, part);
+            this->units_of(diffuse(), active, part);
             for (int c = 0; c < 3; ++c) diffuse_[c] += part[c];
         }
         if (plan_->light < 0) return;
         const Units units(added);
-        for_each_lane(who,
+        for_each_lane(active,
                       [&](int lane) { give(plan_->light, common_light_layers + int((*groups_)[i]), units, lane); });
     }
 
@@ -109,7 +110,9 @@ class LayeredLaneSums : public LaneSums<Real> {
     const LayerPlan* plan_ = nullptr;
     const Span<uint32_t>* groups_ = nullptr;
     bool at_first_ = false;  // the primary rays are under way
-    Mask mirrored_ = false, ends_ = false, glows_ = false;
+    Mask mirrored_ = false;
+    Mask ends_ = false;
+    Mask glows_ = false;
     Integers lights_[3], diffuse_[3];  // of point lights; their diffuse parts, at the first surface
 };
 

@@ -111,8 +111,10 @@ CISTULA_INLINE void whole_of(Floats a, Longs& low, Longs& high) {
     const __m256i upper = _mm256_cvttps_epi32(a);
     const __m256 rest = _mm256_sub_ps(a, _mm256_cvtepi32_ps(upper));
     const __m256i lower = _mm256_cvttps_epi32(_mm256_mul_ps(rest, _mm256_set1_ps(0x1p31f)));
-    const __m256i first = _mm256_or_si256(lower, _mm256_slli_epi32(upper, 31)), second = _mm256_srli_epi32(upper, 1);
-    const __m256i even = _mm256_unpacklo_epi32(first, second), odd = _mm256_unpackhi_epi32(first, second);
+    const __m256i first = _mm256_or_si256(lower, _mm256_slli_epi32(upper, 31));
+    const __m256i second = _mm256_srli_epi32(upper, 1);
+    const __m256i even = _mm256_unpacklo_epi32(first, second);
+    const __m256i odd = _mm256_unpackhi_epi32(first, second);
     low = (Longs)_mm256_permute2x128_si256(even, odd, 0x20);
     high = (Longs)_mm256_permute2x128_si256(even, odd, 0x31);
 }
@@ -132,8 +134,12 @@ CISTULA_INLINE void gather_three(const float* from, Ints places, Floats& x, Floa
         return _mm256_insertf128_ps(_mm256_castps128_ps256(three_at(from + uint32_t(at[i]))),
                                     three_at(from + uint32_t(at[i + 4])), 1);
     };
-    const __m256 a = two(0), b = two(1), c = two(2), d = two(3);
-    const __m256 ab = _mm256_unpacklo_ps(a, b), cd = _mm256_unpacklo_ps(c, d);
+    const __m256 a = two(0);
+    const __m256 b = two(1);
+    const __m256 c = two(2);
+    const __m256 d = two(3);
+    const __m256 ab = _mm256_unpacklo_ps(a, b);
+    const __m256 cd = _mm256_unpacklo_ps(c, d);
     x = _mm256_shuffle_ps(ab, cd, 0x44);
     y = _mm256_shuffle_ps(ab, cd, 0xee);
     z = _mm256_shuffle_ps(_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d), 0x44);

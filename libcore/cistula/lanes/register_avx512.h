@@ -105,8 +105,12 @@ CISTULA_INLINE void gather_three(const float* from, Ints places, Floats& x, Floa
         v = _mm512_insertf32x4(v, three_at(from + uint32_t(at[i + 8])), 2);
         return _mm512_insertf32x4(v, three_at(from + uint32_t(at[i + 12])), 3);
     };
-    const __m512 a = four(0), b = four(1), c = four(2), d = four(3);
-    const __m512 ab = _mm512_unpacklo_ps(a, b), cd = _mm512_unpacklo_ps(c, d);
+    const __m512 a = four(0);
+    const __m512 b = four(1);
+    const __m512 c = four(2);
+    const __m512 d = four(3);
+    const __m512 ab = _mm512_unpacklo_ps(a, b);
+    const __m512 cd = _mm512_unpacklo_ps(c, d);
     x = _mm512_shuffle_ps(ab, cd, 0x44);
     y = _mm512_shuffle_ps(ab, cd, 0xee);
     z = _mm512_shuffle_ps(_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d), 0x44);

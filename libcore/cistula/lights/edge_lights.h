@@ -8,14 +8,17 @@
 namespace cistula {
 
 /// The maximum number of solids that are tested, and of slabs of each.
-inline constexpr uint32_t most_solids_of_edge_lights = 16, most_slabs_of_edge_lights = 32;  // a bit each
+// a bit each
+inline constexpr uint32_t most_solids_of_edge_lights = 16;
+inline constexpr uint32_t most_slabs_of_edge_lights = 32;
 
 /// Whether a line between `from` and `to` misses the bounding sphere of a solid's edge lights.
 template <class Real>
 CISTULA_INLINE bool passes_edge_lights(const Solid& solid, Real square, const Vec3<Real>& origin,
                                        const Vec3<Real>& direction, Real from, Real to) {
     const Vec3<Real> to_center = Vec3<Real>(solid.center) - origin;
-    const Real ahead = dot(to_center, direction), rest = dot(to_center, to_center) - square;
+    const Real ahead = dot(to_center, direction);
+    const Real rest = dot(to_center, to_center) - square;
     const Real nearest = clamped(ahead, from, to);
     return rest > nearest * (Real(2) * ahead - nearest);
 }
@@ -49,12 +52,15 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
         CISTULA_LANES
         for (int i = 0; i < slab_lanes; ++i) {
             const Vec3<float> normal(float(group.nx[i]), float(group.ny[i]), float(group.nz[i]));
-            const float nd = dot(normal, direction), no = dot(normal, origin);
+            const float nd = dot(normal, direction);
+            const float no = dot(normal, origin);
             // A line parallel to a slab is near its planes almost everywhere or nowhere.
             const float inverse = 1.0f / (magnitude(nd) < 0x1p-60f ? 0x1p-60f : nd);
-            const float at_low = (float(group.low[i]) - no) * inverse, at_high = (float(group.high[i]) - no) * inverse;
-            const float half = reach * magnitude(inverse), in = min_no_nan(at_low, at_high),
-                        out = max_no_nan(at_low, at_high);
+            const float at_low = (float(group.low[i]) - no) * inverse;
+            const float at_high = (float(group.high[i]) - no) * inverse;
+            const float half = reach * magnitude(inverse);
+            const float in = min_no_nan(at_low, at_high);
+            const float out = max_no_nan(at_low, at_high);
             enter[i] = in - half;
             past[g][i] = in + half;
             soon[g][i] = out - half;
@@ -64,15 +70,19 @@ CISTULA_INLINE bool nears_edge(const SlabGroup<Real>* groups, uint32_t slabs, fl
         to = min_or_second(convex_host::least_lane(leave), to);
     }
     if (!(from <= to)) return false;
-    uint32_t entering = 0, leaving = 0;  // masks of planes near which the line is at `from`, at `to`
-    float first = to, last = from;
+    // masks of planes near which the line is at `from`, at `to`
+    uint32_t entering = 0;
+    uint32_t leaving = 0;
+    float first = to;
+    float last = from;
     for (int g = 0; g < count; ++g) {
         entering |= lanes_from(past[g], from) << g * slab_lanes;
         leaving |= lanes_to(soon[g], to) << g * slab_lanes;
         first = min_or_second(convex_host::least_lane(soon[g]), first);
         last = max_or_second(convex_host::greatest_lane(past[g]), last);
     }
-    const bool two_at_first = (entering & (entering - 1)) != 0, two_at_last = (leaving & (leaving - 1)) != 0;
+    const bool two_at_first = (entering & (entering - 1)) != 0;
+    const bool two_at_last = (leaving & (leaving - 1)) != 0;
     if (!two_at_first && !two_at_last && (entering == 0 || leaving == 0)) return false;
     if (!two_at_first) from = max_or_second(first, from);
     if (!two_at_last) to = min_or_second(last, to);
@@ -95,7 +105,8 @@ CISTULA_INLINE bool may_hit_visible_lights(const Scene& scene, const Ray<Real, M
     if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return true;
     const Vec3<float> origin(ray.origin), direction(ray.direction);
     const auto near = [&](const Solid& solid, const SlabGroup<Real>& first, Real& near_from, Real& near_to) {
-        float first_near = float(near_from), last_near = float(near_to);
+        float first_near = float(near_from);
+        float last_near = float(near_to);
         const bool nears =
             nears_edge(&first, solid.slab_count, float(first.light_reach), origin, direction, first_near, last_near);
         near_from = first_near;
@@ -107,11 +118,13 @@ CISTULA_INLINE bool may_hit_visible_lights(const Scene& scene, const Ray<Real, M
         const SlabGroup<Real>& first = scene.slab_groups[scene.solids[around].first_group];
         if (first.lights_apart) return near(scene.solids[around], first, from, to);
     }
-    Real earliest = to, latest = from;
+    Real earliest = to;
+    Real latest = from;
     for (const auto& entry : scene.convex) {
         const Solid& solid = listed(scene, entry);
         const SlabGroup<Real>& first = scene.slab_groups[solid.first_group];
-        Real near_from = from, near_to = to;
+        Real near_from = from;
+        Real near_to = to;
         if (passes_edge_lights(solid, first.light_square, ray.origin, ray.direction, from, to) ||
             !near(solid, first, near_from, near_to))
             continue;

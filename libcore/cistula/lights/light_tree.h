@@ -15,7 +15,8 @@ CISTULA_INLINE void intersect_boxes(const LightNode& node, const BoxRay& box_ray
     constexpr int width = LightNode::width;
     float near_t[3][width], far_t[3][width];
     for (int k = 0; k < 3; ++k) {  // copies whole lanes, for wide loads
-        const LightNode::Lanes center = node.center[k], half = node.half[k];
+        const LightNode::Lanes center = node.center[k];
+        const LightNode::Lanes half = node.half[k];
         const float inverse = magnitude(box_ray.inverse[k]);
         CISTULA_VECTORS
         for (int i = 0; i < width; ++i) {
@@ -45,7 +46,8 @@ CISTULA_INLINE void intersect_boxes(const LightNode& node, const BoxRay& box_ray
 /// The stack of a traversal; an entry is a node or ~light.
 class LightStack {
   public:
-    static constexpr int32_t none = INT32_MIN, root = 0;
+    static constexpr int32_t none = INT32_MIN;
+    static constexpr int32_t root = 0;
     static constexpr int capacity = (LightNode::width - 1) * (max_tree_depth + 1) + 1;
     using Storage = int32_t[capacity];
 

@@ -28,7 +28,8 @@ CISTULA_INLINE void intersect_visible_light(const Scene& scene, uint32_t index, 
     const Real b = dot(to_center, ray.direction);
     const Vec3<Real> across = to_center - b * ray.direction;
     const Real square = light.radius * light.radius;
-    const Real discriminant = square - dot(across, across), c = dot(to_center, to_center) - square;
+    const Real discriminant = square - dot(across, across);
+    const Real c = dot(to_center, to_center) - square;
     const MaskOf<Real> meets = (discriminant > Real(0)) & (c > Real(0)) & (b > Real(0));
     if (!any(meets)) return;
     const Real t = c / (b + square_root(discriminant));

@@ -37,7 +37,10 @@ struct InlineSpan {
 /// Which primitives a shadow ray may meet, precomputed for each pair of solid and light (plan_shadows in
 /// libcore/scene).
 struct ShadowPlan {
-    static constexpr uint32_t solids = 24, lights = 8, convex = 16, clusters = 4;
+    static constexpr uint32_t solids = 24;
+    static constexpr uint32_t lights = 8;
+    static constexpr uint32_t convex = 16;
+    static constexpr uint32_t clusters = 4;
     static constexpr uint32_t first_cluster = convex;
     static_assert(solids <= 32 && first_cluster + clusters <= 32);
 
@@ -58,7 +61,8 @@ struct ShadowPlan {
 template <class Real>
 struct ConstantScene {
     using Scalar = Real;
-    static constexpr uint32_t most_slabs = 96, most_materials = 16;
+    static constexpr uint32_t most_slabs = 96;
+    static constexpr uint32_t most_materials = 16;
 
     InlineSpan<Solid, ShadowPlan::solids> solids;
     InlineSpan<Slab<Real>, most_slabs> slabs;

@@ -6,7 +6,8 @@
 namespace cistula {
 
 /// Samples along a pixel's side, and samples of a pixel.
-inline constexpr int lattice_side = 16, lattice_samples = lattice_side * lattice_side;
+inline constexpr int lattice_side = 16;
+inline constexpr int lattice_samples = lattice_side * lattice_side;
 /// The minimum number of samples of an adaptively sampled pixel: its four corners and its middle.
 inline constexpr int least_lattice_samples = 5;
 /// The most samples of the lattice that one of `samples` taken stands for (LatticePixel::accumulate): the middle one
@@ -16,7 +17,8 @@ CISTULA_INLINE uint32_t largest_weight(uint32_t samples) {
 }
 /// Fraction bits of the colors that the rules compare: units of 2^-44 of the radiance bound's power of two, since a
 /// target may be as small as 2^-32 of it (closed-box.json). Products in the rules need at most 13 bits more.
-inline constexpr int color_bits = 44, color_shift = 54 - color_bits;
+inline constexpr int color_bits = 44;
+inline constexpr int color_shift = 54 - color_bits;
 
 /// A frame's target error for its pixels, and how samples are placed to reach it.
 struct LatticeSettings {

@@ -52,7 +52,8 @@ struct LayerPlan {
     int path = -1;   // 3 sums for each PathLayer
     int light = -1;  // 3 sums for each LightLayer and light group
     int first_hit = -1;
-    int objects = -1, object_entries = 0;
+    int objects = -1;
+    int object_entries = 0;
 
     /// The number of words that are sums. They come first.
     CISTULA_INLINE int sums() const { return first_hit >= 0 ? first_hit : objects >= 0 ? objects : words; }

@@ -18,7 +18,10 @@ enum RenderFlag : uint32_t {
 
 /// Ray counts of one pixel. 32 bits suffice: 2^32 rays would take hours.
 struct PixelRays {
-    uint32_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
+    uint32_t primary = 0;
+    uint32_t reflected = 0;
+    uint32_t transmitted = 0;
+    uint32_t shadow = 0;
 
     CISTULA_INLINE void add(const PixelRays& o) {
         primary += o.primary;
@@ -39,7 +42,10 @@ struct PixelWork {
 };
 
 struct RayCounts {
-    uint64_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
+    uint64_t primary = 0;
+    uint64_t reflected = 0;
+    uint64_t transmitted = 0;
+    uint64_t shadow = 0;
 
     CISTULA_INLINE void add(const RayCounts& o) {
         primary += o.primary;
@@ -129,7 +135,9 @@ struct PixelPlanes {
 
 /// Sum and largest of up to 2^32 numbers below 2^64. The sum, of the numbers' lower and upper halves, is exact.
 struct Total {
-    unsigned long long low = 0, high = 0, most = 0;
+    unsigned long long low = 0;
+    unsigned long long high = 0;
+    unsigned long long most = 0;
 
     CISTULA_INLINE void add(uint64_t value, uint64_t times = 1) {
         low += (value & 0xffffffffu) * times;

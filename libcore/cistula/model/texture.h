@@ -30,8 +30,10 @@ CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
 /// Bilinear interpolation between the four texels around (x, y); texel(i, j) gives a texel's color.
 template <class Real, class Texel>
 CISTULA_NOINLINE Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
-    const Real left = floor_of(x - Real(0.5)), top = floor_of(y - Real(0.5));
-    const Real fx = (x - Real(0.5)) - left, fy = (y - Real(0.5)) - top;
+    const Real left = floor_of(x - Real(0.5));
+    const Real top = floor_of(y - Real(0.5));
+    const Real fx = (x - Real(0.5)) - left;
+    const Real fy = (y - Real(0.5)) - top;
     const Vec3<Real> upper = texel(left, top) * (Real(1) - fx) + texel(left + Real(1), top) * fx;
     const Vec3<Real> lower = texel(left, top + Real(1)) * (Real(1) - fx) + texel(left + Real(1), top + Real(1)) * fx;
     return upper * (Real(1) - fy) + lower * fy;
@@ -65,7 +67,8 @@ template <class Real, class Scene>
 CISTULA_HD inline Vec3<Real> texture_at(const Scene& scene, const Texture& texture, const Vec2<Real>& uv) {
     const Vec3<float>* texels = scene.texels.data + texture.first_texel;
     const Vec2<Real> place = in_texels(texture, uv);
-    const Real x = place.x, y = place.y;
+    const Real x = place.x;
+    const Real y = place.y;
     const auto texel = [&](Real i, Real j) { return texel_at(texels, texture, i, j); };
     if (texture.filter == TextureFilter::nearest) return texel(floor_of(x), floor_of(y));
     return bilinear(x, y, texel);

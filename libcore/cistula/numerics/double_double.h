@@ -9,7 +9,8 @@ namespace cistula {
 /// Double: double, or lanes of it.
 template <class Double>
 struct DoubleDoubleOf {
-    Double high = 0.0, low = 0.0;
+    Double high = 0.0;
+    Double low = 0.0;
 
     constexpr DoubleDoubleOf() = default;
     CISTULA_INLINE constexpr explicit DoubleDoubleOf(Double a) : high(a) {}
@@ -21,7 +22,8 @@ using DoubleDouble = DoubleDoubleOf<double>;
 /// a + b exactly, as a rounded sum and its error (Knuth).
 template <class Double>
 CISTULA_INLINE DoubleDoubleOf<Double> two_sum(Double a, Double b) {
-    const Double s = a + b, bb = s - a;
+    const Double s = a + b;
+    const Double bb = s - a;
     return {s, (a - (s - bb)) + (b - bb)};
 }
 /// a + b exactly, as a rounded sum and its error, where |a| >= |b| or a = 0 (Dekker).
@@ -46,7 +48,8 @@ CISTULA_INLINE DoubleDoubleOf<Double> operator-(const DoubleDoubleOf<Double>& a)
 }
 template <class Double>
 CISTULA_INLINE DoubleDoubleOf<Double> operator+(const DoubleDoubleOf<Double>& a, const DoubleDoubleOf<Double>& b) {
-    const DoubleDoubleOf<Double> s = two_sum(a.high, b.high), t = two_sum(a.low, b.low);
+    const DoubleDoubleOf<Double> s = two_sum(a.high, b.high);
+    const DoubleDoubleOf<Double> t = two_sum(a.low, b.low);
     const DoubleDoubleOf<Double> v = fast_two_sum(s.high, s.low + t.high);
     return fast_two_sum(v.high, t.low + v.low);
 }

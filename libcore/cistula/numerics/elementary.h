@@ -40,7 +40,8 @@ CISTULA_INLINE double scaled(double x, int k) {
 /// 2^(r + tail) for |r| <= 0.5 and a tail of at most about an ulp of 0.5; the result lies in [0.7, 1.42]. Exact at 0.
 template <class Double>
 CISTULA_HD inline Double exp2_reduced(Double r, std::type_identity_t<Double> tail) {
-    const Double ln2_hi = 0x1.62e42fefa39efp-1, ln2_lo = 0x1.abc9e3b39803fp-56;
+    const Double ln2_hi = 0x1.62e42fefa39efp-1;
+    const Double ln2_lo = 0x1.abc9e3b39803fp-56;
     constexpr double quadratic[] = {0x1.ebfbdff82c58fp-3,  0x1.c6b08d704a0c2p-5,  0x1.3b2ab6fba4e78p-7,
                                     0x1.5d87fe78a5276p-10, 0x1.430912f86bf52p-13, 0x1.ffcbfc670dcd4p-17,
                                     0x1.62c022401b97dp-20, 0x1.b524fae627834p-24, 0x1.e4cf1cd08d4b8p-28,

@@ -42,7 +42,8 @@ CISTULA_INLINE bool to_fixed_up(Real x, Scale scale, int64_t& out) {
 
 /// sum / samples, rounded to nearest, halves to even; for sum >= 0 and samples > 0.
 CISTULA_INLINE int64_t mean_of(int64_t sum, uint32_t samples) {
-    const int64_t whole = sum / samples, twice = 2 * (sum % samples);
+    const int64_t whole = sum / samples;
+    const int64_t twice = 2 * (sum % samples);
     return whole + (twice > samples || (twice == samples && (whole & 1)) ? 1 : 0);
 }
 

@@ -16,9 +16,9 @@ CISTULA_INLINE uint64_t saturating_add(uint64_t a, uint64_t b) {
     return sum < a ? largest_loss : sum;
 }
 
-/// Adds a loss to a sum, if `who`. (In lanes: lane_transmittance.h.)
-CISTULA_INLINE void add_loss(bool who, uint64_t added, uint64_t& sum) {
-    assign_where(who, sum, saturating_add(sum, added));
+/// Adds a loss to a sum, if `active`. (In lanes: lane_transmittance.h.)
+CISTULA_INLINE void add_loss(bool active, uint64_t added, uint64_t& sum) {
+    assign_where(active, sum, saturating_add(sum, added));
 }
 
 /// Converts a logarithm >= 0 to Q11.52, rounded to nearest with halves up. Values of 4096 and more, and NaN, saturate.
@@ -58,7 +58,8 @@ struct CachedTransmittance {
 /// The loss of the Beer-Lambert transmittance exp(-sigma_length), rounded to nearest. Negative arguments count as 0;
 /// arguments from 4096 ln 2 = 2839.13 on, and NaN, saturate.
 CISTULA_HD inline uint64_t absorption_loss(double sigma_length) {
-    constexpr double log2_e_hi = 0x1.71547652b82fep+0, log2_e_lo = 0x1.777d0ffda0d24p-56;
+    constexpr double log2_e_hi = 0x1.71547652b82fep+0;
+    constexpr double log2_e_lo = 0x1.777d0ffda0d24p-56;
     if (sigma_length <= 0) return 0;
     const DoubleDouble product = two_product(sigma_length, log2_e_hi);
     return loss_of_logarithm(fast_two_sum(product.high, fused(sigma_length, log2_e_lo, product.low)));

@@ -25,7 +25,8 @@ CISTULA_HD inline ReducedAngle reduce_large_angle(double x) {
         0x2ebb4484, 0xe99c7026, 0xb45f7e41, 0x3991d639, 0x835339f4, 0x9c845f8b, 0xbdf9283b, 0x1ff897ff,
         0xde05980f, 0xef2f118b, 0x5a0a6d1f, 0x6d367ecf, 0x27cb09b7, 0x4f463f66, 0x9e5fea2d, 0x7527bac7,
         0xebe5f17b, 0x3d0739f7, 0x8a5292ea, 0x6bfb5fb1, 0x1f8d5d08, 0x56033046, 0xfc7b6bab};
-    constexpr double pi_half_hi = 0x1.921fb54442d18p+0, pi_half_lo = 0x1.1a62633145c07p-54;
+    constexpr double pi_half_hi = 0x1.921fb54442d18p+0;
+    constexpr double pi_half_lo = 0x1.1a62633145c07p-54;
     const uint64_t bits = bits_as<uint64_t>(x);
     const uint64_t mantissa = (bits & 0xfffffffffffffu) | 0x10000000000000u;
     const int exponent = static_cast<int>(bits >> 52) - 1075;  // x = mantissa * 2^exponent
@@ -36,7 +37,8 @@ CISTULA_HD inline ReducedAngle reduce_large_angle(double x) {
     for (int f = 0; f < 2; ++f) {
         uint64_t carry = 0;
         for (int i = 5; i - f >= 0; --i) {
-            const int word = first / 32 + i, shift = first % 32;
+            const int word = first / 32 + i;
+            const int shift = first % 32;
             const uint64_t pair = static_cast<uint64_t>(two_over_pi[word]) << 32 | two_over_pi[word + 1];
             carry += factor[f] * (pair << shift >> 32) + product[i - f];
             product[i - f] = static_cast<uint32_t>(carry);
@@ -45,11 +47,14 @@ CISTULA_HD inline ReducedAngle reduce_large_angle(double x) {
     }
     const int quadrant = static_cast<int>((product[0] >> 29) + 1) >> 1;
     // The rest, in quarter turns, is the two's complement fraction left of the top two bits.
-    double sum = 0, tail = 0, weight = 0x1p-32;
+    double sum = 0;
+    double tail = 0;
+    double weight = 0x1p-32;
     for (int i = 0; i < 6; ++i, weight *= 0x1p-32) {
         const uint32_t word = product[i] << 2 | (i < 5 ? product[i + 1] >> 30 : 0);
         const double value = (i == 0 ? static_cast<double>(static_cast<int32_t>(word)) : word) * weight;
-        const double total = sum + value, part = total - sum;
+        const double total = sum + value;
+        const double part = total - sum;
         tail += (sum - (total - part)) + (value - part);
         sum = total;
     }
@@ -62,11 +67,14 @@ CISTULA_HD inline ReducedAngle reduce_large_angle(double x) {
 /// Cody and Waite's reduction with pi / 2 in three doubles, the first step of which is exact. For x in [0, 2^30).
 CISTULA_HD inline ReducedAngle reduce_small_angle(double x) {
     constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
-    constexpr double part0 = 0x1.921fb54442d18p+0, part1 = 0x1.1a62633145c07p-54, part2 = -0x1.f1976b7ed8fbcp-110;
+    constexpr double part0 = 0x1.921fb54442d18p+0;
+    constexpr double part1 = 0x1.1a62633145c07p-54;
+    constexpr double part2 = -0x1.f1976b7ed8fbcp-110;
     const double n = floor_of(fused(x, two_over_pi, 0.5));
     const double first = fused(-n, part0, x);
     const DoubleDouble second = two_product(n, part1);
-    const double hi = first - second.high, back = hi - first;
+    const double hi = first - second.high;
+    const double back = hi - first;
     const double error = (first - (hi - back)) - (second.high + back);
     const DoubleDouble r = fast_two_sum(hi, error - fused(n, part2, second.low));
     return {r.high, r.low, static_cast<int>(n) & 3};
@@ -119,8 +127,10 @@ CISTULA_HD inline double tan(double x) {
     if (!is_finite(x)) return not_a_number;
     if (magnitude(x) < 0x1p-27) return x;
     const ReducedAngle r = reduced_angle(x);
-    const DoubleDouble s = sin_reduced(r.high, r.low), c = cos_reduced(r.high, r.low);
-    const DoubleDouble above = r.quadrant & 1 ? c : s, below = r.quadrant & 1 ? DoubleDouble{-s.high, -s.low} : c;
+    const DoubleDouble s = sin_reduced(r.high, r.low);
+    const DoubleDouble c = cos_reduced(r.high, r.low);
+    const DoubleDouble above = r.quadrant & 1 ? c : s;
+    const DoubleDouble below = r.quadrant & 1 ? DoubleDouble{-s.high, -s.low} : c;
     const double quotient = above.high / below.high;
     return quotient + (fused(-quotient, below.high, above.high) + (above.low - quotient * below.low)) / below.high;
 }

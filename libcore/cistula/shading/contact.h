@@ -123,7 +123,8 @@ class ContactStart {
     CISTULA_INLINE int side_of_triangle(const SharedPlane<Real>& plane) const {
         Vec3<Real> corner[3];
         triangle_corners(scene_, hit_.slot, corner);
-        bool above = false, below = false;
+        bool above = false;
+        bool below = false;
         for (int c = 0; c < 3; ++c) {
             const Real off = distance_from(plane, corner[c]);
             above |= off > near_start<Real> * plane.slack;

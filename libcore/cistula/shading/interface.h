@@ -24,11 +24,11 @@ CISTULA_INLINE double index_of(const Scene& scene, const Media& media) {
     return solid == no_solid ? 1.0 : scene.materials[scene.solids[solid].material].index;
 }
 
-/// Sets the index beyond the face of an opaque body to that of its own material, where `who` holds: no ray goes on
+/// Sets the index beyond the face of an opaque body to that of its own material, where `active` holds: no ray goes on
 /// there, but the exact terms say how much is mirrored. (In lanes: lane_surface.h.)
 template <class Scene, class Real>
-CISTULA_INLINE void take_opaque_index(const Scene&, const Material<Real>& m, bool who, double& beyond) {
-    if (who && m.transparency == Transparency::opaque) beyond = m.index;
+CISTULA_INLINE void take_opaque_index(const Scene&, const Material<Real>& m, bool active, double& beyond) {
+    if (active && m.transparency == Transparency::opaque) beyond = m.index;
 }
 
 /// Splits light at an interface. Total internal reflection moves the transmitted share to the reflected ray. With
@@ -57,8 +57,8 @@ CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& s
         if (any(split.bends)) {
             const Refraction<Real> refraction = refracted<Real>(direction, normal, from, to);
             assign_where(split.bends, split.through, refraction.direction);
-            const MaskOf<Real> total = split.bends & refraction.total,
-                               part = split.bends & (!refraction.total) & fresnel;
+            const MaskOf<Real> total = split.bends & refraction.total;
+            const MaskOf<Real> part = split.bends & (!refraction.total) & fresnel;
             assign_where(total, split.reflection, both);
             assign_where(total, split.filter, Filter(Real(0)));
             assign_where(part, split.reflection, both * refraction.reflectance);

@@ -78,14 +78,24 @@ struct LightObserver {
     CISTULA_INLINE void arrives(uint32_t, const Shadow&, const Arrives&) const {}
 };
 
-/// Adds `weight` times the local light of a surface seen along `ray` (docs/design.md, Light), where `who` holds.
+/// A surface to which light is added: of one ray a copy, which compilers keep in registers; lanes stay in memory.
+template <class Real>
+CISTULA_INLINE Surface<Real> as_lit(const Surface<Real>& surface) {
+    return surface;
+}
+template <class Real>
+requires in_lanes<Real> CISTULA_INLINE const Surface<Real>& as_lit(const Surface<Real>& surface) {
+    return surface;
+}
+
+/// Adds `weight` times the local light of a surface seen along `ray` (docs/design.md, Light), where `active` holds.
 template <class Real, class E, class Intersector, class Media, class Scene, class Sums, class Rays,
           ObservesLights<Real, E, Media> Observer = LightObserver>
 CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& intersector, const Ray<Real, Media>& ray,
                                     const SurfaceEvent<Real, Media>& event, const Surface<Real>& surface,
                                     const Throughput<Real, E>& weight, Sums& sums, Rays& rays,
-                                    const Observer& observer = {}, const MaskOf<Real>& who = true) {
-    std::conditional_t<in_lanes<Real>, const Surface<Real>&, Surface<Real>> s = surface;
+                                    const Observer& observer = {}, const MaskOf<Real>& active = true) {
+    decltype(auto) s = as_lit(surface);
     const Media* around = &ray.media;
     if constexpr (in_lanes<Real>) around = &surface.viewer_media;
     [[maybe_unused]] Media corrected;
@@ -97,11 +107,11 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             around = &corrected;
         }
     const auto& m = material_of(scene, s);
-    sums.add(weight * (s.color * m.ambient), LightSource::ambient, who);
+    sums.add(weight * (s.color * m.ambient), LightSource::ambient, active);
     if constexpr (E::has(effect_diffuse | effect_specular)) {
         for (uint32_t i = 0; i < scene.lights.size; ++i) {
             const Light<ScalarOf<Real>>& light = scene.lights[i];
-            MaskOf<Real> lights = who & is_before(scene, light, s);
+            MaskOf<Real> lights = active & is_before(scene, light, s);
             if (!any(lights)) {
                 observer.behind(i, light);
                 continue;

@@ -30,24 +30,25 @@ struct ShadowSum {
 
     CISTULA_INLINE MaskOf<Lanes> is_blocked() const { return opaque == 7u; }
 
-    /// Adds a face, where `who` holds.
+    /// Adds a face, where `active` holds.
     template <class Real>
-    CISTULA_INLINE void cross(const Material<Real>& material, const MaskOf<Lanes>& who = true) {
+    CISTULA_INLINE void cross(const Material<Real>& material, const MaskOf<Lanes>& active = true) {
         if constexpr (!E::has(effect_transparent_shadows)) {
-            assign_where(who, opaque, Bits(7u));
+            assign_where(active, opaque, Bits(7u));
         } else {
-            assign_where(who, opaque, opaque | Bits(material.opaque));
-            for (int c = 0; c < channels; ++c) add_loss(widened(who), material.filter_loss[c], loss[c]);
+            assign_where(active, opaque, opaque | Bits(material.opaque));
+            for (int c = 0; c < channels; ++c) add_loss(widened(active), material.filter_loss[c], loss[c]);
         }
     }
 
     /// Adds the absorption of a length >= 0 inside a convex solid.
     template <class Real>
-    CISTULA_INLINE void absorb(const Material<ScalarOf<Real>>& material, Real length, const MaskOf<Lanes>& who = true) {
+    CISTULA_INLINE void absorb(const Material<ScalarOf<Real>>& material, Real length,
+                               const MaskOf<Lanes>& active = true) {
         for (int c = 0; c < channels; ++c) {
             const double sigma = double(material.absorption[c]);
             if (!(sigma > 0)) continue;
-            add_loss(widened(who), absorption_loss(WideOf<Lanes>(sigma) * WideOf<Lanes>(length)), loss[c]);
+            add_loss(widened(active), absorption_loss(WideOf<Lanes>(sigma) * WideOf<Lanes>(length)), loss[c]);
         }
     }
 
@@ -56,7 +57,8 @@ struct ShadowSum {
     /// extents, is in no mesh, and lengths count up to there.
     template <class Real>
     CISTULA_INLINE void absorb_rest(const Material<Real>& material, Real distance, Real t, int sign, Real extent) {
-        const Real farthest = 4 * extent, remaining = min_or_second(distance, farthest) - t;
+        const Real farthest = 4 * extent;
+        const Real remaining = min_or_second(distance, farthest) - t;
         for (int c = 0; c < channels; ++c)
             path[c].add(sign, double(material.absorption[c]), double(remaining), double(farthest));
     }
@@ -117,20 +119,20 @@ CISTULA_INLINE LightSide light_side(const Scene& scene, uint32_t index, const Sh
 
 /// Adds a convex solid that rays to a light at `distance` start inside and leave at `leave`, or not before the light.
 template <class Real, class E>
-CISTULA_INLINE void add_exit(const MaskOf<Real>& who, const Material<ScalarOf<Real>>& material, Real leave,
+CISTULA_INLINE void add_exit(const MaskOf<Real>& active, const Material<ScalarOf<Real>>& material, Real leave,
                              Real distance, ShadowSumOf<E, Real>& sum) {
-    sum.cross(material, who & (leave < distance));
+    sum.cross(material, active & (leave < distance));
     if constexpr (E::has(effect_absorption))
-        sum.absorb(material, max_or_second(min_or_second(leave, distance), Real(0)), who);
+        sum.absorb(material, max_or_second(min_or_second(leave, distance), Real(0)), active);
 }
 /// Adds a convex solid that rays to a light at `distance` enter before it.
 template <class Real, class E>
-CISTULA_INLINE void add_entry(const MaskOf<Real>& who, const Material<ScalarOf<Real>>& material, Real enter, Real leave,
-                              Real distance, ShadowSumOf<E, Real>& sum) {
-    sum.cross(material, who & (leave < distance));
-    sum.cross(material, who);
+CISTULA_INLINE void add_entry(const MaskOf<Real>& active, const Material<ScalarOf<Real>>& material, Real enter,
+                              Real leave, Real distance, ShadowSumOf<E, Real>& sum) {
+    sum.cross(material, active & (leave < distance));
+    sum.cross(material, active);
     if constexpr (E::has(effect_absorption))
-        sum.absorb(material, max_or_second(min_or_second(leave, distance) - enter, Real(0)), who);
+        sum.absorb(material, max_or_second(min_or_second(leave, distance) - enter, Real(0)), active);
 }
 
 /// Adds what a convex solid that contains the ray's origin takes from a light. A light on that solid's own face is
@@ -210,14 +212,14 @@ CISTULA_INLINE bool lies_on(const Scene& scene, const Light<Real>& light, uint32
     return lies;
 }
 
-/// Adds accepted crossings of a triangle, where `who` holds, if they lie before the light.
+/// Adds accepted crossings of a triangle, where `active` holds, if they lie before the light.
 template <class Real, class E, class Media, class Scene>
-CISTULA_INLINE void shadow_crossing(const Scene& scene, const MaskOf<Real>& who, uint32_t index, uint32_t triangle,
+CISTULA_INLINE void shadow_crossing(const Scene& scene, const MaskOf<Real>& active, uint32_t index, uint32_t triangle,
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow,
                                     ShadowSumOf<E, Real>& sum) {
     const Real t = crossing_time(scene, triangle, c.t, shadow.ray);
     const MaskOf<Real> own = (shadow.ray.from_solid == index) & (shadow.ray.from_face == triangle);
-    const MaskOf<Real> before = who & (t >= Real(0)) & (t < shadow.distance) & !own;
+    const MaskOf<Real> before = active & (t >= Real(0)) & (t < shadow.distance) & !own;
     if (!any(before)) return;
     if constexpr (E::has(effect_lights_on_faces))
         if (lies_on(scene, *shadow.light, index, triangle)) return;

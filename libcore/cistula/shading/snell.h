@@ -44,10 +44,13 @@ CISTULA_HD inline Refraction<Real> refracted(const Vec3<Real>& direction, const 
     result.total = !narrowed<Real>(g2 > Up(0.0));
     result.reflectance = Real(1);
     if (all(result.total)) return result;
-    const Up g = up_sqrt(g2), h = g + c, bend = excess / h;
+    const Up g = up_sqrt(g2);
+    const Up h = g + c;
+    const Up bend = excess / h;
     result.direction =
         renormalized(Vec3<Real>(Real((dx - bend * nx) / n), Real((dy - bend * ny) / n), Real((dz - bend * nz) / n)));
-    const Up a = bend / h, b = (c * h - Up(1.0)) / (c * bend + Up(1.0));
+    const Up a = bend / h;
+    const Up b = (c * h - Up(1.0)) / (c * bend + Up(1.0));
     assign_where(!result.total, result.reflectance,
                  clamped(Real(a * a * (Up(1.0) + b * b) * Up(0.5)), Real(0), Real(1)));
     return result;

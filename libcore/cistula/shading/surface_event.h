@@ -32,12 +32,12 @@ struct SurfaceEvent {
         take(first);
     }
 
-    /// Takes another event where `who` holds; in lanes.
-    CISTULA_INLINE void take_where(const MaskOf<Real>& who, const SurfaceEvent& other) {
-        hit.take(who, other.hit.t, other.hit.key, other.hit.u, other.hit.v, other.hit.slot, other.hit.enters);
-        assign_where(who, taken[0].t, other.taken[0].t);
-        assign_where(who, taken[0].key, other.taken[0].key);
-        beyond.take_where(who, other.beyond);
+    /// Takes another event where `active` holds; in lanes.
+    CISTULA_INLINE void take_where(const MaskOf<Real>& active, const SurfaceEvent& other) {
+        hit.take(active, other.hit.t, other.hit.key, other.hit.u, other.hit.v, other.hit.slot, other.hit.enters);
+        assign_where(active, taken[0].t, other.taken[0].t);
+        assign_where(active, taken[0].key, other.taken[0].key);
+        beyond.take_where(active, other.beyond);
     }
 
     CISTULA_INLINE const Crossing<Real>& last() const {

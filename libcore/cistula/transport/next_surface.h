@@ -73,11 +73,12 @@ class NextSurface {
 
     /// The branches in lanes that meet a surface. `single`: those whose media lanes cannot hold; nothing was added for
     /// them.
-    CISTULA_INLINE MaskOf<Real> find(Entry& branch, const MaskOf<Real>& who, SurfaceEvent<Real, Media>& event,
+    CISTULA_INLINE MaskOf<Real> find(Entry& branch, const MaskOf<Real>& active, SurfaceEvent<Real, Media>& event,
                                      VisibleLightHit<Real>& visible, MaskOf<Real>& single) {
         Absorption<E::has(effect_absorption), Real> absorption;
-        absorption.begin(scene_, branch.ray.media, branch.ray.after.t, who);
-        MaskOf<Real> met = false, left = who;
+        absorption.begin(scene_, branch.ray.media, branch.ray.after.t, active);
+        MaskOf<Real> met = false;
+        MaskOf<Real> left = active;
         SurfaceEvent<Real, Media> later;
         for (int crossings = 0;; ++crossings) {
             const Hit<Real> hit = intersector_.template closest<E>(branch.ray, left);
@@ -96,7 +97,8 @@ class NextSurface {
             single |= strays;
             left = left & !strays;
             if (any(left & !next.fits)) sums_.flag(flag_media_overflow);
-            const MaskOf<Real> passes = left & invisible(branch.ray, next), stops = left & !passes;
+            const MaskOf<Real> passes = left & invisible(branch.ray, next);
+            const MaskOf<Real> stops = left & !passes;
             absorption.dim(scene_, branch.ray.media, next.hit.t, branch.weight, stops);
             if (crossings > 0) event.take_where(stops, next);
             met |= stops;
@@ -111,11 +113,12 @@ class NextSurface {
         }
     }
 
-    /// Moves rays straight on through a face, where `who` holds.
-    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event, const MaskOf<Real>& who) {
-        ray.media.take_where(who, event.beyond);
-        assign_where(who, ray.after.t, event.taken[0].t);
-        assign_where(who, ray.after.key, event.taken[0].key);
+    /// Moves rays straight on through a face, where `active` holds.
+    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event,
+                             const MaskOf<Real>& active) {
+        ray.media.take_where(active, event.beyond);
+        assign_where(active, ray.after.t, event.taken[0].t);
+        assign_where(active, ray.after.key, event.taken[0].key);
     }
 
   private:
@@ -166,10 +169,10 @@ class NextSurface {
 
     /// The radiances of visible lights, or the background where there is none.
     CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const VisibleLightHit<Real>& visible,
-                                                  [[maybe_unused]] const MaskOf<Real>& who) const {
+                                                  [[maybe_unused]] const MaskOf<Real>& active) const {
         Vec3<Real> radiance = spread<Real>(scene_.background);
         if constexpr (E::has(effect_visible_lights))
-            for_each_value(who & visible.found(), visible.light, [&](uint32_t light, const MaskOf<Real>& same) {
+            for_each_value(active & visible.found(), visible.light, [&](uint32_t light, const MaskOf<Real>& same) {
                 assign_where(same, radiance, spread<Real>(scene_.visible_lights[light].radiance));
             });
         return radiance;
@@ -177,10 +180,11 @@ class NextSurface {
 
     /// The visible lights that rays in lanes meet before `hit`.
     CISTULA_INLINE VisibleLightHit<Real> light_before(const Hit<Real>& hit, Entry& branch,
-                                                      const MaskOf<Real>& who) const {
-        MaskOf<Real> asked = who, goes_on = false;
+                                                      const MaskOf<Real>& active) const {
+        MaskOf<Real> asked = active;
+        MaskOf<Real> goes_on = false;
         if constexpr (lines_go_on<E>) {
-            asked = who & !branch.no_light_ahead;
+            asked = active & !branch.no_light_ahead;
             if (int(branch.depth) + 1 < depth_) goes_on = hit.found() & transmits(scene_, key_solid(hit.key));
         }
         const VisibleLightHit<Real> visible =

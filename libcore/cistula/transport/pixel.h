@@ -26,7 +26,8 @@ struct FrameView {
     double unit_length = 1;                     // scene units per unit of the frame
     double half_sample = 0;                     // tangent of the angle of half a sample, at the picture's center
     bool is_far = false;                        // the camera is outside the sphere of radius 2 M
-    int width = 0, height = 0;
+    int width = 0;
+    int height = 0;
     int supersample = 1;
     TreeSettings tree;
     LatticeSettings lattice;  // if it has a target: supersample is then 16
@@ -49,7 +50,8 @@ CISTULA_HD inline bool is_far(const Vec3<double>& point, double extent) {
 /// `start`. False if it misses the sphere.
 CISTULA_HD inline bool enter_sphere(double extent, const Vec3<double>& direction, Vec3<double>& origin, double& start) {
     // Computed from the closest approach, so that a camera at a distance of 1e9 loses no more than its own rounding.
-    const double radius = 2 * extent, square = radius * radius;
+    const double radius = 2 * extent;
+    const double square = radius * radius;
     const double along_view = dot(origin, direction);
     const Vec3<double> closest = along(origin, -along_view, direction);
     const double rest = square - dot(closest, closest);
@@ -238,7 +240,8 @@ struct PixelTask {
 
 /// The samples of a pixel to render: all, or every step-th where several threads share a pixel.
 struct SampleRange {
-    int first = 0, step = 1;
+    int first = 0;
+    int step = 1;
 };
 
 /// A sample of a pixel's k x k grid.
@@ -258,7 +261,8 @@ CISTULA_INLINE Vec3<double> sample_direction(const FrameView& frame, int x, int 
 
 /// Sample i of a pixel, counted row by row in the k x k grid.
 CISTULA_INLINE GridSample grid_sample(int i, int k) {
-    const int row = k == 1 ? 0 : i / k, column = i - row * k;
+    const int row = k == 1 ? 0 : i / k;
+    const int column = i - row * k;
     return {column, row, column == k / 2 && row == k / 2};
 }
 

@@ -14,9 +14,12 @@ struct RayQuestion {
 /// The first crossing of a ray, in the scene's frame.
 struct RayAnswer {
     double t = RealTraits<double>::infinity;  // from the question's origin; NaN: that is inside too many solids
-    Vec3<double> point = Vec3<double>(0.0), normal = Vec3<double>(0.0);
+    Vec3<double> point = Vec3<double>(0.0);
+    Vec3<double> normal = Vec3<double>(0.0);
     Vec2<double> uv = Vec2<double>(0.0, 0.0);
-    uint32_t solid = no_solid, face = 0, material = 0;
+    uint32_t solid = no_solid;
+    uint32_t face = 0;
+    uint32_t material = 0;
     CrossingKind crossing = CrossingKind::sheet;
 };
 

@@ -25,10 +25,10 @@ concept Intersects = requires(const I& intersector, const Ray<Real, typename I::
     { intersector.template transmittance<E>(shadow) } -> std::same_as<Throughput<Real, E>>;
 }
 || (in_lanes<Real> && requires(const I& intersector, const Ray<Real, typename I::Media>& ray,
-                               const ShadowRay<Real, typename I::Media>& shadow, const MaskOf<Real>& who) {
+                               const ShadowRay<Real, typename I::Media>& shadow, const MaskOf<Real>& active) {
     typename I::Scene;
-    { intersector.template closest<E>(ray, who) } -> std::same_as<Hit<Real>>;
-    { intersector.template transmittance<E>(shadow, who) } -> std::same_as<Throughput<Real, E>>;
+    { intersector.template closest<E>(ray, active) } -> std::same_as<Hit<Real>>;
+    { intersector.template transmittance<E>(shadow, active) } -> std::same_as<Throughput<Real, E>>;
 });
 
 /// What holds a tree's branches that are still to be followed, the latest first; of branches in lanes, in any order. A
@@ -40,16 +40,18 @@ concept StacksBranches = requires(S& stack, const Entry& pushed, Entry& popped) 
     { stack.stopped() } -> std::same_as<bool>;  // whether the tree is to end early
     stack.clear();
 }
-|| (in_lanes<Real> && requires(S & stack, const Entry& pushed, const MaskOf<Real>& who) { stack.push(pushed, who); });
+|| (in_lanes<Real> &&
+    requires(S & stack, const Entry& pushed, const MaskOf<Real>& active) { stack.push(pushed, active); });
 
 /// What is told of the first hit of a sample: a surface, or a visible light; in lanes of many, where a mask holds.
 template <class F, class Real, class E, class Scene, class Media, class... Mask>
-concept SeesFirst = requires(const F& first, const Hit<Real>& hit, const Surface<Real>& surface, const Mask&... who) {
-    first.surface(hit, surface, who...);
+concept SeesFirst = requires(const F& first, const Hit<Real>& hit, const Surface<Real>& surface,
+                             const Mask&... active) {
+    first.surface(hit, surface, active...);
 }
 &&(!E::has(effect_visible_lights) ||
    requires(const F& first, const Scene& scene, const VisibleLightHit<Real>& light, const Ray<Real, Media>& ray,
-            const Mask&... who) { first.light(scene, light, ray, who...); });
+            const Mask&... active) { first.light(scene, light, ray, active...); });
 
 template <class Real, class E, Intersects<Real, E> Intersector,
           StacksBranches<Real, BranchOf<Real, E, typename Intersector::Media>> Stack, class Rays = PixelRays>
@@ -118,20 +120,20 @@ class RayTree {
         } while (next(branch));
     }
 
-    /// Follows branches in lanes to their surfaces, where `who` holds, and pushes their children. Branches of depth 0
-    /// report what they hit. Returns those of which nothing was done, since they must be traced by themselves
+    /// Follows branches in lanes to their surfaces, where `active` holds, and pushes their children. Branches of depth
+    /// 0 report what they hit. Returns those of which nothing was done, since they must be traced by themselves
     /// (lane_single.h).
     template <SeesFirst<Real, E, Scene, Media, MaskOf<Real>> First>
-    CISTULA_INLINE MaskOf<Real> follow(Entry& branch, const MaskOf<Real>& who, const First& first) {
+    CISTULA_INLINE MaskOf<Real> follow(Entry& branch, const MaskOf<Real>& active, const First& first) {
         SurfaceEvent<Real, Media> event;
         VisibleLightHit<Real> light;
         MaskOf<Real> single = false;
-        MaskOf<Real> met = line_.find(branch, who, event, light, single);
+        MaskOf<Real> met = line_.find(branch, active, event, light, single);
         const MaskOf<Real> among_meshes = meshes_at_starts<E>(scene_, branch.ray, event.hit, met);
         single |= among_meshes;
         met = met & !among_meshes;
         if constexpr (E::has(effect_visible_lights))
-            if (branch.depth == 0) first.light(scene_, light, branch.ray, who & light.found());
+            if (branch.depth == 0) first.light(scene_, light, branch.ray, active & light.found());
         if (!any(met)) return single;
         Surface<Real> s;
         surfaces_at<E>(scene_, branch.ray, event.hit, met, s);
@@ -168,29 +170,31 @@ class RayTree {
 
     /// Adds a face's local light. The children are pushed before the lights are evaluated, so that nothing of the
     /// branch has to be kept.
-    CISTULA_INLINE void shade(const Entry& branch, const MaskOf<Real>& who, const SurfaceEvent<Real, Media>& event,
+    CISTULA_INLINE void shade(const Entry& branch, const MaskOf<Real>& active, const SurfaceEvent<Real, Media>& event,
                               const Surface<Real>& s) {
-        if (any(who & !is_finite(s.normal))) sums_.flag(flag_not_finite);
-        if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, who, event, s);
+        if (any(active & !is_finite(s.normal))) sums_.flag(flag_not_finite);
+        if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, active, event, s);
         const Real local = material_of(scene_, s).local;
-        const MaskOf<Real> lit = who & (local > Real(0));
+        const MaskOf<Real> lit = active & (local > Real(0));
         if (any(lit))
             add_local_light<Real, E>(scene_, intersector_, branch.ray, event, s, branch.weight * local, sums_, rays_,
                                      LightObserver(), lit);
     }
 
     /// Pushes the heavier of the branch's children and then the lighter, which is followed next.
-    CISTULA_INLINE void send_on(const Entry& branch, const MaskOf<Real>& who, const SurfaceEvent<Real, Media>& event,
+    CISTULA_INLINE void send_on(const Entry& branch, const MaskOf<Real>& active, const SurfaceEvent<Real, Media>& event,
                                 const Surface<Real>& s) {
         const MaskOf<Real> sheet = is_kind(event.hit.key, CrossingKind::sheet);
         const InterfaceSplit<Real, Weight> split = split_at<Real, E>(
             scene_, material_of(scene_, s), branch.ray.direction, s.normal, branch.ray.media, event.beyond, sheet);
-        const Weight mirrored = branch.weight * split.reflection, through = branch.weight * split.filter;
+        const Weight mirrored = branch.weight * split.reflection;
+        const Weight through = branch.weight * split.filter;
         // Sums over channels, so that the lighter child has at most half the weight of its parent.
-        const Real mirrored_size = total(mirrored),
-                   through_size = E::has(effect_transmission) ? total(through) : Real(0);
+        const Real mirrored_size = total(mirrored);
+        const Real through_size = E::has(effect_transmission) ? total(through) : Real(0);
         if constexpr (in_lanes<Real>) {
-            const MaskOf<Real> reflects = who & (mirrored_size > Real(0)), passes = who & (through_size > Real(0));
+            const MaskOf<Real> reflects = active & (mirrored_size > Real(0));
+            const MaskOf<Real> passes = active & (through_size > Real(0));
             if (int(branch.depth) + 1 >= depth_) {
                 sums_.cut(mirrored, reflects);
                 if constexpr (E::has(effect_transmission)) sums_.cut(through, passes);
@@ -232,13 +236,13 @@ class RayTree {
     }
     CISTULA_INLINE Entry transmitted_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
                                            const Surface<Real>& s, const InterfaceSplit<Real, Weight>& split,
-                                           const Weight& weight, const MaskOf<Real>& who) {
+                                           const Weight& weight, const MaskOf<Real>& active) {
         Entry child = parent.child(weight, false);
         child.ray = parent.ray;
         if constexpr (lines_go_on<E>) child.no_light_ahead = parent.no_light_ahead;
         line_.pass(child.ray, event, true);
         if constexpr (E::has(effect_refraction)) {
-            const MaskOf<Real> bends = who & split.bends;
+            const MaskOf<Real> bends = active & split.bends;
             if (any(bends)) {
                 Vec3<Real> start = far_side<E>(scene_, event.hit, bends, s.point);
                 Media media = event.beyond;

@@ -63,7 +63,8 @@ struct BruteIntersector {
             for (uint32_t i = 0; E::triangles && i < scene.clusters.size && !sum.is_blocked(); ++i)
                 if (!misses_flat_sheet(scene, i, shadow.ray, shadow.distance)) add_cluster(i, shadow, sum);
         } else {
-            const uint32_t light = uint32_t(shadow.light - scene.lights.data), from = shadow.ray.from_solid;
+            const uint32_t light = uint32_t(shadow.light - scene.lights.data);
+            const uint32_t from = shadow.ray.from_solid;
             const uint32_t near = from == no_solid ? ~0u : scene.plan.near[from][light];
             if constexpr (E::solids) add_planned_solids(near, light, shadow, sum);
             if constexpr (E::triangles) add_planned_clusters(near, shadow, sum);
@@ -132,8 +133,8 @@ struct BruteIntersector {
     template <class E>
     CISTULA_INLINE void add_planned_solids(uint32_t near, uint32_t light, const ShadowRay<Real, Media>& shadow,
                                            ShadowSum<E>& sum) const {
-        const uint32_t around = E::has(effect_insides) ? shadow.ray.media.only() : no_solid,
-                       from = shadow.ray.from_solid;
+        const uint32_t around = E::has(effect_insides) ? shadow.ray.media.only() : no_solid;
+        const uint32_t from = shadow.ray.from_solid;
         if constexpr (E::has(effect_insides))
             if (around != no_solid) {
                 // Only for rays that start on the solid's own face: others may start slightly off theirs.

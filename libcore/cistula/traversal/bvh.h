@@ -29,9 +29,11 @@ struct BoxRay {
 
     /// The time at which the ray enters the box, or infinity.
     CISTULA_INLINE float enter(const float low[3], const float high[3]) const {
-        float near_t = near_limit, far_t = far_limit;
+        float near_t = near_limit;
+        float far_t = far_limit;
         for (int k = 0; k < 3; ++k) {
-            const float at_low = plane_t(k, low[k]), at_high = plane_t(k, high[k]);
+            const float at_low = plane_t(k, low[k]);
+            const float at_high = plane_t(k, high[k]);
             near_t = max_no_nan(min_no_nan(at_low, at_high), near_t);
             far_t = min_no_nan(max_no_nan(at_low, at_high), far_t);
         }
@@ -41,7 +43,8 @@ struct BoxRay {
 
 /// Outward slack of the limits of a box ray: relative for the rounding of t, absolute for that of the boxes' sides and
 /// for contact_reach (triangle.h).
-inline constexpr float tree_slack_relative = 0x1p-21f, tree_slack_absolute = 0x1p-11f;
+inline constexpr float tree_slack_relative = 0x1p-21f;
+inline constexpr float tree_slack_absolute = 0x1p-11f;
 
 template <class Real>
 CISTULA_INLINE float tree_far(Real t) {
@@ -63,9 +66,11 @@ CISTULA_INLINE void traverse_tree(const Span<TreeNode>& nodes, const Span<uint32
     int32_t node = 0;
     for (;;) {
         const TreeNode n = nodes[uint32_t(node)];  // copied whole, for wide loads
-        const float t0 = box_ray.enter(n.low[0], n.high[0]), t1 = box_ray.enter(n.low[1], n.high[1]);
+        const float t0 = box_ray.enter(n.low[0], n.high[0]);
+        const float t1 = box_ray.enter(n.low[1], n.high[1]);
         const bool swap = t1 < t0;
-        int32_t next = -1, later = -1;
+        int32_t next = -1;
+        int32_t later = -1;
         // Orders the children by selects: an index would force the node into memory.
         for (int i = 0; i < 2; ++i) {
             const bool second = (i == 1) != swap;

@@ -12,9 +12,7 @@
 #include "base/option_text.h"
 #include "base/suggest.h"
 #include "compare/metrics/channel_statistics.h"
-#include "compare/metrics/header_differences.h"
 #include "compare/metrics/picture_pairs.h"
-#include "compare/metrics/ssim.h"
 #include "image/picture/picture.h"
 #include "render/record/frame_header.h"
 
@@ -60,7 +58,7 @@ class Comparer {
         for (const PicturePair& pair : pairs_.pairs) compare_pair(pair);
         if (pairs_.is_other_order) result_.not_compared.push_back("the order of parts");
         if (!left_out_.empty())
-            result_.not_compared.push_back(fmt::format("{} channel{} that --layers leaves out: {}", left_out_.size(),
+            result_.not_compared.push_back(fmt::format("{} channel{} that `layers` leaves out: {}", left_out_.size(),
                                                        left_out_.size() == 1 ? "" : "s", fmt::join(left_out_, ", ")));
         count_pixels(thresholds);
         return std::move(result_);
@@ -92,8 +90,8 @@ class Comparer {
                 }
         for (const std::string& pattern : selection_.layers)
             if (fitting.count(pattern) == 0)
-                fail_usage(fmt::format("--layers {}: no channel has such a name; {}", pattern,
-                                       nearest_first(pattern, {names.begin(), names.end()}, "channels")));
+                fail_usage(fmt::format("`layers` {}: no channel has such a name", pattern),
+                           nearest_first(pattern, {names.begin(), names.end()}, "channels"));
     }
 
     void compare_windows(const PicturePair& pair) {

@@ -25,7 +25,7 @@
 #include "compare/metrics/picture_pairs.h"
 #include "image/color/srgb_codes.h"
 #include "image/exr/exr.h"
-#include "image/picture/png.h"
+#include "image/picture/picture_io.h"
 
 namespace cistula {
 namespace {
@@ -65,7 +65,7 @@ int exit_status(pid_t child, const std::atomic<bool>& stop) {
         if (stop) kill(child, SIGKILL);
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    if (stop) throw Error(ExitCode::interrupted, "interrupted while flip runs; nothing was written");
+    if (stop) throw Error(ErrorKind::interrupted, "interrupted while flip runs; nothing was written");
     return status;
 }
 

@@ -1,4 +1,4 @@
-#include "compare/metrics/header_differences.h"
+#include "compare/metrics/picture_pairs.h"
 
 #include <fmt/format.h>
 

@@ -19,12 +19,12 @@ std::string counted(size_t count, const char* what) {
 
 std::string over_fail_text(const Comparison& comparison, const Thresholds& thresholds) {
     const double percent = 100.0 * static_cast<double>(comparison.over_fail) / static_cast<double>(comparison.pixels);
-    return fmt::format("{} of {} ({:.4g} %) over --fail {}, {} % allowed", comparison.over_fail,
+    return fmt::format("{} of {} ({:.4g} %) over `fail` {}, {} % allowed", comparison.over_fail,
                        counted(comparison.pixels, "pixel"), percent, *thresholds.fail, thresholds.failpercent);
 }
 
 std::string over_hardfail_text(const Comparison& comparison, const Thresholds& thresholds) {
-    return fmt::format("{} over --hardfail {}", counted(comparison.over_hardfail, "pixel"), *thresholds.hardfail);
+    return fmt::format("{} over `hardfail` {}", counted(comparison.over_hardfail, "pixel"), *thresholds.hardfail);
 }
 
 Json number(double value) {

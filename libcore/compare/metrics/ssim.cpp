@@ -1,4 +1,4 @@
-#include "compare/metrics/ssim.h"
+#include "compare/metrics/channel_statistics.h"
 
 #include <array>
 #include <cmath>

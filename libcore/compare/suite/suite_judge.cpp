@@ -122,7 +122,7 @@ void judge(const SuiteFrame& frame, size_t index, const LayeredPicture* golden, 
     result.notes.insert(result.notes.end(), frame.notes.begin(), frame.notes.end());
     if (!one.hashes.empty()) result.expected_hash = one.hashes[index];
     if (!one.film_hashes.empty()) result.expected_film_hash = one.film_hashes[index];
-    const std::string update = fmt::format("--update {} records it", one.name);
+    const std::string update = fmt::format("`update` {} records it", one.name);
     std::string origin;
     if (golden) {
         origin = other_origin(text_attribute(*golden, "cistula:version"), text_attribute(*golden, "cistula:precision"),

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "compare/page/page_parts.h"
 #include "compare/suite/suite_pixels.h"
-#include "image/picture/png.h"
+#include "image/picture/picture_io.h"
 #include "sequence/run_context.h"
 
 namespace cistula {

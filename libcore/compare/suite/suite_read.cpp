@@ -8,7 +8,7 @@
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_keys.h"
 #include "image/color/color_space.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "scene/readers/json_reader.h"
 #include "sequence/output_name.h"
 
@@ -30,7 +30,7 @@ auto parsed_at(const JsonValue& value, const Parse& parse) {
     try {
         return parse();
     } catch (const Error& error) {
-        value.fail(error.what());
+        value.fail(error.named(quoted_name));
     }
 }
 
@@ -41,7 +41,7 @@ Thresholds thresholds_in(const JsonValue& value) {
     keys.read("failpercent", thresholds.failpercent);
     keys.read("hardfail", thresholds.hardfail);
     if (keys.has("failpercent") && !thresholds.fail)
-        keys.fail("failpercent", "needs to know when a pixel fails; add \"fail\"");
+        keys.fail("failpercent", "needs to know when a pixel fails", "add \"fail\"");
     keys.finish();
     return thresholds;
 }
@@ -52,7 +52,7 @@ std::vector<T> different_items(const JsonValue& value, size_t least, const char*
     for (size_t i = 0; i < value.array_size(least, expected); ++i) {
         T item = read(value.item(i));
         if (std::find(items.begin(), items.end(), item) != items.end())
-            value.item(i).fail("is given already; give it once");
+            value.item(i).fail("is given already", "give it once");
         items.push_back(std::move(item));
     }
     return items;
@@ -71,7 +71,7 @@ void read_settings(JsonObject& keys, SuiteCase& one) {
     }
     for (const RequestKey& key : request_keys())
         if (key.in_suite && keys.has(key.name)) read_key(one, key, keys.at(key.name));
-    parsed_at(keys.value(), [&] { check_request(one, quoted_name); });
+    parsed_at(keys.value(), [&] { check_request(one); });
     if (one.frames.empty()) one.frames = {0};
     if (keys.has("thresholds")) one.thresholds = thresholds_in(keys.at("thresholds"));
     if (keys.has("backends"))
@@ -114,18 +114,18 @@ void read_golden(JsonObject& keys, SuiteCase& one) {
     if (keys.has("golden")) {
         const OutputName name = parsed_at(keys.at("golden"), [&] {
             if (lower_extension(one.golden) != ".exr")
-                throw Error(ExitCode::usage, one.golden + ": golden images are EXRs");
+                throw Error(ErrorKind::scene, one.golden + ": golden images are EXRs");
             return OutputName(one.golden, "golden");
         });
         if (one.frames.size() > 1 && !name.has_pattern())
-            keys.fail("golden",
-                      fmt::format("is one file, and \"frames\" names {}; put #### into its name", one.frames.size()));
+            keys.fail("golden", fmt::format("is one file, and \"frames\" names {}", one.frames.size()),
+                      "put #### into its name");
     }
     if (keys.has("hash") && keys.has("golden"))
-        keys.fail("hash", "\"golden\" has no place here: either says what is expected; leave it out");
+        keys.fail("hash", "\"golden\" has no place here: either says what is expected", "leave it out");
     if (keys.has("hash")) {
         one.hashes = hashes_in(keys.at("hash"), one.frames.size());
-        if (keys.has("thresholds")) keys.fail("thresholds", "a \"hash\" is equal or not; give a \"golden\" image");
+        if (keys.has("thresholds")) keys.fail("thresholds", "a \"hash\" is equal or not", "give a \"golden\" image");
     }
     if (keys.has("film_hash")) one.film_hashes = hashes_in(keys.at("film_hash"), one.frames.size());
     if (keys.has("recorded")) read_recorded(keys.at("recorded"), one);
@@ -163,7 +163,7 @@ Suite read_suite(const std::string& folder) {
     suite.path = (fs::path(folder) / "suite.json").string();
     std::error_code error;
     if (fs::is_regular_file(folder, error))
-        throw Error(ExitCode::file, fmt::format("{}: is a file; give the folder of a suite.json", folder));
+        throw Error(ErrorKind::file, "is a file", "give the folder of a suite.json").at(folder);
     const fs::path whole = fs::weakly_canonical(folder, error);
     suite.name = whole.filename().empty() ? "suite" : whole.filename().string();
     suite.text = read_file(suite.path);
@@ -183,7 +183,7 @@ Suite read_suite(const std::string& folder) {
     for (size_t i = 0; i < cases.array_size(1, "an array of one case or more"); ++i) {
         SuiteCase one = read_case(cases.item(i), defaults);
         const auto [first, is_new] = places.emplace(one.name, one.place);
-        if (!is_new) cases.item(i).fail(fmt::format("'{}' is the name of {}; names differ", one.name, first->second));
+        if (!is_new) cases.item(i).fail(fmt::format("'{}' is the name of {}", one.name, first->second), "names differ");
         suite.cases.push_back(std::move(one));
     }
     keys.finish();

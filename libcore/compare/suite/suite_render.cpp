@@ -4,11 +4,11 @@
 
 #include "base/timing.h"
 #include "image/picture/picture_hash.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "render/record/frame_header.h"
 #include "scene/readers/read_scene.h"
-#include "sequence/film_loop.h"
 #include "sequence/frame_writer.h"
+#include "sequence/sequence_loop.h"
 
 namespace cistula {
 namespace {
@@ -34,10 +34,11 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
         FrameSettings settings = prepared.settings;
         whole = render_frame(*prepared.renderer, camera, settings, film, progress);
     });
-    if (!whole) throw Error(ExitCode::interrupted, "interrupted");
+    if (!whole) throw Error(ErrorKind::interrupted, "interrupted");
     if (film.flags != 0)
-        throw Error(ExitCode::failed, fmt::format("{}: frame {} cannot be trusted: {}", prepared.scene.source, frame,
-                                                  describe_flags(film.flags, prepared.scene)));
+        throw Error(ErrorKind::failed,
+                    fmt::format("frame {} cannot be trusted: {}", frame, describe_flags(film.flags, prepared.scene)))
+            .at(prepared.scene.source);
     uint64_t clamped = 0;
     LayeredPicture& picture = result.picture;
     picture = to_layers(film, one.channels, &clamped);
@@ -53,9 +54,9 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
 
 FrameSettings settings_of(const SuiteCase& one, const SceneDescription& scene) {
     try {
-        return frame_settings(one, scene, quoted_name);
+        return frame_settings(one, scene);
     } catch (const Error& error) {
-        throw Error(ExitCode::usage, fmt::format("{}: {}", one.place, error.what()));
+        throw error.named(quoted_name).at(one.place);
     }
 }
 

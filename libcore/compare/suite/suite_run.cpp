@@ -39,8 +39,8 @@ void require_known(const Suite& suite, const std::string& text, const char* what
         for (const SuiteCase& one : suite.cases)
             for (const std::string& tag : one.tags)
                 if (std::find(known.begin(), known.end(), tag) == known.end()) known.push_back(tag);
-    fail_usage(fmt::format("{}{}: {} has no such case; {}", what, text, suite.path,
-                           nearest_first(text, known, is_pattern ? "names and tags" : "cases")));
+    fail_usage(fmt::format("{}{}: {} has no such case", what, text, suite.path),
+               nearest_first(text, known, is_pattern ? "names and tags" : "cases"));
 }
 
 /// The cases of a run, taken one after the other by several threads.
@@ -125,7 +125,7 @@ class CaseQueue {
                 check_frame(scene, i, results[i]);
             }
         } catch (const Error& error) {
-            if (error.code() == ExitCode::interrupted) throw;
+            if (error.kind() == ErrorKind::interrupted) throw;
             for (SuiteResult& result : results) set_broken(result, error);
         }
         return results;
@@ -151,7 +151,7 @@ class CaseQueue {
             }
             if (work_.judged) work_.judged(frame, golden ? &*golden : nullptr, result);
         } catch (const Error& error) {
-            if (error.code() == ExitCode::interrupted) throw;
+            if (error.kind() == ErrorKind::interrupted) throw;
             set_broken(result, error);
         }
     }
@@ -195,7 +195,7 @@ std::vector<Backend> backends_of(const SuiteCase& one, const SuiteRunSettings& o
 
 std::vector<const SuiteCase*> chosen_cases(const Suite& suite, const SuiteRunSettings& options) {
     for (const std::string& name : options.cases) require_known(suite, name, "", false);
-    for (const std::string& pattern : options.filters) require_known(suite, pattern, "--filter ", true);
+    for (const std::string& pattern : options.filters) require_known(suite, pattern, "`filter` ", true);
     std::vector<const SuiteCase*> chosen;
     for (const SuiteCase& one : suite.cases) {
         const auto& names = options.cases;
@@ -208,9 +208,9 @@ std::vector<const SuiteCase*> chosen_cases(const Suite& suite, const SuiteRunSet
     }
     if (chosen.empty())
         fail_usage(options.backend
-                       ? fmt::format("--backend {}: no case that is asked for names it among its \"backends\"",
+                       ? fmt::format("`backend` {}: no case that is asked for names it among its \"backends\"",
                                      backend_name(*options.backend))
-                       : std::string("no case has both a name that is given and one that --filter fits"));
+                       : std::string("no case has both a name that is given and one that `filter` fits"));
     return chosen;
 }
 
@@ -245,7 +245,7 @@ std::vector<SuiteResult> run_cases(const Suite& suite, const std::vector<const S
     queue.take_cases();
     threads.clear();
     std::vector<SuiteResult> results = queue.results();
-    if (progress.stop) throw Error(ExitCode::interrupted, "interrupted; no results are written");
+    if (progress.stop) throw Error(ErrorKind::interrupted, "interrupted; no results are written");
     return results;
 }
 

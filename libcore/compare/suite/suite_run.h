@@ -39,8 +39,8 @@ struct SuiteWork {
     /// Called for each frame that was rendered and judged, on any thread; `golden` is null where there is none. May
     /// change the result.
     std::function<void(const SuiteFrame& frame, const LayeredPicture* golden, SuiteResult& result)> judged;
-    /// Called for the results of each case, in the order of the file, one at a time.
-    std::function<void(const std::vector<SuiteResult>&)> finished;
+    /// Called for the results of each case, in the order of the file, one at a time. May change them.
+    std::function<void(std::vector<SuiteResult>&)> finished;
 };
 
 /// The backends of these cases. Throws Error (device) if the one that is asked for is not there.

@@ -47,7 +47,6 @@ ExrPart part_of(const Imf::Header& header) {
     part.display = window_of(display);
     part.width = part.data.width;
     part.height = part.data.height;
-    part.full_height = part.display.height;
     part.attributes = read_attributes(header);
     part.header = exr_header_values(header);
     part.packing = exr_packing(header);

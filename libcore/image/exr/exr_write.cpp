@@ -268,7 +268,7 @@ void write_parts(const std::string& path, const std::vector<PartToWrite>& parts,
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& failure) {
-        if (errno == ENOMEM) throw std::bad_alloc();
+        if (lacks_memory(failure)) throw std::bad_alloc();
         if (stream.error_number() == 0) throw file_error(path, "write", std::string(failure.what()));
     }
     const bool lacked_memory = errno == ENOMEM;

@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/machine_memory.h"
+#include "base/machine.h"
 #include "image/color/stated_colors.h"
 #include "image/exr/exr.h"
 #include "image/reader/reader_answer.h"

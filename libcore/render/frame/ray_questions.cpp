@@ -44,12 +44,12 @@ size_t first_wrong(size_t count, const Visit& visit) {
 }
 
 [[noreturn]] void refuse(const char* what, size_t i, const char* why) {
-    throw Error(ExitCode::usage, fmt::format("{} {}: {}", what, i, why));
+    throw Error(ErrorKind::usage, fmt::format("{} {}: {}", what, i, why));
 }
 
 void require_pairs(size_t starts, size_t ends, const char* what) {
     if (starts != ends)
-        throw Error(ExitCode::usage, fmt::format("{}: there are {} and {}; must be as many", what, starts, ends));
+        throw Error(ErrorKind::usage, fmt::format("{}: there are {} and {}; must be as many", what, starts, ends));
 }
 
 }  // namespace

@@ -11,32 +11,67 @@
 namespace cistula {
 namespace {
 
-constexpr uint64_t values_of_pixel = 20, values_of_frame = 5 + 3 * 10;  // of a frame: rays, flags, totals
-
-uint64_t differing_values(const Total& a, const Total& b) {
-    return (a.low != b.low) + (a.high != b.high) + (a.most != b.most);
+/// Calls visit with each value of a record and its like in another; of floats with their bits.
+template <class Visit>
+void for_each_value(const PixelRecord& a, const PixelRecord& b, const Visit& visit) {
+    const auto visit_bits = [&](float x, float y) { visit(std::bit_cast<uint32_t>(x), std::bit_cast<uint32_t>(y)); };
+    for (int c = 0; c < 3; ++c) {
+        visit(a.radiance[c], b.radiance[c]);
+        visit(a.pruned[c], b.pruned[c]);
+        visit(a.cut[c], b.cut[c]);
+        visit_bits(a.normal[c], b.normal[c]);
+    }
+    visit(a.hits, b.hits);
+    visit(a.rays, b.rays);
+    visit(a.id, b.id);
+    visit(a.samples, b.samples);
+    visit(a.unmet, b.unmet);
+    visit(a.checked, b.checked);
+    visit(a.off, b.off);
+    visit_bits(a.z, b.z);
 }
 
-uint64_t differing_values(const FrameCounts& a, const FrameCounts& b) {
-    uint64_t count = differing_values(a.totals.units, b.totals.units);
-    for (int c = 0; c < 3; ++c)
-        count += differing_values(a.totals.radiance[c], b.totals.radiance[c]) +
-                 differing_values(a.totals.pruned[c], b.totals.pruned[c]) +
-                 differing_values(a.totals.cut[c], b.totals.cut[c]);
-    return count + (a.rays.primary != b.rays.primary) + (a.rays.reflected != b.rays.reflected) +
-           (a.rays.transmitted != b.rays.transmitted) + (a.rays.shadow != b.rays.shadow) + (a.flags != b.flags);
+template <class Visit>
+void for_each_value(const Total& a, const Total& b, const Visit& visit) {
+    visit(a.low, b.low);
+    visit(a.high, b.high);
+    visit(a.most, b.most);
+}
+
+/// Rays, flags and totals of a frame.
+template <class Visit>
+void for_each_value(const FrameCounts& a, const FrameCounts& b, const Visit& visit) {
+    for_each_value(a.totals.units, b.totals.units, visit);
+    for (int c = 0; c < 3; ++c) {
+        for_each_value(a.totals.radiance[c], b.totals.radiance[c], visit);
+        for_each_value(a.totals.pruned[c], b.totals.pruned[c], visit);
+        for_each_value(a.totals.cut[c], b.totals.cut[c], visit);
+    }
+    visit(a.rays.primary, b.rays.primary);
+    visit(a.rays.reflected, b.rays.reflected);
+    visit(a.rays.transmitted, b.rays.transmitted);
+    visit(a.rays.shadow, b.rays.shadow);
+    visit(a.flags, b.flags);
+}
+
+template <class Record>
+uint64_t count_differing(const Record& a, const Record& b) {
+    uint64_t count = 0;
+    for_each_value(a, b, [&](const auto& x, const auto& y) { count += x != y; });
+    return count;
+}
+
+template <class Record>
+uint64_t count_values() {
+    uint64_t count = 0;
+    for_each_value(Record(), Record(), [&](const auto&, const auto&) { ++count; });
+    return count;
 }
 
 }  // namespace
 
 uint64_t differing_values(const PixelRecord& a, const PixelRecord& b) {
-    uint64_t count = 0;
-    for (int c = 0; c < 3; ++c)
-        count += (a.radiance[c] != b.radiance[c]) + (a.pruned[c] != b.pruned[c]) + (a.cut[c] != b.cut[c]) +
-                 (std::bit_cast<uint32_t>(a.normal[c]) != std::bit_cast<uint32_t>(b.normal[c]));
-    return count + (a.hits != b.hits) + (a.rays != b.rays) + (a.id != b.id) + (a.samples != b.samples) +
-           (a.unmet != b.unmet) + (a.checked != b.checked) + (a.off != b.off) +
-           (std::bit_cast<uint32_t>(a.z) != std::bit_cast<uint32_t>(b.z));
+    return count_differing(a, b);
 }
 
 PixelTotals totals_of(const Film& film) {
@@ -72,7 +107,7 @@ std::string record_hash(const Film& film) {
 
 FilmDifference film_difference(const Film& a, const Film& b) {
     FilmDifference d;
-    d.compared = values_of_pixel * std::max(a.pixels.size(), b.pixels.size()) + values_of_frame;
+    d.compared = count_values<PixelRecord>() * std::max(a.pixels.size(), b.pixels.size()) + count_values<FrameCounts>();
     if (a.pixels.size() != b.pixels.size() || a.pixels.parts() != b.pixels.parts()) {
         d.differing = d.compared;
         return d;
@@ -82,7 +117,7 @@ FilmDifference film_difference(const Film& a, const Film& b) {
         if (count != 0 && !d.first) d.first = i;
         d.differing += count;
     }
-    d.differing += differing_values(static_cast<const FrameCounts&>(a), b);
+    d.differing += count_differing<FrameCounts>(a, b);
     return d;
 }
 

@@ -1,14 +1,17 @@
-// Conversion of a film's integer sums to the channels of a file.
+// Conversion of a film's integer sums to the channels of a file; lists of layers by name, as --layers takes them:
+// path,Z,N.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/color/color_space.h"
 #include "image/picture/picture.h"
 #include "render/record/film.h"
+#include "render/record/film_layers.h"
 
 namespace cistula {
 
@@ -92,5 +95,12 @@ ColorPicture to_color(const Film& film);
 /// 128-bit FNV-1a of the image as 32 hexadecimal digits: over the radiance, hits and samples of every pixel, lowest
 /// byte first, in pixel order. Nothing else enters, so films with equal hashes hold the same picture.
 std::string film_hash(const Film& film);
+
+/// The channels with the layers of a list of layers and groups of layers (docs/programs/layers.md), and no others.
+/// Throws Error (usage) with the nearest name for an unknown one, but for light layers, which depend on the scene.
+OutputChannels parse_layers(std::string_view text, OutputChannels channels = {});
+
+/// Throws Error (usage) for a light layer that the scene does not have, with those that it has.
+void require_light_layers(const OutputChannels& channels, const LayerNames& names);
 
 }  // namespace cistula

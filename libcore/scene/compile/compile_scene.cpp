@@ -18,14 +18,14 @@
 #include "cistula/geometry/ray.h"
 #include "cistula/lights/light_tree.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/contacts/shared_planes.h"
 #include "scene/compile/lights/compile_lights.h"
 #include "scene/compile/lights/radiance_bound.h"
 #include "scene/compile/materials/compile_materials.h"
 #include "scene/compile/materials/required_effects.h"
-#include "scene/compile/meshes/clusters.h"
+#include "scene/compile/meshes/mesh_apex.h"
 #include "scene/compile/scene_hash.h"
 #include "scene/compile/solids/compile_solids.h"
+#include "scene/compile/solids/placed_bodies.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {

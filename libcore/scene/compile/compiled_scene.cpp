@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/default_rounding.h"
-#include "scene/compile/arrays.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {

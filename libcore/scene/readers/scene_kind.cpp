@@ -1,4 +1,4 @@
-#include "scene/readers/scene_kind.h"
+#include "scene/readers/scene_formats.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -23,7 +23,7 @@ void* run_builder(RTCBuildArguments& arguments, RTCDevice device, StopSignal sto
     if (stop.is_given()) rtcGetDeviceError(device);  // that it was stopped
     stop.check();
     check_embree(device, "building a tree");
-    if (!root) throw Error(ExitCode::device, "Embree: building a tree failed");
+    if (!root) throw Error(ErrorKind::device, "Embree: building a tree failed");
     return root;
 }
 

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <functional>
 
+#include "apps/common/command_line.h"
 #include "apps/render_compare/fixture.h"
-#include "base/error.h"
 #include "image/exr/exr.h"
 #include "testing/support/special_values.h"
 

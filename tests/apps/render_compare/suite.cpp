@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture_hash.h"
 #include "sequence/backends.h"

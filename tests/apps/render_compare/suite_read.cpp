@@ -5,7 +5,7 @@
 #include <regex>
 #include <stdexcept>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "compare/suite/json_edit.h"
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_keys.h"
@@ -34,7 +34,7 @@ class SuiteFile : public ::testing::Test {
         try {
             read(text);
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), code);
+            EXPECT_EQ(exit_code(error.kind()), code);
             const std::string message = error.what(), file = folder_.file("suite.json") + ":";
             EXPECT_EQ(message.rfind(file, 0), 0u) << message;
             return message.substr(std::min(message.size(), file.size()));
@@ -191,7 +191,7 @@ TEST_F(SuiteFile, AMissingFileIsSaid) {
             read_suite(folder_.file(folder));
             ADD_FAILURE() << folder;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file);
+            EXPECT_EQ(error.kind(), ErrorKind::file);
             EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
         }
     }

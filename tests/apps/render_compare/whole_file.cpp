@@ -13,7 +13,7 @@
 #include <functional>
 
 #include "apps/render_compare/fixture.h"
-#include "testing/support/exr_parts.h"
+#include "testing/support/pictures/exr_parts.h"
 
 namespace cistula {
 namespace {

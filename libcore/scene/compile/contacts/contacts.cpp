@@ -250,8 +250,8 @@ class ContactSearch {
         while ((tried += for_each_near(tree, i, [](uint32_t, bool) {})) <= most_near_pairs) ++i;
         throw scene_error(*source_.description, source_.solids[faces_[i].solid].place,
                           "more than " + std::to_string(most_near_pairs / 1'000'000) +
-                              " million pairs of faces come near one another, as where many objects are in one "
-                              "place; leave out those that are there several times");
+                              " million pairs of faces come near one another, as where many objects are in one place",
+                          "leave out those that are there several times");
     }
 
     void compare(uint32_t i, uint32_t j, bool one_solid, const PlaneSets& sets, FoundPairs& found) const {

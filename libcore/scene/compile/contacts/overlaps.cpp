@@ -7,7 +7,7 @@
 #include "base/box.h"
 #include "base/default_rounding.h"
 #include "cistula/traversal/bvh.h"
-#include "scene/compile/arrays.h"
+#include "scene/compile/compiled_scene.h"
 
 namespace cistula {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/compile/meshes/clusters.h"
+#include "scene/compile/meshes/mesh_apex.h"
 
 #include <algorithm>
 #include <cmath>

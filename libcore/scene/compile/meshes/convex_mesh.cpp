@@ -1,4 +1,4 @@
-#include "scene/compile/meshes/convex_mesh.h"
+#include "scene/compile/solids/placed_bodies.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "scene/compile/meshes/edge_pairs.h"
+#include "scene/compile/meshes/mesh_edges.h"
 
 #include <algorithm>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "cistula/numerics/vec.h"
-#include "scene/compile/meshes/edge_pairs.h"
 #include "scene/compile/meshes/mesh_edges.h"
 #include "scene/compile/meshes/piece_nesting.h"
 #include "scene/description/mesh_source.h"

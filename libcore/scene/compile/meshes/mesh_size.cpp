@@ -1,4 +1,4 @@
-#include "scene/compile/meshes/mesh_size.h"
+#include "scene/compile/meshes/normalized_mesh.h"
 
 #include <cmath>
 

@@ -5,7 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include "cistula/lights/edge_lights.h"
-#include "scene/compile/meshes/convex_mesh.h"
 #include "scene/compile/scene_source.h"
 #include "scene/compile/solids/smallest_part.h"
 
