@@ -17,7 +17,10 @@
 namespace cistula::bench {
 namespace {
 
-constexpr int width = 640, height = 480, tile = 16, repetitions = 9;
+constexpr int width = 640;
+constexpr int height = 480;
+constexpr int tile = 16;
+constexpr int repetitions = 9;
 
 SceneDescription bumpy_scene() {
     SceneDescription scene;
@@ -209,7 +212,8 @@ void time_embree_packets(benchmark::State& state, Rays kind) {
 
 /// Checks that equal work is compared: both find one surface.
 void check_agreement() {
-    size_t hits = 0, differing = 0;
+    size_t hits = 0;
+    size_t differing = 0;
     const std::vector<Ray<float>>& rays = setting->single.rays[primary];
     for (size_t i = 0; i < rays.size(); ++i) {
         const float ours = setting->single.closest(rays[i]).t;

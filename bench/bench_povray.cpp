@@ -21,7 +21,9 @@
 namespace cistula::bench {
 namespace {
 
-constexpr int width = 640, height = 480, repetitions = 5;
+constexpr int width = 640;
+constexpr int height = 480;
+constexpr int repetitions = 5;
 /// A difference that 8 bits do not show.
 constexpr float visible = 0.004f;
 
@@ -90,7 +92,8 @@ void compare_images(benchmark::State& state, const Work& work, int threads) {
     for (auto _ : state) {
         run_povray(work, threads);
         run_cistula(work, threads);
-        const LayeredPicture theirs = read_exr(work.povray_image.string()), ours = read_exr(work.image.string());
+        const LayeredPicture theirs = read_exr(work.povray_image.string());
+        const LayeredPicture ours = read_exr(work.image.string());
         if (theirs.width != width || theirs.height != height || ours.width != width || ours.height != height)
             throw Error(ErrorKind::failed, "the pictures to compare differ in size");
         double sum = 0, worst = 0, sum_ours = 0, sum_theirs = 0;
@@ -98,7 +101,8 @@ void compare_images(benchmark::State& state, const Work& work, int threads) {
         for (size_t i = 0; i < size_t(width * height); ++i) {
             float difference = 0;
             for (const char* name : {"R", "G", "B"}) {
-                const float a = channel(ours, name).values[i], b = channel(theirs, name).values[i];
+                const float a = channel(ours, name).values[i];
+                const float b = channel(theirs, name).values[i];
                 difference = std::max(difference, std::abs(a - b));
                 sum_ours += double(a);
                 sum_theirs += double(b);

@@ -10,7 +10,10 @@
 namespace cistula::bench {
 namespace {
 
-constexpr int width = 640, height = 480, threads = 2, repetitions = 7;
+constexpr int width = 640;
+constexpr int height = 480;
+constexpr int threads = 2;
+constexpr int repetitions = 7;
 
 /// Fails where a frame cannot be trusted.
 void register_frames(const std::string& name, std::shared_ptr<Renderer> renderer, const CameraFrame& camera,

@@ -10,12 +10,18 @@ namespace {
 
 // __builtin_cpu_supports lacks MOVBE and, in some compilers, LZCNT and F16C.
 bool has_leaf1_ecx(unsigned bit) {
-    unsigned a = 0, b = 0, c = 0, d = 0;
+    unsigned a = 0;
+    unsigned b = 0;
+    unsigned c = 0;
+    unsigned d = 0;
     return __get_cpuid(1, &a, &b, &c, &d) && (c & bit);
 }
 
 bool has_lzcnt() {
-    unsigned a = 0, b = 0, c = 0, d = 0;
+    unsigned a = 0;
+    unsigned b = 0;
+    unsigned c = 0;
+    unsigned d = 0;
     return __get_cpuid(0x80000001u, &a, &b, &c, &d) && (c & bit_LZCNT);
 }
 

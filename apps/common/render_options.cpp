@@ -23,7 +23,8 @@ namespace {
 ChosenPixel parse_pixel(std::string_view text) {
     const size_t comma = text.find(',');
     if (comma != text.npos) {
-        const auto x = whole_number<int>(text.substr(0, comma)), y = whole_number<int>(text.substr(comma + 1));
+        const auto x = whole_number<int>(text.substr(0, comma));
+        const auto y = whole_number<int>(text.substr(comma + 1));
         if (x && y && *x >= 0 && *y >= 0) return {*x, *y};
     }
     fail_usage("must be X,Y in pixels from the top left, which is 0,0, as in 320,240");
@@ -57,7 +58,8 @@ void check_pixel(const std::string& pixel, const RenderCommand& command) {
 
 CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view name, const char* description) {
     const RequestKey& key = request_key(name);
-    const std::string option = option_names(name), help = with_options(description ? description : key.help);
+    const std::string option = option_names(name);
+    const std::string help = with_options(description ? description : key.help);
     if (key.type == KeyType::boolean)
         return app.add_flag_callback(
             option, [&request, &key] { key.set(request, "true"); }, help);

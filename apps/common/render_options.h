@@ -20,7 +20,9 @@ class Option;
 namespace cistula {
 
 struct ChosenPixel {
-    int x = 0, y = 0;  // from the top left of the full frame
+    // from the top left of the full frame
+    int x = 0;
+    int y = 0;
 };
 
 enum class Action { render, explain, measure, pixel, print_help, print_version, print_template, list_devices };

@@ -37,7 +37,8 @@ struct Judged {
 Judged judge_files(const CompareOptions& options, const std::string& first, const std::string& second,
                    StopSignal stop) {
     StoredReader reader;
-    const StoredFile a = reader.read(first), b = reader.read(second);
+    const StoredFile a = reader.read(first);
+    const StoredFile b = reader.read(second);
     stop.check();
     Selection selection = options.selection;
     if (!options.mask.empty()) selection.mask = mask_of(reader.read(options.mask).pictures.front());
@@ -68,7 +69,8 @@ std::map<std::string, std::string> images_of(const std::string& text) {
     const fs::path folder = is_folder ? fs::path(text) : fs::path(text).parent_path();
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
-        const std::string own = entry.path().filename().string(), path = (folder / own).string();
+        const std::string own = entry.path().filename().string();
+        const std::string path = (folder / own).string();
         if (is_folder) {
             if (std::count(std::begin(kinds), std::end(kinds), lower_extension(own)) > 0) images[own] = path;
             continue;
@@ -83,7 +85,8 @@ std::map<std::string, std::string> images_of(const std::string& text) {
 
 /// Several images and their partners, a line for each.
 Judged judge_several(const CompareOptions& options, StopSignal stop) {
-    const std::map<std::string, std::string> first = images_of(options.a), second = images_of(options.b);
+    const std::map<std::string, std::string> first = images_of(options.a);
+    const std::map<std::string, std::string> second = images_of(options.b);
     std::set<std::string> names;
     for (const auto* images : {&first, &second})
         for (const auto& [name, path] : *images) names.insert(name);
@@ -91,7 +94,8 @@ Judged judge_several(const CompareOptions& options, StopSignal stop) {
     all.json = {{"first", options.a}, {"second", options.b}, {"holds", true}, {"images", nlohmann::json::array()}};
     size_t held = 0;
     for (const std::string& name : names) {
-        const auto a = first.find(name), b = second.find(name);
+        const auto a = first.find(name);
+        const auto b = second.find(name);
         Judged one;
         if (a == first.end() || b == second.end()) {
             one.verdict = a == first.end() ? "only in the second" : "only in the first";

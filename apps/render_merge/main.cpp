@@ -34,7 +34,8 @@ std::vector<std::string> layers_beside(const OutputName& name, int frame) {
     const std::string mark(1, '\1');
     const fs::path example = name.for_layer(frame, mark);
     const std::string file = example.filename().string();
-    const std::string before = file.substr(0, file.find(mark)), after = file.substr(file.find(mark) + 1);
+    const std::string before = file.substr(0, file.find(mark));
+    const std::string after = file.substr(file.find(mark) + 1);
     const std::string snapshot = fs::path(snapshot_of(name, frame)).filename().string();
     std::vector<std::string> layers;
     std::error_code error;
@@ -51,7 +52,8 @@ std::vector<std::string> layers_beside(const OutputName& name, int frame) {
 
 void require_tiles(const FileToMerge& file, const TileGrid& grid, int frame) {
     std::error_code error;
-    size_t missing = 0, first = 0;
+    size_t missing = 0;
+    size_t first = 0;
     for (size_t i = 0; i < file.tiles.size(); ++i)
         if (!fs::exists(file.tiles[i], error) && missing++ == 0) first = i;
     if (missing == 0) return;

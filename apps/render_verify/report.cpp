@@ -49,7 +49,8 @@ std::string table_row(const Row& row, size_t width) {
 
 std::string summary(const std::vector<Row>& rows) {
     std::string text;
-    size_t failing = 0, warning = 0;
+    size_t failing = 0;
+    size_t warning = 0;
     for (const Row& row : rows) {
         warning += row.warned > 0 ? 1 : 0;
         if (row.holds()) continue;

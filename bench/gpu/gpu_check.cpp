@@ -16,8 +16,11 @@ namespace {
 
 struct Options {
     std::string folder = ".", json;
-    uint64_t functions = 0, generated = 0;
-    bool scenes = false, times = false, devices = false;
+    uint64_t functions = 0;
+    uint64_t generated = 0;
+    bool scenes = false;
+    bool times = false;
+    bool devices = false;
     int runs = 20;
 };
 

@@ -16,8 +16,8 @@ std::optional<PictureSize> take_size(std::string_view& text) {
     const size_t x = text.find('x');
     if (x == text.npos) return std::nullopt;
     const size_t end = std::min(text.find('+', x), text.size());
-    const auto width = whole_number<int>(text.substr(0, x)),
-               height = whole_number<int>(text.substr(x + 1, end - x - 1));
+    const auto width = whole_number<int>(text.substr(0, x));
+    const auto height = whole_number<int>(text.substr(x + 1, end - x - 1));
     if (!width || !height || *width < 1 || *height < 1 || *width > largest_side || *height > largest_side)
         return std::nullopt;
     text.remove_prefix(end);
@@ -41,7 +41,8 @@ PixelRect parse_crop(std::string_view text) {
         rest.remove_prefix(1);
         const size_t plus = rest.find('+');
         if (plus != rest.npos) {
-            const auto x = whole_number<int>(rest.substr(0, plus)), y = whole_number<int>(rest.substr(plus + 1));
+            const auto x = whole_number<int>(rest.substr(0, plus));
+            const auto y = whole_number<int>(rest.substr(plus + 1));
             if (x && y && *x >= 0 && *y >= 0) return {*x, *y, size->width, size->height};
         }
     }
@@ -51,7 +52,8 @@ PixelRect parse_crop(std::string_view text) {
 TileGrid parse_tiles(std::string_view text) {
     const size_t x = text.find('x');
     if (x != text.npos) {
-        const auto columns = whole_number<int>(text.substr(0, x)), rows = whole_number<int>(text.substr(x + 1));
+        const auto columns = whole_number<int>(text.substr(0, x));
+        const auto rows = whole_number<int>(text.substr(x + 1));
         if (columns && rows && *columns > 0 && *rows > 0 && int64_t{*columns} * *rows <= most_tiles)
             return {*columns, *rows};
     }
@@ -64,8 +66,10 @@ PixelRect tile_rect(const PixelRect& whole, const TileGrid& grid, int number) {
                                whole.height),
                    "give fewer");
     const auto edge = [](int length, int parts, int i) { return static_cast<int>(int64_t{length} * i / parts); };
-    const int column = number % grid.columns, row = number / grid.columns;
-    const int left = edge(whole.width, grid.columns, column), top = edge(whole.height, grid.rows, row);
+    const int column = number % grid.columns;
+    const int row = number / grid.columns;
+    const int left = edge(whole.width, grid.columns, column);
+    const int top = edge(whole.height, grid.rows, row);
     return {whole.x + left, whole.y + top, edge(whole.width, grid.columns, column + 1) - left,
             edge(whole.height, grid.rows, row + 1) - top};
 }

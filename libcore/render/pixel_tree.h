@@ -59,7 +59,8 @@ struct PixelSurface : FaceMet {
     std::vector<uint32_t> before, beyond;      // solids around the point on either side, highest priority first
     double index_before = 1, index_beyond = 1;
     double cosine = 1;  // of the angle between ray and normal
-    bool bends = false, total = false;
+    bool bends = false;
+    bool total = false;
     double bent_cosine = 1;          // the cosine on the other side, where the ray is refracted
     double fresnel = -1;             // reflectance; -1: not evaluated
     double local = 0, mirrored = 0;  // shares
@@ -86,7 +87,8 @@ struct PixelBranch {
 };
 
 struct SampleTree {
-    int row = 0, column = 0;
+    int row = 0;
+    int column = 0;
     std::vector<PixelBranch> branches;  // the primary ray first, children after their parents
     PixelRecord record;
     PixelRays rays;

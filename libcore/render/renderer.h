@@ -17,7 +17,8 @@
 namespace cistula {
 
 struct FrameSettings {
-    int full_width = 640, full_height = 480;
+    int full_width = 640;
+    int full_height = 480;
     PixelRect crop;       // the pixels to render; the whole frame: {0, 0, full_width, full_height}
     int supersample = 1;  // k: a k x k grid of samples per pixel
     int depth = 4;        // 1 to 1,024

@@ -33,7 +33,8 @@ uint64_t clamped_values(const LayeredPicture& picture, std::atomic<uint64_t>& cl
     tbb::parallel_for(size_t{0}, (pixels + block - 1) / block, [&](size_t number) {
         const DefaultRounding rounding;
         std::array<float, block> values;
-        const size_t first = number * block, last = std::min(first + block, pixels);
+        const size_t first = number * block;
+        const size_t last = std::min(first + block, pixels);
         for (const LayeredPicture::Channel& channel : picture.channels)
             if (channel.half) channel.write(first, last, values.data());
     });

@@ -39,7 +39,8 @@ std::string difference(const Attributes& own, const Attributes& first, const std
     for (const Attributes* attributes : {&own, &first})
         for (const auto& [name, value] : *attributes) names.push_back(name);
     for (const std::string& name : names) {
-        const auto a = own.find(name), b = first.find(name);
+        const auto a = own.find(name);
+        const auto b = first.find(name);
         if ((a == own.end()) == (b == first.end()) && (a == own.end() || a->second == b->second)) continue;
         return fmt::format("{} is {}, and {} in {}: they are of different renders; render it again as the others", name,
                            text(own, name), text(first, name), first_path);
@@ -172,7 +173,8 @@ void add_around(const PixelRect& rect, const PixelRect& hole, std::vector<PixelR
     const auto add = [&](int x, int y, int width, int height) {
         if (width > 0 && height > 0) to.push_back({x, y, width, height});
     };
-    const int right = hole.x + hole.width, below = hole.y + hole.height;
+    const int right = hole.x + hole.width;
+    const int below = hole.y + hole.height;
     add(rect.x, rect.y, rect.width, hole.y - rect.y);
     add(rect.x, below, rect.width, rect.y + rect.height - below);
     add(rect.x, hole.y, hole.x - rect.x, hole.height);

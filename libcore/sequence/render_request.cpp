@@ -24,7 +24,8 @@ namespace {
 
 using Request = RenderRequest;
 
-constexpr bool of_suite = true, not_of_suite = false;
+constexpr bool of_suite = true;
+constexpr bool not_of_suite = false;
 constexpr std::string_view precision_choices[] = {"auto", "float", "double"};
 constexpr std::string_view effects_choices[] = {"auto", "all"};
 constexpr std::string_view bits_choices[] = {"float", "half"};
@@ -134,7 +135,8 @@ void set_z_far(Request& request, const std::string& text) {
 
 std::vector<RequestKey> make_keys() {
     const std::string radiance = ", in the scene's units of radiance";
-    const Key cutoff = scene_key(scene_keys, "cutoff"), target = number("target_error", {0, cutoff.range.high, true});
+    const Key cutoff = scene_key(scene_keys, "cutoff");
+    const Key target = number("target_error", {0, cutoff.range.high, true});
     return {
         text("scene", {"", "scene file: JSON or the seed's text; - reads standard input", of_suite}, &Request::scene),
         text("output",
@@ -308,8 +310,8 @@ std::string quoted_name(std::string_view key) {
 
 void read_key(RenderRequest& request, const RequestKey& key, const JsonValue& value) {
     const Json& json = value.json();
-    const bool is_free = key.type == KeyType::other,
-               is_number = key.type == KeyType::whole || key.type == KeyType::number;
+    const bool is_free = key.type == KeyType::other;
+    const bool is_number = key.type == KeyType::whole || key.type == KeyType::number;
     std::string given = found_text(json);
     if (json.is_number() && (is_number || is_free)) {
         given = number_text(json.get<double>());

@@ -40,7 +40,9 @@ struct RenderRequest {
     Split split = Split::none;   // of the layers
     std::string preview, stats;  // files, as given; empty: none
     PictureView view;            // of previews
-    bool resume = false, quiet = false, verbose = false;
+    bool resume = false;
+    bool quiet = false;
+    bool verbose = false;
     ProgressStyle progress = ProgressStyle::automatic;
 };
 

@@ -12,12 +12,14 @@ struct Layout;
 template <>
 struct Layout<float> {
     using Bits = uint32_t;
-    static constexpr int digits = 23, bias = 127;
+    static constexpr int digits = 23;
+    static constexpr int bias = 127;
 };
 template <>
 struct Layout<double> {
     using Bits = uint64_t;
-    static constexpr int digits = 52, bias = 1023;
+    static constexpr int digits = 52;
+    static constexpr int bias = 1023;
 };
 
 template <class Real>
@@ -41,7 +43,8 @@ CISTULA_HD inline Real stepped(Real x, int steps) {
 template <class Real>
 CISTULA_HD inline Real two_to(int exponent) {
     using Bits = typename Layout<Real>::Bits;
-    constexpr int digits = Layout<Real>::digits, bias = Layout<Real>::bias;
+    constexpr int digits = Layout<Real>::digits;
+    constexpr int bias = Layout<Real>::bias;
     if (exponent > -bias) return bits_as<Real>(Bits(exponent + bias) << digits);
     return bits_as<Real>(Bits(1) << (exponent + bias + digits - 1));
 }
@@ -84,7 +87,8 @@ class Draw {
     CISTULA_HD Real scaled(int low, int high) {
         using Bits = typename Layout<Real>::Bits;
         const Bits random = Bits(bits());
-        const Bits keep = (Bits(1) << Layout<Real>::digits) - 1, sign = Bits(1) << (8 * sizeof(Real) - 1);
+        const Bits keep = (Bits(1) << Layout<Real>::digits) - 1;
+        const Bits sign = Bits(1) << (8 * sizeof(Real) - 1);
         const Real power = two_to<Real>(between(low, high));
         return bits_as<Real>(Bits((random & (keep | sign)) | bits_as<Bits>(power)));
     }

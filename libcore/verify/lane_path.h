@@ -71,7 +71,8 @@ class LanePath {
     struct Recent {
         std::array<Question, most> questions;
         std::array<Answer, most> answers;
-        int count = 0, next = 0;
+        int count = 0;
+        int next = 0;
     };
 
     template <class Question, class Answer, class Trace>

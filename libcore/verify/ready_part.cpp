@@ -74,7 +74,8 @@ std::string ReadyPart<Real>::missing_warning() const {
 template <class Real>
 uint64_t ReadyPart<Real>::plain_count() const {
     const uint64_t primitives = setup_.scene.convex.size + setup_.scene.clusters.size;
-    const uint64_t tests = options_.quick ? 10'000'000 : 500'000'000, least_rays = 64;
+    const uint64_t tests = options_.quick ? 10'000'000 : 500'000'000;
+    const uint64_t least_rays = 64;
     return std::min(part_.count, std::max(tests / std::max<uint64_t>(primitives, 1), least_rays));
 }
 

@@ -122,7 +122,9 @@ CISTULA_HD inline Ray<Real> leaving(const Vec3<Real>& origin, const Vec3<Real>& 
 }
 
 struct Crossings {
-    uint32_t enters = 0, leaves = 0, sheets = 0;
+    uint32_t enters = 0;
+    uint32_t leaves = 0;
+    uint32_t sheets = 0;
     bool in_order = true;  // (t, key) increased throughout, and the crossings ended
 
     CISTULA_HD bool balanced() const { return in_order && enters == leaves; }
@@ -160,7 +162,8 @@ CISTULA_HD inline double chord(const Span<double>& planes, double margin, const 
     double enter = -1e300, leave = 1e300;
     for (uint32_t i = 0; i + 3 < planes.size; i += 4) {
         const Vec3<double> normal(planes[i], planes[i + 1], planes[i + 2]);
-        const double nd = dot(normal, direction), rest = planes[i + 3] - margin - dot(normal, origin);
+        const double nd = dot(normal, direction);
+        const double rest = planes[i + 3] - margin - dot(normal, origin);
         if (nd == 0 && rest <= 0) return -1;
         if (nd < 0) enter = max_or_second(enter, rest / nd);
         if (nd > 0) leave = min_or_second(leave, rest / nd);

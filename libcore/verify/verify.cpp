@@ -130,7 +130,8 @@ class CaseRun {
         });
         for (Finding& found : findings_) {
             if (found.problem.empty()) found.problem = problem;
-            const uint64_t at = found.tally.worst_at, number = at >> place_shift;
+            const uint64_t at = found.tally.worst_at;
+            const uint64_t number = at >> place_shift;
             if (at != no_place && number < plan.parts.size())
                 found.row.worst_at =
                     fmt::format("{}, ray {}", plan.parts[number].label, at & ((uint64_t(1) << place_shift) - 1));
@@ -140,7 +141,8 @@ class CaseRun {
     template <class Real>
     void run_part(const Part& part, uint64_t number, ReadyPart<Real>& ready) {
         const RayMethods<Real>& methods = case_.methods<Real>();
-        const uint64_t place = number << place_shift, plain = ready.plain_count();
+        const uint64_t place = number << place_shift;
+        const uint64_t plain = ready.plain_count();
         std::vector<uint64_t> expected;
         if (methods.words) expected = ready.words(IntersectorKind::plain, methods, plain);
         for (Finding& found : findings_)

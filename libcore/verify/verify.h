@@ -30,7 +30,8 @@ struct Row {
     const char* unit = "";           // of the bound: "rays", "ulps"
     bool counts = false;             // `measured` is a number of failures
     bool must_fail = false;          // built wrong on purpose
-    uint64_t tried = 0, failures = 0;
+    uint64_t tried = 0;
+    uint64_t failures = 0;
     uint64_t witnesses = 0;  // tries that met the hazard, in cases that count them
     uint64_t warned = 0;     // scenes that float warns of as too small for it, and was not judged by
     std::string worst_at;    // part and ray with the largest deviation; empty: none deviates

@@ -40,7 +40,8 @@ nb::list rays_of_sample(const PixelReport& report, size_t number) {
     nb::list rays;
     for (size_t i = 0; i < sample.branches.size(); ++i) {
         const PixelBranch& b = sample.branches[i];
-        const bool at_surface = b.end == BranchEnd::surface, at_light = b.end == BranchEnd::light;
+        const bool at_surface = b.end == BranchEnd::surface;
+        const bool at_light = b.end == BranchEnd::light;
         rays.append(nb::make_tuple(parents[i], name_of(b.kind), name_of(b.end), b.depth, triple(b.weight),
                                    triple(b.arriving), triple(b.origin), triple(b.direction), b.distance,
                                    at_surface ? surface_fields(report, b.surface) : nb::none(),

@@ -27,7 +27,8 @@ enum class DifferenceUnit {
 /// Differences in a channel that both files have.
 struct ChannelStatistics {
     std::string name;
-    StoredType first_type = StoredType::float_, second_type = StoredType::float_;
+    StoredType first_type = StoredType::float_;
+    StoredType second_type = StoredType::float_;
     size_t values = 0;     // compared
     size_t differing = 0;  // with different bits
     size_t infinite = 0;   // infinite differences; included in max, excluded from mean, rmse, psnr and relative_mse
@@ -37,7 +38,8 @@ struct ChannelStatistics {
     std::optional<double> ssim;  // where it was asked for, and is defined
     int x = 0, y = 0;            // largest difference, or first value with different bits; in pixel space
     double a = 0, b = 0;         // the two values there
-    uint64_t a_bits = 0, b_bits = 0;
+    uint64_t a_bits = 0;
+    uint64_t b_bits = 0;
 
     DifferenceUnit unit() const;
 };

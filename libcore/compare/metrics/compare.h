@@ -34,7 +34,8 @@ struct Comparison {
     std::vector<std::string> units;           // what differences are counted in, where that is no plain number
     std::vector<ChannelStatistics> channels;  // of pictures with pixels in common
     size_t pixels = 0;  // that count; pixels of parts with one window are one pixel, as channels of one part are
-    size_t over_fail = 0, over_hardfail = 0;
+    size_t over_fail = 0;
+    size_t over_hardfail = 0;
     double max = 0;
     std::optional<FlipResult> flip;  // where it was asked for
 

@@ -119,7 +119,8 @@ FlipResult measure(const StoredFile& a, const StoredFile& b, const Selection& se
     if (selection.mask) throw FlipAbsent("it looks at neighbors, and a mask leaves some out");
     const PicturePairs pairs = pair_pictures(a, b);
     for (const PicturePair& pair : pairs.pairs) {
-        const std::optional<Colors> first = colors_of(*pair.a), second = colors_of(*pair.b);
+        const std::optional<Colors> first = colors_of(*pair.a);
+        const std::optional<Colors> second = colors_of(*pair.b);
         if (!pair.a->is_whole() || !first || !second) continue;
         const PixelRect window = region_of(*pair.a, *pair.b, selection, pair.subject()).window;
         if (window.pixels() == 0) throw FlipAbsent("no pixel has a partner");

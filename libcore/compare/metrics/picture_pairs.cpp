@@ -74,19 +74,22 @@ std::string PicturePair::subject() const {
 }
 
 std::string PicturePair::shown(const std::string& channel) const {
-    const std::string name = name_in_part(part, channel), level = level_text(*a);
+    const std::string name = name_in_part(part, channel);
+    const std::string level = level_text(*a);
     return level.empty() ? name : fmt::format("{} ({})", name, level);
 }
 
 PicturePairs pair_pictures(const StoredFile& a, const StoredFile& b) {
-    const std::vector<Part> first = parts_of(a), second = parts_of(b);
+    const std::vector<Part> first = parts_of(a);
+    const std::vector<Part> second = parts_of(b);
     PicturePairs result;
     if (first.size() == 1 && second.size() == 1) {
         pair_levels(result, first[0], second[0], "");
         return result;
     }
     const bool by_name = has_all_names(first) && has_all_names(second);
-    const std::vector<std::string> first_keys = keys_of(first, by_name), second_keys = keys_of(second, by_name);
+    const std::vector<std::string> first_keys = keys_of(first, by_name);
+    const std::vector<std::string> second_keys = keys_of(second, by_name);
     auto last = second_keys.begin();
     for (size_t i = 0; i < first.size(); ++i) {
         const auto partner = std::find(second_keys.begin(), second_keys.end(), first_keys[i]);

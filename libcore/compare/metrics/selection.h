@@ -24,7 +24,9 @@ struct Selection {
     std::optional<PixelRect> crop;    // only those of a rectangle in pixel space
     std::optional<Mask> mask;         // only those that count there
     bool common_channels = false;     // channels and parts that only one file has are no difference
-    bool ssim = false, flip = false;  // metrics that take long
+    // metrics that take long
+    bool ssim = false;
+    bool flip = false;
 
     /// Whether windows may differ, since pixels outside are left out.
     bool excuses_windows() const { return intersection || crop; }

@@ -13,7 +13,8 @@ namespace {
 
 /// A part of the text, [begin, end).
 struct TextRange {
-    size_t begin = 0, end = 0;
+    size_t begin = 0;
+    size_t end = 0;
 };
 
 struct JsonMember {

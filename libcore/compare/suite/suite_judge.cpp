@@ -40,7 +40,8 @@ std::string other_structure(const LayeredPicture& golden, const LayeredPicture& 
         parts.push_back(
             fmt::format("another size: {} in the golden image, {} rendered", window_text(golden), window_text(fresh)));
     if (common_channels) return joined(parts, "; ");
-    const auto lacking = channels_alone(golden, fresh), added = channels_alone(fresh, golden);
+    const auto lacking = channels_alone(golden, fresh);
+    const auto added = channels_alone(fresh, golden);
     if (!lacking.empty()) parts.push_back("layers of the golden image alone: " + joined(lacking, ", "));
     if (!added.empty()) parts.push_back("layers that the golden image lacks: " + joined(added, ", "));
     return joined(parts, "; ");

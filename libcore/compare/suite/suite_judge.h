@@ -23,7 +23,9 @@ struct SuiteResult {
     Outcome outcome = Outcome::skipped;
     std::string verdict;             // one line
     std::vector<std::string> notes;  // what else is to be said, one line each
-    int width = 0, height = 0;       // of the rendered data window
+    // of the rendered data window
+    int width = 0;
+    int height = 0;
     double seconds = 0;
     std::string golden;  // file, or empty
     std::string hash, expected_hash, film_hash, expected_film_hash;

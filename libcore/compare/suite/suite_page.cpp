@@ -167,7 +167,8 @@ std::string values_html(const LayeredPicture& golden, const LayeredPicture& fres
     for (const LayeredPicture::Channel& channel : fresh.channels)
         for (const LayeredPicture::Channel& other : golden.channels) {
             if (other.name != channel.name) continue;
-            const float a = value_at(other, golden, pixel), b = value_at(channel, fresh, pixel);
+            const float a = value_at(other, golden, pixel);
+            const float b = value_at(channel, fresh, pixel);
             if (std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b) && channel.name.size() > 1) continue;
             table.row({escaped(channel.name), fmt::format("{:.9g}", a), fmt::format("{:.9g}", b),
                        fmt::format("{:.4g}", difference(a, b))});

@@ -115,7 +115,8 @@ std::vector<double> pixel_differences(const LayeredPicture& golden, const Layere
     for (const LayeredPicture::Channel& channel : fresh.channels) {
         const LayeredPicture::Channel* other = channel_of(golden, channel.name);
         for (size_t i = 0; other && i < differences.size(); ++i) {
-            const float a = other->values[i], b = channel.values[i];
+            const float a = other->values[i];
+            const float b = channel.values[i];
             if (std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b)) continue;
             differences[i] = std::max({differences[i], difference(a, b), std::numeric_limits<double>::denorm_min()});
         }

@@ -10,7 +10,8 @@ namespace cistula {
 
 /// A pixel, counted from the top left of the full frame.
 struct SuitePixel {
-    int x = 0, y = 0;
+    int x = 0;
+    int y = 0;
     double difference = 0;  // the largest of a channel
 };
 

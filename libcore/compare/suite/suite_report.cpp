@@ -149,7 +149,9 @@ std::string summary_text(const SuiteCounts& counts) {
 }
 
 std::string junit_xml(const Suite& suite, const std::vector<SuiteResult>& results) {
-    size_t failures = 0, errors = 0, skipped = 0;
+    size_t failures = 0;
+    size_t errors = 0;
+    size_t skipped = 0;
     double seconds = 0;
     std::string cases;
     for (const SuiteResult& result : results) {

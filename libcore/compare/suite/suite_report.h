@@ -12,7 +12,10 @@ namespace cistula {
 
 /// How many results have which outcome, and how many cases were not begun.
 struct SuiteCounts {
-    size_t held = 0, failed = 0, skipped = 0, not_begun = 0;
+    size_t held = 0;
+    size_t failed = 0;
+    size_t skipped = 0;
+    size_t not_begun = 0;
 };
 SuiteCounts count_results(const std::vector<SuiteResult>& results, size_t chosen);
 

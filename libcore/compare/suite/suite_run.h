@@ -17,7 +17,8 @@ struct SuiteRunSettings {
     std::optional<Backend> backend;    // none: those of the cases
     DeviceChoice devices;
     int jobs = 1;  // cases at once
-    bool update = false, fail_fast = false;
+    bool update = false;
+    bool fail_fast = false;
     bool run_commands = false;  // those of cases; else such a case fails
 };
 

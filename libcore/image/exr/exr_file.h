@@ -20,7 +20,9 @@ struct ExrChannel {
 
     std::string name;
     Type type = Type::float_;
-    int x_sampling = 1, y_sampling = 1;  // the file has one value for so many pixels, which all of them get
+    // the file has one value for so many pixels, which all of them get
+    int x_sampling = 1;
+    int y_sampling = 1;
     std::vector<float> values;
     std::vector<uint32_t> numbers;  // those of a uint channel, exact; its values are rounded
 
@@ -29,13 +31,16 @@ struct ExrChannel {
 
 /// Numbers of a level of a mip map or a rip map.
 struct ExrLevel {
-    int x = 0, y = 0;
+    int x = 0;
+    int y = 0;
 };
 
 /// What a part's header says.
 struct ExrPart {
-    std::string name;           // files of one part need not have one
-    int width = 0, height = 0;  // of the data window
+    std::string name;  // files of one part need not have one
+    // of the data window
+    int width = 0;
+    int height = 0;
     Compression compression = Compression::other;
     PixelRect data, display;
     std::vector<ExrLevel> levels;  // {0, 0} is the whole resolution, and first

@@ -47,7 +47,9 @@ class GuardedReader {
 /// channels. The first three are red, green and blue; the first is gray where there are fewer. The largest integer is
 /// white.
 struct TexelArray {
-    uint32_t width = 0, height = 0, channels = 3;
+    uint32_t width = 0;
+    uint32_t height = 0;
+    uint32_t channels = 3;
     std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> values;
 };
 

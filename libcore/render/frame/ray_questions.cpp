@@ -59,7 +59,8 @@ RayHits ray_hits(const CompiledScene<Real>& scene, std::span<const glm::dvec3> o
                  std::span<const glm::dvec3> directions, const Answerer<RayAnswer>& answer) {
     require_pairs(origins.size(), directions.size(), "origins and directions of rays");
     const size_t count = origins.size();
-    const double unit = elementary::power_of_two(scene.scale), unit_length = 1 / unit;
+    const double unit = elementary::power_of_two(scene.scale);
+    const double unit_length = 1 / unit;
     std::vector<RayQuestion> questions(count);
     const size_t wrong = first_wrong(count, [&](size_t i) {
         const double square = dot(directions[i], directions[i]);

@@ -33,7 +33,8 @@ std::vector<Mattes> kinds(const Film& film, const OutputChannels& channels) {
     std::vector<Mattes> mattes;
     if (film.layers.plan.objects < 0) return mattes;
     const LayerNames& names = *film.layers.names;
-    const size_t solids = names.objects.size(), all = 1 + solids + names.visible_lights.size();
+    const size_t solids = names.objects.size();
+    const size_t all = 1 + solids + names.visible_lights.size();
     if (channels.object_mattes) {
         std::vector<std::string> of(all);
         std::copy(names.objects.begin(), names.objects.end(), of.begin() + 1);
@@ -76,7 +77,8 @@ class RankedBlocks {
 
   private:
     struct Block {
-        size_t first = 0, last = 0;
+        size_t first = 0;
+        size_t last = 0;
         std::vector<Ranks> ranks;
         std::vector<Rank> met;  // by one pixel; kept for its memory
     };
@@ -162,7 +164,8 @@ std::vector<std::pair<std::string, std::string>> cryptomatte_attributes(const Fi
 
 namespace {
 
-constexpr uint32_t first_factor = 0xcc9e2d51u, second_factor = 0x1b873593u;
+constexpr uint32_t first_factor = 0xcc9e2d51u;
+constexpr uint32_t second_factor = 0x1b873593u;
 
 uint32_t mixed(uint32_t word) {
     return std::rotl(word * first_factor, 15) * second_factor;

@@ -15,7 +15,9 @@ namespace cistula {
 
 /// The groups of layers that a frame is rendered with.
 struct LayerRequest {
-    bool path = false, light = false;  // divisions of the radiance (PathLayer, LightLayer)
+    // divisions of the radiance (PathLayer, LightLayer)
+    bool path = false;
+    bool light = false;
     bool first_hit = false;
     bool objects = false;     // how many samples of a pixel meet which object first
     int object_entries = 16;  // in a pixel's table of objects; a film with flag_objects_overflow needs more

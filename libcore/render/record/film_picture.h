@@ -19,12 +19,24 @@ namespace cistula {
 struct OutputChannels {
     bool half =
         false;  // R G B A, coverage, error.* and N.* in half precision; id, samples, cost and Z are always float
-    bool error = false, id = false, samples = false, cost = false, z = false, normal = false, coverage = false;
-    bool position = false, uv = false, albedo = false, depth_ray = false, material_id = false;
+    bool error = false;
+    bool id = false;
+    bool samples = false;
+    bool cost = false;
+    bool z = false;
+    bool normal = false;
+    bool coverage = false;
+    bool position = false;
+    bool uv = false;
+    bool albedo = false;
+    bool depth_ray = false;
+    bool material_id = false;
     bool path[path_layer_count] = {};            // by PathLayer
     bool light = false;                          // light layers: all, or these alone
     std::vector<std::string> light_layers = {};  // by their names without "Combined_"
-    bool object_mattes = false, material_mattes = false, light_mattes = false;
+    bool object_mattes = false;
+    bool material_mattes = false;
+    bool light_mattes = false;
     bool transparent = false;           // samples that meet nothing add nothing to R, G, B and A
     float z_far = 1e10f;                // Z where there is nothing
     const ColorSpace* space = nullptr;  // of R, G, B and error.*; null: that of scenes, lin_rec709_scene

@@ -229,7 +229,9 @@ class Compiler {
 
     /// Hashes and compiles the meshes in order. Small ones are prepared side by side, some at a time.
     void compile_meshes() {
-        constexpr uint32_t most_at_once = 4096, most_triangles = 100'000;  // but for those of the last
+        // but for those of the last
+        constexpr uint32_t most_at_once = 4096;
+        constexpr uint32_t most_triangles = 100'000;
         const auto count = static_cast<uint32_t>(source_.solids.size());
         std::vector<PreparedMesh> prepared;
         for (uint32_t first = 0, end = 0; first < count; first = end) {

@@ -178,7 +178,8 @@ Json parse_json(const std::string& text, const std::string& source) {
     // The library takes it for the end of the text, or of a comment.
     if (const size_t found = text.find('\0'); found != text.npos)
         builder.fail_at(found, "a NUL byte, which JSON does not have");
-    constexpr bool strict = true, ignore_comments = true;
+    constexpr bool strict = true;
+    constexpr bool ignore_comments = true;
     Json::sax_parse(text, &builder, Json::input_format_t::json, strict, ignore_comments);
     return builder.take();
 }

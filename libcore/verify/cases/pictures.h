@@ -96,9 +96,11 @@ inline double difference(const glm::vec3& a, const glm::vec3& b) {
 
 /// Whether a color lies between the least and the largest of a picture's pixels at a place and around it, to 1e-3.
 inline bool is_between(const glm::vec3& color, const ColorPicture& picture, int x, int y) {
-    const int width = int(picture.width), height = int(picture.height);
+    const int width = int(picture.width);
+    const int height = int(picture.height);
     for (int c = 0; c < 3; ++c) {
-        float low = INFINITY, high = -INFINITY;
+        float low = INFINITY;
+        float high = -INFINITY;
         for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
             for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
                 const float value = picture.texels[size_t(v * width + u)][c];
@@ -138,7 +140,8 @@ inline void expect_same_picture(const Stage& stage, Tally& tally, const SceneDes
 
 /// Measures how far the pixels of two films differ.
 inline void measure_difference(Tally& tally, const Film& film, const Film& other, uint64_t place) {
-    const ColorPicture found = to_color(film), expected = to_color(other);
+    const ColorPicture found = to_color(film);
+    const ColorPicture expected = to_color(other);
     const bool reliable = film.flags == 0 && other.flags == 0;
     for (size_t i = 0; i < expected.texels.size(); ++i) {
         tally.place = place + i;

@@ -13,7 +13,8 @@
 namespace cistula::verify {
 
 using glm::dvec3;
-inline constexpr int all_digits = 17, digits_of_float = 0;
+inline constexpr int all_digits = 17;
+inline constexpr int digits_of_float = 0;
 
 /// A number as a file gives it, with so many significant digits.
 inline double rounded(double number, int digits) {

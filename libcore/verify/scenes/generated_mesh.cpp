@@ -49,7 +49,8 @@ TrianglesObject bumpy_sphere(uint32_t triangles, double bump) {
     add_vertex({0, 0, -1});
     for (uint32_t i = 1; i < rows; ++i) {
         const double theta = pi * i / rows;
-        const double r = elementary::sin(theta), z = -elementary::cos(theta);
+        const double r = elementary::sin(theta);
+        const double z = -elementary::cos(theta);
         for (uint32_t j = 0; j < columns; ++j) {
             const double phi = 2 * pi * j / columns;
             add_vertex({r * elementary::cos(phi), r * elementary::sin(phi), z});
@@ -70,7 +71,8 @@ TrianglesObject torus(double radius, double tube, uint32_t around, uint32_t acro
     TrianglesObject object;
     for (uint32_t i = 0; i < across; ++i) {
         const double theta = 2 * pi * i / across;
-        const double r = radius + tube * elementary::cos(theta), z = tube * elementary::sin(theta);
+        const double r = radius + tube * elementary::cos(theta);
+        const double z = tube * elementary::sin(theta);
         for (uint32_t j = 0; j < around; ++j) {
             const double phi = 2 * pi * j / around;
             object.vertices.push_back({r * elementary::cos(phi), r * elementary::sin(phi), z});
@@ -87,11 +89,13 @@ TrianglesObject prism(uint32_t sides, double low, double high, double height) {
     TrianglesObject mesh;
     for (const bool up : {false, true})
         for (uint32_t i = 0; i < sides; ++i) {
-            const double angle = 6.283185307179586 * i / sides, radius = up ? high : low;
+            const double angle = 6.283185307179586 * i / sides;
+            const double radius = up ? high : low;
             mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), up ? height : -height});
         }
     for (uint32_t i = 0; i < sides; ++i) {
-        const uint32_t a = i, b = (i + 1) % sides;
+        const uint32_t a = i;
+        const uint32_t b = (i + 1) % sides;
         mesh.triangles.push_back({a, b, sides + b});
         mesh.triangles.push_back({a, sides + b, sides + a});
     }
@@ -119,9 +123,13 @@ TrianglesObject triangle_soup(uint32_t triangles, double size, uint64_t seed) {
     TrianglesObject object;
     Random random{seed};
     for (uint32_t i = 0; i < triangles; ++i) {
-        const double x = 2 * random() - 1, y = 2 * random() - 1, z = 2 * random() - 1;
+        const double x = 2 * random() - 1;
+        const double y = 2 * random() - 1;
+        const double z = 2 * random() - 1;
         for (uint32_t c = 0; c < 3; ++c) {
-            const double dx = random() - 0.5, dy = random() - 0.5, dz = random() - 0.5;
+            const double dx = random() - 0.5;
+            const double dy = random() - 0.5;
+            const double dz = random() - 0.5;
             const double half = 0.5 * size;
             object.vertices.push_back({x + half * dx, y + half * dy, z + half * dz});
         }

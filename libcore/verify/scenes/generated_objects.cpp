@@ -14,7 +14,8 @@ namespace {
 /// The mirror image of a solid at one of its faces, with exactly the same corners there.
 TrianglesObject beyond_face(const SolidObject& solid, const PlatonicShape::Face& face) {
     TrianglesObject mesh = triangulated_solid(solid);
-    const dvec3 normal = Rotation(solid.rotation)(face.normal), on = mesh.vertices[face.vertices[0]];
+    const dvec3 normal = Rotation(solid.rotation)(face.normal);
+    const dvec3 on = mesh.vertices[face.vertices[0]];
     for (uint32_t i = 0; i < mesh.vertices.size(); ++i)
         if (std::find(face.vertices.begin(), face.vertices.end(), i) == face.vertices.end())
             mesh.vertices[i] -= 2 * dot(normal, mesh.vertices[i] - on) * normal;
@@ -69,7 +70,8 @@ class Objects : Part {
     void add_groups() {
         if (random_.chance(0.25)) return add_apart();
         const dvec3 places[] = {{-1.7, -1, 0}, {1.7, -1, 0}, {0, 1.9, 0}};
-        const uint32_t count = 1 + random_.below(3), first = random_.below(3);
+        const uint32_t count = 1 + random_.below(3);
+        const uint32_t first = random_.below(3);
         const bool mixed = random_.chance(0.4);
         uint32_t theme = random_.below(10);
         for (uint32_t i = 0; i < count; ++i) {
@@ -124,7 +126,9 @@ class Objects : Part {
 
     /// Adds convex solids that do not touch, in a grid: sometimes more than the plain loop takes, sometimes fewer.
     void add_apart() {
-        const uint32_t nx = 2 + random_.below(3), ny = 1 + random_.below(3), nz = 1 + random_.below(2);
+        const uint32_t nx = 2 + random_.below(3);
+        const uint32_t ny = 1 + random_.below(3);
+        const uint32_t nz = 1 + random_.below(2);
         const bool lattice = random_.chance(0.3);
         reach_ = 0.6;
         for (uint32_t x = 0; x < nx; ++x)
@@ -168,7 +172,8 @@ class Objects : Part {
         switch (random_.below(7)) {
             case 0: {  // a row of cubes, cut along one diagonal or the other
                 const dvec3 turn = degrees();
-                const double radius = 0.6, step = 2 * radius * platonic_shape(PlatonicSolid::cube).inradius;
+                const double radius = 0.6;
+                const double step = 2 * radius * platonic_shape(PlatonicSolid::cube).inradius;
                 const dvec3 along = Rotation(turn)(dvec3(step, 0, 0));
                 const uint32_t count = 2 + random_.below(2);
                 for (uint32_t i = 0; i < count; ++i) {
@@ -183,7 +188,8 @@ class Objects : Part {
                 const SolidObject s = solid(center, 0.7);
                 const auto& faces = platonic_shape(s.solid).faces;
                 TrianglesObject twin = beyond_face(s, faces[random_.below(static_cast<uint32_t>(faces.size()))]);
-                const bool planes = random_.chance(0.5), twin_first = random_.chance(0.5);
+                const bool planes = random_.chance(0.5);
+                const bool twin_first = random_.chance(0.5);
                 if (twin_first) add(twin, true);
                 add_of(planes, s);
                 if (!twin_first) add(std::move(twin), true);
@@ -207,7 +213,8 @@ class Objects : Part {
             }
             case 5: {  // cubes on the floor and on one another
                 const double half = platonic_shape(PlatonicSolid::cube).inradius;
-                const double lower = random_.between(0.7, 1.1), upper = random_.between(0.3, 0.7);
+                const double lower = random_.between(0.7, 1.1);
+                const double upper = random_.between(0.3, 0.7);
                 const dvec3 on_floor = center + dvec3(0, 0, floor_height + lower * half);
                 add(cube(on_floor, lower, dvec3(0)), true);
                 add(cube(on_floor + dvec3(0.1, 0, (lower + upper) * half), upper, dvec3(0, 0, 30)), true);
@@ -232,7 +239,8 @@ class Objects : Part {
         t.name = "texture " + std::to_string(scene_.textures.size());
         t.checker = {random_.color(), random_.chance(0.3) ? dvec3(0) : random_.color()};
         t.repeat = {random_.of({1, 2, 5.5}), random_.of({1, 3, 0.7})};
-        const bool picture = random_.chance(0.5), marble = random_.chance(0.5);
+        const bool picture = random_.chance(0.5);
+        const bool marble = random_.chance(0.5);
         t.bilinear = random_.chance(0.6);
         if (picture && !files_.empty()) t.file = files_ + (marble ? "/marble.data" : "/floor.data");
         scene_.textures.push_back(t);

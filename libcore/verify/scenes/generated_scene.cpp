@@ -133,7 +133,8 @@ class Maker : Part {
         if (random_.chance(0.2))
             offset = {random_.between(-1000, 1000), random_.between(-10, 10), random_.of({0, 77.125})};
         if (scene_.camera.position_path) offset = dvec3(0);  // camera paths are around the origin
-        const bool pinned = random_.chance(0.12), bound = random_.chance(0.5);
+        const bool pinned = random_.chance(0.12);
+        const bool bound = random_.chance(0.5);
         if (scale != 1 || offset != dvec3(0)) move(scale, offset);
         if (!pinned) return;
         FrameOfReference frame;

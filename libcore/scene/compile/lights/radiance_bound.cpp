@@ -118,7 +118,8 @@ dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, cons
         }
         bound = largest_of(bound, local);
     }
-    const double limit = largest_component(lit) * largest_contrast, most = largest_component(bound);
+    const double limit = largest_component(lit) * largest_contrast;
+    const double most = largest_component(bound);
     if (most > limit)
         throw too_near(source, lights[at_brightest.strongest], at_brightest, brightest, most, limit, unit_length);
     for (NormalizedLight& light : lights) {

@@ -12,7 +12,9 @@ namespace cistula {
 struct MeshEdges {
     /// For each half-edge the next one along the same edge, in a ring that ascends; itself where it is alone.
     std::vector<uint32_t> next;
-    uint32_t open = 0, crowded = 0;  // edges of one triangle, of more than two
+    // edges of one triangle, of more than two
+    uint32_t open = 0;
+    uint32_t crowded = 0;
 };
 
 /// The edges of triangles whose corners are numbers under `vertices`: equal numbers are one corner.
@@ -38,7 +40,9 @@ struct EdgePairs {
     std::vector<uint32_t> mate;  // of each half-edge, numbered as in MeshEdges; none where it has none
     /// Triangles that were paired by their winding at edges where faces coincide: right only if all are turned alike.
     std::vector<uint32_t> tied;
-    uint32_t open = 0, crowded = 0;  // edges that are not paired: of one triangle, of three or more
+    // edges that are not paired: of one triangle, of three or more
+    uint32_t open = 0;
+    uint32_t crowded = 0;
 
     static constexpr uint32_t none = 0xffffffffu;
     bool complete() const { return open == 0 && crowded == 0; }

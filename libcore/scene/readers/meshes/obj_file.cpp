@@ -198,7 +198,8 @@ class ObjReader {
     std::vector<dvec2> uvs_;
     LargestIndex largest_vertex_, largest_uv_;
     std::string name_, material_;  // of the faces that follow
-    bool in_group_ = false, starts_with_name_ = false;
+    bool in_group_ = false;
+    bool starts_with_name_ = false;
     std::vector<Group> groups_;
     std::vector<std::string> library_lines_;
     std::set<std::string> seen_libraries_;

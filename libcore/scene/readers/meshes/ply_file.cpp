@@ -272,8 +272,8 @@ class PlyReader {
     }
 
     void read_polygons() {
-        const size_t list = element_->find({"vertex_indices", "vertex_index"}, true),
-                     uv_list = element_->find({"texcoord"}, true);
+        const size_t list = element_->find({"vertex_indices", "vertex_index"}, true);
+        const size_t uv_list = element_->find({"texcoord"}, true);
         if (element_->count == 0) return;
         if (list == element_->properties.size() || !element_->properties[list].type->is_integer())
             fail_at(element_->line, "element " + element_->name + " has no list vertex_indices of an integer type");
@@ -306,7 +306,9 @@ class PlyReader {
             if (corners[i] < 0) first = i + 1;
             if (i < first + 2) continue;
             const bool turned = (i - first) % 2 == 1;
-            const double a = corners[i - (turned ? 1 : 2)], b = corners[i - (turned ? 2 : 1)], c = corners[i];
+            const double a = corners[i - (turned ? 1 : 2)];
+            const double b = corners[i - (turned ? 2 : 1)];
+            const double c = corners[i];
             if (a == b || b == c || c == a) continue;
             for (const double corner : {a, b, c}) mesh_.corners.push_back(static_cast<uint32_t>(corner));
             mesh_.ends.push_back(mesh_.corners.size());
@@ -316,8 +318,11 @@ class PlyReader {
     std::string_view bytes_;
     const std::string& label_;
     char line_end_ = '\n';
-    bool ascii_ = true, big_endian_ = false;
-    size_t at_ = 0, value_at_ = 0;  // the next byte, and the first of the value read last
+    bool ascii_ = true;
+    bool big_endian_ = false;
+    // the next byte, and the first of the value read last
+    size_t at_ = 0;
+    size_t value_at_ = 0;
     int line_ = 0;
     std::vector<std::string_view> words_;
     size_t word_ = 0;                                            // the next of `words_`

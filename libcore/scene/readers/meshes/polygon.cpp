@@ -58,7 +58,8 @@ class EarClipper {
                 ear = next_ear();
             }
             const uint32_t i = ear == none ? state_[first_].after : ear;
-            const uint32_t before = state_[i].before, after = state_[i].after;
+            const uint32_t before = state_[i].before;
+            const uint32_t after = state_[i].after;
             triangles.push_back({corners_[before], corners_[i], corners_[after]});
             state_[before].after = after;
             state_[after].before = before;
@@ -76,9 +77,11 @@ class EarClipper {
     static constexpr uint32_t none = UINT32_MAX;
 
     struct Corner {
-        uint32_t before = 0, after = 0;
+        uint32_t before = 0;
+        uint32_t after = 0;
         uint32_t version = 0;  // counts tests: of the entries in the queue the last one holds
-        bool removed = false, convex = false;
+        bool removed = false;
+        bool convex = false;
     };
     struct Ear {
         double order;
@@ -92,7 +95,8 @@ class EarClipper {
     std::vector<dvec2> points_in_plane() const {
         const dvec3 n = normalized(normal_);
         const dvec3 off = magnitude(n.x) < 0.6 ? dvec3{1, 0, 0} : dvec3{0, 1, 0};
-        const dvec3 u = normalized(cross(n, off)), v = cross(n, u);
+        const dvec3 u = normalized(cross(n, off));
+        const dvec3 v = cross(n, u);
         std::vector<dvec2> points;
         points.reserve(corners_.size());
         for (const uint32_t corner : corners_) {
@@ -140,10 +144,14 @@ class EarClipper {
 
     /// Whether another corner lies in the triangle that corner i spans with its neighbors.
     bool is_blocked(uint32_t i) const {
-        const uint32_t before = state_[i].before, after = state_[i].after;
+        const uint32_t before = state_[i].before;
+        const uint32_t after = state_[i].after;
         const dvec3 &a = at(before), &b = at(i), &c = at(after);
-        const dvec2 pa = in_plane_[before], pb = in_plane_[i], pc = in_plane_[after];
-        const dvec2 low = min_of(pa, min_of(pb, pc)), high = max_of(pa, max_of(pb, pc));
+        const dvec2 pa = in_plane_[before];
+        const dvec2 pb = in_plane_[i];
+        const dvec2 pc = in_plane_[after];
+        const dvec2 low = min_of(pa, min_of(pb, pc));
+        const dvec2 high = max_of(pa, max_of(pb, pc));
         // Boxes are compared with slack for rounding; only `turn` decides.
         const dvec2 slack = (max_of(high, -low) + (high - low)) * 0x1p-40;
         const auto touches = [&](const dvec2& box_low, const dvec2& box_high) {
@@ -199,11 +207,13 @@ void append_polygon(std::span<const dvec3> vertices, std::span<const uint32_t> c
 }
 
 std::optional<std::string> quad_problem(const std::array<glm::dvec3, 4>& corners) {
-    const glm::dvec3 first = corners[2] - corners[0], second = corners[3] - corners[1];
+    const glm::dvec3 first = corners[2] - corners[0];
+    const glm::dvec3 second = corners[3] - corners[1];
     const double diagonal = max_or_second(length(first), length(second));
     if (!(diagonal > 0)) return "the four corners of the quad coincide";
     // Twice a quad's area is the length of the cross product of its diagonals.
-    const glm::dvec3 a = first / diagonal, b = second / diagonal;
+    const glm::dvec3 a = first / diagonal;
+    const glm::dvec3 b = second / diagonal;
     const glm::dvec3 product = cross(a, b);
     if (!(length(product) > quad_tolerance))
         return "the quad has no area or crosses itself; give the corners in order around it";

@@ -126,7 +126,8 @@ Render invisible(const Arrangements& arrangements, Shape shape) {
         for (const Arrangement& arrangement : arrangements)
             for (const Ground& ground : grounds) {
                 Site site(ground);
-                const int body = add_material(site.scene, next_to_nothing()), floor = add_material(site.scene, wood());
+                const int body = add_material(site.scene, next_to_nothing());
+                const int floor = add_material(site.scene, wood());
                 site = arranged(site, arrangement, {body, body, floor, shape});
                 light_it(site, arrangement.corner);
                 measure_difference(tally, stage.film(site.scene), stage.film(without(site.scene, body)),
@@ -141,7 +142,8 @@ void invisible_solids(Stage& stage, Tally& tally) {
         for (size_t face = 0; face < platonic_shape(kind).faces.size(); face += stage.quick ? 3 : 1) {
             const SolidObject body = solid_object(kind, {2.3, -1.7, 0.6}, 0.7, {20 + 7.0 * double(face), 35, 50});
             Site site(body, face);
-            const int clear_one = add_material(site.scene, next_to_nothing()), floor = add_material(site.scene, wood());
+            const int clear_one = add_material(site.scene, next_to_nothing());
+            const int floor = add_material(site.scene, wood());
             const auto build = [](Site& to, const Parts& parts) { to.floor(parts.ground); };
             site = arranged(site, {build}, {clear_one, clear_one, floor});
             add_object(site.scene, body, clear_one);
@@ -188,7 +190,9 @@ SceneDescription cut_cube(const Ground& ground, int cut, uint64_t seed, Shape sh
         std::swap(order[i], order[size_t(draw.between(0, int(i)))]);
     const double side = 1.2 / cut;
     for (const int i : order) {
-        const int across = i % cut, along = i / cut % cut, up = i / cut / cut;
+        const int across = i % cut;
+        const int along = i / cut % cut;
+        const int up = i / cut / cut;
         site.cube((across + 0.5) * side - 0.6, (along + 0.5) * side - 0.6, up * side, side, 0, body, shape);
     }
     site.look({1.4, -3.6, 2.1}, {0, 0, 0.45}, 35);
@@ -298,7 +302,8 @@ void label_on_glass(Stage& stage, Tally& tally) {
     for (const Ground& ground : grounds)
         for (const bool on_top : {true, false}) {
             const auto film = [&](double lift) { return stage.film(with_label(ground, lift, on_top)); };
-            const Film raised = film(0x1p-14), lowered = film(-0x1p-14);
+            const Film raised = film(0x1p-14);
+            const Film lowered = film(-0x1p-14);
             expect_one_of(tally, film(0), {&raised, &lowered}, place_of_scene(number++));
         }
 }
@@ -337,7 +342,8 @@ Render straight(const Arrangements& arrangements, const MaterialDescription& one
             for (const Ground& ground : grounds)
                 for (const bool near : {false, true}) {
                     Site site(ground);
-                    const int first = add_material(site.scene, one), second = add_material(site.scene, other);
+                    const int first = add_material(site.scene, one);
+                    const int second = add_material(site.scene, other);
                     site = arranged(site, arrangement, {first, second, add_material(site.scene, wood())});
                     light_from_all_sides(site, arrangement.corner);
                     if (near) site.scene.camera.field_of_view = 8;

@@ -30,7 +30,8 @@ class StraightLight {
         dvec3 light = site_.scene.ambient * material.color;
         for (size_t i = 0; i < site_.lights.size(); ++i) {
             const dvec3 way = site_.lights[i] - point;
-            const double distance = length(way), cosine = dot(normal, way) / distance;
+            const double distance = length(way);
+            const double cosine = dot(normal, way) / distance;
             if (magnitude(cosine) < margin) return {};
             if (cosine < 0) continue;
             dvec3 arrives(1);
@@ -60,7 +61,8 @@ class StraightLight {
 
     /// A line within a cube that is grown by a length.
     static Chord chord(const SiteCube& cube, const dvec3& from, const dvec3& direction, double grown) {
-        const double s = std::sin(cube.turn), c = std::cos(cube.turn);
+        const double s = std::sin(cube.turn);
+        const double c = std::cos(cube.turn);
         Chord found;
         for (const dvec3& axis : {dvec3(c, s, 0), dvec3(-s, c, 0), dvec3(0, 0, 1)})
             for (const double sign : {-1.0, 1.0}) {
@@ -92,8 +94,10 @@ class StraightLight {
 
     /// How far inside a sheet's border a point of its plane lies.
     static double inside_border(const SiteSheet& sheet, const dvec3& p) {
-        const double a = length(sheet.along), b = length(sheet.across);
-        const double u = dot(p - sheet.corner, sheet.along) / a, v = dot(p - sheet.corner, sheet.across) / b;
+        const double a = length(sheet.along);
+        const double b = length(sheet.across);
+        const double u = dot(p - sheet.corner, sheet.along) / a;
+        const double v = dot(p - sheet.corner, sheet.across) / b;
         return min_or_second(min_or_second(u, a - u), min_or_second(v, b - v));
     }
 
@@ -149,7 +153,8 @@ class StraightLight {
         }
         for (const SiteSheet& sheet : site_.sheets) {
             const dvec3 normal = normalized(cross(sheet.along, sheet.across));
-            const double off = dot(normal, point - sheet.corner), t = -off / dot(normal, direction);
+            const double off = dot(normal, point - sheet.corner);
+            const double t = -off / dot(normal, direction);
             if (magnitude(off) < 1e-9 || !(t > 0 && t < distance)) continue;
             const double within = inside_border(sheet, point + direction * t);
             if (magnitude(within) < margin) return false;
@@ -165,7 +170,10 @@ class StraightLight {
 /// light passes from it straight into the glass.
 class IdealGlass {
   public:
-    static constexpr double index = 1.5, half = 0.5, floor_half = 2, least_weight = 1e-5;
+    static constexpr double index = 1.5;
+    static constexpr double half = 0.5;
+    static constexpr double floor_half = 2;
+    static constexpr double least_weight = 1e-5;
     dvec3 floor, background;
 
     dvec3 seen(const dvec3& from, const dvec3& direction) const { return outside(from, direction, 1); }
@@ -193,7 +201,8 @@ class IdealGlass {
         double enter = 0, leave = 1e9;
         int face = -1;
         for (int i = 0; i < 6; ++i) {
-            const double slope = dot(normal(i), direction), t = distance(i, from) / slope;
+            const double slope = dot(normal(i), direction);
+            const double t = distance(i, from) / slope;
             if (slope < 0 && t > enter) enter = t, face = i;
             if (slope > 0) leave = min_or_second(t, leave);
         }
@@ -216,7 +225,8 @@ class IdealGlass {
     }
     /// `normal`: toward the ray.
     dvec3 at_face(const dvec3& point, const dvec3& direction, const dvec3& normal, bool leaves, double weight) const {
-        const double cosine = -dot(direction, normal), ratio = leaves ? 1 / index : index;
+        const double cosine = -dot(direction, normal);
+        const double ratio = leaves ? 1 / index : index;
         double behind = 0;
         const double share = fresnel(cosine, ratio, behind);
         const dvec3 mirrored = direction + normal * (2 * cosine);

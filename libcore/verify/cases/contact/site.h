@@ -76,7 +76,8 @@ class Site {
         sheets.push_back({corner, along, across, material});
         TrianglesObject sheet = parallelogram(corner, along, across);
         for (dvec3& p : sheet.vertices) p = place(p);
-        const double u = length(along), v = length(across);
+        const double u = length(along);
+        const double v = length(across);
         sheet.uvs = {{0, 0}, {u, 0}, {u, v}, {0, v}};
         add_object(scene, sheet, material);
     }

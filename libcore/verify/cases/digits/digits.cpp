@@ -18,7 +18,10 @@ SceneDescription scene_of(Build build, bool triangles) {
     build(scene, triangles);
     return scene;
 }
-constexpr int floor_material = 1, glass_material = 2, ice_material = 3, label_material = 4;
+constexpr int floor_material = 1;
+constexpr int glass_material = 2;
+constexpr int ice_material = 3;
+constexpr int label_material = 4;
 
 void add_floor(SceneDescription& scene) {
     add_object(scene, parallelogram({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), floor_material);

@@ -21,7 +21,8 @@ struct EdgesFromInside : AtEdges {
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
         const Vec3<double> middle = setup.vector(0);
-        const double inradius = setup.numbers[3], reach = tiny ? 0.25 : draw.one_in(8) ? 0.0 : 0.9;
+        const double inradius = setup.numbers[3];
+        const double reach = tiny ? 0.25 : draw.one_in(8) ? 0.0 : 0.9;
         const Vec3<Real> origin(middle + in_ball(draw) * (reach * inradius));
         const Ray<Real> ray = aimed(setup, draw, origin, setup.point(i % setup.points.size));
         tally.expect(cross_all(intersector, inside(ray, solid), solid).are(0, 1));
@@ -49,7 +50,8 @@ struct EdgesFromOutside : AtEdges {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const double extent = double(setup.extent()), inradius = setup.numbers[3];
+        const double extent = double(setup.extent());
+        const double inradius = setup.numbers[3];
         const Vec3<Real> target = setup.point(i % setup.points.size);
         const bool near = tiny && draw.one_in(4);
         const Vec3<Real> origin = near ? Vec3<Real>(Vec3<double>(target) + on_sphere(draw) * (64 * inradius))
@@ -185,7 +187,8 @@ struct Fans {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const Vec3<Real> hub = setup.point(draw.below(2)), rim = setup.point(2 + draw.below(spokes));
+        const Vec3<Real> hub = setup.point(draw.below(2));
+        const Vec3<Real> rim = setup.point(2 + draw.below(spokes));
         const uint32_t kind = draw.below(4);
         const Real share = kind == 0 ? Real(draw.between(0, 14)) / Real(16) : Real(0.9) * draw.unit<Real>();
         const Vec3<Real> target = kind < 2 ? along(hub, share, rim - hub) : hub;
@@ -213,8 +216,11 @@ struct Slivers {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const uint32_t n = setup.points.size, first = draw.below(n), step = draw.between(1, 9);
-        const Vec3<Real> a = setup.point(first), b = setup.point((first + step) % n);
+        const uint32_t n = setup.points.size;
+        const uint32_t first = draw.below(n);
+        const uint32_t step = draw.between(1, 9);
+        const Vec3<Real> a = setup.point(first);
+        const Vec3<Real> b = setup.point((first + step) % n);
         const uint32_t kind = draw.below(4);
         const Vec3<Real> target = kind < 2 ? a : along(a, kind == 2 ? Real(0.5) : draw.unit<Real>(), b - a);
         const Vec3<Real> outside = outside_origin(draw, target, double(setup.extent()));
@@ -270,7 +276,8 @@ CISTULA_HD inline uint32_t flawed_crossings(const SceneView<Real>& scene, const 
             ShearedTriangle<Real> s = ShearedTriangle<Real>::of(cluster, int(lane), triangle_ray);
             if (flaw == Flaw::contracted_products)
                 for (int k = 0; k < 3; ++k) {
-                    const int a = (k + 1) % 3, b = (k + 2) % 3;
+                    const int a = (k + 1) % 3;
+                    const int b = (k + 2) % 3;
                     const Real rounded = s.y[b] * s.x[a];
                     s.edge[k] = fused(s.x[b], s.y[a], -rounded);
                 }

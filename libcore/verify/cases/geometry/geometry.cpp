@@ -119,7 +119,8 @@ TrianglesObject lens(uint32_t spokes, const glm::dvec3& center, double height) {
         mesh.vertices.push_back(center + glm::dvec3(std::cos(angle), std::sin(angle), 0));
     }
     for (uint32_t i = 0; i < spokes; ++i) {
-        const uint32_t a = 2 + i, b = 2 + (i + 1) % spokes;
+        const uint32_t a = 2 + i;
+        const uint32_t b = 2 + (i + 1) % spokes;
         mesh.triangles.push_back({0, a, b});
         mesh.triangles.push_back({1, b, a});
     }
@@ -178,7 +179,10 @@ TrianglesObject grid_box(const std::vector<double>& cuts) {
                 }
             for (uint32_t i = 0; i + 1 < n; ++i)
                 for (uint32_t j = 0; j + 1 < n; ++j) {
-                    const uint32_t a = first + i * n + j, b = a + n, c = b + 1, d = a + 1;
+                    const uint32_t a = first + i * n + j;
+                    const uint32_t b = a + n;
+                    const uint32_t c = b + 1;
+                    const uint32_t d = a + 1;
                     if (high) {
                         mesh.triangles.push_back({a, b, c});
                         mesh.triangles.push_back({a, c, d});
@@ -235,7 +239,8 @@ void plan_coincident(Plan& plan) {
 
 /// A mesh of one valid and ten degenerate triangles.
 TrianglesObject degenerate_mesh() {
-    const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double inf = std::numeric_limits<double>::infinity();
     TrianglesObject mesh;
     const auto add = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
         const uint32_t first = uint32_t(mesh.vertices.size());
@@ -284,7 +289,9 @@ void plan_degenerate(Plan& plan) {
 
 /// A random point for plans; drawn on the host, equal everywhere.
 glm::dvec3 drawn(Draw& draw, double half) {
-    const double x = draw.centered(half), y = draw.centered(half), z = draw.centered(half);
+    const double x = draw.centered(half);
+    const double y = draw.centered(half);
+    const double z = draw.centered(half);
     return {x, y, z};
 }
 
@@ -322,7 +329,8 @@ void plan_random(Plan& plan) {
     add("nested solids", nested);
     SceneDescription many = empty_scene();
     for (int k = 0; k < 60; ++k) {
-        const glm::dvec3 center = drawn(draw, 2), turn = k % 3 ? drawn(draw, 180) : glm::dvec3(0);
+        const glm::dvec3 center = drawn(draw, 2);
+        const glm::dvec3 turn = k % 3 ? drawn(draw, 180) : glm::dvec3(0);
         add_object(many, solid_object(platonic_solids[k % 5], center, 0.05 + 0.5 * draw.unit<double>(), turn));
     }
     add("many solids", many);
@@ -340,8 +348,10 @@ void plan_random(Plan& plan) {
 
 void add_geometry(Cases& cases) {
     using namespace geometry;
-    const Bound none = no_failures("rays"), witnessed = no_failures("rays", needs_witness);
-    const Shape planes = Shape::planes, triangles = Shape::triangles;
+    const Bound none = no_failures("rays");
+    const Bound witnessed = no_failures("rays", needs_witness);
+    const Shape planes = Shape::planes;
+    const Shape triangles = Shape::triangles;
     const char* one_way_out = "one way out at every vertex and k/16 of every edge";
     cases.rays<EdgesFromInside>("edges-from-inside/planes", one_way_out, none, solids<EdgesFromInside>(planes));
     cases.rays<EdgesFromInside>("edges-from-inside/triangles", one_way_out, none, solids<EdgesFromInside>(triangles));

@@ -49,7 +49,8 @@ struct AxisParallel {
         const Real half = planes ? setup.scene.slabs[0].high : magnitude(setup.point(0).x);
         const int axis = draw.between(0, 2);
         Ray<Real> ray = ray_from(Vec3<Real>(Real(0)), Vec3<Real>(Real(0)));
-        bool within = true, on = false;
+        bool within = true;
+        bool on = false;
         for (int k = 0; k < 3; ++k) {
             if (k == axis) continue;
             const uint32_t kind = draw.below(4);
@@ -106,7 +107,8 @@ struct OnSlabPlanes {
 template <class Real, class Tracer>
 CISTULA_HD inline bool same_crossings(const Tracer& intersector, Ray<Real> a, Ray<Real> b) {
     for (uint32_t i = 0; i < 64; ++i) {
-        const Hit<Real> at = intersector.closest(a), other = intersector.closest(b);
+        const Hit<Real> at = intersector.closest(a);
+        const Hit<Real> other = intersector.closest(b);
         if (at.key != other.key || at.t != other.t || at.u != other.u || at.v != other.v) return false;
         if (!at.found()) return true;
         const int change = media_change(key_kind(at.key));
@@ -124,7 +126,8 @@ struct SignedZeros {
         const Vec3<Real> target = setup.any_point(draw);
         Ray<Real> ray = ray_from(Vec3<Real>(on_sphere(draw) * (1.9 * double(setup.extent()))), Vec3<Real>(Real(0)));
         ray.direction = normalized(target - ray.origin);
-        const int axis = draw.between(0, 2), other = draw.between(0, 2);
+        const int axis = draw.between(0, 2);
+        const int other = draw.between(0, 2);
         if (other != axis && draw.one_in(2)) {  // along the third axis
             ray.direction[axis] = ray.direction[other] = Real(0);
             ray.origin[axis] = target[axis], ray.origin[other] = target[other];
@@ -246,7 +249,8 @@ struct Coincident {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const Vec3<Real> a = setup.point(draw.below(3)), b = setup.point(draw.below(3));
+        const Vec3<Real> a = setup.point(draw.below(3));
+        const Vec3<Real> b = setup.point(draw.below(3));
         const Vec3<Real> middle = (setup.point(0) + setup.point(1) + setup.point(2)) * Real(1.0 / 3.0);
         const Vec3<Real> edge = along(a, draw.unit<Real>(), b - a);
         const Vec3<Real> target = draw.one_in(2) ? along(middle, Real(0.9) * draw.unit<Real>(), edge - middle) : edge;
@@ -272,7 +276,8 @@ struct Degenerate {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const Vec3<Real> a = setup.any_point(draw), b = setup.any_point(draw);
+        const Vec3<Real> a = setup.any_point(draw);
+        const Vec3<Real> b = setup.any_point(draw);
         const Vec3<Real> target = draw.one_in(2) ? a : along(a, draw.unit<Real>(), b - a);
         const Ray<Real> ray = aimed(setup, draw, Vec3<Real>(on_sphere(draw) * (1.9 * double(setup.extent()))), target);
         const Hit<Real> hit = intersector.closest(ray);
@@ -290,7 +295,8 @@ struct RandomRays {
         const double far = draw.one_in(5) ? 0.9 : 1.9;
         const Vec3<Real> origin(on_sphere(draw) * (far * extent));
         const uint32_t kind = draw.below(4);
-        const Vec3<Real> vertex = setup.any_point(draw), other = setup.any_point(draw);
+        const Vec3<Real> vertex = setup.any_point(draw);
+        const Vec3<Real> other = setup.any_point(draw);
         Vec3<Real> target = draw.in_cube(setup.extent());
         if (kind == 0) target = vertex;
         if (kind == 1) target = along(vertex, draw.unit<Real>(), other - vertex);

@@ -216,7 +216,8 @@ void scale_scene(SceneDescription& scene, int k) {
 /// camera's paths give way to its position and target in frame 0.
 void put_on_grid(SceneDescription& scene) {
     const auto compiled = compile_scene<double>(scene);
-    const double size = std::ldexp(1.0, -compiled->scale), step = size * 0x1p-20;
+    const double size = std::ldexp(1.0, -compiled->scale);
+    const double step = size * 0x1p-20;
     const auto snap = [&](glm::dvec3& p) {
         for (int axis = 0; axis < 3; ++axis) p[axis] = std::floor(p[axis] / step + 0.5) * step;
     };
@@ -256,7 +257,8 @@ auto translated(bool with_ground) {
     return [=](Stage& stage, Tally& tally) {
         for_each_scene(stage, 150, 24, [&](uint64_t seed, SceneDescription scene) {
             put_on_grid(scene);
-            const double size = std::ldexp(1.0, -scene.frame->scale), reach = 1.75 * size;
+            const double size = std::ldexp(1.0, -scene.frame->scale);
+            const double reach = 1.75 * size;
             if (with_ground)  // below everything else, and reaching farthest
                 add_object(scene, parallelogram(scene.frame->center - reach, {2 * reach, 0, 0}, {0, 2 * reach, 0}),
                            add_material(scene, MaterialDescription()));
@@ -367,7 +369,8 @@ SceneDescription flippable_scene(bool swappable) {
     return scene;
 }
 void flipped_images(Stage& stage, Tally& tally) {
-    const int width = stage.quick ? 48 : 320, height = stage.quick ? 32 : 200;
+    const int width = stage.quick ? 48 : 320;
+    const int height = stage.quick ? 32 : 200;
     for (const bool swappable : {false, true}) {
         SceneDescription scene = flippable_scene(swappable);
         // In the plane of x and z the axes of the camera are exact when x and y are swapped.
@@ -401,7 +404,8 @@ void flipped_images(Stage& stage, Tally& tally) {
 /// without a surface stays (lights of their own radiance, background), and there are no highlights, which colors do not
 /// dim.
 void brighten(SceneDescription& scene, int light, int color) {
-    const double l = std::ldexp(1.0, light), s = std::ldexp(1.0, light + color);
+    const double l = std::ldexp(1.0, light);
+    const double s = std::ldexp(1.0, light + color);
     const auto scale_light = [&](glm::dvec3& emitted, std::optional<glm::dvec3>& glow) {
         glow = glow.value_or(emitted) * s;
         emitted *= l;
@@ -585,7 +589,8 @@ auto by_precision(void (*in_float)(Stage&, Tally&), void (*in_double)(Stage&, Ta
 
 void add_metamorphic(Cases& cases) {
     using namespace metamorphic;
-    const Bound pixels = no_failures("pixels", needs_witness), rays = no_failures("rays", needs_witness);
+    const Bound pixels = no_failures("pixels", needs_witness);
+    const Bound rays = no_failures("rays", needs_witness);
     cases.images("more-effects", "sums, ids and normals with any larger set of effects switched on", pixels,
                  more_effects);
     cases.images("one-hash", "the plain loop's image, by every tree, instruction set, device and order",

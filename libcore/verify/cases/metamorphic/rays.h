@@ -96,7 +96,8 @@ struct CellBorders {
     template <class Real>
     CISTULA_HD void operator()(const Setup<Real>& setup, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const int log_width = draw.between(0, 2), log_repeat = draw.between(-3, 3);
+        const int log_width = draw.between(0, 2);
+        const int log_repeat = draw.between(-3, 3);
         Vec3<float> texels[16];
         for (int t = 0; t < 16; ++t) texels[t] = Vec3<float>(float(t));
         Texture texture{};
@@ -173,8 +174,8 @@ struct FarFloor {
         for (int axis = 0; axis < 2; ++axis) {
             const DoubleDouble slope = DoubleDouble(d[axis]) / DoubleDouble(d.z);
             const DoubleDouble at = DoubleDouble(double(ray.origin[axis])) - slope * DoubleDouble(double(ray.origin.z));
-            const double world = (at.high + at.low) / setup.factor,
-                         off = margin * double(RealTraits<Real>::unit) * size;
+            const double world = (at.high + at.low) / setup.factor;
+            const double off = margin * double(RealTraits<Real>::unit) * size;
             if (magnitude(world) > size - off) return;
             low[axis] = whole_below((world - off) / cell);
             high[axis] = whole_below((world + off) / cell);
@@ -274,8 +275,12 @@ struct Highlights {
     template <class Real>
     CISTULA_HD void operator()(const Setup<Real>& setup, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const Real u = RealTraits<Real>::unit, n = Real(draw.between(1, 1024)), x = drawn_cosine<Real>(draw);
-        const Material<Real> whole = material_of(n), more = material_of(n + Real(0.25)), none = material_of(Real(0));
+        const Real u = RealTraits<Real>::unit;
+        const Real n = Real(draw.between(1, 1024));
+        const Real x = drawn_cosine<Real>(draw);
+        const Material<Real> whole = material_of(n);
+        const Material<Real> more = material_of(n + Real(0.25));
+        const Material<Real> none = material_of(Real(0));
         tally.expect(highlight(whole, Real(1)) == Real(1) && highlight(more, Real(1)) == Real(1));
         tally.expect(highlight(whole, Real(1) + 8 * u) == Real(1) && highlight(more, Real(1) + 8 * u) == Real(1));
         tally.expect(highlight(whole, -x) == Real(0) && highlight(more, -x) == Real(0) &&

@@ -8,7 +8,8 @@
 namespace cistula::verify::metamorphic {
 
 SceneDescription half_plane(const SampleLine& line, int samples_across, bool beyond) {
-    constexpr double height = 4, reach = 8;
+    constexpr double height = 4;
+    constexpr double reach = 8;
     SceneDescription scene = empty_scene();
     scene.camera.position = {0, 0, height};
     scene.camera.up = {0, 1, 0};
@@ -18,7 +19,8 @@ SceneDescription half_plane(const SampleLine& line, int samples_across, bool bey
     const glm::dvec3 normal(line.a / size, -line.b / size, 0), along(-normal.y, normal.x, 0);  // down is -y
     const double offset = line.c / size * step;  // of the line from the middle, which may be outside of the picture
     const glm::dvec3 middle = normal * offset;
-    const glm::dvec3 one = middle + along * reach, other = middle - along * reach;
+    const glm::dvec3 one = middle + along * reach;
+    const glm::dvec3 other = middle - along * reach;
     const glm::dvec3 away = normal * ((beyond ? 1 : -1) * (reach + std::abs(offset)));
     add_object(scene, quad(one, other, other + away, one + away));
     return scene;
@@ -84,7 +86,8 @@ void for_each_sample(int width, int height, int k, int x, int y, const Visit& vi
 }
 
 void on_half_plane(Stage& stage, Tally& tally) {
-    constexpr int width = 8, height = 6;
+    constexpr int width = 8;
+    constexpr int height = 6;
     std::mt19937_64 random(11);
     const auto between = [&](int low, int high) { return low + int(random() % uint64_t(high - low + 1)); };
     const uint64_t lines = stage.quick ? 60 : 3000;
@@ -106,7 +109,8 @@ void on_half_plane(Stage& stage, Tally& tally) {
     }
 }
 void shared_border(Stage& stage, Tally& tally) {
-    constexpr int width = 9, height = 7;
+    constexpr int width = 9;
+    constexpr int height = 7;
     std::mt19937_64 random(13);
     const auto between = [&](int low, int high) { return low + int(random() % uint64_t(high - low + 1)); };
     const uint64_t lines = stage.quick ? 60 : 3000;
@@ -138,10 +142,11 @@ void one_pixel(Stage& stage, Tally& tally) {
         scene.cutoff = 0;
         for (const int k : {1, 2, 5, 8}) {
             tally.place = place_of(seed, uint64_t(k), 0);
-            const Film one = stage.render(scene, frame_of(1, 1, k, 3)),
-                       many = stage.render(scene, frame_of(k, k, 1, 3));
+            const Film one = stage.render(scene, frame_of(1, 1, k, 3));
+            const Film many = stage.render(scene, frame_of(k, k, 1, 3));
             const PixelRecord &pixel = one.pixels[0], &chosen = many.pixels[size_t(k / 2 * k + k / 2)];
-            uint64_t hits = 0, rays = 0;
+            uint64_t hits = 0;
+            uint64_t rays = 0;
             int64_t sums[3] = {0, 0, 0};
             const int shift = many.fixed_shift - one.fixed_shift;
             for (const PixelRecord& other : many.pixels) {
@@ -192,7 +197,8 @@ void strips(Stage& stage, Tally& tally) {
 }
 /// Cameras at a distance that makes the picture equally large on the plane for any field of view.
 void wide_fields(Stage& stage, Tally& tally) {
-    constexpr int width = 2048, height = 3;
+    constexpr int width = 2048;
+    constexpr int height = 3;
     uint64_t field = 0;
     for (const double degrees : {1e-6, 1e-3, 1.0, 60.0, 90.0, 120.0, 179.0, 179.9, 179.999}) {
         uint64_t number = 0;
@@ -245,7 +251,8 @@ void plan_far_floor(Plan& plan) {
 }  // namespace
 
 void add_samples(Cases& cases) {
-    const Bound pixels = no_failures("pixels"), witnessed = no_failures("pixels", needs_witness);
+    const Bound pixels = no_failures("pixels");
+    const Bound witnessed = no_failures("pixels", needs_witness);
     cases.images("constant-scene", "the color itself, for 1 to 64 x 64 samples a pixel", pixels,
                  [](Stage& stage, Tally& tally) {
                      stage.in_double() ? constant_scene<double>(stage, tally) : constant_scene<float>(stage, tally);

@@ -35,7 +35,8 @@ constexpr double gap = 0x1p-8;
 
 void plan_parallel_planes(Plan& plan) {
     SceneDescription scene = empty_scene();
-    const double radius = std::sqrt(0.75), y = 0.5 + gap / 2;
+    const double radius = std::sqrt(0.75);
+    const double y = 0.5 + gap / 2;
     for (const double side : {-y, y}) add_object(scene, solid_object(PlatonicSolid::cube, {0, side, 0}, radius));
     plan.add("two cubes", scene, FoldedPath{Walls::two_cubes, 500}, {}, plan.rays(16384, 256));
 }
@@ -111,7 +112,8 @@ auto inside_meshes(const Functor& functor, uint64_t in_full, uint64_t in_quick) 
 }
 auto lengths(bool renormalize) {
     return [=](Plan& plan) {
-        SceneDescription solid = empty_scene(), mesh = empty_scene();
+        SceneDescription solid = empty_scene();
+        SceneDescription mesh = empty_scene();
         add_object(solid, solid_object(PlatonicSolid::dodecahedron, glm::dvec3(0), 1, turns[1]));
         const InsideOf body = closed_meshes()[0];
         add_object(mesh, body.mesh);
@@ -271,14 +273,17 @@ int terms_within(int depth) {
 /// from the limit. Truncation takes less than a unit of the sums from each term, besides what was pruned.
 double slab_deviation(const Stage& stage, const PixelRecord& pixel, int channel, double reflectance, int terms) {
     const auto in_real = [&](double x) { return stage.in_double() ? x : double(float(x)); };
-    const __float128 r = in_real(reflectance), t = in_real(1 - reflectance);
+    const __float128 r = in_real(reflectance);
+    const __float128 t = in_real(1 - reflectance);
     __float128 power = 1;
     for (int j = 0; j < terms; ++j) power *= r * r;
-    const __float128 limit = t * t / (1 - r * r) * whole, closed = limit * (1 - power);
+    const __float128 limit = t * t / (1 - r * r) * whole;
+    const __float128 closed = limit * (1 - power);
     const __float128 above = pixel.radiance[channel] - closed;
     const __float128 below = -above - terms - pixel.pruned[channel];
     const __float128 missing = limit - pixel.radiance[channel] - ledger(pixel, channel) - terms;
-    const __float128 larger = above > below ? above : below, off = larger > missing ? larger : missing;
+    const __float128 larger = above > below ? above : below;
+    const __float128 off = larger > missing ? larger : missing;
     return off > 0 ? double(off / closed) / (2 * stage.unit()) : 0;
 }
 
@@ -374,8 +379,8 @@ void furnace_of_glass(Stage& stage, Tally& tally) {
         for_each_furnace(stage, scene, 10, 10, [&](const Film& film) {
             for_each_sum(tally, place, film, [&](const PixelRecord& pixel, int c) {
                 const __float128 sum = pixel.radiance[c] + __float128(ledger(pixel, c)) * whole / bound_of_whole;
-                const __float128 off = sum > whole ? sum - whole : whole - sum,
-                                 units = 3 * (__float128(pixel.rays) + 1);
+                const __float128 off = sum > whole ? sum - whole : whole - sum;
+                const __float128 units = 3 * (__float128(pixel.rays) + 1);
                 tally.measure(off > units ? double((off - units) / whole) / (2 * stage.unit()) : 0);
                 tally.witness(pixel.cut[c] > 0 && pixel.radiance[c] > 0);
             });

@@ -110,7 +110,8 @@ struct FoldedPath {
         Vec3<double> o, d;
         for (int axis = 0; axis < 3; ++axis) {
             const double sign = double(draw.sign());
-            const double slope = draw.unit<double>(), place = draw.centered<double>(0.5);
+            const double slope = draw.unit<double>();
+            const double place = draw.centered<double>(0.5);
             if (cube) {
                 d[axis] = sign * (0.5 + 0.5 * slope);
                 o[axis] = place * fold[axis].width.high;

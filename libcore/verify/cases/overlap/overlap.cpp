@@ -138,7 +138,8 @@ std::pair<SceneDescription, SceneDescription> pair(double from, double to, bool 
 void later_fills(Stage& stage, Tally& tally) {
     for (uint64_t i = 0; i < scenes(stage); ++i) {
         Draw draw(i, 52);
-        const double from = -0.2 - 0.2 * draw.unit<double>(), to = 0.2 + 0.2 * draw.unit<double>();
+        const double from = -0.2 - 0.2 * draw.unit<double>();
+        const double to = 0.2 + 0.2 * draw.unit<double>();
         const Writing writing = random_writing(draw, 2, 3);
         for (const bool swapped : {false, true}) {
             const auto [apart, both] = pair(from, to, swapped, i % 2 == 1);

@@ -33,7 +33,8 @@ class Record {
     CISTULA_HD Refraction<Real> refract() const { return refracted(direction(), normal(), from(), to()); }
     /// Deviation of a reflectance from the exact value in ulps.
     CISTULA_HD double reflectance_off(Real found) const {
-        const double high = data_[record_reflectance], off = (double(found) - high) - data_[record_reflectance + 1];
+        const double high = data_[record_reflectance];
+        const double off = (double(found) - high) - data_[record_reflectance + 1];
         const uint64_t exponent = bits_as<uint64_t>(high) & 0x7ff0000000000000u;
         return magnitude(off) / (bits_as<double>(exponent) * (2 * double(RealTraits<Real>::unit)));
     }
@@ -70,7 +71,8 @@ struct FresnelGrazing {
     template <class Real>
     CISTULA_HD void operator()(const Setup<Real>& setup, uint64_t i, Tally& tally) const {
         const Record<Real> record(setup, i);
-        const Vec3<Real> normal = record.normal(), direction = record.direction();
+        const Vec3<Real> normal = record.normal();
+        const Vec3<Real> direction = record.direction();
         const Refraction<Real> found = record.refract();
         tally.expect(found.total == record.total());
         tally.measure(record.reflectance_off(found.reflectance));
@@ -116,7 +118,8 @@ struct BrewsterAngle {
     template <class Real>
     CISTULA_HD void operator()(const Setup<Real>& setup, uint64_t i, Tally& tally) const {
         const Record<Real> record(setup, i);
-        const Vec3<Real> direction = record.direction(), normal = record.normal();
+        const Vec3<Real> direction = record.direction();
+        const Vec3<Real> normal = record.normal();
         const Refraction<Real> found = record.refract();
         tally.expect(!found.total);
         if (found.total) return;
@@ -181,8 +184,12 @@ struct Condition {
 };
 CISTULA_HD inline Condition condition_of(const Vec3<double>& direction, const Vec3<double>& normal, double from,
                                          double to) {
-    const double n = to / from, excess = (n - 1) * (n + 1), c = -dot(direction, normal);
-    const double g2 = excess + c * c, g = g2 > 0 ? square_root(g2) : 0, s = square_root(max_or_second(1 - c * c, 0.0));
+    const double n = to / from;
+    const double excess = (n - 1) * (n + 1);
+    const double c = -dot(direction, normal);
+    const double g2 = excess + c * c;
+    const double g = g2 > 0 ? square_root(g2) : 0;
+    const double s = square_root(max_or_second(1 - c * c, 0.0));
     return {c, g, 1 + g / c + s * magnitude(excess) / c * (1 + 1 / (n * n))};
 }
 
@@ -191,7 +198,8 @@ struct Reversibility {
     template <class Real>
     CISTULA_HD void operator()(const Setup<Real>& setup, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const double from = 1 + 1.5 * draw.unit<double>(), to = 1 + 1.5 * draw.unit<double>();
+        const double from = 1 + 1.5 * draw.unit<double>();
+        const double to = 1 + 1.5 * draw.unit<double>();
         const Vec3<Real> normal(on_sphere(draw));
         const Vec3<Real> direction(on_sphere(draw));
         const Condition condition = condition_of(Vec3<double>(direction), Vec3<double>(normal), from, to);

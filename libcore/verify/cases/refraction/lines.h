@@ -93,7 +93,8 @@ struct CriticalAngleTraced {
         const Record<Real> record(setup, i);
         Draw draw = setup.draw(i);
         // From close to the face that lies against the normal, about its middle.
-        const double inner = 0.5 * setup.factor, gap = draw.unit<double>() * 0.125 + 0.0625;
+        const double inner = 0.5 * setup.factor;
+        const double gap = draw.unit<double>() * 0.125 + 0.0625;
         const Vec3<double> beside = draw.in_cube<double>(0.25);
         Vec3<Real> origin;
         for (int k = 0; k < 3; ++k)
@@ -147,7 +148,8 @@ struct MediaSequence {
         const Span<double>& numbers = setup.numbers;
         const auto at = [&](double x, double y, double z) { return placed(numbers, x, y, z); };
         const uint32_t count = uint32_t(numbers[12]);
-        const double reach = numbers[13], sine = numbers[14];
+        const double reach = numbers[13];
+        const double sine = numbers[14];
         const auto interval = [&](uint32_t k) { return numbers.data + 15 + 4 * k; };
         Draw draw = setup.draw(i);
         const uint32_t start = draw.below(count - 1);
@@ -198,7 +200,10 @@ struct Grazing {
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         const Span<double>& numbers = setup.numbers;
         const auto at = [&](double x, double y, double z) { return placed(numbers, x, y, z); };
-        const double face = numbers[12], onward = numbers[13], before = numbers[14], behind = numbers[15];
+        const double face = numbers[12];
+        const double onward = numbers[13];
+        const double before = numbers[14];
+        const double behind = numbers[15];
         const uint32_t solids = uint32_t(numbers[16]);
         Draw draw = setup.draw(i);
         const auto [y, z] = place_on_face(draw, 0.2);
@@ -208,7 +213,8 @@ struct Grazing {
         if (draw.one_in(2) && sine * behind < before) sine = sine * behind / before;
         const double beyond = sine * before / behind;
         if (magnitude(beyond - 1) < 0x1p-16) return;  // nearer to the critical angle cosines are less
-        const double slope = square_root(1 - sine * sine), back = 0.05 + 0.1 * draw.unit<double>();
+        const double slope = square_root(1 - sine * sine);
+        const double back = 0.05 + 0.1 * draw.unit<double>();
         const Vec3<double> aside = on_sphere(draw);
         const double across = sine / square_root(aside.y * aside.y + aside.z * aside.z);
         const Vec3<Real> target(at(face, y, z));
@@ -294,8 +300,12 @@ struct CameraInside {
 struct PrismDeviation {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
-        const Vec3<double> in = setup.vector(0), out = setup.vector(3), edge = setup.vector(6), entry = setup.vector(9);
-        const double least_cosine = setup.numbers[12], reach = setup.numbers[13];
+        const Vec3<double> in = setup.vector(0);
+        const Vec3<double> out = setup.vector(3);
+        const Vec3<double> edge = setup.vector(6);
+        const Vec3<double> entry = setup.vector(9);
+        const double least_cosine = setup.numbers[12];
+        const double reach = setup.numbers[13];
         Draw draw = setup.draw(i);
         const bool symmetric = draw.one_in(2);
         const double turn = symmetric ? 0.0 : draw.sign() * magnitude(draw.scaled<double>(-24, -7));
@@ -307,7 +317,8 @@ struct PrismDeviation {
         tally.expect(lines.whole() && lines.count == 3);
         if (lines.count != 3) return;
         const Vec3<double> left(lines.direction[2]), came(way);
-        const double unit = double(RealTraits<Real>::unit), cosine = dot(left, came);
+        const double unit = double(RealTraits<Real>::unit);
+        const double cosine = dot(left, came);
         tally.expect(dot(left, out) > 0.99);
         tally.measure(max_or_second(cosine - least_cosine, 0.0) / unit);
         if (symmetric) tally.measure(magnitude(cosine - least_cosine) / unit);
@@ -365,9 +376,12 @@ struct SlabDisplacement {
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         SlabRay<Real> ray;
         if (!pass_slab(setup, intersector, i, ray, tally)) return;
-        const double n = setup.numbers[0], c = -dot(ray.to, ray.normal), thickness = 2 * setup.numbers[1];
+        const double n = setup.numbers[0];
+        const double c = -dot(ray.to, ray.normal);
+        const double thickness = 2 * setup.numbers[1];
         const Vec3<double> tangent = ray.to + c * ray.normal;
-        const double g = square_root((n - 1) * (n + 1) + c * c), expected = thickness * length(tangent) * (1 - c / g);
+        const double g = square_root((n - 1) * (n + 1) + c * c);
+        const double expected = thickness * length(tangent) * (1 - c / g);
         const Vec3<double> way = Vec3<double>(ray.lines.origin[2]) - Vec3<double>(ray.lines.origin[0]);
         const Vec3<double> aside = cross(way, ray.to);
         tally.measure(magnitude(length(aside) - expected) / double(RealTraits<Real>::unit * setup.extent()));

@@ -62,7 +62,8 @@ SceneDescription scene_of(const std::vector<Body>& bodies, Form form, const glm:
     for (size_t i = 0; i < bodies.size(); ++i) {
         const Body& body = bodies[i];
         const int material = add_material(scene, glass(body.index));
-        const double half = 0.5 * (body.end - body.begin), middle = body.begin + half;
+        const double half = 0.5 * (body.end - body.begin);
+        const double middle = body.begin + half;
         const bool cube = form == Form::cubes || (form == Form::both && i % 2 == 0);
         const double wide = form == Form::both ? half : box_half_width;
         if (cube)
@@ -231,7 +232,8 @@ void plan_grazing(Plan& plan, bool are_moved) {
 }  // namespace
 
 void add_media(Cases& cases) {
-    const Bound none = no_failures("rays"), witnessed = no_failures("rays", needs_witness);
+    const Bound none = no_failures("rays");
+    const Bound witnessed = no_failures("rays", needs_witness);
     const auto sequence = [&](const std::string& name, const char* exact, Form form, bool are_moved) {
         cases.rays<MediaSequence>("media/" + name, exact, none,
                                   [=](Plan& plan) { plan_bodies(plan, form, are_moved); });

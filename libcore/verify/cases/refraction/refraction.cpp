@@ -47,7 +47,8 @@ Quad add_record(const Vec3<double>& direction, const Vec3<double>& normal, doubl
     numbers.push_back(total ? 1 : 0);
     const Quad g = root(g2);
     // Fresnel's amplitudes in textbook form: perpendicular to the plane of incidence and in it.
-    const Quad s = (c - g) / (c + g), p = (n * n * c - g) / (n * n * c + g);
+    const Quad s = (c - g) / (c + g);
+    const Quad p = (n * n * c - g) / (n * n * c + g);
     pair(total ? Quad(1) : (s * s + p * p) / 2);
     Quad through[3], square = 0;
     for (int k = 0; k < 3; ++k) through[k] = Quad(d[k]) + (c - g) * Quad(at[k]), square += through[k] * through[k];
@@ -67,7 +68,8 @@ struct IndexPair {
 /// A random unit vector perpendicular to `normal`.
 Vec3<double> tangent_to(const Vec3<double>& normal, Draw& draw) {
     for (;;) {
-        const Vec3<double> other = draw.in_cube<double>(1.0), across = other - dot(other, normal) * normal;
+        const Vec3<double> other = draw.in_cube<double>(1.0);
+        const Vec3<double> across = other - dot(other, normal) * normal;
         if (dot(across, across) > 0x1p-8) return normalized(across);
     }
 }
@@ -118,7 +120,8 @@ void normal_record(Draw& draw, Numbers& numbers) {
     const size_t first = numbers.size();
     add_records(-normal, normal, index.from, index.to, numbers);
     // The closed form instead of the general one.
-    const Quad n = Quad(index.to) / Quad(index.from), amplitude = (n - 1) / (n + 1);
+    const Quad n = Quad(index.to) / Quad(index.from);
+    const Quad amplitude = (n - 1) / (n + 1);
     expect_share(amplitude * amplitude, first, numbers);
 }
 /// Appends records for a cosine of incidence.
@@ -134,23 +137,27 @@ void grazing_record(Draw& draw, Numbers& numbers) {
 void any_record(Draw& draw, Numbers& numbers) {
     const IndexPair index = drawn_pair(draw);
     const Vec3<double> normal = on_sphere(draw);
-    const double n = index.to / index.from, critical = n < 1 ? std::sqrt((1 - n) * (1 + n)) : 0;
+    const double n = index.to / index.from;
+    const double critical = n < 1 ? std::sqrt((1 - n) * (1 + n)) : 0;
     const double cosine = critical + (1 - critical) * (0x1p-10 + (1 - 0x1p-10) * draw.unit<double>());
     add_incidence(draw, index, normal, cosine, numbers);
 }
 /// Appends a record whose direction is at Brewster's angle, tan = n, rounded; the expected share is that of the exact
 /// angle.
 void brewster_record(Draw& draw, Numbers& numbers) {
-    const double from = 1 + draw.unit<double>(), to = from * (1.0625 + 1.5 * draw.unit<double>());
+    const double from = 1 + draw.unit<double>();
+    const double to = from * (1.0625 + 1.5 * draw.unit<double>());
     const Vec3<double> normal = axis_normal(draw);
-    const Quad n = Quad(to) / Quad(from), cosine = 1 / root(1 + n * n);
+    const Quad n = Quad(to) / Quad(from);
+    const Quad cosine = 1 / root(1 + n * n);
     const size_t first = numbers.size();
     // The tangent along an axis as well: the other components are zeros, and stay so.
     Vec3<double> tangent(0.0);
     for (int k = 0; k < 3; ++k)
         if (normal[k] != 0) tangent[(k + 1 + draw.between(0, 1)) % 3] = draw.sign();
     add_records(double(n * cosine) * tangent - double(cosine) * normal, normal, from, to, numbers);
-    const Quad amplitude = (n * n - 1) / (n * n + 1), share = amplitude * amplitude / 2;
+    const Quad amplitude = (n * n - 1) / (n * n + 1);
+    const Quad share = amplitude * amplitude / 2;
     expect_share(share, first, numbers);
 }
 
@@ -213,7 +220,8 @@ void plan_camera_inside(Plan& plan) {
         plan.add(label, scene, CameraInside(), {}, plan.rays(200000, 1500));
     };
     for (const Shape shape : {Shape::planes, Shape::triangles}) {
-        SceneDescription nested = empty_scene(), overlapping = empty_scene();
+        SceneDescription nested = empty_scene();
+        SceneDescription overlapping = empty_scene();
         const double indices[] = {1.5, 1.33, 2};
         for (int k = 0; k < 3; ++k) {
             const PlatonicSolid kind = platonic_solids[4 - k];
@@ -226,7 +234,8 @@ void plan_camera_inside(Plan& plan) {
         add(shape == Shape::planes ? "nested planes" : "nested meshes", nested);
         add(shape == Shape::planes ? "overlapping planes" : "overlapping meshes", overlapping);
     }
-    SceneDescription hollow = empty_scene(), spiked = empty_scene();
+    SceneDescription hollow = empty_scene();
+    SceneDescription spiked = empty_scene();
     add_object(hollow, torus(0.8, 0.3, 24, 12), add_material(hollow, glass(1.5)));
     add_solid(hollow, Shape::planes, solid_object(PlatonicSolid::icosahedron, {0.8, 0, 0}, 0.4),
               add_material(hollow, glass(1.33)));
@@ -254,14 +263,18 @@ void prism_numbers(const SolidObject& solid, double index, const PartFrame& fram
             if (face.id == id) return rotation(face.normal);
         return glm::dvec3(0);
     };
-    const glm::dvec3 first = normal_of(edge.faces[0]), second = normal_of(edge.faces[1]);
-    const glm::dvec3 a = rotation(shape.vertices[edge.vertices[0]]), b = rotation(shape.vertices[edge.vertices[1]]);
+    const glm::dvec3 first = normal_of(edge.faces[0]);
+    const glm::dvec3 second = normal_of(edge.faces[1]);
+    const glm::dvec3 a = rotation(shape.vertices[edge.vertices[0]]);
+    const glm::dvec3 b = rotation(shape.vertices[edge.vertices[1]]);
     // The angle between the normals is 180 degrees less A: half of it has the cosine sin(A/2).
     Quad product = 0;
     for (int k = 0; k < 3; ++k) product += Quad(first[k]) * Quad(second[k]);
-    const Quad half_sine = root((1 + product) / 2), half_cosine = root((1 - product) / 2);
+    const Quad half_sine = root((1 + product) / 2);
+    const Quad half_cosine = root((1 - product) / 2);
     // Snell at the face: sin of incidence n sin(A/2); the deviation is twice that angle less A.
-    const Quad s = Quad(index) * half_sine, c = root((1 - s) * (1 + s));
+    const Quad s = Quad(index) * half_sine;
+    const Quad c = root((1 - s) * (1 + s));
     const Quad half_turn_cosine = c * half_cosine + s * half_sine;
     const Quad cosine = 2 * half_turn_cosine * half_turn_cosine - 1;
     const glm::dvec3 within = normalized(second - first);  // across the plane that halves the prism
@@ -353,17 +366,21 @@ SceneDescription room() {
 
 void index_one(Stage& stage, Tally& tally) {
     using Change = std::function<void(SceneDescription&, int clear)>;
-    const int width = stage.quick ? 40 : 320, height = stage.quick ? 30 : 240;
+    const int width = stage.quick ? 40 : 320;
+    const int height = stage.quick ? 30 : 240;
     const auto compare = [&](const SceneDescription& scene, bool first, const Change& add) {
-        SceneDescription with = scene, alone = scene;
-        const int clear = add_material(with, glass(1)), split = add_material(with, glass(1));
+        SceneDescription with = scene;
+        SceneDescription alone = scene;
+        const int clear = add_material(with, glass(1));
+        const int split = add_material(with, glass(1));
         with.materials[size_t(split)].fresnel = true;
         const size_t before = with.objects.size();
         add(with, clear);
         const int added = int(with.objects.size() - before);
         for (size_t k = before; k < with.objects.size(); k += 2) with.objects[k].material = split;
         if (first) std::rotate(with.objects.begin(), with.objects.begin() + long(before), with.objects.end());
-        const Film seen = stage.render(with, width, height), expected = stage.render(alone, width, height);
+        const Film seen = stage.render(with, width, height);
+        const Film expected = stage.render(alone, width, height);
         tally.expect(seen.flags == 0 && expected.flags == 0 && seen.fixed_shift == expected.fixed_shift &&
                      seen.radiance_exponent == expected.radiance_exponent);
         // Ids of lights come after those of all solids. Lines pass more faces: rays are not compared.

@@ -258,7 +258,8 @@ void plan_visible_lights(Plan& plan) {
 
 /// A wall of lights that are only visible, some in front of others, behind an octahedron that hides some of them.
 void visible_light_pixels(Stage& stage, Tally& tally) {
-    const int width = stage.quick ? 40 : 320, height = stage.quick ? 30 : 240;
+    const int width = stage.quick ? 40 : 320;
+    const int height = stage.quick ? 30 : 240;
     const SolidObject solid = solid_object(PlatonicSolid::octahedron, {0.5, -1.5, 0.25}, 0.5, {17, 41, 73});
     SceneDescription scene = dark_scene();
     scene.camera.position = {0, -4, 0};

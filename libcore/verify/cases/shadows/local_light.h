@@ -59,7 +59,8 @@ struct LitInFull {
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
         const Vec3<double> middle = setup.vector(0);
-        const double radius = setup.numbers[3], extent = double(setup.extent());
+        const double radius = setup.numbers[3];
+        const double extent = double(setup.extent());
         const double away = min_or_second(2.5 * radius, 1.95 * extent - length(middle));
         const Vec3<double> from = on_sphere(draw);
         const Vec3<double> at = in_ball(draw);
@@ -74,7 +75,8 @@ struct LitInFull {
         // Where the light is clearly over or under the face: beyond what counts as in its plane (16 u M), the start of
         // the line (8 u M over the face) and the rounding of a dot product (5 u of the distance), all twice.
         const Vec3<double> way = Vec3<double>(setup.scene.lights[light].position) - Vec3<double>(surface.point);
-        const double over = dot(Vec3<double>(surface.normal), way), distance = length(way);
+        const double over = dot(Vec3<double>(surface.normal), way);
+        const double distance = length(way);
         const double doubt = double(RealTraits<Real>::unit) * (48 * extent + 10 * distance);
         tally.witness(lit.shadow_rays != 0 && over < distance * 0x1p-6);
         tally.expect(lit == open && lit.flags == 0 &&
@@ -87,10 +89,12 @@ struct OwnLight : HalfSpaces {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
         Draw draw = setup.draw(i);
-        const double extent = double(setup.extent()), doubt = setup.units(64);
+        const double extent = double(setup.extent());
+        const double doubt = setup.units(64);
         const uint32_t light = draw.below(lights);
         const bool within = draw.one_in(2);
-        const uint32_t first = lights, last = first + 4 * faces;
+        const uint32_t first = lights;
+        const uint32_t last = first + 4 * faces;
         const Vec3<double> middle = setup.vector(last);
         const double inradius = setup.numbers[last + 3];
         const Vec3<double> away = on_sphere(draw);
@@ -157,7 +161,8 @@ struct Falloff {
         Draw draw = setup.draw(i);
         const double half = setup.numbers[3];
         const Vec3<double> middle = setup.vector(0);
-        Vec3<double> at = draw.in_cube<double>(0.98 * half), from = draw.in_cube<double>(0.5 * half);
+        Vec3<double> at = draw.in_cube<double>(0.98 * half);
+        Vec3<double> from = draw.in_cube<double>(0.5 * half);
         at.z = 0, from.z = 0.25 * half + magnitude(from.z);
         const Vec3<Real> origin(middle + from);
         const Ray<Real> ray = ray_from(origin, normalized(Vec3<Real>(middle + at) - origin));
@@ -169,8 +174,11 @@ struct Falloff {
         const LocalLight lit = local_light(setup, intersector, ray, hit, surface, 0);
         const Light<Real>& light = setup.scene.lights[0];
         const Vec3<double> p(surface.viewer_side), l(light.position);
-        const DoubleDouble x = two_sum(l.x, -p.x), y = two_sum(l.y, -p.y), h = two_sum(l.z, -p.z);
-        const DoubleDouble square = x * x + y * y + h * h, ih = DoubleDouble(double(light.intensity.x)) * h;
+        const DoubleDouble x = two_sum(l.x, -p.x);
+        const DoubleDouble y = two_sum(l.y, -p.y);
+        const DoubleDouble h = two_sum(l.z, -p.z);
+        const DoubleDouble square = x * x + y * y + h * h;
+        const DoubleDouble ih = DoubleDouble(double(light.intensity.x)) * h;
         const DoubleDouble value =
             fast_two_sum(double(lit.radiance[0] >> 31) * 0x1p-31, double(lit.radiance[0] & 0x7fffffff) * 0x1p-62);
         if (!(value.high > 0x1p-8)) return;  // otherwise the sums have fewer digits than a double

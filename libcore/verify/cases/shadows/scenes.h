@@ -21,7 +21,10 @@ inline TrianglesObject square(double half, double z, uint32_t n, bool other_way,
             mesh.vertices.push_back(center + turned(glm::dvec3(half * (2.0 * x / n - 1), half * (2.0 * y / n - 1), z)));
     for (uint32_t y = 0; y < n; ++y)
         for (uint32_t x = 0; x < n; ++x) {
-            const uint32_t a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+            const uint32_t a = y * (n + 1) + x;
+            const uint32_t b = a + 1;
+            const uint32_t c = a + n + 1;
+            const uint32_t d = c + 1;
             if (other_way) {
                 mesh.triangles.push_back({a, b, c});
                 mesh.triangles.push_back({b, d, c});

@@ -23,7 +23,9 @@ void add_lights_around(SceneDescription& scene, const SolidObject& body) {
     const PlatonicShape& shape = platonic_shape(body.solid);
     const Rotation turned(body.rotation);
     for (uint32_t k = 0; k < 12; ++k) {
-        const double z = (2.0 * k + 1) / 12 - 1, r = std::sqrt(1 - z * z), a = 2.4 * k;
+        const double z = (2.0 * k + 1) / 12 - 1;
+        const double r = std::sqrt(1 - z * z);
+        const double a = 2.4 * k;
         add_light(scene, body.center +
                              glm::dvec3(r * std::cos(a), r * std::sin(a), z) * (body.radius * (k % 3 ? 3.0 : 100.0)));
     }
@@ -71,7 +73,8 @@ void plan_terminator(Plan& plan) {
             for (glm::dvec3& p : sphere.vertices) p = turned(p);
             add_object(scene, sphere);
             for (uint32_t k = 0; k < 16; ++k) {
-                const double a = 0.39 * k, far = k % 4 == 3 ? 1000 : 1.25 + k;
+                const double a = 0.39 * k;
+                const double far = k % 4 == 3 ? 1000 : 1.25 + k;
                 add_light(scene, glm::dvec3(std::cos(a), std::sin(a), k % 2 ? 0.1 * k : 0.0) * far);
             }
             plan.add(std::to_string(triangles) + " triangles", std::move(scene), LitInFull{0}, {},
@@ -138,7 +141,8 @@ void plan_boxes(Plan& plan, Shape shape, int halvings, bool tiny) {
 
 /// A floor around opaque solids with lights inside, rendered.
 void box_pixels(Stage& stage, Tally& tally) {
-    const int width = stage.quick ? 40 : 320, height = stage.quick ? 30 : 240;
+    const int width = stage.quick ? 40 : 320;
+    const int height = stage.quick ? 30 : 240;
     for (int k = 0; k < 6; ++k) {
         SceneDescription scene = dark_scene();
         scene.camera.position = {0.3, -6, 3};
@@ -178,7 +182,8 @@ void plan_sheets(Plan& plan) {
                 ThroughSheets functor{{0, 0, 0}};
                 std::vector<glm::dvec3> points;
                 for (uint32_t s = 0; s < sheets; ++s) {
-                    const int all = int((s * 5 + sheets) % 4), green = int(s % 3);
+                    const int all = int((s * 5 + sheets) % 4);
+                    const int green = int(s % 3);
                     MaterialDescription glass = scene.materials[0];
                     glass.transmission = std::ldexp(1.0, -all);
                     glass.tint = {1, std::ldexp(1.0, -green), stopped && s == sheets / 2 ? 0 : 0.5};
@@ -307,7 +312,8 @@ int32_t id_before(const SceneDescription& scene, int32_t id, uint64_t which) {
 /// Glass and mirrors whose lights or triangles come in another order.
 auto permuted(bool lights) {
     return [=](Stage& stage, Tally& tally) {
-        const int width = stage.quick ? 40 : 240, height = stage.quick ? 30 : 180;
+        const int width = stage.quick ? 40 : 240;
+        const int height = stage.quick ? 30 : 180;
         const SceneDescription scene = glass_room();
         const Film expected = stage.render(scene, width, height);
         for (uint64_t which = 0; which < (stage.quick ? 2 : 4); ++which) {
@@ -339,7 +345,8 @@ auto permuted(bool lights) {
 
 void add_shadows(Cases& cases) {
     using namespace shadows;
-    const Bound pixels = no_failures("pixels"), lit_pixels = no_failures("pixels", needs_witness);
+    const Bound pixels = no_failures("pixels");
+    const Bound lit_pixels = no_failures("pixels", needs_witness);
     const auto acne = [&](const std::string& name, const char* exact, const Bound& bound, Body body,
                           const std::vector<double>& offsets, bool far_from_the_middle) {
         cases.rays<LitInFull>("acne/" + name, exact, bound,
@@ -370,7 +377,8 @@ void add_shadows(Cases& cases) {
                                     for (const Shape shape : shapes) plan_boxes(plan, shape, halvings, tiny);
                                 });
     };
-    const Shape planes = Shape::planes, triangles = Shape::triangles;
+    const Shape planes = Shape::planes;
+    const Shape triangles = Shape::triangles;
     box("closed-box/planes", "0 light outside closed opaque solids, aimed through edges and corners", -1, false,
         {planes});
     box("closed-box/triangles", "0 light outside closed opaque meshes, aimed through edges and corners", -1, false,

@@ -42,7 +42,8 @@ struct FromOutside {
         const Vec3<double> from(setup.scene.lights[light].position);
         const Vec3<double> target(setup.points[uint32_t(i % setup.points.size)]);
         // Beyond an edge or a corner, in the line of the light; some a hair beside it.
-        const double extent = double(setup.extent()), radius = setup.numbers[0];
+        const double extent = double(setup.extent());
+        const double radius = setup.numbers[0];
         double beyond = 1 + two_to<double>(-draw.between(0, 8));
         if (draw.one_in(4)) beyond = 1 + draw.unit<double>() * (extent / radius);
         const Vec3<double> jitter = draw.in_cube<double>(8 * double(RealTraits<Real>::unit) * extent);
@@ -111,7 +112,8 @@ struct ThroughSolids {
         // 64 u M: points, corners, planes and direction round by a few u M each over a way of 4 M.
         const double doubt = setup.units(64);
         const Vec3<double> start(shadow.ray.origin), direction = normalized(Vec3<double>(shadow.ray.direction));
-        uint32_t sure = 0, possible = 0;
+        uint32_t sure = 0;
+        uint32_t possible = 0;
         uint32_t first = solids;
         for (uint32_t s = 0; s < solids; ++s) {
             const uint32_t size = uint32_t(setup.numbers[s]);
@@ -192,18 +194,20 @@ struct LightsOnStar {
     /// decide.
     CISTULA_HD int meets(const Span<double>& numbers, uint32_t triangle, const Vec3<double>& p, const Vec3<double>& l,
                          double doubt) const {
-        const Vec3<double> a = corner(numbers, triangle, 0), b = corner(numbers, triangle, 1),
-                           c = corner(numbers, triangle, 2);
+        const Vec3<double> a = corner(numbers, triangle, 0);
+        const Vec3<double> b = corner(numbers, triangle, 1);
+        const Vec3<double> c = corner(numbers, triangle, 2);
         const Vec3<double> normal = normalized(cross(b - a, c - a));
-        const double from = dot(normal, p - a), to = dot(normal, l - a);
+        const double from = dot(normal, p - a);
+        const double to = dot(normal, l - a);
         if (magnitude(from) <= doubt || magnitude(to) <= doubt) return 2;
         if ((from > 0) == (to > 0)) return 0;
         const Vec3<double> x = p + (l - p) * (from / (from - to));
         const double aside = doubt * (1 + length(l - p) / magnitude(from - to));
         double least_in = 1e300;
         for (uint32_t e = 0; e < 3; ++e) {
-            const Vec3<double> first = corner(numbers, triangle, e),
-                               edge = corner(numbers, triangle, (e + 1) % 3) - first;
+            const Vec3<double> first = corner(numbers, triangle, e);
+            const Vec3<double> edge = corner(numbers, triangle, (e + 1) % 3) - first;
             least_in = min_or_second(least_in, dot(cross(edge, x - first), normal) / length(edge));
         }
         return least_in > aside ? 1 : least_in < -aside ? 0 : 2;

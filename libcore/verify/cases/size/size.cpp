@@ -122,9 +122,11 @@ Render at_offset(Look look) {
 void add_size(Cases& cases) {
     using namespace size;
     const Bound warns = no_failures("pixels", float_warns);
-    constexpr PlatonicSolid tetrahedron = PlatonicSolid::tetrahedron, cube = PlatonicSolid::cube,
-                            octahedron = PlatonicSolid::octahedron, dodecahedron = PlatonicSolid::dodecahedron,
-                            icosahedron = PlatonicSolid::icosahedron;
+    constexpr PlatonicSolid tetrahedron = PlatonicSolid::tetrahedron;
+    constexpr PlatonicSolid cube = PlatonicSolid::cube;
+    constexpr PlatonicSolid octahedron = PlatonicSolid::octahedron;
+    constexpr PlatonicSolid dodecahedron = PlatonicSolid::dodecahedron;
+    constexpr PlatonicSolid icosahedron = PlatonicSolid::icosahedron;
     const auto floors = [&](const std::string& name, Look look, Shape shape, const Kinds& kinds) {
         cases.images("floor/" + name, "floors of half-size 1e3 to 1e9: the picture of one of 512", warns,
                      on_floor(look, shape, kinds));

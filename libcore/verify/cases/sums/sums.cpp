@@ -176,7 +176,8 @@ struct Loss {
     }
     /// Expects what is lost to be what the ledger says at most.
     void check(const Stage& stage, Tally& tally) const {
-        const Film reference = Loss().film(stage), found = film(stage);
+        const Film reference = Loss().film(stage);
+        const Film found = film(stage);
         const FilmColors colors(found, OutputChannels()), reference_colors(reference, OutputChannels());
         for (size_t i = 0; i < found.pixels.size(); ++i)
             for (int c = 0; c < 3; ++c) {
