@@ -243,10 +243,10 @@ def test_damaged_records_are_refused_or_shown(measured: Path) -> None:
 
 def test_an_interruption_leaves_nothing(tmp_path: Path) -> None:
     (tmp_path / "small.json").write_text(json.dumps(SMALL))
-    process = subprocess.Popen([sys.executable, "-m", "cistula", "report", "small.json", "--res", "640x360", "-o", "r.html", "--json", "r.json"],
+    process = subprocess.Popen([sys.executable, "-m", "cistula", "report", "small.json", "--res", "320x180", "-o", "r.html", "--json", "r.json"],
                                cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     assert process.stderr
-    assert any("rays" in line for line in process.stderr)
+    assert any("stages" in line for line in process.stderr)
     time.sleep(0.2)
     process.send_signal(signal.SIGINT)
     assert process.wait(20) == 130
